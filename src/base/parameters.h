@@ -1,0 +1,70 @@
+#pragma once
+
+/// How a module says what can be set: it lists its fields once, each with name, default (the field's initial value),
+/// rule and text. The scene parser declares, checks and assigns from the same list, and `kerf params` prints it.
+///
+///     struct Gravity {
+///       Vec3 acceleration = {0, 0, -9.81};
+///       void describe(Parameters& p) { p.vector("Acceleration [m/s^2]", acceleration, "Gravity, world frame."); }
+///     };
+
+#include "base/vec.h"
+
+#include <functional>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace kerf {
+
+/// Which numbers are allowed.
+struct Range {
+  double min = -std::numeric_limits<double>::infinity();
+  double max = std::numeric_limits<double>::infinity();
+  bool min_excluded = false, max_excluded = false;
+
+  bool contains(double value) const;
+  /// "must be > 0", "must be >= 0 and < 0.5".
+  std::string rule() const;
+};
+constexpr Range any_number{};
+constexpr Range positive{0, std::numeric_limits<double>::infinity(), true, false};
+constexpr Range non_negative{0, std::numeric_limits<double>::infinity(), false, false};
+
+/// One key of a section.
+struct Parameter {
+  std::string name;     ///< with its unit: "Young's modulus [Pa]"
+  std::string fallback; ///< default as text; empty and required means that the scene must write it
+  std::string rule;     ///< what must hold, for people
+  std::string text;     ///< what it does
+  bool required = false;
+  /// Parses and assigns; returns what is wrong with the value, or an empty string.
+  std::function<std::string(const std::string& value)> assign;
+};
+
+/// The keys of one section, in order.
+class Parameters {
+ public:
+  void number(const std::string& name, double& field, const Range& range, const std::string& text);
+  void integer(const std::string& name, int& field, const Range& range, const std::string& text);
+  void boolean(const std::string& name, bool& field, const std::string& text); ///< yes or no
+  void text(const std::string& name, std::string& field, const std::string& text);
+  /// A word out of `words`.
+  void choice(const std::string& name, std::string& field, const std::vector<std::string>& words, const std::string& text);
+  /// Three numbers: x, y, z.
+  void vector(const std::string& name, Vec3& field, const std::string& text);
+  /// Points separated by semicolons: x, y, z; x, y, z.
+  void points(const std::string& name, Points& field, const std::string& text);
+  /// Numbers separated by commas, each in range.
+  void numbers(const std::string& name, std::vector<double>& field, const Range& range, const std::string& text);
+
+  /// The last key added must be written by the scene.
+  void require_last() { list_.back().required = true; }
+
+  const std::vector<Parameter>& list() const { return list_; }
+
+ private:
+  std::vector<Parameter> list_;
+};
+
+} // namespace kerf

@@ -1,0 +1,75 @@
+#pragma once
+
+/// Which edges are cut, where, and by what; and where the vertices that a cut makes inside faces and cells lie at rest.
+/// Everything here is in the rest configuration.
+
+#include "grid/grid.h"
+
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace kerf::grid {
+
+/// Who cut an edge: 0 is the body's skin (the input mesh), 1, 2, ... the blades in the order of the scene.
+using CutLabel = std::uint16_t;
+constexpr CutLabel skin_label = 0;
+
+/// A cut edge never has its vertex closer than this to a node, as a part of h [1].
+constexpr double min_edge_parameter = 1e-4;
+
+struct EdgeCut {
+  EdgeId edge;
+  double t = 0.5;               ///< position along the edge from its lower node, in [min_edge_parameter, 1 - ...] [1]
+  Vec3 normal = Vec3::UnitX();  ///< unit normal of the cutting surface, rest frame; the sign has no meaning
+  CutLabel label = skin_label;
+};
+
+class Cuts {
+ public:
+  explicit Cuts(const Grid& grid);
+
+  bool is_cut(EdgeId e) const { return edge_cut_[e] != none; }
+  /// Null when the edge is not cut.
+  const EdgeCut* find(EdgeId e) const { return edge_cut_[e] == none ? nullptr : &cuts_[edge_cut_[e]]; }
+  std::span<const EdgeCut> all() const { return cuts_; }
+
+  /// Cuts an uncut edge; t is clamped. An edge is cut once.
+  void add(EdgeCut cut);
+
+  /// The 12 line bits of a cell, 0..4095.
+  unsigned configuration(const Grid& grid, CellId c) const;
+
+  /// The vertex in a face or a cell, where a cut has placed one; the middle otherwise is the caller's to know.
+  const Vec3* point(FaceId f) const { return face_point_[f] == none ? nullptr : &points_[face_point_[f]]; }
+  const Vec3* point(CellId c) const { return cell_point_[c] == none ? nullptr : &points_[cell_point_[c]]; }
+  void set_point(FaceId f, const Vec3& p) { set(face_point_[f], p); }
+  void set_point(CellId c, const Vec3& p) { set(cell_point_[c], p); }
+
+ private:
+  static constexpr std::uint32_t none = Id<void>::no_value;
+
+  void set(std::uint32_t& index, const Vec3& p);
+
+  Table<EdgeId, std::uint32_t> edge_cut_;
+  Table<FaceId, std::uint32_t> face_point_;
+  Table<CellId, std::uint32_t> cell_point_;
+  std::vector<EdgeCut> cuts_;
+  Points points_;
+};
+
+/// Rest position [m] of the point on an edge (its cut, else its middle), in a face and in a cell (placed, else centre).
+Vec3 edge_point(const Grid& grid, const Cuts& cuts, EdgeId e);
+Vec3 face_point(const Grid& grid, const Cuts& cuts, FaceId f);
+Vec3 cell_point(const Grid& grid, const Cuts& cuts, CellId c);
+
+/// Centre of a face [m].
+Vec3 centre(const Grid& grid, FaceId f);
+/// Centre of a cell [m].
+Vec3 centre(const Grid& grid, CellId c);
+
+/// The hexahedron of material that belongs to `vertex` in a cell (DESIGN §3): eight rest positions [m] in deal.II's
+/// vertex order, the node itself at index `vertex`; positively oriented. The eight octants of a cell tile it.
+std::array<Vec3, 8> octant(const Grid& grid, const Cuts& cuts, CellId c, int vertex);
+
+} // namespace kerf::grid

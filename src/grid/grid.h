@@ -1,0 +1,83 @@
+#pragma once
+
+/// The lattice of cubes around a body, stored only where there is material (thesis §2.4): every cell that touches a
+/// material node, and those cells' nodes, edges and faces. Which nodes hold material never changes; which edges are cut
+/// is kept beside it (cuts.h).
+///
+/// Notation: an edge or face is named by its lower node and its axis (the direction of the edge, the normal of the face).
+/// Limit: at most 2^20 cells along an axis.
+
+#include "base/id.h"
+#include "base/vec.h"
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+namespace kerf::grid {
+
+using NodeId = Id<struct NodeTag>;
+using EdgeId = Id<struct EdgeTag>;
+using FaceId = Id<struct FaceTag>;
+using CellId = Id<struct CellTag>;
+
+/// Where the nodes are at rest: node (i, j, k) at origin + h (i, j, k) [m].
+struct Lattice {
+  Vec3 origin = Vec3::Zero();
+  double h = 1; ///< cube edge [m]
+
+  /// Always this one expression, so that predicates see one position per node.
+  Vec3 position(const Index3& i) const { return {origin[0] + h * i[0], origin[1] + h * i[1], origin[2] + h * i[2]}; }
+};
+
+class Grid {
+ public:
+  /// Builds the cells that touch the given material nodes. Duplicates are ignored. Throws DataError when there are none.
+  Grid(const Lattice& lattice, std::vector<Index3> material_nodes);
+
+  const Lattice& lattice() const { return lattice_; }
+  double h() const { return lattice_.h; }
+
+  std::size_t n_nodes() const { return node_index_.size(); }
+  std::size_t n_edges() const { return edge_ends_.size(); }
+  std::size_t n_faces() const { return face_cells_.size(); }
+  std::size_t n_cells() const { return cell_nodes_.size(); }
+
+  bool is_material(NodeId n) const { return material_[n] != 0; }
+  const Index3& index(NodeId n) const { return node_index_[n]; }
+  /// Rest position [m].
+  Vec3 position(NodeId n) const { return lattice_.position(node_index_[n]); }
+  /// Rest position of the cell's lowest node [m].
+  Vec3 origin(CellId c) const { return position(cell_nodes_[c][0]); }
+
+  /// In deal.II's local numbering (cube.h).
+  const std::array<NodeId, 8>& nodes(CellId c) const { return cell_nodes_[c]; }
+  const std::array<EdgeId, 12>& edges(CellId c) const { return cell_edges_[c]; }
+  const std::array<FaceId, 6>& faces(CellId c) const { return cell_faces_[c]; }
+
+  /// Lower node first.
+  const std::array<NodeId, 2>& ends(EdgeId e) const { return edge_ends_[e]; }
+  int axis(EdgeId e) const;
+  /// The stored cells around an edge (up to four; the rest invalid).
+  std::array<CellId, 4> cells(EdgeId e) const;
+  /// The cells below and above a face; invalid where none is stored.
+  const std::array<CellId, 2>& cells(FaceId f) const { return face_cells_[f]; }
+
+  std::optional<NodeId> find_node(const Index3& i) const;
+  std::optional<EdgeId> find_edge(const Index3& lower, int axis) const;
+  std::optional<CellId> find_cell(const Index3& lower) const;
+
+ private:
+  Lattice lattice_;
+  std::vector<std::uint64_t> node_keys_, edge_keys_, cell_keys_; // sorted
+  Table<NodeId, Index3> node_index_;
+  Table<NodeId, std::uint8_t> material_;
+  Table<EdgeId, std::array<NodeId, 2>> edge_ends_;
+  Table<FaceId, std::array<CellId, 2>> face_cells_;
+  Table<CellId, std::array<NodeId, 8>> cell_nodes_;
+  Table<CellId, std::array<EdgeId, 12>> cell_edges_;
+  Table<CellId, std::array<FaceId, 6>> cell_faces_;
+};
+
+} // namespace kerf::grid
