@@ -10,12 +10,12 @@ namespace kerf {
 /// What a user sees: where (file:line), what (parameter path, value), which rule was broken, and what to do.
 /// Empty parts are left out of the message.
 struct Complaint {
-  std::string file;
+  std::string file = {};
   int line = 0;
-  std::string path;  ///< parameter path, "Body liver/Material/Density [kg per m3]"
-  std::string value; ///< the offending value as it was written
-  std::string rule;  ///< what must hold
-  std::string remedy;
+  std::string path = {};  ///< parameter path, "Body liver/Material/Density [kg per m3]"
+  std::string value = {}; ///< the offending value as it was written
+  std::string rule = {};  ///< what must hold
+  std::string remedy = {};
 };
 
 /// "file:line: path = 'value': rule. remedy."

@@ -5,7 +5,8 @@
 /// is kept beside it (cuts.h).
 ///
 /// Notation: an edge or face is named by its lower node and its axis (the direction of the edge, the normal of the face).
-/// Limit: at most 2^20 cells along an axis.
+/// Packed lattice coordinates are sorted, and a shift by a node keeps their order, so everything is built by linear merges.
+/// Limit: at most 2^20 nodes along an axis, none with a negative coordinate.
 
 #include "base/id.h"
 #include "base/vec.h"
@@ -33,21 +34,22 @@ struct Lattice {
 
 class Grid {
  public:
-  /// Builds the cells that touch the given material nodes. Duplicates are ignored. Throws DataError when there are none.
+  /// Builds the cells that touch the given material nodes (coordinates from 1; duplicates are ignored). Throws DataError
+  /// when there are none, or too many along an axis.
   Grid(const Lattice& lattice, std::vector<Index3> material_nodes);
 
   const Lattice& lattice() const { return lattice_; }
   double h() const { return lattice_.h; }
 
-  std::size_t n_nodes() const { return node_index_.size(); }
+  std::size_t n_nodes() const { return node_keys_.size(); }
   std::size_t n_edges() const { return edge_ends_.size(); }
   std::size_t n_faces() const { return face_cells_.size(); }
   std::size_t n_cells() const { return cell_nodes_.size(); }
 
   bool is_material(NodeId n) const { return material_[n] != 0; }
-  const Index3& index(NodeId n) const { return node_index_[n]; }
+  Index3 index(NodeId n) const;
   /// Rest position [m].
-  Vec3 position(NodeId n) const { return lattice_.position(node_index_[n]); }
+  Vec3 position(NodeId n) const { return lattice_.position(index(n)); }
   /// Rest position of the cell's lowest node [m].
   Vec3 origin(CellId c) const { return position(cell_nodes_[c][0]); }
 
@@ -70,8 +72,8 @@ class Grid {
 
  private:
   Lattice lattice_;
-  std::vector<std::uint64_t> node_keys_, edge_keys_, cell_keys_; // sorted
-  Table<NodeId, Index3> node_index_;
+  std::vector<std::uint64_t> node_keys_, cell_keys_;      // lattice coordinates packed into one number, sorted
+  std::array<std::vector<std::uint64_t>, 3> edge_keys_;   // of the lower nodes, by axis; ids run through x, y, z
   Table<NodeId, std::uint8_t> material_;
   Table<EdgeId, std::array<NodeId, 2>> edge_ends_;
   Table<FaceId, std::array<CellId, 2>> face_cells_;

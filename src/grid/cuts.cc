@@ -1,0 +1,85 @@
+#include "grid/cuts.h"
+
+#include "grid/cube.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace kerf::grid {
+
+Cuts::Cuts(const Grid& grid)
+  : edge_cut_(grid.n_edges(), none), face_point_(grid.n_faces(), none), cell_point_(grid.n_cells(), none) {}
+
+void Cuts::add(EdgeCut cut) {
+  if (is_cut(cut.edge))
+    throw std::logic_error("an edge is cut once");
+  cut.t = std::clamp(cut.t, min_edge_parameter, 1 - min_edge_parameter);
+  edge_cut_[cut.edge] = static_cast<std::uint32_t>(cuts_.size());
+  cuts_.push_back(cut);
+}
+
+unsigned Cuts::configuration(const Grid& grid, const CellId c) const {
+  unsigned lines = 0;
+  for (int line = 0; line < cube::n_lines; ++line)
+    if (is_cut(grid.edges(c)[line]))
+      lines |= 1u << line;
+  return lines;
+}
+
+void Cuts::set(std::uint32_t& index, const Vec3& p) {
+  if (index == none) {
+    index = static_cast<std::uint32_t>(points_.size());
+    points_.push_back(p);
+  } else
+    points_[index] = p;
+}
+
+Vec3 edge_point(const Grid& grid, const Cuts& cuts, const EdgeId e) {
+  Vec3 p = grid.position(grid.ends(e)[0]);
+  const EdgeCut* cut = cuts.find(e);
+  p[grid.axis(e)] += grid.h() * (cut ? cut->t : 0.5);
+  return p;
+}
+
+Vec3 centre(const Grid& grid, const CellId c) { return grid.origin(c) + Vec3::Constant(0.5 * grid.h()); }
+
+Vec3 centre(const Grid& grid, const FaceId f) {
+  const auto& [below, above] = grid.cells(f);
+  const CellId c = below.valid() ? below : above;
+  const auto& faces = grid.faces(c);
+  const int local = static_cast<int>(std::find(faces.begin(), faces.end(), f) - faces.begin());
+  Vec3 p = centre(grid, c);
+  p[cube::face_axis(local)] += (local & 1 ? 0.5 : -0.5) * grid.h();
+  return p;
+}
+
+Vec3 face_point(const Grid& grid, const Cuts& cuts, const FaceId f) {
+  const Vec3* p = cuts.point(f);
+  return p ? *p : centre(grid, f);
+}
+
+Vec3 cell_point(const Grid& grid, const Cuts& cuts, const CellId c) {
+  const Vec3* p = cuts.point(c);
+  return p ? *p : centre(grid, c);
+}
+
+std::array<Vec3, 8> octant(const Grid& grid, const Cuts& cuts, const CellId c, const int vertex) {
+  std::array<Vec3, 8> points;
+  for (int corner = 0; corner < 8; ++corner) {
+    const int away = corner ^ vertex;
+    switch (away) {
+      case 0: points[corner] = grid.position(grid.nodes(c)[vertex]); break;
+      case 1: case 2: case 4:
+        points[corner] = edge_point(grid, cuts, grid.edges(c)[cube::line_at(vertex, away >> 1)]);
+        break;
+      case 7: points[corner] = cell_point(grid, cuts, c); break;
+      default: { // in the face whose normal is the one axis that does not lead away
+        const int axis = away == 3 ? 2 : away == 5 ? 1 : 0;
+        points[corner] = face_point(grid, cuts, grid.faces(c)[cube::face_at(vertex, axis)]);
+      }
+    }
+  }
+  return points;
+}
+
+} // namespace kerf::grid
