@@ -3,6 +3,7 @@
 #include "grid/cube.h"
 
 #include <algorithm>
+#include <bit>
 #include <stdexcept>
 
 namespace kerf::grid {
@@ -63,23 +64,26 @@ Vec3 cell_point(const Grid& grid, const Cuts& cuts, const CellId c) {
   return p ? *p : centre(grid, c);
 }
 
-std::array<Vec3, 8> octant(const Grid& grid, const Cuts& cuts, const CellId c, const int vertex) {
-  std::array<Vec3, 8> points;
-  for (int corner = 0; corner < 8; ++corner) {
-    const int away = corner ^ vertex;
-    switch (away) {
-      case 0: points[corner] = grid.position(grid.nodes(c)[vertex]); break;
-      case 1: case 2: case 4:
-        points[corner] = edge_point(grid, cuts, grid.edges(c)[cube::line_at(vertex, away >> 1)]);
-        break;
-      case 7: points[corner] = cell_point(grid, cuts, c); break;
-      default: { // in the face whose normal is the one axis that does not lead away
-        const int axis = away == 3 ? 2 : away == 5 ? 1 : 0;
-        points[corner] = face_point(grid, cuts, grid.faces(c)[cube::face_at(vertex, axis)]);
-      }
-    }
+std::array<Tetrahedron, 6> octant(const Grid& grid, const Cuts& cuts, const CellId c, const int vertex) {
+  const Vec3 origin = grid.origin(c);
+  const auto local = [&](const Vec3& p) -> Vec3 { return (p - origin) / grid.h(); };
+  const Vec3 node(vertex & 1, vertex >> 1 & 1, vertex >> 2 & 1);
+  const Vec3 middle = local(cell_point(grid, cuts, c));
+  std::array<Vec3, 3> on_edge, in_face; // by the edge's direction, by the face's normal
+  for (int axis = 0; axis < 3; ++axis) {
+    on_edge[axis] = local(edge_point(grid, cuts, grid.edges(c)[cube::line_at(vertex, axis)]));
+    in_face[axis] = local(face_point(grid, cuts, grid.faces(c)[cube::face_at(vertex, axis)]));
   }
-  return points;
+  std::array<Tetrahedron, 6> tetrahedra;
+  for (int i = 0; i < 6; ++i) {
+    const int edge = i % 3, normal = (edge + (i < 3 ? 1 : 2)) % 3;
+    Tetrahedron& t = tetrahedra[i];
+    t = {node, on_edge[edge], in_face[normal], middle};
+    const bool mirrored = (std::popcount(static_cast<unsigned>(vertex)) & 1) != 0;
+    if (mirrored == (i >= 3))
+      std::swap(t[1], t[2]);
+  }
+  return tetrahedra;
 }
 
 } // namespace kerf::grid

@@ -15,8 +15,9 @@ namespace kerf::grid {
 using CutLabel = std::uint16_t;
 constexpr CutLabel skin_label = 0;
 
-/// A cut edge never has its vertex closer than this to a node, as a part of h [1].
-constexpr double min_edge_parameter = 1e-4;
+/// No vertex of a cut lies closer than this to the end of its edge or the side of its face or cell, as a part of h [1].
+/// Far below what matters, far above round-off: positions are exact, volumes stay positive.
+constexpr double min_edge_parameter = 1e-10;
 
 struct EdgeCut {
   EdgeId edge;
@@ -68,8 +69,14 @@ Vec3 centre(const Grid& grid, FaceId f);
 /// Centre of a cell [m].
 Vec3 centre(const Grid& grid, CellId c);
 
-/// The hexahedron of material that belongs to `vertex` in a cell (DESIGN §3): eight rest positions [m] in deal.II's
-/// vertex order, the node itself at index `vertex`; positively oriented. The eight octants of a cell tile it.
-std::array<Vec3, 8> octant(const Grid& grid, const Cuts& cuts, CellId c, int vertex);
+/// Vertices of a tetrahedron in coordinates of its cell, the unit cube [1].
+using Tetrahedron = std::array<Vec3, 4>;
+
+/// The octant of a cell: the material that belongs to `vertex` (DESIGN §3), as six positively oriented tetrahedra, one for
+/// each way node - edge point - face point - centre. The eight octants of a cell tile it. Departs from the trilinear
+/// hexahedron on the same eight points: tetrahedra have positive volume for every point inside its edge, face and
+/// cell (a hexahedron folds where a cut leaves a face vertex in the chord of its edge vertices), and they are bounded by just
+/// the triangles of the surface, so that volume by surface and mass by octants agree to round-off.
+std::array<Tetrahedron, 6> octant(const Grid& grid, const Cuts& cuts, CellId c, int vertex);
 
 } // namespace kerf::grid

@@ -1,0 +1,37 @@
+#pragma once
+
+/// Where the vertices that a cut makes in faces and cells lie at rest (thesis §2.4.3, figure 2.15).
+///
+/// A cut edge gives a cut plane: its edge vertex and the normal of the cutting surface there.
+/// Face, inside the body: one plane, the face's centre projected onto it (a front ends here); two planes, the middle of the Bezier
+/// curve of edge vertices and the planes' intersection where they meet smoothly (b), that intersection where they are sharp
+/// (c); later cuts of a face already split, the vertex projected onto the new planes (d, e).
+/// Cell, inside the body: the point nearest its centre that minimises the squared distances to all planes [GH97]; later cuts
+/// of a cell already split project it.
+/// On the skin: the input's planes are known all at once and give the quadric's minimum; later cuts move the vertex
+/// within the skin only, so that a plane skin keeps its volume exactly (the thesis lets it jump: §2.8).
+///
+/// Departures: a cell with a front takes the quadric too, not the mean of its face vertices, which may lie beside the plane that
+/// is cut; a face whose two edges are cut in different steps by different fronts is (b) or (c) all the same.
+/// Limit: more than three planes in a cell are met in the least-squares sense.
+
+#include "grid/cuts.h"
+
+#include <span>
+
+namespace kerf::surface {
+
+struct Placement {
+  double sharp_angle = 45; ///< two planes that turn by more than this meet at a sharp edge: pi - theta of §2.4.3 [degrees]
+};
+
+/// How often a vertex wanted to leave its face or cell and was held at its side.
+struct PlacementCounts {
+  std::size_t n_placed = 0, n_clamped = 0;
+};
+
+/// Places the vertices in all faces and cells at `new_edges`, which `cuts` holds already.
+PlacementCounts place(const grid::Grid& grid, grid::Cuts& cuts, std::span<const grid::EdgeId> new_edges,
+                      const Placement& placement);
+
+} // namespace kerf::surface
