@@ -1,0 +1,34 @@
+#pragma once
+
+/// Implicit Euler (Baraff and Witkin 1998, for one Newton iteration): solves
+///
+///     M (x - x_n - dt v_n) / dt^2 + (alpha M + beta K) (x - x_n) / dt = f(x) + M g
+///
+/// for x at the end of the step by Newton's method from x_n, each correction by conjugate gradients with the inverse of the
+/// diagonal 3 x 3 blocks as preconditioner. First order, dissipative, stable for every dt. Held corners are eliminated.
+
+#include "dynamics/model.h"
+#include "dynamics/stepper.h"
+
+namespace kerf::dynamics {
+
+struct ImplicitEulerOptions {
+  int n_newton = 1;            ///< Newton iterations a step; one is the linearly implicit method
+  double cg_tolerance = 1e-6;  ///< residual over right-hand side, in the Euclidean norm [1]
+  int max_cg_iterations = 2000;
+};
+
+class ImplicitEuler : public Stepper {
+ public:
+  /// The model must outlive the stepper.
+  ImplicitEuler(ElasticModel& model, const ImplicitEulerOptions& options) : model_(model), options_(options) {}
+
+  StepReport step(State& state, const Loads& loads, double dt) override;
+
+ private:
+  ElasticModel& model_;
+  ImplicitEulerOptions options_;
+  std::vector<Mat3> inverse_blocks_;
+};
+
+} // namespace kerf::dynamics

@@ -1,0 +1,55 @@
+#include "fem/moments.h"
+
+#include <Eigen/Geometry>
+
+#include <deal.II/base/quadrature_lib.h>
+
+namespace kerf::fem {
+
+namespace {
+
+/// Exact for degree 7, all weights positive; a tetrahedron needs degree 6.
+const dealii::Quadrature<3>& tetrahedron_rule() {
+  static const dealii::QWitherdenVincentSimplex<3> rule(4);
+  return rule;
+}
+
+void add(Moments& m, const Vec3& p, const double weight) {
+  double wz = weight;
+  for (int k = 0; k < 3; ++k, wz *= p[2]) {
+    double wy = wz;
+    for (int j = 0; j < 3; ++j, wy *= p[1]) {
+      double wx = wy;
+      for (int i = 0; i < 3; ++i, wx *= p[0])
+        m[i + 3 * j + 9 * k] += wx;
+    }
+  }
+}
+
+} // namespace
+
+Moments full_cube_moments() {
+  Moments m;
+  for (int n = 0; n < 27; ++n)
+    m[n] = 1.0 / ((n % 3 + 1) * (n / 3 % 3 + 1) * (n / 9 + 1));
+  return m;
+}
+
+Moments octant_moments(const grid::Grid& grid, const grid::Cuts& cuts, const grid::CellId cell,
+                       const unsigned vertices) {
+  Moments m{};
+  const auto& rule = tetrahedron_rule();
+  for (int vertex = 0; vertex < 8; ++vertex)
+    if (vertices >> vertex & 1)
+      for (const grid::Tetrahedron& t : grid::octant(grid, cuts, cell, vertex)) {
+        const Vec3 a = t[1] - t[0], b = t[2] - t[0], c = t[3] - t[0];
+        const double jacobian = a.dot(b.cross(c));
+        for (unsigned q = 0; q < rule.size(); ++q) {
+          const auto& xi = rule.point(q);
+          add(m, t[0] + xi[0] * a + xi[1] * b + xi[2] * c, jacobian * rule.weight(q));
+        }
+      }
+  return m;
+}
+
+} // namespace kerf::fem

@@ -1,0 +1,21 @@
+#pragma once
+
+/// Moments of the material in a cell: m(i, j, k) = integral of x^i y^j z^k over the material, in the unit cube [1].
+/// A trilinear cube's mass and stiffness for any distribution of material are linear in the 27 moments i, j, k <= 2
+/// (DESIGN §3), so a cut cell costs one set of moments, exact for every position of the cut.
+
+#include "grid/complex.h"
+
+#include <array>
+
+namespace kerf::fem {
+
+/// m(i, j, k) at i + 3 j + 9 k.
+using Moments = std::array<double, 27>;
+
+Moments full_cube_moments();
+
+/// Moments of the octants of the given vertices (bits) of a cell.
+Moments octant_moments(const grid::Grid& grid, const grid::Cuts& cuts, grid::CellId cell, unsigned vertices);
+
+} // namespace kerf::fem

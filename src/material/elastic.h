@@ -1,0 +1,26 @@
+#pragma once
+
+/// A homogeneous isotropic elastic solid.
+
+#include "base/parameters.h"
+
+namespace kerf::material {
+
+struct Elastic {
+  double density = 1000;       ///< [kg/m^3]
+  double youngs_modulus = 1e4; ///< E [Pa]
+  double poissons_ratio = 0.3; ///< nu [1]
+
+  /// Lame's parameters [Pa]: lambda = E nu / ((1 + nu) (1 - 2 nu)), mu = E / (2 (1 + nu)).
+  double lambda() const { return youngs_modulus * poissons_ratio / ((1 + poissons_ratio) * (1 - 2 * poissons_ratio)); }
+  double mu() const { return youngs_modulus / (2 * (1 + poissons_ratio)); }
+
+  void describe(Parameters& p) {
+    p.number("Density [kg/m^3]", density, positive, "Mass per rest volume.");
+    p.number("Young's modulus [Pa]", youngs_modulus, positive, "Stiffness in uniaxial tension.");
+    p.number("Poisson's ratio [1]", poissons_ratio, {.min = -1, .max = 0.5, .min_excluded = true, .max_excluded = true},
+             "Lateral contraction; trilinear cells stiffen near 0.5.");
+  }
+};
+
+} // namespace kerf::material
