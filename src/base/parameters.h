@@ -23,8 +23,9 @@ struct Range {
   double max = std::numeric_limits<double>::infinity();
   bool min_excluded = false, max_excluded = false;
 
+  /// Infinities and NaN are in no range.
   bool contains(double value) const;
-  /// "must be > 0", "must be >= 0 and < 0.5".
+  /// "must be > 0", "must be >= 0 and < 0.5", "must be a number".
   std::string rule() const;
 };
 constexpr Range any_number{};
@@ -38,19 +39,27 @@ struct Parameter {
   std::string rule;     ///< what must hold, for people
   std::string text;     ///< what it does
   bool required = false;
-  /// Parses and assigns; returns what is wrong with the value, or an empty string.
+  std::vector<std::string> words; ///< what a choice may be; empty for other keys
+  /// Returns what is wrong with the value, or an empty string; does not touch the field.
+  std::function<std::string(const std::string& value)> check;
+  /// Checks; assigns when nothing is wrong. The struct that was described must still exist.
   std::function<std::string(const std::string& value)> assign;
 };
+
+/// The shortest decimal text that reads back as the same number: 0.1, 5e4 as 50000, 1e5, -2.5e-9.
+std::string to_text(double value);
 
 /// The keys of one section, in order.
 class Parameters {
  public:
   void number(const std::string& name, double& field, const Range& range, const std::string& text);
   void integer(const std::string& name, int& field, const Range& range, const std::string& text);
-  void boolean(const std::string& name, bool& field, const std::string& text); ///< yes or no
+  /// Yes or no; true and false are read too.
+  void boolean(const std::string& name, bool& field, const std::string& text);
   void text(const std::string& name, std::string& field, const std::string& text);
   /// A word out of `words`.
-  void choice(const std::string& name, std::string& field, const std::vector<std::string>& words, const std::string& text);
+  void choice(const std::string& name, std::string& field, const std::vector<std::string>& words,
+              const std::string& text);
   /// Three numbers: x, y, z.
   void vector(const std::string& name, Vec3& field, const std::string& text);
   /// Points separated by semicolons: x, y, z; x, y, z.
@@ -64,6 +73,11 @@ class Parameters {
   const std::vector<Parameter>& list() const { return list_; }
 
  private:
+  /// `parse` turns a text into a T or into nothing, in which case `rule` is broken.
+  template <class T, class Parse>
+  Parameter& add(const std::string& name, T& field, const std::string& fallback, const std::string& rule,
+                 const std::string& text, const Parse& parse);
+
   std::vector<Parameter> list_;
 };
 

@@ -1,0 +1,18 @@
+#include "scene_arguments.h"
+
+#include "scene/compose.h"
+
+#include <cstdio>
+
+namespace kerf::apps {
+
+int check(const Arguments& arguments) {
+  const SceneArguments parsed = parse_scene_arguments(arguments);
+  const scene::World world = scene::compose(scene::read_scene_text(parsed.scene, parsed.overrides));
+  for (const std::string& line : world.composition)
+    std::printf("%s\n", line.c_str());
+  std::printf("%s is sound: %d steps of %g s.\n", parsed.scene.c_str(), world.n_steps, world.time_step);
+  return 0;
+}
+
+} // namespace kerf::apps

@@ -1,0 +1,16 @@
+#pragma once
+
+/// The subcommands of `kerf`. Each takes the arguments after its name and returns the exit code; errors are thrown.
+
+#include <string>
+#include <vector>
+
+namespace kerf::apps {
+
+using Arguments = std::vector<std::string>;
+
+int run(const Arguments& arguments);
+int check(const Arguments& arguments);
+int params(const Arguments& arguments);
+
+} // namespace kerf::apps

@@ -1,0 +1,49 @@
+#include "commands.h"
+
+#include "base/error.h"
+
+#include <csignal>
+#include <cstdio>
+#include <exception>
+#include <map>
+#include <new>
+
+namespace {
+
+constexpr const char* usage = R"(usage:
+  kerf run SCENE.prm [--set "Section/Key=value"]... [--output DIR] [--threads N]
+  kerf check SCENE.prm [--set "Section/Key=value"]...     parse and compose, run nothing
+  kerf params                                             every section and key of a scene
+)";
+
+int dispatch(const kerf::apps::Arguments& arguments) {
+  using Command = int (*)(const kerf::apps::Arguments&);
+  const std::map<std::string, Command> commands = {
+    {"run", kerf::apps::run}, {"check", kerf::apps::check}, {"params", kerf::apps::params}};
+  if (arguments.empty() || arguments[0] == "help" || arguments[0] == "--help") {
+    std::printf("%s", usage);
+    return arguments.empty() ? 1 : 0;
+  }
+  const auto command = commands.find(arguments[0]);
+  if (command == commands.end())
+    throw kerf::ParameterError("there is no command '" + arguments[0] + "'.\n" + usage);
+  return command->second({arguments.begin() + 1, arguments.end()});
+}
+
+} // namespace
+
+int main(const int argc, char** const argv) {
+  std::signal(SIGXFSZ, SIG_IGN); // a file size limit is then an error of the write, like a full disk
+  try {
+    return dispatch({argv + 1, argv + argc});
+  } catch (const kerf::Error& error) {
+    std::fprintf(stderr, "kerf: %s\n", error.what());
+    return error.exit_code();
+  } catch (const std::bad_alloc&) {
+    std::fprintf(stderr, "kerf: out of memory. Use a larger cube edge.\n");
+    return 3;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "kerf: internal error: %s\n", error.what());
+    return 4;
+  }
+}

@@ -1,0 +1,98 @@
+#include "scene_arguments.h"
+
+#include "base/parallel.h"
+#include "scene/build_info.h"
+#include "scene/compose.h"
+#include "scene/run.h"
+
+#include <ctime>
+
+#include <unistd.h>
+
+namespace kerf::apps {
+
+namespace {
+
+output::RunInfo run_info(const Arguments& arguments) {
+  output::RunInfo info = scene::build_info();
+  info.command_line = "kerf run";
+  for (const std::string& argument : arguments)
+    info.command_line += argument.find(' ') == std::string::npos ? " " + argument : " \"" + argument + "\"";
+  std::array<char, 256> text{};
+  gethostname(text.data(), text.size() - 1);
+  info.host = text.data();
+  info.n_threads = n_threads();
+  const std::time_t now = std::time(nullptr);
+  std::strftime(text.data(), text.size(), "%FT%TZ", std::gmtime(&now));
+  info.started = text.data();
+  return info;
+}
+
+void print_body(const scene::Body& body) {
+  const double volume = surface::enclosed_volume(body.positions, body.surface.triangles);
+  const double rest = surface::enclosed_volume(body.surface.rest, body.surface.triangles);
+  std::printf("body %s: %zu cells, %zu copies, %u pieces, %zu surface triangles\n", body.name.c_str(),
+              body.grid.n_cells(), body.complex.n_copies(), body.complex.n_pieces, body.surface.triangles.size());
+  std::printf("  volume: mesh %.6e m^3; grid %+.3f %%; cuts changed the rest volume by %+.2e; deformed now %+.3f %%\n",
+              body.mesh_volume, 100 * (body.first_volume / body.mesh_volume - 1), rest / body.first_volume - 1,
+              100 * (volume / rest - 1));
+  std::printf("  energy: elastic %.4e J, kinetic %.4e J\n", body.physics.model->energy(body.state.x),
+              scene::find_observable("kinetic energy")->value(body));
+  if (body.n_unresolved_edges > 0)
+    std::printf("  %zu grid edges cross the mesh more than once: parts thinner than a cell are not resolved\n",
+                body.n_unresolved_edges);
+}
+
+void print_cutting(const scene::World& world) {
+  for (std::size_t b = 0; b < world.blades.size(); ++b) {
+    std::size_t n = 0, n_double = 0, n_waiting = 0;
+    for (const scene::Body& body : world.bodies) {
+      n += body.cutting->n_cut_edges[b];
+      n_double += body.cutting->n_double_crossings;
+      n_waiting += body.cutting->pending.size();
+    }
+    std::printf("blade %s: cut %zu grid edges%s\n", world.blades[b].name.c_str(), n,
+                n == 0 ? ": it never met a body. Check its key frames" : "");
+    if (b + 1 == world.blades.size() && n_double + n_waiting > 0)
+      std::printf("  %zu edges crossed twice in one sweep and left whole, %zu cuts still waiting\n", n_double, n_waiting);
+  }
+}
+
+void print_summary(const scene::World& world, const Timings& seconds, const SceneArguments& arguments) {
+  for (const scene::Body& body : world.bodies)
+    print_body(body);
+  print_cutting(world);
+  double all = 0, recording = 0;
+  std::printf("time per stage [s]:");
+  for (const std::string& stage : scene::stages()) {
+    const auto s = seconds.find(stage);
+    const double value = s == seconds.end() ? 0 : s->second;
+    std::printf("  %s %.2f", stage.c_str(), value);
+    all += value;
+    recording += stage == "images" || stage == "output" ? value : 0;
+  }
+  std::printf("\n%.1f steps/s without images and files, %.1f with\n", world.n_steps / (all - recording),
+              world.n_steps / all);
+  std::printf("results in %s\n", arguments.output.c_str());
+}
+
+} // namespace
+
+int run(const Arguments& arguments) {
+  const SceneArguments parsed = parse_scene_arguments(arguments);
+  if (parsed.n_threads > 0)
+    set_n_threads(parsed.n_threads);
+  const scene::SceneText text = scene::read_scene_text(parsed.scene, parsed.overrides);
+  scene::World world = scene::compose(text);
+  for (const std::string& line : world.composition)
+    std::printf("%s\n", line.c_str());
+  std::fflush(stdout);
+
+  scene::Recorder recorder(parsed.output, world, run_info(arguments), text.text);
+  scene::Progress progress(world.n_steps, world.n_steps * world.time_step, scene::progress_style(stdout), stdout);
+  const Timings seconds = scene::run(world, recorder, progress);
+  print_summary(world, seconds, parsed);
+  return 0;
+}
+
+} // namespace kerf::apps

@@ -1,0 +1,34 @@
+#pragma once
+
+/// The closed input mesh as the first cut (thesis §2.7): which lattice nodes are material, and where the skin cuts
+/// edges.
+///
+/// Method: along every lattice line in x, y and z that meets a triangle, the crossing is found with exact predicates
+/// under the rule of geometry/predicates.h, and put into the interval [i, i+1] whose ends lie on different sides of the
+/// triangle. Nodes of an x line are material between odd and even crossings. Crossings are sorted, so the result
+/// depends neither on the order of the triangles nor on threads; memory grows with the surface, plus the material nodes
+/// themselves. Since the displaced surface is closed, y and z lines must tell the same classes; that is checked.
+///
+/// Limit: what is thinner than an edge and passes between nodes is lost; it is counted, not repaired.
+
+#include "geometry/triangle_mesh.h"
+#include "grid/cuts.h"
+#include "grid/grid.h"
+
+namespace kerf::cut {
+
+struct Embedding {
+  grid::Grid grid;
+  grid::Cuts cuts;                    ///< the skin: every edge between a material and an empty node
+  std::size_t n_double_crossings = 0; ///< edges with both ends alike that the mesh crosses 2, 4, ... times: left uncut
+  std::size_t n_triple_crossings = 0; ///< edges crossed 3, 5, ... times: cut nearest to their material end only
+  std::size_t n_lost_components = 0;  ///< connected shells of the mesh that cut no edge
+};
+
+/// Embeds a solid mesh (geometry/solid.h) in cubes of edge h [m]. The lattice starts two cubes below the mesh's
+/// bounding box, moved by `offset` in parts of h, each in [-1, 1] [1]; an offset of 0 puts a face at the lower end of
+/// the bounding box right on nodes, 0.5 midway. Throws DataError when no node is inside the mesh, ParameterError when h
+/// or the offset is out of range, std::logic_error when the mesh is not closed.
+Embedding embed(const geometry::TriangleMesh& mesh, double h, const Vec3& offset);
+
+} // namespace kerf::cut

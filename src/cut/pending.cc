@@ -1,0 +1,53 @@
+#include "cut/pending.h"
+
+#include <algorithm>
+#include <unordered_map>
+
+namespace kerf::cut {
+namespace {
+
+/// How many edges of each cell a release cuts.
+class CutCounts {
+ public:
+  /// Counts the edge in all its cells, or in none when one of them has no room left.
+  bool take(const grid::Grid& grid, const grid::EdgeId edge) {
+    const auto cells = grid.cells(edge);
+    const auto is_full = [this](const grid::CellId c) { return c.valid() && n_[c.value] == PendingCuts::max_per_cell; };
+    if (std::any_of(cells.begin(), cells.end(), is_full))
+      return false;
+    for (const grid::CellId c : cells)
+      if (c.valid())
+        ++n_[c.value];
+    return true;
+  }
+
+ private:
+  std::unordered_map<std::uint32_t, int> n_;
+};
+
+} // namespace
+
+void PendingCuts::push(const std::span<const grid::EdgeCut> cuts) {
+  for (const grid::EdgeCut& cut : cuts)
+    if (waiting_.insert(cut.edge).second)
+      queue_.push_back(cut);
+}
+
+std::vector<grid::EdgeCut> PendingCuts::release(const grid::Grid& grid, const grid::Cuts& cuts) {
+  std::vector<grid::EdgeCut> released;
+  std::deque<grid::EdgeCut> waiting;
+  CutCounts counts;
+  for (const grid::EdgeCut& cut : queue_) {
+    const bool is_released = !cuts.is_cut(cut.edge) && counts.take(grid, cut.edge);
+    if (is_released)
+      released.push_back(cut);
+    if (is_released || cuts.is_cut(cut.edge))
+      waiting_.erase(cut.edge);
+    else
+      waiting.push_back(cut);
+  }
+  queue_ = std::move(waiting);
+  return released;
+}
+
+} // namespace kerf::cut

@@ -1,0 +1,33 @@
+#pragma once
+
+/// Cuts that wait. At most two edges of a cell are cut in one step, so that its vertices can be placed one cut after
+/// the other (thesis §2.4.3); the rest waits, first come first served. The input mesh, cut all at once, does not go
+/// through here.
+
+#include "grid/cuts.h"
+
+#include <deque>
+#include <set>
+#include <span>
+
+namespace kerf::cut {
+
+class PendingCuts {
+ public:
+  static constexpr int max_per_cell = 2; ///< edges of a cell that one release may cut
+
+  /// Puts cuts at the end of the queue, in their order; an edge that waits already keeps its first cut.
+  void push(std::span<const grid::EdgeCut> cuts);
+
+  /// Takes out the cuts of this step, oldest first: each one that leaves no cell around its edge with more than two.
+  /// Edges cut meanwhile are dropped. `cuts` is not changed.
+  std::vector<grid::EdgeCut> release(const grid::Grid& grid, const grid::Cuts& cuts);
+
+  std::size_t size() const { return queue_.size(); }
+
+ private:
+  std::deque<grid::EdgeCut> queue_;
+  std::set<grid::EdgeId> waiting_;
+};
+
+} // namespace kerf::cut

@@ -1,0 +1,30 @@
+#pragma once
+
+/// Which uncut edges a sweep meets in the current configuration (thesis §2.3.3, DESIGN §5).
+///
+/// Method: an uncut edge between two material nodes is one current segment, from the real corner of its lower node to
+/// that of its upper node. It is cut when an odd number of the sweep's triangles cross it, by the exact predicates of
+/// geometry/predicates.h; boxes keep most pairs away from them. The normal is pulled back to rest with the deformation
+/// gradient F = dx/dX at the cut, averaged over the copies around the edge: N ~ F^T n.
+///
+/// Limit: the segments are those of one instant; material that moves through a resting blade is not cut.
+
+#include "grid/complex.h"
+#include "grid/cuts.h"
+
+#include <span>
+
+namespace kerf::cut {
+
+struct SweepCuts {
+  std::vector<grid::EdgeCut> cuts;    ///< ordered by edge
+  std::size_t n_double_crossings = 0; ///< edges crossed 2, 4, ... times: left uncut
+};
+
+/// The edges that `sweep` (triangles [m], world frame) cuts, when the corners are at `x` [m, world frame, one a
+/// corner]. Where an edge is crossed 3, 5, ... times, the crossing nearest to its lower node is kept. Throws
+/// NumericalError when a corner is not at a finite position.
+SweepCuts cut_edges(std::span<const std::array<Vec3, 3>> sweep, const grid::Grid& grid, const grid::Cuts& cuts,
+                    const grid::CellComplex& complex, const Points& x, grid::CutLabel label);
+
+} // namespace kerf::cut

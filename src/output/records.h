@@ -1,0 +1,118 @@
+#pragma once
+
+/// What goes into a run's file and comes out of it again: plain records, the same for writing and reading.
+
+#include "base/timer.h"
+#include "base/vec.h"
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace kerf::output {
+
+struct Library {
+  std::string name, version;
+};
+
+/// Where a run comes from; enough to repeat it.
+struct RunInfo {
+  std::string version;
+  std::string git_commit;
+  std::string command_line;
+  std::string host;
+  std::string compiler;
+  std::vector<Library> libraries;
+  int n_threads = 1;
+  std::uint64_t seed = 0;
+  std::string started; ///< ISO 8601
+};
+
+struct Observable {
+  std::string name;
+  std::string unit;   ///< "[J]"; "[1]" when dimensionless
+  std::string source; ///< how it is computed, or where its definition stands
+};
+
+/// The series of a run, fixed when its file is created.
+struct Schema {
+  std::vector<std::string> stages; ///< of which the seconds are kept
+  std::vector<Observable> observables;
+};
+
+/// Per corner values that a model needs beside position and velocity to go on; n_corners x n_components, row by row.
+struct Field {
+  std::string name;
+  std::string unit;
+  std::size_t n_components = 1;
+  std::vector<double> values;
+};
+
+/// The copies of a body's cells (grid/complex.h), as arrays.
+struct Complex {
+  std::vector<std::array<std::uint32_t, 8>> corners; ///< per copy
+  std::vector<Index3> cells;                         ///< per copy: lattice index of its cell
+  std::vector<std::uint8_t> nodes;                   ///< per copy: bits of its material nodes
+  Points rest_positions;                             ///< per corner [m], rest configuration
+};
+
+/// A sparse matrix by rows: entries row_starts[i] .. row_starts[i + 1] belong to row i.
+struct SparseRows {
+  std::vector<std::uint64_t> row_starts; ///< n_rows + 1
+  std::vector<std::uint32_t> columns;
+  std::vector<double> values;
+};
+
+/// A body's closed surface; it follows the corners by x_surface = W x_corners.
+struct Surface {
+  std::vector<Triangle> triangles;
+  std::vector<std::uint16_t> labels; ///< per triangle: which cut revealed it, 0 for the skin
+  Points rest_positions;             ///< per vertex [m], rest configuration
+  SparseRows weights;                ///< W [1], vertices x corners
+};
+
+/// One body at one output step, for writing.
+struct BodyStep {
+  std::string body;
+  std::span<const Vec3> positions;  ///< per corner [m], current configuration
+  std::span<const Vec3> velocities; ///< per corner [m/s]; may be empty
+  std::span<const Field> fields;    ///< may be empty
+  const Complex* complex = nullptr; ///< null when unchanged since the body's last frame
+  const Surface* surface = nullptr; ///< null when unchanged or not wanted
+};
+
+/// One output step, for writing.
+struct StepRecord {
+  double time = 0; ///< [s]
+  std::int64_t step = 0;
+  Timings seconds;                     ///< per stage [s], since the last output step; a stage left out counts as 0
+  std::span<const double> observables; ///< in the order of the schema
+  std::vector<BodyStep> bodies;        ///< those that write a frame now
+};
+
+/// One body at one output step, as read back.
+struct Frame {
+  double time = 0; ///< [s]
+  std::int64_t step = 0;
+  std::size_t complex = 0; ///< index of the complex it belongs to
+  Points positions;        ///< per corner [m], current configuration
+  Points velocities;       ///< per corner [m/s]; empty when none were written
+  std::vector<Field> fields;
+};
+
+enum class Outcome {
+  running, ///< or killed
+  completed,
+  failed
+};
+
+/// Why and when a run ended early.
+struct Failure {
+  std::string text;
+  std::int64_t step = 0;
+  double time = 0; ///< [s]
+};
+
+} // namespace kerf::output

@@ -1,0 +1,52 @@
+#pragma once
+
+/// The one file of a run, in HDF5: what was run, the series over time, and the frames of every body.
+///
+///     /                    attributes: version, git_commit, command_line, ..., outcome
+///     /scene               the whole text of the scene
+///     /composition         what was composed and what was left out, a line each
+///     /time /step          one entry per output step
+///     /timing/STAGE        seconds since the output step before
+///     /observables/NAME    attributes unit and source
+///     /bodies/NAME/complex/I, surface/I    only where the topology changed
+///     /bodies/NAME/frames/I                position, velocity, fields; attributes time, step, complex;
+///                                          links to its complex and surface
+///     /failure             when the run ended early
+///
+/// Each append is one transaction (journaled_file.h): after a kill or on a full disk the file holds all output steps
+/// that were appended, whole, and nothing of the next. Positions of the surface are not stored: they are W x_corners.
+/// Limit: HDF5 is not thread safe; one thread at a time uses this room.
+
+#include "output/records.h"
+
+#include <filesystem>
+#include <memory>
+
+namespace kerf::output {
+
+class RunFile {
+ public:
+  /// Creates the file, or empties it. Throws DataError when it cannot be written.
+  RunFile(const std::filesystem::path& path, const RunInfo& info, const Schema& schema);
+  /// Opens the file of an earlier run, to go on behind its last output step. Throws DataError.
+  explicit RunFile(const std::filesystem::path& path);
+  RunFile(RunFile&&) noexcept;
+  RunFile& operator=(RunFile&&) noexcept;
+  ~RunFile();
+
+  void write_scene(const std::string& text);
+  void write_composition(const std::vector<std::string>& lines);
+
+  /// Appends one output step and makes it durable. Throws DataError when it does not fit the schema or the disk; after
+  /// a full disk the file stays as it was and takes no more.
+  void append(const StepRecord& record);
+
+  void complete();
+  void fail(const Failure& failure);
+
+ private:
+  struct Contents;
+  std::unique_ptr<Contents> contents_;
+};
+
+} // namespace kerf::output

@@ -1,0 +1,186 @@
+#include "output/surface_file.h"
+
+#include "base/error.h"
+#include "output/h5_array.h"
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <vector>
+
+namespace kerf::output {
+namespace {
+
+constexpr h5::Layout count_layout = {h5::Number::int64, 1};
+constexpr h5::Layout point_layout = {h5::Number::float32, 3};
+
+/// The format counts cells in four kinds; ours are all polygons, the third of the columns in Steps.
+constexpr const char* cell_kinds[] = {"Vertices", "Lines", "Polygons", "Strips"};
+constexpr std::size_t polygons = 2;
+constexpr h5::Layout kinds_layout = {h5::Number::int64, 4};
+
+constexpr std::size_t short_chunk = 512, long_chunk = 4096; // rows: one per step; one per vertex or triangle
+
+std::vector<float> single_precision(const std::span<const Vec3> points) {
+  std::vector<float> numbers;
+  numbers.reserve(3 * points.size());
+  for (const auto& p : points)
+    for (int i = 0; i < 3; ++i)
+      numbers.push_back(static_cast<float>(p[i]));
+  return numbers;
+}
+
+void check_equal(const std::string& file, const std::string& what, const std::size_t n, const std::size_t wanted) {
+  if (n != wanted)
+    throw DataError({.file = file,
+                     .path = what,
+                     .value = std::to_string(n),
+                     .rule = "must have " + std::to_string(wanted) + " entries",
+                     .remedy = "Nothing was written; hand over arrays that fit each other"});
+}
+
+/// A viewer that meets a vertex that is not there may crash.
+void check_indices(const std::string& file, const SurfaceStep& step) {
+  std::uint32_t largest = 0;
+  for (const auto& triangle : step.triangles)
+    largest = std::max(largest, *std::ranges::max_element(triangle));
+  if (!step.triangles.empty() && largest >= step.positions.size())
+    throw DataError({.file = file,
+                     .path = "triangles",
+                     .value = std::to_string(largest),
+                     .rule = "must be below the number of vertices, " + std::to_string(step.positions.size()),
+                     .remedy = "Nothing was written; hand over arrays that fit each other"});
+}
+
+} // namespace
+
+struct SurfaceFile::Contents {
+  h5::WritableFile file;
+  h5::Object steps = {};
+  std::map<std::string, h5::Object> series = {};
+  std::int64_t n_steps = 0;
+  std::int64_t n_points = 0; ///< in all steps so far
+
+  /// The topology of the last step; where its parts begin, as the format counts.
+  std::int64_t n_topologies = 0, n_topology_points = 0, n_triangles = 0;
+  std::int64_t first_rest = 0, first_triangle = 0;
+
+  void create();
+  void create_series(const std::string& path, const h5::Layout& layout, std::size_t chunk_rows) {
+    series.emplace(path, h5::create_series(file.root(), "/VTKHDF/" + path, layout, chunk_rows));
+  }
+  void append_count(const std::string& path, const std::int64_t value) {
+    h5::append_rows(series.at(path), count_layout, &value, 1);
+  }
+  void append_kinds(const std::string& path, const std::int64_t n_polygons) {
+    std::array<std::int64_t, 4> row = {};
+    row[polygons] = n_polygons;
+    h5::append_rows(series.at(path), kinds_layout, row.data(), 1);
+  }
+  void append_topology(const SurfaceStep& step);
+  void append_step(const SurfaceStep& step);
+};
+
+void SurfaceFile::Contents::create() {
+  const auto vtk = h5::create_group(file.root(), "/VTKHDF");
+  h5::set_attribute(vtk, "Version", std::array<std::int64_t, 2>{2, 0});
+  h5::set_attribute(vtk, "Type", std::string("PolyData"));
+  create_series("NumberOfPoints", count_layout, short_chunk);
+  create_series("Points", point_layout, long_chunk);
+  for (const std::string kind : cell_kinds) {
+    h5::create_group(vtk, kind);
+    const auto chunk = kind == cell_kinds[polygons] ? long_chunk : short_chunk;
+    create_series(kind + "/NumberOfCells", count_layout, short_chunk);
+    create_series(kind + "/NumberOfConnectivityIds", count_layout, short_chunk);
+    create_series(kind + "/Offsets", count_layout, chunk);
+    create_series(kind + "/Connectivity", count_layout, chunk);
+  }
+  for (const auto* group : {"PointData", "CellData", "Steps/PointDataOffsets", "Steps/CellDataOffsets"})
+    h5::create_group(vtk, group);
+  create_series("PointData/rest_position", point_layout, long_chunk);
+  create_series("CellData/label", {h5::Number::uint16, 1}, long_chunk);
+
+  steps = h5::open_group(vtk, "Steps");
+  h5::set_attribute(steps, "NSteps", n_steps);
+  create_series("Steps/Values", {h5::Number::float64, 1}, short_chunk);
+  for (const auto* name :
+       {"PartOffsets", "NumberOfParts", "PointOffsets", "PointDataOffsets/rest_position", "CellDataOffsets/label"})
+    create_series(std::string("Steps/") + name, count_layout, short_chunk);
+  create_series("Steps/CellOffsets", kinds_layout, short_chunk);
+  create_series("Steps/ConnectivityIdOffsets", kinds_layout, short_chunk);
+}
+
+void SurfaceFile::Contents::append_topology(const SurfaceStep& step) {
+  first_rest += n_topology_points;
+  first_triangle += n_triangles;
+  n_topology_points = static_cast<std::int64_t>(step.positions.size());
+  n_triangles = static_cast<std::int64_t>(step.triangles.size());
+  ++n_topologies;
+
+  append_count("NumberOfPoints", n_topology_points);
+  for (const std::string kind : cell_kinds) {
+    const bool ours = kind == cell_kinds[polygons];
+    append_count(kind + "/NumberOfCells", ours ? n_triangles : 0);
+    append_count(kind + "/NumberOfConnectivityIds", ours ? 3 * n_triangles : 0);
+    if (!ours)
+      append_count(kind + "/Offsets", 0);
+  }
+  std::vector<std::int64_t> offsets, connectivity;
+  for (std::int64_t i = 0; i <= n_triangles; ++i)
+    offsets.push_back(3 * i);
+  for (const auto& triangle : step.triangles)
+    connectivity.insert(connectivity.end(), triangle.begin(), triangle.end());
+  h5::append_rows(series.at("Polygons/Offsets"), count_layout, offsets.data(), offsets.size());
+  h5::append_rows(series.at("Polygons/Connectivity"), count_layout, connectivity.data(), connectivity.size());
+
+  const auto rest = single_precision(step.rest_positions);
+  h5::append_rows(series.at("PointData/rest_position"), point_layout, rest.data(), step.rest_positions.size());
+  h5::append_rows(series.at("CellData/label"), {h5::Number::uint16, 1}, step.labels.data(), step.labels.size());
+}
+
+void SurfaceFile::Contents::append_step(const SurfaceStep& step) {
+  if (step.topology == Topology::changed)
+    append_topology(step);
+  const auto points = single_precision(step.positions);
+  h5::append_rows(series.at("Points"), point_layout, points.data(), step.positions.size());
+
+  h5::append_rows(series.at("Steps/Values"), {h5::Number::float64, 1}, &step.time, 1);
+  append_count("Steps/NumberOfParts", 1);
+  append_count("Steps/PartOffsets", n_topologies - 1); // counts and cells of a topology are one part, used again
+  append_count("Steps/PointOffsets", n_points);
+  append_count("Steps/PointDataOffsets/rest_position", first_rest);
+  append_count("Steps/CellDataOffsets/label", first_triangle);
+  append_kinds("Steps/CellOffsets", first_triangle);
+  append_kinds("Steps/ConnectivityIdOffsets", 3 * first_triangle);
+  n_points += static_cast<std::int64_t>(step.positions.size());
+  h5::set_attribute(steps, "NSteps", ++n_steps);
+}
+
+SurfaceFile::SurfaceFile(const std::filesystem::path& path)
+  : contents_(new Contents{.file = {path, JournaledFile::Mode::create}}) {
+  contents_->file.transaction([&] { contents_->create(); });
+}
+
+SurfaceFile::SurfaceFile(SurfaceFile&&) noexcept = default;
+SurfaceFile& SurfaceFile::operator=(SurfaceFile&&) noexcept = default;
+SurfaceFile::~SurfaceFile() = default;
+
+void SurfaceFile::append(const SurfaceStep& step) {
+  const auto& file = contents_->file.root().file;
+  if (step.topology == Topology::changed) {
+    check_equal(file, "rest_position", step.rest_positions.size(), step.positions.size());
+    check_equal(file, "label", step.labels.size(), step.triangles.size());
+    check_indices(file, step);
+  } else {
+    if (contents_->n_topologies == 0)
+      throw DataError({.file = file,
+                       .path = "topology",
+                       .value = "unchanged",
+                       .rule = "must be changed in the first step",
+                       .remedy = "Nothing was written; hand over the triangles"});
+    check_equal(file, "positions (topology unchanged)", step.positions.size(), contents_->n_topology_points);
+  }
+  contents_->file.transaction([&] { contents_->append_step(step); });
+}
+
+} // namespace kerf::output

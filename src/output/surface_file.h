@@ -1,0 +1,47 @@
+#pragma once
+
+/// The moving surface as one file that ParaView opens: VTKHDF 2.0, PolyData with Steps.
+///
+/// Each step appends its points [m] as 32-bit floats. Triangles, rest positions and labels are appended only when the
+/// topology changed; other steps point back at the last ones. Each append is one transaction, as in run_file.h.
+/// Source: VTKHDF format specification, docs.vtk.org (vtk_file_formats/vtkhdf_file_format).
+/// Limit: one partition, one body a file.
+
+#include "base/vec.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <span>
+
+namespace kerf::output {
+
+enum class Topology { unchanged, changed };
+
+/// A surface at one time. With an unchanged topology only time and positions are read.
+struct SurfaceStep {
+  double time = 0;                      ///< [s]
+  std::span<const Vec3> positions;      ///< per vertex [m], current configuration
+  std::span<const Vec3> rest_positions; ///< per vertex [m], rest configuration
+  std::span<const Triangle> triangles;
+  std::span<const std::uint16_t> labels; ///< per triangle: which cut revealed it
+  Topology topology = Topology::changed;
+};
+
+class SurfaceFile {
+ public:
+  /// Creates the file, or empties it. Throws DataError when it cannot be written.
+  explicit SurfaceFile(const std::filesystem::path& path);
+  SurfaceFile(SurfaceFile&&) noexcept;
+  SurfaceFile& operator=(SurfaceFile&&) noexcept;
+  ~SurfaceFile();
+
+  /// Appends one step and makes it durable. Throws DataError when sizes do not fit, or the disk is full.
+  void append(const SurfaceStep& step);
+
+ private:
+  struct Contents;
+  std::unique_ptr<Contents> contents_;
+};
+
+} // namespace kerf::output

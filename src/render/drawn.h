@@ -1,0 +1,25 @@
+#pragma once
+
+/// What an image shows.
+
+#include "base/vec.h"
+
+#include <cstdint>
+#include <span>
+
+namespace kerf::render {
+
+/// A triangle mesh in its current configuration; the spans must live as long as the call that draws them.
+struct DrawnSurface {
+  std::span<const Vec3> positions;       ///< [m], world
+  std::span<const Triangle> triangles;   ///< counter-clockwise seen from outside
+  std::span<const std::uint16_t> labels; ///< one a triangle: 0 skin, k > 0 revealed by cut k; or empty: all skin
+};
+
+/// A steel plate that tapers to its cutting edge.
+struct DrawnBlade {
+  Points edge; ///< the cutting edge, a polyline [m], world
+  Vec3 spine;  ///< from the edge to the back of the plate [m], world
+};
+
+} // namespace kerf::render

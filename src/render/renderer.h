@@ -1,0 +1,40 @@
+#pragma once
+
+/// Images of bodies, their revealed faces and the blades that cut them.
+///
+/// Passes: the depths seen from the key light (shadow map); the solids, shaded in linear light at twice the
+/// resolution in each direction; ambient occlusion from their depths; the average of each 2 x 2 block over the
+/// background, in sRGB. The lights stand in the frame of the camera, so that what it sees is lit.
+/// Limits: opaque surfaces; one light casts shadows; the shadow map spans the whole scene, so a piece far away
+/// makes the shadows of all others coarser.
+
+#include "render/camera.h"
+#include "render/drawn.h"
+#include "render/image.h"
+#include "render/look.h"
+
+#include <memory>
+#include <span>
+
+namespace kerf::render {
+
+class Renderer {
+ public:
+  /// Makes a GL context; throws ParameterError if the camera cannot see, DataError without OSMesa.
+  Renderer(const Camera& camera, const Look& look);
+  ~Renderer();
+  Renderer(const Renderer&) = delete;
+  Renderer& operator=(const Renderer&) = delete;
+
+  /// Draws the scene as it is now; the same input gives the same bytes. Throws DataError if a triangle names no vertex
+  /// or the labels do not fit, NumericalError if a position is not finite.
+  Image draw(std::span<const DrawnSurface> surfaces, std::span<const DrawnBlade> blades) const;
+
+ private:
+  struct Passes;
+  Camera camera_;
+  Look look_;
+  std::unique_ptr<Passes> passes_;
+};
+
+} // namespace kerf::render

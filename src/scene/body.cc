@@ -1,0 +1,113 @@
+#include "scene/body.h"
+
+#include "cut/recut.h"
+
+namespace kerf::scene {
+
+namespace {
+
+/// Corners whose rest position lies in a region, real or virtual.
+void find_supports(Body& body) {
+  body.loads.supports.clear();
+  for (const SupportRegion& region : body.regions) {
+    dynamics::Support support{{}, {}, region.displacement};
+    for (const auto corner : ids<grid::CornerId>(body.complex.n_corners())) {
+      const Vec3 X = body.grid.position(body.complex.node[corner]);
+      if (region.box.contains(X)) {
+        support.corners.push_back(corner.value);
+        support.rest.push_back(X);
+      }
+    }
+    body.loads.supports.push_back(std::move(support));
+  }
+}
+
+void build_surface(Body& body) {
+  body.surface = surface::build_surface(body.grid, body.cuts, body.complex);
+}
+
+void build_physics(Body& body, Timings& timings) {
+  const ScopedTimer timer(timings, "assemble");
+  find_supports(body);
+  body.physics = body.make_physics(body);
+}
+
+void inherit_state(dynamics::State& state, const Table<grid::CornerId, grid::CornerId>& parents) {
+  Points x, v;
+  x.reserve(parents.size());
+  v.reserve(parents.size());
+  for (const auto parent : parents) {
+    x.push_back(state.x[parent.value]);
+    v.push_back(state.v[parent.value]);
+  }
+  state.x = std::move(x);
+  state.v = std::move(v);
+}
+
+/// Adds released cuts to the body; returns the edges.
+std::vector<grid::EdgeId> add_cuts(Body& body, const std::vector<grid::EdgeCut>& released) {
+  std::vector<grid::EdgeId> edges;
+  for (const grid::EdgeCut& cut : released) {
+    body.cuts.add(cut);
+    edges.push_back(cut.edge);
+    ++body.cutting->n_cut_edges[cut.label - 1];
+  }
+  return edges;
+}
+
+void rebuild_topology(Body& body, const std::vector<grid::EdgeId>& edges, Timings& timings) {
+  const ScopedTimer timer(timings, "topology");
+  const auto placed = surface::place(body.grid, body.cuts, edges, body.placement);
+  body.placed.n_placed += placed.n_placed;
+  body.placed.n_clamped += placed.n_clamped;
+  grid::CellComplex complex = grid::build_complex(body.grid, body.cuts);
+  inherit_state(body.state, grid::parents(body.complex, complex));
+  body.complex = std::move(complex);
+  build_surface(body);
+  ++body.n_recuts;
+}
+
+} // namespace
+
+void start(Body& body, Timings& timings) {
+  {
+    const ScopedTimer timer(timings, "topology");
+    std::vector<grid::EdgeId> skin;
+    for (const grid::EdgeCut& cut : body.cuts.all())
+      skin.push_back(cut.edge);
+    body.placed = surface::place(body.grid, body.cuts, skin, body.placement);
+    body.complex = grid::build_complex(body.grid, body.cuts);
+    build_surface(body);
+  }
+  body.first_volume = surface::enclosed_volume(body.surface.rest, body.surface.triangles);
+  body.state.x = grid::rest_positions(body.grid, body.complex);
+  body.state.v.assign(body.complex.n_corners(), Vec3::Zero());
+  build_physics(body, timings);
+  follow(body);
+}
+
+void recut(Body& body, const std::span<const cut::Blade> blades, const double t0, const double t1, Timings& timings) {
+  std::vector<grid::EdgeCut> released;
+  {
+    const ScopedTimer timer(timings, "cut");
+    for (const cut::Blade& blade : blades) {
+      const auto sweep = cut::sweep(blade, t0, t1);
+      if (sweep.empty())
+        continue;
+      const auto found = cut::cut_edges(sweep, body.grid, body.cuts, body.complex, body.state.x, blade.label);
+      body.cutting->pending.push(found.cuts);
+      body.cutting->n_double_crossings += found.n_double_crossings;
+    }
+    if (body.cutting->pending.size() == 0)
+      return;
+    released = body.cutting->pending.release(body.grid, body.cuts);
+  }
+  if (released.empty())
+    return;
+  rebuild_topology(body, add_cuts(body, released), timings);
+  build_physics(body, timings);
+}
+
+void follow(Body& body) { surface::follow(body.surface, body.state.x, body.positions); }
+
+} // namespace kerf::scene

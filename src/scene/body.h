@@ -1,0 +1,72 @@
+#pragma once
+
+/// A body of the scene: its grid, what cuts it, its physics, and how all of it follows a cut.
+
+#include "cut/blade.h"
+#include "cut/pending.h"
+#include "dynamics/model.h"
+#include "dynamics/stepper.h"
+#include "base/timer.h"
+#include "grid/complex.h"
+#include "surface/placement.h"
+#include "surface/surface.h"
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace kerf::scene {
+
+struct Physics {
+  std::unique_ptr<dynamics::ElasticModel> model;
+  std::unique_ptr<dynamics::Stepper> stepper;
+};
+
+/// A part of the rest configuration that is held or moved.
+struct SupportRegion {
+  Box box;                                       ///< rest configuration, world frame [m]
+  std::function<Vec3(double time)> displacement; ///< [m]
+};
+
+/// What only a body in a scene with blades needs.
+struct Cutting {
+  cut::PendingCuts pending;
+  std::vector<std::size_t> n_cut_edges;     ///< by blade
+  std::size_t n_double_crossings = 0;       ///< edges that a sweep crossed an even number of times: left uncut
+};
+
+struct Body {
+  std::string name;
+  grid::Grid grid;
+  grid::Cuts cuts;
+  grid::CellComplex complex = {};
+  surface::Placement placement = {};
+  surface::PlacementCounts placed = {};
+  surface::Surface surface = {};
+  Points positions = {};                    ///< of the surface's vertices, now [m]
+
+  std::function<Physics(const Body&)> make_physics = {};
+  Physics physics = {};
+  dynamics::State state = {};
+  dynamics::Loads loads = {};
+  std::vector<SupportRegion> regions = {};
+
+  std::unique_ptr<Cutting> cutting = nullptr; ///< null in a scene without blades
+  int n_recuts = 0;                         ///< how often the complex has changed
+  double mesh_volume = 0;                   ///< of the input mesh [m^3]
+  double first_volume = 0;                  ///< rest volume of the surface before any blade [m^3]
+  std::size_t n_unresolved_edges = 0;       ///< edges that the input mesh crosses more than once
+};
+
+/// Builds complex, surface, state at rest, supports and physics of a body whose grid and skin are there.
+void start(Body& body, Timings& timings);
+
+/// Cuts the body with what the blades sweep between two times, as it stands now (DESIGN §5), and carries the state over: new
+/// corners take position and velocity from the copy they came from (DESIGN §6).
+void recut(Body& body, std::span<const cut::Blade> blades, double t0, double t1, Timings& timings);
+
+/// Moves the surface to the corners.
+void follow(Body& body);
+
+} // namespace kerf::scene

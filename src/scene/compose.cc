@@ -1,0 +1,255 @@
+#include "scene/compose.h"
+
+#include "cut/embed.h"
+#include "dynamics/implicit_euler.h"
+#include "dynamics/symplectic_euler.h"
+#include "fem/corotational.h"
+#include "geometry/solid.h"
+#include "scene/expression.h"
+
+#include <cmath>
+#include <filesystem>
+#include <sstream>
+
+namespace kerf::scene {
+
+namespace {
+
+struct Settings {
+  material::Elastic material;
+  DampingParameters damping;
+  ImplicitEulerParameters implicit_euler;
+};
+
+template <class Fields>
+Fields read_if_written(const Section& parent, const std::string& kind) {
+  const Section* section = parent.find(kind);
+  return section ? section->read<Fields>() : Fields();
+}
+
+geometry::TriangleMesh read_body_mesh(const Section& section, const BodyParameters& parameters) {
+  std::filesystem::path path = parameters.mesh;
+  if (path.is_relative())
+    path = std::filesystem::path(section.origin().file).parent_path() / path;
+  return geometry::require_solid(geometry::read_mesh(path.string(), parameters.mesh_unit), path.string());
+}
+
+/// A line of the composition, from anything that prints.
+template <class... Parts>
+std::string line(const Parts&... parts) {
+  std::ostringstream text;
+  (text << ... << parts);
+  return text.str();
+}
+
+std::function<Physics(const Body&)> physics_maker(const Section& section, const BodyParameters& parameters,
+                                                  const material::Elastic& material) {
+  const fem::CorotationalOptions fem_options{
+    material, parameters.integration == "octants" ? fem::Integration::octants : fem::Integration::full_cube,
+    parameters.sliver_floor};
+  const auto make_model = [fem_options](const Body& body) {
+    return std::make_unique<fem::Corotational>(body.grid, body.cuts, body.complex, fem_options);
+  };
+  if (parameters.integrator == "symplectic Euler")
+    return [make_model](const Body& body) {
+      Physics physics{make_model(body), nullptr};
+      physics.stepper = std::make_unique<dynamics::SymplecticEuler>(*physics.model);
+      return physics;
+    };
+  const auto settings = read_if_written<ImplicitEulerParameters>(section, "Implicit Euler");
+  const dynamics::ImplicitEulerOptions options{settings.n_newton, settings.cg_tolerance, settings.max_cg_iterations};
+  return [make_model, options](const Body& body) {
+    Physics physics{make_model(body), nullptr};
+    physics.stepper = std::make_unique<dynamics::ImplicitEuler>(*physics.model, options);
+    return physics;
+  };
+}
+
+SupportRegion compose_support(const Section& section) {
+  const auto parameters = section.read<SupportParameters>();
+  if ((parameters.lower.array() > parameters.upper.array()).any())
+    throw section.complaint("Upper [m]", "must not be below Lower [m] in any direction", "Swap the two");
+  return {{parameters.lower, parameters.upper}, displacement_of_time(section, parameters.displacement)};
+}
+
+void require_held_nodes(const Section& section, const Body& body, const SupportRegion& region) {
+  for (const auto n : ids<grid::NodeId>(body.grid.n_nodes()))
+    if (region.box.contains(body.grid.position(n)))
+      return;
+  throw section.complaint("the box holds no grid node of the body",
+                          "Move or enlarge the box: it is meant in the rest configuration, in metres");
+}
+
+Body compose_body(const Section& section, const GravityParameters* gravity, World& world) {
+  const auto parameters = section.read<BodyParameters>();
+  const auto material = read_if_written<material::Elastic>(section, "Material");
+  const geometry::TriangleMesh mesh = read_body_mesh(section, parameters);
+  cut::Embedding embedding = [&] {
+    const ScopedTimer timer(world.setup_seconds, "cut");
+    try {
+      return cut::embed(mesh, parameters.cube_edge, parameters.lattice_offset);
+    } catch (const DataError& error) {
+      throw section.complaint("Cube edge [m]", error.what(), "");
+    }
+  }();
+  Body body{section.name(), std::move(embedding.grid), std::move(embedding.cuts)};
+  body.placement.sharp_angle = parameters.sharp_angle;
+  body.mesh_volume = geometry::volume(mesh);
+  body.n_unresolved_edges = embedding.n_double_crossings + embedding.n_triple_crossings;
+  body.make_physics = physics_maker(section, parameters, material);
+  const auto damping = read_if_written<DampingParameters>(section, "Damping");
+  body.loads.gravity = gravity ? gravity->acceleration : Vec3(Vec3::Zero());
+  body.loads.mass_damping = damping.mass;
+  body.loads.stiffness_damping = damping.stiffness;
+  for (const Section* support : section.all("Support")) {
+    body.regions.push_back(compose_support(*support));
+    require_held_nodes(*support, body, body.regions.back());
+  }
+  if (!world.blades.empty()) {
+    body.cutting = std::make_unique<Cutting>();
+    body.cutting->n_cut_edges.assign(world.blades.size(), 0);
+  }
+  start(body, world.setup_seconds);
+  world.composition.push_back(line("body ", body.name, ": ", mesh.triangles.size(), " mesh triangles in ",
+                                   body.grid.n_cells(), " cells of ", parameters.cube_edge, " m, ",
+                                   body.complex.n_corners(), " corners, ", body.surface.triangles.size(),
+                                   " surface triangles"));
+  world.composition.push_back(line("body ", body.name, ": corotational trilinear hexahedra, integration over ",
+                                   parameters.integration, ", ", parameters.integrator, ", ", body.regions.size(),
+                                   " supports"));
+  return body;
+}
+
+cut::Blade compose_blade(const Section& section, const std::size_t index) {
+  const auto parameters = section.read<BladeParameters>();
+  if (parameters.positions.size() != parameters.times.size())
+    throw section.complaint("Positions [m]", line("must be as many as Times [s], which are ", parameters.times.size()),
+                            "Write one position for each time, separated by semicolons");
+  if (!parameters.rotations.empty() && parameters.rotations.size() != parameters.times.size())
+    throw section.complaint("Rotations [degrees]",
+                            line("must be as many as Times [s], which are ", parameters.times.size(), ", or none"),
+                            "Write one rotation vector for each time, separated by semicolons");
+  cut::Blade blade;
+  blade.name = section.name();
+  blade.edge = parameters.edge;
+  blade.spine = parameters.spine;
+  blade.label = static_cast<grid::CutLabel>(index + 1);
+  for (std::size_t i = 0; i < parameters.times.size(); ++i)
+    blade.key_frames.push_back({parameters.times[i], parameters.positions[i],
+                                parameters.rotations.empty() ? Vec3(Vec3::Zero()) : parameters.rotations[i]});
+  try {
+    cut::check(blade);
+  } catch (const ParameterError& error) {
+    throw section.complaint(error.what(), "");
+  }
+  return blade;
+}
+
+/// A blade that stays away from the box of every body, grown by half its size for what the body may move, is a mistake.
+void require_meeting(const Section& section, const cut::Blade& blade, const World& world) {
+  Vec3 lower = Vec3::Constant(1e300), upper = Vec3::Constant(-1e300);
+  for (const auto& triangle : cut::sweep(blade, 0, world.n_steps * world.time_step))
+    for (const Vec3& p : triangle) {
+      lower = lower.cwiseMin(p);
+      upper = upper.cwiseMax(p);
+    }
+  for (const Body& body : world.bodies) {
+    Vec3 low = Vec3::Constant(1e300), high = Vec3::Constant(-1e300);
+    for (const Vec3& p : body.positions) {
+      low = low.cwiseMin(p);
+      high = high.cwiseMax(p);
+    }
+    const Vec3 slack = Vec3::Constant(0.5 * (high - low).norm());
+    if ((lower.array() <= (high + slack).array()).all() && (upper.array() >= (low - slack).array()).all())
+      return;
+  }
+  throw section.complaint("the blade never comes near a body between time 0 and the end",
+                          "Check units and key frames: positions are in metres, in the world frame");
+}
+
+Images compose_images(const Section& section) {
+  const auto parameters = section.read<ImageParameters>();
+  const render::Camera camera{parameters.eye,           parameters.target, parameters.up,
+                              parameters.field_of_view, parameters.width,  parameters.height};
+  try {
+    render::check(camera);
+  } catch (const ParameterError& error) {
+    throw section.complaint("Eye [m]", error.what(), "");
+  }
+  return {parameters.every, std::make_unique<render::Renderer>(camera, render::Look())};
+}
+
+std::vector<const BodyObservable*> compose_observables(const Section& section) {
+  const auto parameters = section.read<ObservableParameters>();
+  std::vector<const BodyObservable*> chosen;
+  std::istringstream names(parameters.names);
+  for (std::string name; std::getline(names, name, ',');) {
+    const auto first = name.find_first_not_of(" \t"), last = name.find_last_not_of(" \t");
+    const std::string word = first == std::string::npos ? "" : name.substr(first, last - first + 1);
+    const BodyObservable* observable = find_observable(word);
+    if (!observable)
+      throw section.complaint("Names", "'" + word + "' is not an observable",
+                              "The observables and their units are listed by: kerf params");
+    chosen.push_back(observable);
+  }
+  return chosen;
+}
+
+void compose_time(const Section& section, World& world) {
+  const auto parameters = section.read<TimeParameters>();
+  const double steps = std::round(parameters.end_time / parameters.time_step);
+  if (steps < 1)
+    throw section.complaint("End time [s]", "must be at least one time step", "Use a later end or a smaller time step");
+  if (steps > 1e9)
+    throw section.complaint("Time step [s]", "must lead to the end within 1e9 steps", "Use a larger time step");
+  world.time_step = parameters.time_step;
+  world.n_steps = static_cast<int>(steps);
+}
+
+void say_what_is_left_out(const Section& root, World& world) {
+  const auto say = [&](const std::string& kind, const std::string& consequence) {
+    if (!root.find(kind))
+      world.composition.push_back("left out: " + kind + " (" + consequence + ")");
+  };
+  say("Gravity", "no field");
+  say("Blade", "no cut machinery in memory");
+  say("Observables", "no series but time");
+  say("Surface file", "no file for ParaView");
+  say("Images", "no GL context");
+}
+
+} // namespace
+
+World compose(const SceneText& text) {
+  const Section root = parse_scene(text, grammar());
+  World world;
+  compose_time(root.require("Time"), world);
+  const Section* gravity_section = root.find("Gravity");
+  const auto gravity = read_if_written<GravityParameters>(root, "Gravity");
+  root.require("Body");
+
+  const auto blades = root.all("Blade");
+  for (std::size_t i = 0; i < blades.size(); ++i) {
+    world.blades.push_back(compose_blade(*blades[i], i));
+    world.composition.push_back("blade " + world.blades[i].name);
+  }
+  for (const Section* body : root.all("Body"))
+    world.bodies.push_back(compose_body(*body, gravity_section ? &gravity : nullptr, world));
+  for (std::size_t i = 0; i < blades.size(); ++i)
+    require_meeting(*blades[i], world.blades[i], world);
+
+  world.output = read_if_written<OutputParameters>(root, "Output");
+  if (const Section* section = root.find("Surface file"))
+    world.surface_file = section->read<SurfaceFileParameters>();
+  if (const Section* section = root.find("Observables"))
+    world.observables = compose_observables(*section);
+  if (const Section* section = root.find("Images")) {
+    world.images = compose_images(*section);
+    world.composition.push_back("images: off-screen OpenGL");
+  }
+  say_what_is_left_out(root, world);
+  root.require_all_read();
+  return world;
+}
+
+} // namespace kerf::scene

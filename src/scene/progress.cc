@@ -1,0 +1,49 @@
+#include "scene/progress.h"
+
+#include <string>
+
+#include <unistd.h>
+
+namespace kerf::scene {
+
+ProgressStyle progress_style(std::FILE* const stream) {
+  return isatty(fileno(stream)) != 0 ? ProgressStyle::bar : ProgressStyle::lines;
+}
+
+Progress::Progress(const int n_steps, const double end_time, const ProgressStyle style, std::FILE* const stream)
+  : n_steps_(n_steps), end_time_(end_time), style_(style), stream_(stream) {}
+
+double Progress::steps_per_second() const {
+  const double seconds = std::chrono::duration<double>(Clock::now() - start_).count();
+  return seconds > 0 ? step_ / seconds : 0;
+}
+
+void Progress::show(const int step, const double time) {
+  step_ = step;
+  if (style_ == ProgressStyle::silent)
+    return;
+  const auto now = Clock::now();
+  const auto pause = style_ == ProgressStyle::bar ? std::chrono::milliseconds(100) : std::chrono::milliseconds(5000);
+  if (now - shown_ < pause && step != n_steps_)
+    return;
+  shown_ = now;
+  constexpr int width = 32;
+  const int full = static_cast<int>(static_cast<long>(width) * step / n_steps_);
+  const std::string bar = std::string(full, '#') + std::string(width - full, '.');
+  if (style_ == ProgressStyle::bar)
+    std::fprintf(stream_, "\r[%s] step %d/%d  t = %.3f/%.3f s  %.1f steps/s   ", bar.c_str(), step, n_steps_, time,
+                 end_time_, steps_per_second());
+  else
+    std::fprintf(stream_, "step %d/%d  t = %.3f/%.3f s  %.1f steps/s\n", step, n_steps_, time, end_time_,
+                 steps_per_second());
+  open_line_ = style_ == ProgressStyle::bar;
+  std::fflush(stream_);
+}
+
+void Progress::finish() {
+  if (open_line_)
+    std::fprintf(stream_, "\n");
+  open_line_ = false;
+}
+
+} // namespace kerf::scene

@@ -1,0 +1,140 @@
+#include "scene/recorder.h"
+
+#include "base/error.h"
+
+#include <cstdio>
+#include <system_error>
+
+namespace kerf::scene {
+
+namespace {
+
+/// Folder of the run, empty of images of an earlier one.
+std::filesystem::path make_folder(const std::filesystem::path& folder, const World& world) {
+  std::error_code error;
+  std::filesystem::create_directories(world.images ? folder / "frames" : folder, error);
+  if (error)
+    throw DataError(Complaint{.file = folder.string(),
+                              .rule = "the results folder cannot be made: " + error.message(),
+                              .remedy = "Choose another folder with --output, or change its permissions"});
+  if (world.images)
+    for (const auto& entry : std::filesystem::directory_iterator(folder / "frames"))
+      if (entry.path().extension() == ".png")
+        std::filesystem::remove(entry.path());
+  return folder;
+}
+
+output::Schema make_schema(const World& world) {
+  output::Schema schema{stages(), {}};
+  for (const Body& body : world.bodies)
+    for (const BodyObservable* o : world.observables)
+      schema.observables.push_back({body.name + " " + o->name, o->unit, o->source});
+  return schema;
+}
+
+output::Complex to_record(const Body& body) {
+  output::Complex record;
+  for (const grid::Copy& copy : body.complex.copies) {
+    std::array<std::uint32_t, 8> corners;
+    for (int v = 0; v < 8; ++v)
+      corners[v] = copy.corners[v].value;
+    record.corners.push_back(corners);
+    record.cells.push_back(body.grid.index(body.grid.nodes(copy.cell)[0]));
+    record.nodes.push_back(copy.nodes);
+  }
+  record.rest_positions = grid::rest_positions(body.grid, body.complex);
+  return record;
+}
+
+output::Surface to_record(const surface::Surface& surface) {
+  output::Surface record{surface.triangles, surface.labels, surface.rest, {}};
+  const surface::Weights& w = surface.weights;
+  record.weights.row_starts.assign(w.outerIndexPtr(), w.outerIndexPtr() + w.rows() + 1);
+  record.weights.columns.assign(w.innerIndexPtr(), w.innerIndexPtr() + w.nonZeros());
+  record.weights.values.assign(w.valuePtr(), w.valuePtr() + w.nonZeros());
+  return record;
+}
+
+bool is_due(const int step, const int every, const World& world) { return step % every == 0 || step == world.n_steps; }
+
+} // namespace
+
+const std::vector<std::string>& stages() {
+  static const std::vector<std::string> names = {"cut", "topology", "assemble", "solve", "surface", "output", "images"};
+  return names;
+}
+
+Recorder::Recorder(const std::filesystem::path& folder, const World& world, const output::RunInfo& info,
+                   const std::string& scene_text)
+  : folder_(make_folder(folder, world)), run_file_(folder / "run.h5", info, make_schema(world)),
+    bodies_(world.bodies.size()) {
+  run_file_.write_scene(scene_text);
+  run_file_.write_composition(world.composition);
+  if (world.surface_file)
+    for (std::size_t b = 0; b < bodies_.size(); ++b)
+      bodies_[b].surface_file.emplace(folder_ / ("surface_" + world.bodies[b].name + ".vtkhdf"));
+}
+
+void Recorder::record(const World& world, const int step, Timings& seconds) {
+  if (world.images && is_due(step, world.images->every, world)) {
+    const ScopedTimer timer(seconds, "images");
+    write_image(world, step);
+  }
+  const Timings before = seconds; // what writing this very step takes is counted with the next one
+  seconds.clear();
+  const ScopedTimer timer(seconds, "output");
+  append_step(world, step, before, is_due(step, world.output.frames_every, world));
+  if (world.surface_file && is_due(step, world.surface_file->every, world))
+    append_surfaces(world, step);
+}
+
+void Recorder::append_step(const World& world, const int step, const Timings& seconds, const bool with_frames) {
+  std::vector<double> values;
+  for (const Body& body : world.bodies)
+    for (const BodyObservable* o : world.observables)
+      values.push_back(o->value(body));
+  output::StepRecord record{step * world.time_step, step, seconds, values, {}};
+  std::vector<output::Complex> complexes(world.bodies.size());
+  std::vector<output::Surface> surfaces(world.bodies.size());
+  if (with_frames)
+    for (std::size_t b = 0; b < world.bodies.size(); ++b) {
+      const Body& body = world.bodies[b];
+      output::BodyStep body_step{body.name, body.state.x, body.state.v, {}};
+      if (bodies_[b].complex_written != body.n_recuts) {
+        complexes[b] = to_record(body);
+        surfaces[b] = to_record(body.surface);
+        body_step.complex = &complexes[b];
+        body_step.surface = &surfaces[b];
+        bodies_[b].complex_written = body.n_recuts;
+      }
+      record.bodies.push_back(body_step);
+    }
+  run_file_.append(record);
+}
+
+void Recorder::append_surfaces(const World& world, const int step) {
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    const Body& body = world.bodies[b];
+    const bool changed = bodies_[b].surface_written != body.n_recuts;
+    bodies_[b].surface_file->append({step * world.time_step, body.positions, body.surface.rest, body.surface.triangles,
+                                     body.surface.labels,
+                                     changed ? output::Topology::changed : output::Topology::unchanged});
+    bodies_[b].surface_written = body.n_recuts;
+  }
+}
+
+void Recorder::write_image(const World& world, const int step) {
+  std::vector<render::DrawnSurface> surfaces;
+  for (const Body& body : world.bodies)
+    surfaces.push_back({body.positions, body.surface.triangles, body.surface.labels});
+  std::vector<render::DrawnBlade> blades;
+  for (const cut::Blade& blade : world.blades) {
+    const double time = step * world.time_step;
+    blades.push_back({cut::world_points(blade, time), cut::pose(blade, time).rotation * blade.spine});
+  }
+  std::array<char, 32> name;
+  std::snprintf(name.data(), name.size(), "%06d.png", step);
+  render::write_png(world.images->renderer->draw(surfaces, blades), (folder_ / "frames" / name.data()).string());
+}
+
+} // namespace kerf::scene

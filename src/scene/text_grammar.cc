@@ -1,0 +1,166 @@
+#include "scene/text_grammar.h"
+
+#include "scene/text_suggest.h"
+
+#include <algorithm>
+#include <cctype>
+
+namespace kerf::scene {
+namespace {
+
+std::string heading_of(const SectionKind& kind) {
+  return kind.kind + (kind.occurrence == Occurrence::named ? " NAME" : "");
+}
+
+/// What stands in `heading` after as many words as `kind` has; "NAME" when nothing does.
+std::string name_part(const std::string& heading, const std::string& kind) {
+  std::size_t begin = 0;
+  for (auto n_words = 1 + std::count(kind.begin(), kind.end(), ' '); n_words > 0; --n_words) {
+    begin = heading.find(' ', begin);
+    if (begin == std::string::npos)
+      return "NAME";
+    ++begin;
+  }
+  return heading.substr(begin);
+}
+
+/// Paths of the sections below `kinds` that have a key or section called `word`.
+std::vector<std::string> owners(const std::string& word, const std::vector<SectionKind>& kinds,
+                                const std::string& path) {
+  std::vector<std::string> found;
+  for (const auto& kind : kinds) {
+    const std::string here = (path.empty() ? "" : path + "/") + heading_of(kind);
+    const auto list = keys(kind);
+    if (std::any_of(list.begin(), list.end(), [&](const Parameter& p) { return p.name == word; }) ||
+        match_heading(word, kind.children).kind)
+      found.push_back(here);
+    const auto below = owners(word, kind.children, here);
+    found.insert(found.end(), below.begin(), below.end());
+  }
+  return found;
+}
+
+class Checker {
+ public:
+  explicit Checker(const std::vector<SectionKind>& grammar) : grammar_(grammar) {}
+
+  void check_sections(const WrittenSection& parent, const std::vector<SectionKind>& kinds, const std::string& path) {
+    for (const auto& section : parent.sections) {
+      const std::string here = (path.empty() ? "" : path + "/") + section.heading;
+      const auto match = match_heading(section.heading, kinds);
+      if (!match.kind)
+        throw unknown_section(section, kinds, here);
+      check_name(section, match, here);
+      check_keys(section, keys(*match.kind), here);
+      check_sections(section, match.kind->children, here);
+    }
+  }
+
+ private:
+  static ParameterError error(const Origin& at, const std::string& path, const std::string& value,
+                              const std::string& rule, const std::string& remedy) {
+    return ParameterError(Complaint{at.file, at.line, path, value, rule, remedy});
+  }
+
+  /// The nearest name here, or the sections that have exactly this name, or what is allowed here.
+  std::string remedy(const std::string& word, const std::vector<std::string>& names, const std::string& if_none) const {
+    const auto elsewhere = owners(word, grammar_, "");
+    if (nearest(word, names) || elsewhere.empty())
+      return suggestion(word, names, if_none);
+    std::string places;
+    for (const auto& place : elsewhere)
+      places += (places.empty() ? "" : " or ") + ("'" + place + "'");
+    return "It belongs in " + places;
+  }
+
+  ParameterError unknown_section(const WrittenSection& section, const std::vector<SectionKind>& kinds,
+                                 const std::string& path) const {
+    std::vector<std::string> headings;
+    for (const auto& kind : kinds)
+      headings.push_back(kind.occurrence == Occurrence::once ? kind.kind
+                                                             : kind.kind + " " + name_part(section.heading, kind.kind));
+    const auto is_prefix = [&](const SectionKind& kind) { return section.heading.starts_with(kind.kind + " "); };
+    const auto nameless = std::find_if(kinds.begin(), kinds.end(), is_prefix);
+    if (nameless != kinds.end() && !nearest(section.heading, headings))
+      return error(section.origin, path, "", "the section '" + nameless->kind + "' takes no name",
+                   "Write 'subsection " + nameless->kind + "'");
+    return error(section.origin, path, "", "there is no such section here",
+                 remedy(section.heading, headings, "No sections are allowed here"));
+  }
+
+  static void check_name(const WrittenSection& section, const Heading& match, const std::string& path) {
+    if (match.kind->occurrence == Occurrence::once)
+      return;
+    if (match.name.empty())
+      throw error(section.origin, path, "", "the section must have a name",
+                  "Write for example 'subsection " + match.kind->kind + " first'");
+    // Names become groups of an HDF5 file and parts of file names.
+    const auto allowed = [](const char c) {
+      return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '-';
+    };
+    if (!std::all_of(match.name.begin(), match.name.end(), allowed))
+      throw error(section.origin, path, match.name, "a name must be letters, digits, '_' and '-'",
+                  "Write for example 'subsection " + match.kind->kind + " first'");
+  }
+
+  void check_keys(const WrittenSection& section, const std::vector<Parameter>& allowed, const std::string& path) const {
+    for (const auto& key : section.keys)
+      check_key(key, allowed, path);
+    for (const auto& parameter : allowed) {
+      const auto is_it = [&](const WrittenKey& key) { return key.name == parameter.name && !key.value.empty(); };
+      if (parameter.required && std::none_of(section.keys.begin(), section.keys.end(), is_it))
+        throw error(section.origin, path + "/" + parameter.name, "",
+                    "the section must set this key, which " + parameter.rule,
+                    "Write 'set " + parameter.name + " = ...': " + parameter.text);
+    }
+  }
+
+  void check_key(const WrittenKey& key, const std::vector<Parameter>& allowed, const std::string& path) const {
+    const auto it =
+      std::find_if(allowed.begin(), allowed.end(), [&](const Parameter& p) { return p.name == key.name; });
+    if (it == allowed.end()) {
+      std::vector<std::string> names;
+      for (const auto& parameter : allowed)
+        names.push_back(parameter.name);
+      throw error(key.origin, path + "/" + key.name, key.value, "there is no such key in this section",
+                  remedy(key.name, names, "This section has no keys"));
+    }
+    const std::string rule = it->check(key.value);
+    if (rule.empty() || (it->required && key.value.empty())) // a missing key, told as such
+      return;
+    const auto word = nearest(key.value, it->words);
+    const std::string example = it->check(it->fallback).empty() ? " (default " + it->fallback + ")" : "";
+    throw error(key.origin, path + "/" + key.name, key.value, rule,
+                word ? "Did you mean '" + *word + "'?" : it->text + example);
+  }
+
+  const std::vector<SectionKind>& grammar_;
+};
+
+} // namespace
+
+std::vector<Parameter> keys(const SectionKind& kind) {
+  Parameters parameters;
+  if (kind.describe)
+    kind.describe(parameters);
+  return parameters.list();
+}
+
+Heading match_heading(const std::string& heading, const std::vector<SectionKind>& kinds) {
+  Heading best;
+  for (const auto& kind : kinds) {
+    if (heading == kind.kind)
+      return {&kind, ""};
+    // "Body force left" is a 'Body force', not a 'Body' called "force left".
+    if (kind.occurrence == Occurrence::named && heading.starts_with(kind.kind + " ") &&
+        (!best.kind || kind.kind.size() > best.kind->kind.size()))
+      best = {&kind, heading.substr(kind.kind.size() + 1)};
+  }
+  return best;
+}
+
+void check_scene(const WrittenSection& root, const std::vector<SectionKind>& grammar) {
+  Checker(grammar).check_sections(root, grammar, "");
+}
+
+} // namespace kerf::scene

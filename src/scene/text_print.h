@@ -1,0 +1,15 @@
+#pragma once
+
+/// The grammar as a page for people.
+
+#include "scene/text_grammar.h"
+
+#include <string>
+#include <vector>
+
+namespace kerf::scene {
+
+/// Every section and key with default, rule and text, as .prm text with comments.
+std::string print_parameters(const std::vector<SectionKind>& grammar);
+
+} // namespace kerf::scene

@@ -1,0 +1,20 @@
+#pragma once
+
+/// The name that was probably meant.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace kerf::scene {
+
+/// Insertions, deletions and substitutions between two texts, ignoring case (Levenshtein 1966).
+int edit_distance(const std::string& a, const std::string& b);
+
+/// The nearest of `names`, also when only the unit in brackets is missing or wrong; nothing when none is near.
+std::optional<std::string> nearest(const std::string& word, const std::vector<std::string>& names);
+
+/// "Did you mean 'Density [kg/m^3]'?", or else "Allowed are 'A', 'B'", or `if_none` when there are no names.
+std::string suggestion(const std::string& word, const std::vector<std::string>& names, const std::string& if_none);
+
+} // namespace kerf::scene
