@@ -10,9 +10,10 @@ namespace kerf {
 void set_n_threads(int n);
 int n_threads();
 
+/// Fewer items than `worth` run on one thread: starting a second costs more than it brings.
 template <class Function>
-void parallel_for(std::size_t n, const Function& f) {
-#pragma omp parallel for schedule(static)
+void parallel_for(std::size_t n, const Function& f, const std::size_t worth = 1) {
+#pragma omp parallel for schedule(static) if (n > worth)
   for (std::size_t i = 0; i < n; ++i)
     f(i);
 }

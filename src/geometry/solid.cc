@@ -2,7 +2,7 @@
 
 #include "base/error.h"
 #include "geometry/predicates.h"
-#include "geometry/union_find.h"
+#include "base/union_find.h"
 
 #include <Eigen/Geometry>
 
@@ -108,7 +108,7 @@ void require_one_fan_a_vertex(const TriangleMesh& mesh, const std::vector<EdgeSi
   Defects pinched;
   for (std::uint32_t corner = 0; corner < 3 * mesh.triangles.size(); ++corner) {
     const std::uint32_t vertex = mesh.triangles[corner / 3][corner % 3];
-    if (fans.find(corner) == corner && ++n_fans[vertex] == 2)
+    if (fans.root(corner) == corner && ++n_fans[vertex] == 2)
       pinched.add(mesh.vertices[vertex]);
   }
   require_none(pinched, path, "it is not manifold, vertices where surfaces touch in a point", "Split these vertices");
@@ -132,7 +132,7 @@ void orient_consistently(TriangleMesh& mesh, const std::vector<EdgeSide>& sides,
     orientations.unite(i + n, agree ? j + n : j);
   }
   for (std::uint32_t i = 0; i < n; ++i) {
-    const std::uint32_t as_it_is = orientations.find(i), reversed = orientations.find(i + n);
+    const std::uint32_t as_it_is = orientations.root(i), reversed = orientations.root(i + n);
     if (as_it_is == reversed)
       refuse(path, "it is not orientable, a one-sided surface through " + to_text(centroid(mesh, i)),
              "Rebuild the surface so that it has an inside");

@@ -1,6 +1,6 @@
 #include "geometry/triangle_mesh.h"
 
-#include "geometry/union_find.h"
+#include "base/union_find.h"
 
 #include <Eigen/Geometry>
 
@@ -43,7 +43,7 @@ std::vector<std::uint32_t> shells(const TriangleMesh& mesh) {
   std::uint32_t n_shells = 0;
   shell.reserve(mesh.triangles.size());
   for (const Triangle& triangle : mesh.triangles) {
-    std::uint32_t& n = number[classes.find(triangle[0])];
+    std::uint32_t& n = number[classes.root(triangle[0])];
     if (n == unnumbered)
       n = n_shells++;
     shell.push_back(n);

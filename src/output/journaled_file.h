@@ -39,7 +39,7 @@ class JournaledFile {
   /// As far as anything has been written, committed or not [bytes].
   std::uint64_t size() const { return size_; }
 
-  /// Fills `bytes`; what was never written reads as zero. Throws DataError.
+  /// Fills `bytes`; what lies behind the end of the file reads as zero. Throws DataError.
   void read(std::uint64_t offset, std::span<std::byte> bytes) const;
   /// Never throws for a full disk: the failure shows at the commit, and till then reads see what was written.
   void write(std::uint64_t offset, std::span<const std::byte> bytes);

@@ -6,7 +6,7 @@
 #include "cut/embed.h"
 #include "cut/pending.h"
 #include "geometry/predicates.h"
-#include "geometry/union_find.h"
+#include "base/union_find.h"
 #include "grid/cube.h"
 #include "tests/geometry/meshes.h"
 
@@ -41,14 +41,14 @@ struct Block {
     std::set<EdgeId> is_cut;
     for (const EdgeCut& c : cuts)
       is_cut.insert(c.edge);
-    geometry::UnionFind classes(body.grid.n_nodes());
+    UnionFind classes(body.grid.n_nodes());
     for (const EdgeId e : ids<EdgeId>(body.grid.n_edges()))
       if (!body.cuts.is_cut(e) && !is_cut.contains(e))
         classes.unite(body.grid.ends(e)[0].value, body.grid.ends(e)[1].value);
     std::set<std::uint32_t> roots;
     for (const NodeId node : ids<NodeId>(body.grid.n_nodes()))
       if (body.grid.is_material(node))
-        roots.insert(classes.find(node.value));
+        roots.insert(classes.root(node.value));
     return roots.size();
   }
 

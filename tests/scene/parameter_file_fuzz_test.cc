@@ -45,7 +45,7 @@ std::string damaged(std::string text, std::mt19937& random) {
 TEST(ParameterFileFuzz, DamagedScenesParseOrAreOurErrors) {
   std::mt19937 random(7);
   int n_parsed = 0, n_refused = 0;
-  for (int i = 0; i < 5000; ++i) {
+  for (int i = 0; i < 20000; ++i) {
     const std::string text = damaged(sound, random);
     try {
       const Section scene = parse_scene(scan_scene_text(text, "a.prm"), grammar());
