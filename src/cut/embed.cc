@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "geometry/normals.h"
 #include "geometry/predicates.h"
 
 #include <algorithm>
@@ -161,7 +162,7 @@ bool is_mixed(const grid::Grid& grid, const grid::EdgeId e) {
 class Skin {
  public:
   Skin(const geometry::TriangleMesh& mesh, const grid::Grid& grid, Embedding& result)
-    : mesh_(mesh), grid_(grid), result_(result), shell_(geometry::shells(mesh)),
+    : grid_(grid), result_(result), normals_(mesh), shell_(geometry::shells(mesh)),
       is_lost_(shell_.empty() ? 0 : *std::max_element(shell_.begin(), shell_.end()) + 1, 1) {}
 
   void add(const std::span<const Crossing> of_edge) {
@@ -177,7 +178,10 @@ class Skin {
       ++result_.n_triple_crossings;
     const Crossing& kept = grid_.is_material(grid_.ends(*edge)[0]) ? of_edge.front() : of_edge.back();
     is_lost_[shell_[kept.triangle]] = 0;
-    const Vec3 normal = geometry::unit_normal(geometry::corners(mesh_, kept.triangle));
+    constexpr double smoothing = 0.5; // of a cube edge: what is finer than the grid is noise to it
+    Vec3 point = grid_.position(grid_.ends(*edge)[0]);
+    point[lattice_edge.axis] += kept.t * grid_.h();
+    const Vec3 normal = normals_.at(kept.triangle, point, smoothing * grid_.h());
     const bool is_rounded_away = normal.isZero(0); // of a sliver
     cuts_.push_back({*edge, kept.t, is_rounded_away ? Vec3(Vec3::Unit(lattice_edge.axis)) : normal, grid::skin_label});
   }
@@ -195,9 +199,9 @@ class Skin {
   }
 
  private:
-  const geometry::TriangleMesh& mesh_;
   const grid::Grid& grid_;
   Embedding& result_;
+  geometry::LocalNormals normals_;
   std::vector<std::uint32_t> shell_;
   std::vector<std::uint8_t> is_lost_;
   std::vector<grid::EdgeCut> cuts_;

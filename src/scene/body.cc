@@ -1,5 +1,6 @@
 #include "scene/body.h"
 
+#include "cut/fit.h"
 #include "cut/recut.h"
 
 namespace kerf::scene {
@@ -69,13 +70,14 @@ void rebuild_topology(Body& body, const std::vector<grid::EdgeId>& edges, Timing
 
 } // namespace
 
-void start(Body& body, Timings& timings) {
+void start(Body& body, const geometry::TriangleMesh& mesh, Timings& timings) {
   {
     const ScopedTimer timer(timings, "topology");
     std::vector<grid::EdgeId> skin;
     for (const grid::EdgeCut& cut : body.cuts.all())
       skin.push_back(cut.edge);
     body.placed = surface::place(body.grid, body.cuts, skin, body.placement);
+    cut::fit_skin(mesh, body.grid, body.cuts);
     body.complex = grid::build_complex(body.grid, body.cuts);
     build_surface(body);
   }

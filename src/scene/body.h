@@ -2,11 +2,12 @@
 
 /// A body of the scene: its grid, what cuts it, its physics, and how all of it follows a cut.
 
+#include "base/timer.h"
 #include "cut/blade.h"
 #include "cut/pending.h"
 #include "dynamics/model.h"
 #include "dynamics/stepper.h"
-#include "base/timer.h"
+#include "geometry/triangle_mesh.h"
 #include "grid/complex.h"
 #include "surface/placement.h"
 #include "surface/surface.h"
@@ -59,8 +60,8 @@ struct Body {
   std::size_t n_unresolved_edges = 0;       ///< edges that the input mesh crosses more than once
 };
 
-/// Builds complex, surface, state at rest, supports and physics of a body whose grid and skin are there.
-void start(Body& body, Timings& timings);
+/// Builds complex, surface, state at rest, supports and physics of a body whose grid and skin are there, cut from `mesh`.
+void start(Body& body, const geometry::TriangleMesh& mesh, Timings& timings);
 
 /// Cuts the body with what the blades sweep between two times, as it stands now (DESIGN §5), and carries the state over: new
 /// corners take position and velocity from the copy they came from (DESIGN §6).

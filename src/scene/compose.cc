@@ -109,7 +109,7 @@ Body compose_body(const Section& section, const GravityParameters* gravity, Worl
     body.cutting = std::make_unique<Cutting>();
     body.cutting->n_cut_edges.assign(world.blades.size(), 0);
   }
-  start(body, world.setup_seconds);
+  start(body, mesh, world.setup_seconds);
   world.composition.push_back(line("body ", body.name, ": ", mesh.triangles.size(), " mesh triangles in ",
                                    body.grid.n_cells(), " cells of ", parameters.cube_edge, " m, ",
                                    body.complex.n_corners(), " corners, ", body.surface.triangles.size(),

@@ -4,6 +4,7 @@
 
 #include <cstdio>
 #include <system_error>
+#include <utility>
 
 namespace kerf::scene {
 
@@ -76,14 +77,13 @@ Recorder::Recorder(const std::filesystem::path& folder, const World& world, cons
 }
 
 void Recorder::record(const World& world, const int step, Timings& seconds) {
+  const Timings stepping = std::exchange(seconds, {});
   if (world.images && is_due(step, world.images->every, world)) {
     const ScopedTimer timer(seconds, "images");
     write_image(world, step);
   }
-  const Timings before = seconds; // what writing this very step takes is counted with the next one
-  seconds.clear();
   const ScopedTimer timer(seconds, "output");
-  append_step(world, step, before, is_due(step, world.output.frames_every, world));
+  append_step(world, step, stepping, is_due(step, world.output.frames_every, world));
   if (world.surface_file && is_due(step, world.surface_file->every, world))
     append_surfaces(world, step);
 }

@@ -57,7 +57,8 @@ Timings run(World& world, Recorder& recorder, Progress& progress) {
       recorder.record(world, step, seconds);
       progress.show(step, step * world.time_step);
     }
-    total["output"] += seconds["output"];
+    for (const auto& [stage, s] : seconds)
+      total[stage] += s;
   } catch (const std::exception& error) {
     progress.finish();
     recorder.fail(error.what(), step, step * world.time_step);

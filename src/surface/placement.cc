@@ -70,18 +70,23 @@ Directions free_directions(const Planes& planes, const Directions& allowed, cons
   return allowed * svd.matrixV().rightCols(allowed.cols() - rank(svd, threshold));
 }
 
-/// The smallest move of p within the allowed directions that minimises the squared distances to the planes [GH97].
-Vec3 move_to_planes(const Vec3& p, const Planes& planes, const Directions& allowed, const double threshold) {
+/// The smallest moves of p within the allowed directions that minimise the squared distances to the planes [GH97]: first
+/// to as many independent ones as there are, then to ever fewer, the weakest left out first. Never empty.
+Points moves_to_planes(const Vec3& p, const Planes& planes, const Directions& allowed, const double threshold) {
+  Points moves = {Vec3::Zero()};
   if (allowed.cols() == 0 || planes.empty())
-    return Vec3::Zero();
+    return moves;
   const auto svd = decompose(planes, allowed);
   Eigen::VectorXd distances(planes.size());
   for (std::size_t i = 0; i < planes.size(); ++i)
     distances[i] = planes[i].normal.dot(planes[i].point - p);
-  const int n = rank(svd, threshold);
-  const Eigen::VectorXd scaled =
-    (svd.matrixU().leftCols(n).transpose() * distances).cwiseQuotient(svd.singularValues().head(n));
-  return allowed * (svd.matrixV().leftCols(n) * scaled);
+  for (int n = 0; n < rank(svd, threshold); ++n)
+    moves.push_back(moves.back() + allowed * svd.matrixV().col(n) * svd.matrixU().col(n).dot(distances) /
+                                     svd.singularValues()[n]);
+  if (moves.size() > 1)
+    moves.erase(moves.begin());
+  std::reverse(moves.begin(), moves.end());
+  return moves;
 }
 
 /// Figure 2.15 (b), (c): where two cut lines in a face are joined.
@@ -179,7 +184,7 @@ class Placer {
       return slide(site, grid::face_point(grid_, cuts_, f));
     if (site.open.size() == 2) {
       const Vec3 middle = mean_point(site.open);
-      return hold_inside(site, middle, join(site.open[0], site.open[1], in_face, sharp_angle_) - middle);
+      return hold_inside(site, middle, {join(site.open[0], site.open[1], in_face, sharp_angle_) - middle, Vec3::Zero()});
     }
     return meet(site, grid::centre(grid_, f));
   }
@@ -195,35 +200,41 @@ class Placer {
   /// Later cuts: to the open planes along the locked ones.
   Vec3 slide(const Site& site, const Vec3& p) {
     const Directions along = free_directions(site.locked, site.inside, threshold_);
-    return hold_inside(site, p, move_to_planes(p, site.open, along, threshold_));
+    return hold_inside(site, p, moves_to_planes(p, site.open, along, threshold_));
   }
 
   /// First cuts: the quadric's minimum nearest the middle of the cut, or nearest the centre where a front ends.
   Vec3 meet(const Site& site, const Vec3& centre) {
     const Vec3 start = site.splits ? mean_point(site.open) : centre;
-    return hold_inside(site, start, move_to_planes(start, site.open, site.inside, threshold_));
+    return hold_inside(site, start, moves_to_planes(start, site.open, site.inside, threshold_));
   }
 
-  /// p + move, shortened where it would leave the site.
-  Vec3 hold_inside(const Site& site, const Vec3& p, const Vec3& move) {
+  /// p and the first of the moves that stays in the site; the last one is shortened where none does.
+  Vec3 hold_inside(const Site& site, const Vec3& p, const Points& moves) {
+    ++counts_.n_placed;
+    for (const Vec3& move : moves)
+      if (part_inside(site, p, move) == 1)
+        return p + move;
+    ++counts_.n_clamped;
+    return p + part_inside(site, p, moves.back()) * moves.back();
+  }
+
+  /// How much of a move from p stays in the site, in [0, 1].
+  double part_inside(const Site& site, const Vec3& p, const Vec3& move) const {
     const Vec3 lower = grid_.origin(site.cell);
     const double margin = grid::min_edge_parameter * grid_.h();
     double part = 1;
-    Vec3 start = p;
     for (int axis = 0; axis < 3; ++axis) {
       if (site.inside.row(axis).isZero())
         continue;
       const double low = lower[axis] + margin, high = lower[axis] + grid_.h() - margin;
-      start[axis] = std::clamp(p[axis], low, high);
-      const double end = start[axis] + move[axis];
+      const double end = p[axis] + move[axis];
       if (end > high)
-        part = std::min(part, (high - start[axis]) / move[axis]);
+        part = std::min(part, (high - p[axis]) / move[axis]);
       else if (end < low)
-        part = std::min(part, (low - start[axis]) / move[axis]);
+        part = std::min(part, (low - p[axis]) / move[axis]);
     }
-    ++counts_.n_placed;
-    counts_.n_clamped += part < 1;
-    return start + part * move;
+    return std::max(part, 0.0);
   }
 
   const Grid& grid_;

@@ -13,6 +13,8 @@
 ///
 /// Departures: a cell with a front takes the quadric too, not the mean of its face vertices, which may lie beside the plane that
 /// is cut; a face whose two edges are cut in different steps by different fronts is (b) or (c) all the same.
+/// A vertex never leaves its face or cell: where all planes would meet outside, the weakest of them is given up, then the
+/// next; where even the strongest one leads outside, the vertex stops at the side.
 /// Limit: more than three planes in a cell are met in the least-squares sense.
 
 #include "grid/cuts.h"
@@ -25,7 +27,7 @@ struct Placement {
   double sharp_angle = 45; ///< two planes that turn by more than this meet at a sharp edge: pi - theta of §2.4.3 [degrees]
 };
 
-/// How often a vertex wanted to leave its face or cell and was held at its side.
+/// How many vertices were placed, and how many stopped at the side of their face or cell.
 struct PlacementCounts {
   std::size_t n_placed = 0, n_clamped = 0;
 };

@@ -1,0 +1,173 @@
+#include "fem/element.h"
+
+#include "tests/fem/bodies.h"
+#include "tests/fem/quadrature.h"
+
+#include <Eigen/Eigenvalues>
+#include <gtest/gtest.h>
+
+namespace kerf::fem {
+namespace {
+
+using Matrix24 = Eigen::Matrix<double, 24, 24>;
+
+const material::Elastic rubber{.density = 1100, .youngs_modulus = 3e4, .poissons_ratio = 0.42};
+
+Matrix24 stiffness(const Element& element) { return Eigen::Map<const Matrix24>(element.stiffness.data()); }
+
+/// int B^T D B with engineering strains, the textbook's way.
+Matrix24 by_quadrature(const std::vector<WeightedPoint<Vec3>>& rule, const double h, const material::Elastic& material) {
+  Eigen::Matrix<double, 6, 6> D = Eigen::Matrix<double, 6, 6>::Zero();
+  D.topLeftCorner<3, 3>().setConstant(material.lambda());
+  for (int i = 0; i < 6; ++i)
+    D(i, i) += i < 3 ? 2 * material.mu() : material.mu();
+  Matrix24 K = Matrix24::Zero();
+  for (const auto& [x, weight] : rule) {
+    Eigen::Matrix<double, 6, 24> B = Eigen::Matrix<double, 6, 24>::Zero();
+    for (int a = 0; a < 8; ++a) {
+      const Vec3 g = shape_gradient(a, x) / h;
+      for (int i = 0; i < 3; ++i) {
+        const int j = (i + 1) % 3;
+        B(i, 3 * a + i) = g[i];
+        B(3 + i, 3 * a + i) = g[j];
+        B(3 + i, 3 * a + j) = g[i];
+      }
+    }
+    K += weight * h * h * h * B.transpose() * D * B;
+  }
+  return K;
+}
+
+/// A cut copy: its moments, points in it, and how much of the cube it fills.
+struct Sample {
+  Moments moments;
+  std::vector<WeightedPoint<Vec3>> rule;
+};
+
+/// Copies of randomly cut cells, all of more than a fifth of a cube.
+std::vector<Sample> samples() {
+  std::vector<Sample> all;
+  Draw draw(3);
+  while (all.size() < 40) {
+    Body body = make_block({2, 2, 2}, 1, draw, {0.2, 0.8});
+    cut_at_random(body, 0.5, draw, {0.2, 0.8});
+    for (const grid::Copy& copy : body.complex.copies) {
+      const Moments m = octant_moments(body.grid, body.cuts, copy.cell, copy.nodes);
+      if (m[0] > 0.2 && copy.nodes != 0xff)
+        all.push_back({m, material_rule(body.grid, body.cuts, copy.cell, copy.nodes, 5)});
+    }
+  }
+  return all;
+}
+
+TEST(Element, FullCubeAgreesWithGaussPoints) {
+  const Matrix24 K = by_quadrature(cube_rule(2), 0.3, rubber);
+  const Matrix24 found = stiffness(make_element(full_cube_moments(), 0.3, rubber, 1e-3));
+  EXPECT_LT((K - found).norm(), 1e-14 * K.norm());
+}
+
+TEST(Element, PartialCubeAgreesWithQuadratureInItsTetrahedra) {
+  double worst = 0;
+  for (const Sample& sample : samples()) {
+    const Matrix24 K = by_quadrature(sample.rule, 0.3, rubber);
+    worst = std::max(worst, (K - stiffness(make_element(sample.moments, 0.3, rubber, 1e-3))).norm() / K.norm());
+  }
+  EXPECT_LT(worst, 1e-13);
+}
+
+TEST(Element, IsSymmetricAndHasSixRigidModes) {
+  std::vector<Sample> all = samples();
+  all.push_back({full_cube_moments(), {}});
+  for (const Sample& sample : all) {
+    const Matrix24 K = stiffness(make_element(sample.moments, 0.3, rubber, 0));
+    EXPECT_EQ((K - K.transpose()).norm(), 0);
+    const auto eigenvalues = Eigen::SelfAdjointEigenSolver<Matrix24>(K, Eigen::EigenvaluesOnly).eigenvalues();
+    EXPECT_LT(eigenvalues.head<6>().cwiseAbs().maxCoeff(), 1e-14 * eigenvalues[23]);
+    EXPECT_GT(eigenvalues[6], 1e-6 * eigenvalues[23]);
+  }
+}
+
+TEST(Element, MassIsDensityTimesShapeIntegrals) {
+  const double h = 0.3;
+  for (const Sample& sample : samples()) {
+    const Element element = make_element(sample.moments, h, rubber, 1e-3);
+    double sum = 0;
+    for (int a = 0; a < 8; ++a) {
+      double integral = 0;
+      for (const auto& [x, weight] : sample.rule)
+        integral += weight * shape(a, x);
+      EXPECT_NEAR(element.mass[a], rubber.density * h * h * h * integral, 1e-13);
+      sum += element.mass[a];
+    }
+    EXPECT_NEAR(sum, rubber.density * element.volume, 1e-13);
+    EXPECT_NEAR(element.volume, h * h * h * sample.moments[0], 1e-17);
+  }
+}
+
+TEST(Element, GradientIsTheMeanOverTheMaterial) {
+  const double h = 0.3;
+  for (const Sample& sample : samples()) {
+    const Element element = make_element(sample.moments, h, rubber, 1e-3);
+    Vec3 sum = Vec3::Zero();
+    for (int a = 0; a < 8; ++a) {
+      Vec3 integral = Vec3::Zero();
+      double volume = 0;
+      for (const auto& [x, weight] : sample.rule) {
+        integral += weight * shape_gradient(a, x) / h;
+        volume += weight;
+      }
+      EXPECT_LT((element.gradient[a] - integral / volume).norm(), 1e-13);
+      sum += element.gradient[a];
+    }
+    EXPECT_LT(sum.norm(), 1e-13);
+  }
+}
+
+TEST(Element, ScalesWithTheCube) {
+  const Sample sample = samples().front();
+  const Element one = make_element(sample.moments, 1, rubber, 0), small = make_element(sample.moments, 0.01, rubber, 0);
+  EXPECT_LT((0.01 * stiffness(one) - stiffness(small)).norm(), 1e-15 * stiffness(one).norm());
+  for (int a = 0; a < 8; ++a) {
+    EXPECT_NEAR(small.mass[a], 1e-6 * one.mass[a], 1e-15);
+    EXPECT_LT((0.01 * small.gradient[a] - one.gradient[a]).norm(), 1e-13);
+  }
+}
+
+/// Only the stiffness, only where the material fills less than the floor, and just up to it.
+TEST(Element, SliverFloorTopsUpSlivers) {
+  const Matrix24 cube = stiffness(make_element(full_cube_moments(), 1, rubber, 0));
+  const Sample sample = samples().front();
+  const double fraction = sample.moments[0];
+  const Element bare = make_element(sample.moments, 1, rubber, 0);
+  for (const double floor : {0.0, 1e-3, 0.9 * fraction, fraction, 1.2 * fraction, 0.9}) {
+    const Element topped = make_element(sample.moments, 1, rubber, floor);
+    const Matrix24 expected = stiffness(bare) + std::max(0.0, floor - fraction) * cube;
+    EXPECT_LT((stiffness(topped) - expected).norm(), 1e-14 * cube.norm()) << floor;
+    EXPECT_EQ(topped.mass, bare.mass);
+    EXPECT_EQ(topped.volume, bare.volume);
+  }
+}
+
+/// A corner of a cube that is cut off at t from each of its edges keeps masses that are all positive.
+TEST(Element, SliverMassesArePositive) {
+  for (const double t : {1e-1, 1e-2, 1e-3, 1e-4, 1e-6, 1e-8})
+    for (int vertex = 0; vertex < 8; ++vertex) {
+      Draw draw(5);
+      Body body = make_block({1, 1, 1}, 1, draw, {0.5, 0.5});
+      Body sliver{body.grid};
+      std::vector<grid::EdgeCut> skin;
+      for (const auto e : ids<grid::EdgeId>(body.grid.n_edges()))
+        if (body.cuts.is_cut(e))
+          skin.push_back({e, body.grid.is_material(body.grid.ends(e)[0]) ? t : 1 - t,
+                          Vec3::Unit(body.grid.axis(e)), grid::skin_label});
+      sliver.cut(skin);
+      const grid::Copy& copy = sliver.complex.copies[grid::CopyId(vertex)];
+      const Element element =
+        make_element(octant_moments(sliver.grid, sliver.cuts, copy.cell, copy.nodes), 1, rubber, 1e-3);
+      for (int a = 0; a < 8; ++a)
+        EXPECT_GT(element.mass[a], 0) << "t " << t << ", octant " << vertex << ", vertex " << a;
+    }
+}
+
+} // namespace
+} // namespace kerf::fem

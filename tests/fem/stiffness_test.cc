@@ -1,0 +1,238 @@
+#include "fem/corotational.h"
+
+#include "base/parallel.h"
+#include "fem/kernels.h"
+#include "tests/fem/bodies.h"
+
+#include <Eigen/Eigenvalues>
+#include <gtest/gtest.h>
+
+namespace kerf::fem {
+namespace {
+
+using Matrix = Eigen::MatrixXd;
+using Matrix24 = Eigen::Matrix<double, 24, 24>;
+
+const material::Elastic rubber{.density = 1000, .youngs_modulus = 2e3, .poissons_ratio = 0.4};
+
+/// K by products with unit vectors.
+Matrix assembled(const Corotational& model) {
+  const auto n = static_cast<Eigen::Index>(3 * model.lumped_mass().size());
+  Matrix K(n, n);
+  Eigen::VectorXd p = Eigen::VectorXd::Zero(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    p[i] = 1;
+    model.apply_stiffness({p.data(), p.data() + n}, {K.col(i).data(), K.col(i).data() + n});
+    p[i] = 0;
+  }
+  return K;
+}
+
+/// Eigenvalues of K scaled to a unit diagonal: as many vanish, but a sliver's stiffness does not look like zero.
+Eigen::VectorXd scaled_spectrum(const Matrix& K) {
+  const Eigen::VectorXd s = K.diagonal().cwiseSqrt().cwiseInverse();
+  return Eigen::SelfAdjointEigenSolver<Matrix>(s.asDiagonal() * K * s.asDiagonal(), Eigen::EigenvaluesOnly).eigenvalues();
+}
+
+Points disturbed(const Points& rest, const Mat3& F, const double size, Draw& draw) {
+  Points x = rest;
+  for (Vec3& p : x)
+    p = F * p + size * draw.vector();
+  return x;
+}
+
+TEST(Stiffness, HasSixRigidModesAPiece) {
+  Draw draw(31);
+  std::size_t n_several = 0;
+  double least = 1, most = 0;
+  for (int n = 0; n < 24; ++n) {
+    Body body = make_block({2, 2, 1 + n % 3}, 0.2, draw, {0.25, 0.75});
+    cut_at_random(body, 0.2 + 0.2 * (n % 4), draw, {0.25, 0.75});
+    for (const double floor : {0.0, 1e-3}) {
+      const Corotational model(body.grid, body.cuts, body.complex, {.material = rubber, .sliver_floor = floor});
+      const Eigen::VectorXd spectrum = scaled_spectrum(assembled(model));
+      const Eigen::Index n_rigid = 6 * body.complex.n_pieces;
+      ASSERT_GT(spectrum.size(), n_rigid);
+      EXPECT_LT(spectrum.head(n_rigid).cwiseAbs().maxCoeff(), 1e-13) << body.complex.n_pieces << " pieces";
+      EXPECT_GT(spectrum[n_rigid], 1e-9) << body.complex.n_pieces << " pieces";
+      most = std::max(most, spectrum.head(n_rigid).cwiseAbs().maxCoeff());
+      least = std::min(least, spectrum[n_rigid]);
+    }
+    n_several += body.complex.n_pieces > 1;
+  }
+  EXPECT_GE(n_several, 5u);
+  RecordProperty("least", std::to_string(least * 1e9) + "e-9");
+  RecordProperty("most", std::to_string(most * 1e16) + "e-16");
+}
+
+TEST(Stiffness, ProductsAreThoseOfASymmetricMatrix) {
+  Draw draw(32);
+  Body body = make_block({2, 3, 2}, 0.2, draw, {0.2, 0.8});
+  cut_at_random(body, 0.3, draw, {0.2, 0.8});
+  Corotational model(body.grid, body.cuts, body.complex, {.material = rubber});
+  model.linearise(disturbed(body.rest(), draw.rotation(), 0.03, draw));
+  const Matrix K = assembled(model);
+  EXPECT_LT((K - K.transpose()).norm(), 1e-15 * K.norm());
+  EXPECT_GT(Eigen::SelfAdjointEigenSolver<Matrix>(K, Eigen::EigenvaluesOnly).eigenvalues()[0], -1e-13 * K.norm());
+
+  Points p(body.complex.n_corners()), y(p.size());
+  for (Vec3& v : p)
+    v = draw.vector();
+  model.apply_stiffness(dynamics::flat(p), dynamics::flat(y));
+  const Eigen::VectorXd expected = K * Eigen::Map<const Eigen::VectorXd>(p[0].data(), K.cols());
+  EXPECT_LT((Eigen::Map<const Eigen::VectorXd>(y[0].data(), K.cols()) - expected).norm(), 1e-14 * expected.norm());
+
+  std::vector<Mat3> blocks;
+  model.stiffness_diagonal(blocks);
+  ASSERT_EQ(blocks.size(), p.size());
+  for (std::size_t c = 0; c < blocks.size(); ++c)
+    EXPECT_LT((blocks[c] - K.block<3, 3>(3 * c, 3 * c)).norm(), 1e-14 * K.norm());
+}
+
+/// Element by element, from make_element and the copies' corners alone.
+TEST(Stiffness, IsTheSumOfItsElements) {
+  Draw draw(33);
+  Body body = make_block({2, 2, 2}, 0.2, draw, {0.2, 0.8});
+  cut_at_random(body, 0.3, draw, {0.2, 0.8});
+  const Corotational model(body.grid, body.cuts, body.complex, {.material = rubber});
+  const Matrix found = assembled(model);
+  Matrix K = Matrix::Zero(found.rows(), found.cols());
+  for (const grid::Copy& copy : body.complex.copies) {
+    const Element element =
+      make_element(octant_moments(body.grid, body.cuts, copy.cell, copy.nodes), body.grid.h(), rubber, 1e-3);
+    const Eigen::Map<const Matrix24> k(element.stiffness.data());
+    for (int a = 0; a < 8; ++a)
+      for (int b = 0; b < 8; ++b)
+        K.block<3, 3>(3 * copy.corners[a].value, 3 * copy.corners[b].value) += k.block<3, 3>(3 * a, 3 * b);
+  }
+  EXPECT_LT((K - found).norm(), 1e-14 * K.norm());
+}
+
+TEST(Stiffness, TurnsWithTheBody) {
+  Draw draw(34);
+  Body body = make_block({2, 2, 2}, 0.2, draw, {0.2, 0.8});
+  cut_at_random(body, 0.3, draw, {0.2, 0.8});
+  Corotational model(body.grid, body.cuts, body.complex, {.material = rubber});
+  const Matrix at_rest = assembled(model);
+  const Mat3 Q = draw.rotation();
+  model.linearise(disturbed(body.rest(), Q, 0, draw));
+  Matrix turned = assembled(model);
+  for (Eigen::Index a = 0; a < turned.rows(); a += 3)
+    for (Eigen::Index b = 0; b < turned.cols(); b += 3)
+      turned.block<3, 3>(a, b) = (Q.transpose() * turned.block<3, 3>(a, b) * Q).eval();
+  EXPECT_LT((turned - at_rest).norm(), 1e-13 * at_rest.norm());
+}
+
+TEST(Stiffness, IsTheDerivativeOfTheForceAtRest) {
+  Draw draw(35);
+  Body body = make_block({2, 2, 2}, 0.2, draw, {0.2, 0.8});
+  cut_at_random(body, 0.4, draw, {0.2, 0.8});
+  const Corotational model(body.grid, body.cuts, body.complex, {.material = rubber});
+  const Matrix K = assembled(model);
+  const Points rest = body.rest();
+  const double eps = 1e-5 * body.grid.h();
+  Matrix derivative(K.rows(), K.cols());
+  Points x = rest, forward, backward;
+  for (std::size_t i = 0; i < 3 * rest.size(); ++i) {
+    const double at = dynamics::flat(rest)[i];
+    dynamics::flat(x)[i] = at + eps;
+    model.force(x, forward);
+    dynamics::flat(x)[i] = at - eps;
+    model.force(x, backward);
+    dynamics::flat(x)[i] = at;
+    for (std::size_t j = 0; j < 3 * rest.size(); ++j)
+      derivative(j, i) = (dynamics::flat(forward)[j] - dynamics::flat(backward)[j]) / (2 * eps);
+  }
+  EXPECT_LT((derivative + K).norm(), 1e-8 * K.norm());
+  RecordProperty("error", std::to_string((derivative + K).norm() / K.norm() * 1e10) + "e-10");
+}
+
+TEST(Stiffness, KernelIsTheProductsOfItsMatrices) {
+  Draw draw(36);
+  constexpr std::size_t n = 37, n_corners = 50;
+  std::vector<Matrix24> K(n);
+  std::vector<const double*> stiffness;
+  std::vector<double> rotations;
+  std::vector<std::uint32_t> corners;
+  for (Matrix24& k : K) {
+    for (Eigen::Index i = 0; i < k.size(); ++i)
+      k(i) = draw(-1, 1);
+    stiffness.push_back(k.data());
+    const Mat3 R = draw.rotation();
+    rotations.insert(rotations.end(), R.data(), R.data() + 9);
+    for (int a = 0; a < 8; ++a)
+      corners.push_back(static_cast<std::uint32_t>(draw(0, n_corners)));
+  }
+  std::vector<double> p(3 * n_corners), out(24 * n, 1e300);
+  for (double& value : p)
+    value = draw(-1, 1);
+  apply_stiffness({n, corners.data(), stiffness.data(), rotations.data()}, p.data(), out.data());
+  for (std::size_t e = 0; e < n; ++e) {
+    Matrix24 R = Matrix24::Zero();
+    Eigen::Matrix<double, 24, 1> q;
+    for (int a = 0; a < 8; ++a) {
+      R.block<3, 3>(3 * a, 3 * a) = Eigen::Map<const Mat3>(rotations.data() + 9 * e);
+      q.segment<3>(3 * a) = Eigen::Map<const Vec3>(p.data() + 3 * corners[8 * e + a]);
+    }
+    const Eigen::Matrix<double, 24, 1> expected = R * (K[e] * (R.transpose() * q));
+    EXPECT_LT((Eigen::Map<const Eigen::Matrix<double, 24, 1>>(out.data() + 24 * e) - expected).norm(), 1e-13);
+  }
+}
+
+TEST(Stiffness, OneAndTwoThreadsGiveTheSameBits) {
+  const int n_before = n_threads();
+  std::array<std::vector<double>, 2> results;
+  for (const int n : {1, 2}) {
+    set_n_threads(n);
+    Draw draw(37);
+    Body body = make_block({6, 5, 7}, 0.1, draw, {0.1, 0.9});
+    cut_at_random(body, 0.2, draw, {0.1, 0.9});
+    Corotational model(body.grid, body.cuts, body.complex, {.material = rubber});
+    const Points x = disturbed(body.rest(), draw.rotation(), 0.02, draw);
+    model.linearise(x);
+    Points f, y(x.size());
+    model.force(x, f);
+    model.apply_stiffness(dynamics::flat(x), dynamics::flat(y));
+    std::vector<double>& result = results[n - 1];
+    result = {model.energy(x), model.volume()};
+    for (const Points& part : {f, y})
+      result.insert(result.end(), dynamics::flat(part).begin(), dynamics::flat(part).end());
+    result.insert(result.end(), model.lumped_mass().begin(), model.lumped_mass().end());
+  }
+  set_n_threads(n_before);
+  EXPECT_EQ(results[0], results[1]);
+}
+
+/// A plane cut leaves cells with a sliver of 1e-9 h on one side: only those are topped up, up to the floor.
+TEST(Stiffness, OnlySliversAreToppedUp) {
+  Draw draw(38);
+  Body body = make_block({3, 3, 3}, 1, draw, {0.5, 0.5});
+  cut_plane(body, 0, 2, 1e-9);
+  const Corotational bare(body.grid, body.cuts, body.complex, {.material = rubber, .sliver_floor = 0});
+  const Corotational floored(body.grid, body.cuts, body.complex, {.material = rubber, .sliver_floor = 1e-3});
+  std::vector<Mat3> before, after;
+  bare.stiffness_diagonal(before);
+  floored.stiffness_diagonal(after);
+  std::vector<double> smallest(body.complex.n_corners(), 1);
+  for (const grid::Copy& copy : body.complex.copies)
+    for (const auto corner : copy.corners)
+      smallest[corner.value] =
+        std::min(smallest[corner.value], octant_moments(body.grid, body.cuts, copy.cell, copy.nodes)[0]);
+  std::size_t n_slivers = 0;
+  const double cube = make_element(full_cube_moments(), 1, rubber, 0).stiffness[0];
+  for (std::size_t c = 0; c < before.size(); ++c) {
+    const double added = (after[c] - before[c]).trace() / (3e-3 * cube); // in cubes at the floor
+    if (smallest[c] > 1e-3) {
+      EXPECT_EQ(added, 0);
+    } else {
+      EXPECT_NEAR(added, std::round(added), 1e-5);
+      EXPECT_GE(added, 0.9);
+      ++n_slivers;
+    }
+  }
+  EXPECT_GE(n_slivers, 9u);
+  EXPECT_LT(n_slivers, before.size());
+}
+
+} // namespace
+} // namespace kerf::fem

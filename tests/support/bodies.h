@@ -1,0 +1,135 @@
+#pragma once
+
+/// Bodies and cut sets that tests make themselves, with fixed seeds.
+
+#include "grid/cuts.h"
+
+#include <cmath>
+#include <random>
+#include <vector>
+
+namespace kerf::support {
+
+using Random = std::mt19937;
+
+struct Body {
+  grid::Grid grid;
+  grid::Cuts cuts;
+};
+
+inline double uniform(Random& random, const double from, const double to) {
+  return std::uniform_real_distribution<double>(from, to)(random);
+}
+
+inline Vec3 random_vector(Random& random) {
+  std::normal_distribution<double> normal;
+  Vec3 v;
+  for (int axis = 0; axis < 3; ++axis)
+    v[axis] = normal(random);
+  return v;
+}
+
+inline Vec3 random_direction(Random& random) { return random_vector(random).normalized(); }
+
+/// The nodes 1 .. n along each axis, each kept with a probability.
+inline std::vector<Index3> some_nodes(Random& random, const Index3& n, const double probability) {
+  std::vector<Index3> nodes;
+  for (int i = 1; i <= n[0]; ++i)
+    for (int j = 1; j <= n[1]; ++j)
+      for (int k = 1; k <= n[2]; ++k)
+        if (uniform(random, 0, 1) < probability)
+          nodes.push_back({i, j, k});
+  return nodes;
+}
+
+inline std::vector<Index3> block_nodes(const Index3& n) {
+  Random random;
+  return some_nodes(random, n, 2);
+}
+
+/// A body whose skin cuts are what skin(grid, edge) returns for each edge between a material and an empty node.
+template <class Skin>
+Body make_body(const grid::Lattice& lattice, const std::vector<Index3>& nodes, const Skin& skin) {
+  grid::Grid grid(lattice, nodes);
+  grid::Cuts cuts(grid);
+  for (const auto e : ids<grid::EdgeId>(grid.n_edges())) {
+    const auto& [lower, upper] = grid.ends(e);
+    if (grid.is_material(lower) != grid.is_material(upper))
+      cuts.add(skin(grid, e));
+  }
+  return {std::move(grid), std::move(cuts)};
+}
+
+/// The skin passes midway between nodes.
+inline grid::EdgeCut midway(const grid::Grid& grid, const grid::EdgeId e) {
+  return {e, 0.5, Vec3::Unit(grid.axis(e)), grid::skin_label};
+}
+
+/// n[0] x n[1] x n[2] cubes with one node in the middle of each: a box with its lower corner at h / 2.
+inline Body block(const Index3& n, const double h = 1) {
+  return make_body({Vec3::Zero(), h}, block_nodes(n), midway);
+}
+
+/// A ball around the origin with exact crossings and normals; the lattice is moved by `offset` in parts of h.
+inline Body ball(const double radius, const double h, const Vec3& offset) {
+  const int n = static_cast<int>(std::ceil(radius / h)) + 3;
+  const grid::Lattice lattice{-h * (Vec3::Constant(n) + offset), h};
+  std::vector<Index3> nodes;
+  for (const Index3& i : block_nodes({2 * n, 2 * n, 2 * n}))
+    if (lattice.position(i).norm() < radius)
+      nodes.push_back(i);
+  return make_body(lattice, nodes, [&](const grid::Grid& grid, const grid::EdgeId e) {
+    const int axis = grid.axis(e);
+    Vec3 p = grid.position(grid.ends(e)[0]);
+    const double start = p[axis];
+    p[axis] = 0;
+    const double half_chord = std::sqrt(radius * radius - p.squaredNorm());
+    p[axis] = start < -half_chord ? -half_chord : half_chord;
+    return grid::EdgeCut{e, (p[axis] - start) / h, p.normalized(), grid::skin_label};
+  });
+}
+
+inline bool is_inner(const Body& body, const grid::EdgeId e) {
+  const auto& [lower, upper] = body.grid.ends(e);
+  return body.grid.is_material(lower) && body.grid.is_material(upper);
+}
+
+/// True for cells that hold an empty node.
+inline bool is_skin_cell(const grid::Grid& grid, const grid::CellId c) {
+  for (const auto n : grid.nodes(c))
+    if (!grid.is_material(n))
+      return true;
+  return false;
+}
+
+/// Uncut edges between material nodes, each taken with a probability, with arbitrary positions (the very ends among
+/// them) and normals.
+inline std::vector<grid::EdgeCut> random_cuts(Random& random, const Body& body, const double probability,
+                                              const grid::CutLabel label = 1) {
+  std::vector<grid::EdgeCut> cuts;
+  for (const auto e : ids<grid::EdgeId>(body.grid.n_edges()))
+    if (is_inner(body, e) && !body.cuts.is_cut(e) && uniform(random, 0, 1) < probability)
+      cuts.push_back({e, std::round(1e3 * uniform(random, -0.05, 1.05)) / 1e3, random_direction(random), label});
+  return cuts;
+}
+
+struct Plane {
+  Vec3 normal; ///< unit
+  double offset;
+
+  double height(const Vec3& p) const { return normal.dot(p) - offset; }
+};
+
+/// The edges between material nodes that a plane crosses.
+inline std::vector<grid::EdgeCut> plane_cuts(const Body& body, const Plane& plane, const grid::CutLabel label = 1) {
+  std::vector<grid::EdgeCut> cuts;
+  for (const auto e : ids<grid::EdgeId>(body.grid.n_edges())) {
+    const auto& [lower, upper] = body.grid.ends(e);
+    const double a = plane.height(body.grid.position(lower)), b = plane.height(body.grid.position(upper));
+    if (is_inner(body, e) && !body.cuts.is_cut(e) && (a < 0) != (b < 0))
+      cuts.push_back({e, a / (a - b), plane.normal, label});
+  }
+  return cuts;
+}
+
+} // namespace kerf::support

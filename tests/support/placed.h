@@ -1,0 +1,84 @@
+#pragma once
+
+/// Embedded bodies with their skin placed, cuts with their vertices placed, and what tests ask of them.
+
+#include "cut/embed.h"
+#include "geometry/solid.h"
+#include "grid/complex.h"
+#include "surface/placement.h"
+#include "surface/surface.h"
+#include "tests/geometry/meshes.h"
+#include "tests/support/bodies.h"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+
+namespace kerf::support {
+
+/// The liver of the example scenes [m].
+inline geometry::TriangleMesh liver_mesh() {
+  const std::string path = std::string(KERF_SOURCE_DIR) + "/params/meshes/liver_25k.off";
+  return geometry::require_solid(geometry::read_mesh(path, 1e-3), path);
+}
+
+/// Places the vertices at cuts that the body holds already.
+inline surface::PlacementCounts place(Body& body, const std::span<const grid::EdgeCut> cuts) {
+  std::vector<grid::EdgeId> edges;
+  for (const auto& cut : cuts)
+    edges.push_back(cut.edge);
+  return surface::place(body.grid, body.cuts, edges, {});
+}
+
+inline Body with_placed_skin(Body body) {
+  const std::vector<grid::EdgeCut> skin(body.cuts.all().begin(), body.cuts.all().end());
+  place(body, skin);
+  return body;
+}
+
+inline Body embedded(const geometry::TriangleMesh& mesh, const double h, const Vec3& offset) {
+  cut::Embedding embedding = cut::embed(mesh, h, offset);
+  return with_placed_skin({std::move(embedding.grid), std::move(embedding.cuts)});
+}
+
+/// All these edges in one step.
+inline surface::PlacementCounts cut(Body& body, const std::span<const grid::EdgeCut> cuts) {
+  for (const auto& cut : cuts)
+    body.cuts.add(cut);
+  return place(body, cuts);
+}
+
+inline double volume(const grid::Tetrahedron& t) {
+  return (t[1] - t[0]).dot((t[2] - t[0]).cross(t[3] - t[0])) / 6;
+}
+
+/// Volume of each piece [m^3], from the octants.
+inline std::vector<double> octant_volumes(const Body& body, const grid::CellComplex& complex) {
+  std::vector<double> volumes(complex.n_pieces, 0.0);
+  const double h = body.grid.h();
+  for (const auto c : ids<grid::CopyId>(complex.n_copies()))
+    for (int v = 0; v < 8; ++v)
+      if (complex.copies[c].nodes >> v & 1)
+        for (const auto& t : grid::octant(body.grid, body.cuts, complex.copies[c].cell, v))
+          volumes[complex.piece[c]] += h * h * h * volume(t);
+  return volumes;
+}
+
+/// Rest volume of the whole body [m^3], from the triangles.
+inline double surface_volume(const Body& body) {
+  const auto s = surface::build_surface(body.grid, body.cuts, grid::build_complex(body.grid, body.cuts));
+  return surface::enclosed_volume(s.rest, s.triangles);
+}
+
+/// Cells around these edges that hold an empty node.
+inline std::size_t n_skin_cells(const Body& body, const std::span<const grid::EdgeCut> cuts) {
+  std::vector<grid::CellId> cells;
+  for (const auto& cut : cuts)
+    for (const auto c : body.grid.cells(cut.edge))
+      if (c.valid() && is_skin_cell(body.grid, c))
+        cells.push_back(c);
+  std::sort(cells.begin(), cells.end());
+  return std::unique(cells.begin(), cells.end()) - cells.begin();
+}
+
+} // namespace kerf::support
