@@ -3,19 +3,24 @@
 /// Loops over independent items. Each item writes only its own results, so any number of threads gives the same bits.
 
 #include <cstddef>
+#include <functional>
 
 namespace kerf {
 
-/// Sets the number of threads of every later loop.
+/// Sets the number of threads of every later loop; as many as there are processors before the first call.
 void set_n_threads(int n);
 int n_threads();
 
-/// Fewer items than `worth` run on one thread: starting a second costs more than it brings.
+/// Calls f(begin, end) for ranges that cover 0 .. n - 1, on several threads when there are at least `worth` items.
+void parallel_ranges(std::size_t n, std::size_t worth, const std::function<void(std::size_t, std::size_t)>& f);
+
+/// Calls f(i) for each i < n. Fewer than `worth` items are not worth a second thread.
 template <class Function>
-void parallel_for(std::size_t n, const Function& f, const std::size_t worth = 1) {
-#pragma omp parallel for schedule(static) if (n > worth)
-  for (std::size_t i = 0; i < n; ++i)
-    f(i);
+void parallel_for(const std::size_t n, const Function& f, const std::size_t worth = 2) {
+  parallel_ranges(n, worth, [&f](const std::size_t begin, const std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      f(i);
+  });
 }
 
 } // namespace kerf

@@ -16,6 +16,8 @@ namespace {
 
 using Vector = dealii::Vector<double>;
 
+constexpr std::size_t worth = 4096; // corners from which on a second thread pays
+
 /// a M + b K with held corners as identity rows and columns.
 struct Operator {
   const ElasticModel& model;
@@ -28,7 +30,7 @@ struct Operator {
     parallel_for(mass.size(), [&](const std::size_t i) {
       for (std::size_t k = 3 * i; k < 3 * i + 3; ++k)
         y[k] = held[i] ? 0 : mass_factor * mass[i] * p[k] + stiffness_factor * y[k];
-    });
+    }, worth);
   }
 };
 
@@ -38,7 +40,7 @@ struct BlockJacobi {
   void vmult(Vector& y, const Vector& p) const {
     parallel_for(inverse_blocks.size(), [&](const std::size_t i) {
       Eigen::Map<Vec3>(y.begin() + 3 * i).noalias() = inverse_blocks[i] * Eigen::Map<const Vec3>(p.begin() + 3 * i);
-    });
+    }, worth);
   }
 };
 
@@ -46,7 +48,8 @@ int solve(const Operator& A, const BlockJacobi& P, Vector& dx, const Vector& rhs
   const double norm = rhs.l2_norm();
   if (!std::isfinite(norm))
     throw NumericalError("forces are not finite");
-  if (norm == 0)
+  constexpr double nothing = 1e-100; // [N]: squares of less underflow, and conjugate gradients divide by them
+  if (norm < nothing)
     return 0;
   dealii::SolverControl control(options.max_cg_iterations, options.cg_tolerance * norm, false, false);
   try {

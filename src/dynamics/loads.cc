@@ -13,12 +13,14 @@ std::vector<std::uint8_t> held_corners(const Loads& loads, const std::size_t n_c
 void move_held(const Loads& loads, const double time, const double dt, Points& x, Points& v) {
   for (const Support& support : loads.supports) {
     const Vec3 displacement = support.displacement(time);
-    for (std::size_t i = 0; i < support.corners.size(); ++i) {
-      const auto c = support.corners[i];
-      const Vec3 target = support.rest[i] + displacement;
-      v[c] = (target - x[c]) / dt;
-      x[c] = target;
-    }
+    for (std::size_t i = 0; i < support.corners.size(); ++i)
+      v[support.corners[i]] = (support.rest[i] + displacement - x[support.corners[i]]) / dt;
+  }
+  // Only now: a corner may be in several supports, and the last one decides both.
+  for (const Support& support : loads.supports) {
+    const Vec3 displacement = support.displacement(time);
+    for (std::size_t i = 0; i < support.corners.size(); ++i)
+      x[support.corners[i]] = support.rest[i] + displacement;
   }
 }
 

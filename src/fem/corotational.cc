@@ -13,6 +13,9 @@ namespace kerf::fem {
 
 namespace {
 
+/// A second thread pays from about this many elements (1 us each) and corners (0.1 us each) on.
+constexpr std::size_t worth_elements = 256, worth_corners = 4096;
+
 Vec3 vertex_offset(const int a) { return Vec3(a & 1, a >> 1 & 1, a >> 2 & 1); }
 
 bool is_full(const grid::Grid& grid, const grid::Cuts& cuts, const grid::CellComplex& complex, const grid::CopyId c) {
@@ -92,7 +95,7 @@ void Corotational::gather(const std::vector<double>& values, double* const y) co
     for (auto k = user_start_[corner]; k < user_start_[corner + 1]; ++k)
       sum += Eigen::Map<const Vec3>(values.data() + 3 * std::size_t(users_[k]));
     Eigen::Map<Vec3>(y + 3 * corner) = sum;
-  });
+  }, worth_corners);
 }
 
 double Corotational::energy(const Points& x) const {
@@ -101,7 +104,7 @@ double Corotational::energy(const Points& x) const {
     Eigen::Matrix<double, 24, 1> u;
     local_displacement(e, x, material::rotation_of(deformation_gradient(e, x)), u.data());
     energies[e] = 0.5 * u.dot(Eigen::Map<const Eigen::Matrix<double, 24, 24>>(stiffness_[e]) * u);
-  });
+  }, worth_elements);
   double sum = 0;
   for (const double energy : energies)
     sum += energy;
@@ -128,7 +131,7 @@ void Corotational::force(const Points& x, Points& forces) const {
     for (int a = 0; a < 8; ++a)
       Eigen::Map<Vec3>(values_.data() + 24 * e + 3 * a) =
         R * (z.cross(element(e).gradient[a]) - Ku.segment<3>(3 * a));
-  });
+  }, worth_elements);
   forces.resize(mass_.size());
   gather(values_, forces[0].data());
 }
@@ -136,7 +139,7 @@ void Corotational::force(const Points& x, Points& forces) const {
 void Corotational::linearise(const Points& x) {
   parallel_for(n_elements(), [&](const std::size_t e) {
     Eigen::Map<Mat3>(rotations_.data() + 9 * e) = material::rotation_of(deformation_gradient(e, x));
-  });
+  }, worth_elements);
 }
 
 void Corotational::apply_stiffness(const std::span<const double> p, const std::span<double> y) const {
@@ -146,7 +149,7 @@ void Corotational::apply_stiffness(const std::span<const double> p, const std::s
     fem::apply_stiffness({std::min(block, n_elements() - first), corners_.data() + 8 * first, stiffness_.data() + first,
                           rotations_.data() + 9 * first},
                          p.data(), values_.data() + 24 * first);
-  });
+  }, worth_elements / block);
   gather(values_, y.data());
 }
 
@@ -162,7 +165,7 @@ void Corotational::stiffness_diagonal(std::vector<Mat3>& blocks) const {
       sum += R * K.block<3, 3>(3 * a, 3 * a) * R.transpose();
     }
     blocks[corner] = sum;
-  });
+  }, worth_corners);
 }
 
 } // namespace kerf::fem

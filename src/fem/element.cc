@@ -103,7 +103,8 @@ Element make_element(const Moments& moments, const double h, const material::Ela
   const double fraction = moments[0];
   element.volume = fraction * h * h * h;
   for (int a = 0; a < 8; ++a) {
-    element.mass[a] = material.density * h * h * h * integrate_shape(moments, a, -1);
+    // Far from a sliver the integral is below the round-off of its moments, and may come out negative.
+    element.mass[a] = material.density * h * h * h * std::max(0.0, integrate_shape(moments, a, -1));
     for (int axis = 0; axis < 3; ++axis)
       element.gradient[a][axis] = integrate_shape(moments, a, axis) / (fraction * h);
   }

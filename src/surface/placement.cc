@@ -1,6 +1,7 @@
 #include "surface/placement.h"
 
 #include "grid/cube.h"
+#include "surface/table.h"
 
 #include <Eigen/Geometry>
 #include <Eigen/SVD>
@@ -34,6 +35,7 @@ struct Site {
   CellId cell;
   unsigned vertices = 0; ///< bits of its vertices in the cell
   Directions inside;     ///< the directions within it
+  Directions allowed;    ///< those of them that keep the skin's volume
   Planes locked;         ///< cuts that already separate material here: the vertex stays on them
   Planes open;           ///< cuts that the vertex has yet to meet
   bool splits = false;   ///< with all cuts, material here is separated
@@ -105,6 +107,36 @@ Vec3 join(const Plane& a, const Plane& b, const Directions& in_face, const doubl
   return turn > sharp_angle ? meeting : Vec3(0.25 * (a.point + 2 * meeting + b.point));
 }
 
+/// The derivatives of a cell's skin volume (times 6) by its vertices, summed over the skin's triangles in the cell. Volume is
+/// linear in each vertex: a move at right angles to the derivative keeps it exactly.
+struct VolumeDerivatives {
+  Vec3 by_centre = Vec3::Zero();
+  std::array<Vec3, 6> by_face{Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
+};
+
+VolumeDerivatives skin_volume_derivatives(const Grid& grid, const Cuts& cuts, const CellId c) {
+  VolumeDerivatives result;
+  const Vec3 origin = grid::cell_point(grid, cuts, c);
+  unsigned skin_lines = 0;
+  for (int line = 0; line < cube::n_lines; ++line) {
+    const grid::EdgeCut* cut = cuts.find(grid.edges(c)[line]);
+    skin_lines |= unsigned(cut && cut->label == grid::skin_label) << line;
+  }
+  for (const Quad& quad : splitting_table().row(skin_lines)) {
+    if (!grid.is_material(grid.nodes(c)[quad.end]))
+      continue;
+    const int first = quad.vertices[1].index, second = quad.vertices[3].index;
+    const Vec3 e = grid::edge_point(grid, cuts, grid.edges(c)[quad.line]) - origin;
+    const Vec3 f = grid::face_point(grid, cuts, grid.faces(c)[first]) - origin;
+    const Vec3 g = grid::face_point(grid, cuts, grid.faces(c)[second]) - origin;
+    result.by_centre += e.cross(f) + g.cross(e);
+    // The triangles (e, f, centre) and (e, centre, g), each seen from a face point's own place.
+    result.by_face[first] += (Vec3::Zero() - f).cross(e - f);
+    result.by_face[second] += (e - g).cross(Vec3::Zero() - g);
+  }
+  return result;
+}
+
 class Placer {
  public:
   Placer(const Grid& grid, Cuts& cuts, std::span<const EdgeId> new_edges, const Placement& placement)
@@ -145,10 +177,34 @@ class Placer {
     return cells;
   }
 
-  /// Sorts the cuts on `lines` of a cell into locked and open ones.
+  /// Locks a vertex of the skin: it moves at right angles to the volume's derivative, and along a sharp edge of the skin only.
+  void lock_skin(Site& site, const Planes& skin, const Vec3& p, const Vec3& derivative) const {
+    Vec3 normal = Vec3::Zero();
+    for (int k = 0; k < site.inside.cols(); ++k)
+      normal += site.inside.col(k) * site.inside.col(k).dot(derivative);
+    const bool sharp = rank(decompose(skin, site.inside), threshold_) > 1;
+    const bool opposed = normal.norm() < 1e-9 * grid_.h() * grid_.h(); // sheets that face each other
+    if (!opposed)
+      site.allowed = free_directions({{p, normal.normalized()}}, site.inside, threshold_);
+    if (sharp || opposed)
+      site.locked.insert(site.locked.end(), skin.begin(), skin.end());
+  }
+
+  Vec3 face_derivative(const FaceId f) const {
+    Vec3 sum = Vec3::Zero();
+    for (const CellId c : grid_.cells(f))
+      if (c.valid()) {
+        const auto& faces = grid_.faces(c);
+        sum += skin_volume_derivatives(grid_, cuts_, c).by_face[std::find(faces.begin(), faces.end(), f) - faces.begin()];
+      }
+    return sum;
+  }
+
+  /// Sorts the cuts on `lines` of a cell into locked and open ones; those of the skin that stood before go to `skin`.
   template <class Lines>
-  Site make_site(const CellId c, const unsigned vertices, const Lines& lines, const Directions& inside) const {
-    Site site{c, vertices, inside, {}, {}, false};
+  Site make_site(const CellId c, const unsigned vertices, const Lines& lines, const Directions& inside,
+                 Planes& skin) const {
+    Site site{c, vertices, inside, inside, {}, {}, false};
     unsigned cut_lines = 0, old_lines = 0, material = 0;
     for (const int line : lines)
       if (cuts_.is_cut(grid_.edges(c)[line])) {
@@ -168,8 +224,9 @@ class Placer {
       if (cut_lines >> line & 1) {
         const EdgeId e = grid_.edges(c)[line];
         const grid::EdgeCut& cut = *cuts_.find(e);
-        const bool locks = (old_lines >> line & 1) && (was_split || cut.label == grid::skin_label);
-        (locks ? site.locked : site.open).push_back({grid::edge_point(grid_, cuts_, e), cut.normal});
+        const bool is_old = (old_lines >> line & 1) != 0;
+        Planes& planes = is_old && cut.label == grid::skin_label ? skin : is_old && was_split ? site.locked : site.open;
+        planes.push_back({grid::edge_point(grid_, cuts_, e), cut.normal});
       }
     return site;
   }
@@ -179,8 +236,11 @@ class Placer {
     const int normal = cube::face_axis(face);
     Directions in_face(3, 2);
     in_face << Vec3::Unit((normal + 1) % 3), Vec3::Unit((normal + 2) % 3);
-    const Site site = make_site(c, cube::face_mask(face), cube::face_lines[face], in_face);
-    if (!site.locked.empty())
+    Planes skin;
+    Site site = make_site(c, cube::face_mask(face), cube::face_lines[face], in_face, skin);
+    if (!skin.empty())
+      lock_skin(site, skin, grid::face_point(grid_, cuts_, f), face_derivative(f));
+    if (!skin.empty() || !site.locked.empty())
       return slide(site, grid::face_point(grid_, cuts_, f));
     if (site.open.size() == 2) {
       const Vec3 middle = mean_point(site.open);
@@ -191,15 +251,18 @@ class Placer {
 
   Vec3 place_cell(const CellId c) {
     constexpr std::array<int, 12> lines = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11};
-    const Site site = make_site(c, 0xff, lines, Mat3::Identity());
-    if (!site.locked.empty())
+    Planes skin;
+    Site site = make_site(c, 0xff, lines, Mat3::Identity(), skin);
+    if (!skin.empty())
+      lock_skin(site, skin, grid::cell_point(grid_, cuts_, c), skin_volume_derivatives(grid_, cuts_, c).by_centre);
+    if (!skin.empty() || !site.locked.empty())
       return slide(site, grid::cell_point(grid_, cuts_, c));
     return meet(site, grid::centre(grid_, c));
   }
 
   /// Later cuts: to the open planes along the locked ones.
   Vec3 slide(const Site& site, const Vec3& p) {
-    const Directions along = free_directions(site.locked, site.inside, threshold_);
+    const Directions along = site.locked.empty() ? site.allowed : free_directions(site.locked, site.allowed, threshold_);
     return hold_inside(site, p, moves_to_planes(p, site.open, along, threshold_));
   }
 

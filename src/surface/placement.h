@@ -9,7 +9,8 @@
 /// Cell, inside the body: the point nearest its centre that minimises the squared distances to all planes [GH97]; later cuts
 /// of a cell already split project it.
 /// On the skin: the input's planes are known all at once and give the quadric's minimum; later cuts move the vertex
-/// within the skin only, so that a plane skin keeps its volume exactly (the thesis lets it jump: §2.8).
+/// at right angles to the derivative of the enclosed volume by its position. The volume is linear in each vertex, so the
+/// rest volume is kept to round-off, for a curved skin too (the thesis lets the skin jump: §2.8); sharp edges of the skin stay.
 ///
 /// Departures: a cell with a front takes the quadric too, not the mean of its face vertices, which may lie beside the plane that
 /// is cut; a face whose two edges are cut in different steps by different fronts is (b) or (c) all the same.

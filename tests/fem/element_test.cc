@@ -148,8 +148,9 @@ TEST(Element, SliverFloorTopsUpSlivers) {
   }
 }
 
-/// A corner of a cube that is cut off at t from each of its edges keeps masses that are all positive.
-TEST(Element, SliverMassesArePositive) {
+/// A corner of a cube that is cut off at t from each of its edges: no mass is negative, and down to where the smallest
+/// one drowns in round-off, all are positive.
+TEST(Element, SliverMassesAreNotNegative) {
   for (const double t : {1e-1, 1e-2, 1e-3, 1e-4, 1e-6, 1e-8})
     for (int vertex = 0; vertex < 8; ++vertex) {
       Draw draw(5);
@@ -165,7 +166,8 @@ TEST(Element, SliverMassesArePositive) {
       const Element element =
         make_element(octant_moments(sliver.grid, sliver.cuts, copy.cell, copy.nodes), 1, rubber, 1e-3);
       for (int a = 0; a < 8; ++a)
-        EXPECT_GT(element.mass[a], 0) << "t " << t << ", octant " << vertex << ", vertex " << a;
+        EXPECT_TRUE(element.mass[a] > 0 || (element.mass[a] == 0 && t < 1e-4))
+          << "t " << t << ", octant " << vertex << ", vertex " << a << ": " << element.mass[a];
     }
 }
 

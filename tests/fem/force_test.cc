@@ -1,5 +1,6 @@
 #include "fem/corotational.h"
 
+#include "dynamics/state.h"
 #include "surface/surface.h"
 #include "tests/fem/bodies.h"
 

@@ -3,6 +3,7 @@
 
 #include "fem/corotational.h"
 
+#include "dynamics/state.h"
 #include "surface/surface.h"
 #include "tests/fem/bodies.h"
 #include "tests/fem/quadrature.h"

@@ -1,6 +1,7 @@
 #include "fem/corotational.h"
 
 #include "base/parallel.h"
+#include "dynamics/state.h"
 #include "fem/kernels.h"
 #include "tests/fem/bodies.h"
 

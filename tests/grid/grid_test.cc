@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <set>
 
 namespace kerf::grid {
@@ -103,8 +104,9 @@ void expect_edges(const Grid& grid, const Expected& expected) {
         if (const auto c = grid.find_cell(moved(moved(lower, (axis + 1) % 3, -(i & 1)), (axis + 2) % 3, -(i >> 1))))
           around.insert(*c);
       for (const CellId c : grid.cells(*e))
-        if (c.valid())
+        if (c.valid()) {
           EXPECT_TRUE(found.insert(c).second) << "a cell twice around an edge";
+        }
       EXPECT_EQ(found, around);
     }
   EXPECT_EQ(seen.size(), grid.n_edges());
@@ -136,7 +138,7 @@ TEST(Grid, AgreesWithSetsOnRandomMaterial) {
   Random random(1);
   for (int i = 0; i < 60; ++i) {
     const Index3 n = {1 + i % 5, 1 + i / 5 % 4, 1 + i / 7 % 6};
-    auto material = support::some_nodes(random, n, uniform(random, 0.05, 1));
+    auto material = support::some_nodes(random, n, support::uniform(random, 0.05, 1));
     if (material.empty())
       material = {{1 + i % n[0], n[1], n[2]}};
     std::shuffle(material.begin(), material.end(), random);

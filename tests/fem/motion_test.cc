@@ -1,0 +1,212 @@
+/// Bodies in motion: what the integrators make of the elements.
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "dynamics/implicit_euler.h"
+#include "dynamics/symplectic_euler.h"
+#include "fem/corotational.h"
+#include "tests/fem/bodies.h"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <gtest/gtest.h>
+
+#include <iostream>
+
+namespace kerf::fem {
+namespace {
+
+const material::Elastic rubber{.density = 1000, .youngs_modulus = 1e4, .poissons_ratio = 0.3};
+
+Body cut_block(const unsigned seed) {
+  Draw draw(seed);
+  Body body = make_block({3, 3, 3}, 0.1, draw, {0.3, 0.7});
+  cut_at_random(body, 0.3, draw, {0.3, 0.7});
+  return body;
+}
+
+struct Momentum {
+  Vec3 linear = Vec3::Zero(), angular = Vec3::Zero();
+};
+
+Momentum momentum(const Corotational& model, const dynamics::State& state) {
+  Momentum sum;
+  for (std::size_t c = 0; c < state.x.size(); ++c) {
+    const Vec3 p = model.lumped_mass()[c] * state.v[c];
+    sum.linear += p;
+    sum.angular += state.x[c].cross(p);
+  }
+  return sum;
+}
+
+/// A body that flies, spins and is out of shape.
+dynamics::State thrown(const Body& body, const unsigned seed) {
+  Draw draw(seed);
+  dynamics::State state{body.rest(), {}, 0};
+  const Mat3 Q = draw.rotation();
+  for (Vec3& p : state.x) {
+    p = Q * p + 0.005 * draw.vector();
+    state.v.push_back(Vec3(1, 2, 3) + Vec3(0, 0, 5).cross(p));
+  }
+  return state;
+}
+
+TEST(Motion, ImplicitEulerKeepsMomentum) {
+  const Body body = cut_block(71);
+  Corotational model(body.grid, body.cuts, body.complex, {.material = rubber});
+  dynamics::ImplicitEuler stepper(model, {.cg_tolerance = 1e-13});
+  dynamics::State state = thrown(body, 72);
+  const Vec3 before = momentum(model, state).linear;
+  for (int i = 0; i < 20; ++i)
+    stepper.step(state, {}, 1.0 / 60);
+  EXPECT_LT((momentum(model, state).linear - before).norm(), 1e-11 * before.norm());
+}
+
+/// f has no torque, so x += dt v keeps the angular momentum too. Full cubes: the masses of slivers need far shorter steps.
+TEST(Motion, SymplecticEulerKeepsBothMomenta) {
+  const Body body = cut_block(73);
+  Corotational model(body.grid, body.cuts, body.complex,
+                     {.material = rubber, .integration = Integration::full_cube});
+  dynamics::SymplecticEuler stepper(model);
+  dynamics::State state = thrown(body, 74);
+  const Momentum before = momentum(model, state);
+  for (int i = 0; i < 400; ++i)
+    stepper.step(state, {}, 1e-3);
+  const Momentum after = momentum(model, state);
+  EXPECT_LT((after.linear - before.linear).norm(), 1e-12 * before.linear.norm());
+  EXPECT_LT((after.angular - before.angular).norm(), 1e-12 * before.angular.norm());
+}
+
+/// 2 / (largest frequency), from the spectrum, is where symplectic Euler ends.
+TEST(Motion, SymplecticEulerIsStableUpToTheLargestFrequency) {
+  Draw draw(75);
+  const Body body = make_block({2, 2, 2}, 0.1, draw, {0.4, 0.6});
+  Corotational model(body.grid, body.cuts, body.complex, {.material = rubber});
+  const auto n = static_cast<Eigen::Index>(3 * body.complex.n_corners());
+  Eigen::MatrixXd K(n, n);
+  Eigen::VectorXd scale(n), p = Eigen::VectorXd::Zero(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    scale[i] = 1 / std::sqrt(model.lumped_mass()[i / 3]);
+    p[i] = 1;
+    model.apply_stiffness({p.data(), p.data() + n}, {K.col(i).data(), K.col(i).data() + n});
+    p[i] = 0;
+  }
+  K = scale.asDiagonal() * K * scale.asDiagonal();
+  const double limit = 2 / std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(K, Eigen::EigenvaluesOnly).eigenvalues()[n - 1]);
+  RecordProperty("stable_step_us", std::to_string(1e6 * limit));
+  RecordProperty("wave_step_us", std::to_string(1e6 * 0.1 * std::sqrt(rubber.density / rubber.youngs_modulus)));
+
+  const auto largest_move = [&](const double dt) {
+    Draw noise(76);
+    dynamics::State state{body.rest(), Points(body.complex.n_corners(), Vec3::Zero()), 0};
+    for (Vec3& x : state.x)
+      x += 1e-9 * noise.vector();
+    dynamics::SymplecticEuler stepper(model);
+    for (int i = 0; i < 4000; ++i)
+      stepper.step(state, {}, dt);
+    double most = 0;
+    for (std::size_t c = 0; c < state.x.size(); ++c)
+      most = std::max(most, (state.x[c] - body.rest()[c]).norm());
+    return most;
+  };
+  EXPECT_LT(largest_move(0.98 * limit), 1e-6);
+  EXPECT_GT(largest_move(1.02 * limit), 1e-6);
+}
+
+/// Cuts right at the nodes leave slivers of 1e-9 of a cube and less: the solve is no harder for it.
+TEST(Motion, SliversDoNotStopTheSolver) {
+  const auto iterations = [](const double t) {
+    Draw draw(77);
+    Body body = make_block({4, 4, 4}, 0.1, draw, {0.5, 0.5});
+    cut_plane(body, 0, 2, t);
+    cut_at_random(body, 0.1, draw, {t, t});
+    Corotational model(body.grid, body.cuts, body.complex, {.material = rubber});
+    dynamics::ImplicitEuler stepper(model, {});
+    dynamics::State state{body.rest(), Points(body.complex.n_corners(), Vec3::Zero()), 0};
+    for (Vec3& v : state.v)
+      v = draw.vector();
+    int n = 0;
+    for (int i = 0; i < 5; ++i)
+      n += stepper.step(state, {.gravity = Vec3(0, 0, -9.81), .supports = {}}, 1.0 / 60).n_iterations;
+    for (const Vec3& x : state.x)
+      EXPECT_TRUE(x.allFinite());
+    return n;
+  };
+  const int usual = iterations(0.5), sliver = iterations(1e-9);
+  RecordProperty("usual", usual);
+  RecordProperty("sliver", sliver);
+  EXPECT_LT(sliver, 4 * usual);
+}
+
+TEST(Motion, OneAndTwoThreadsGiveTheSameBits) {
+  std::array<dynamics::State, 2> states;
+  for (const int n : {1, 2}) {
+    set_n_threads(n);
+    Draw draw(78);
+    Body body = make_block({14, 14, 14}, 0.1, draw, {0.3, 0.7});
+    cut_at_random(body, 0.1, draw, {0.3, 0.7});
+    Corotational model(body.grid, body.cuts, body.complex, {.material = rubber});
+    dynamics::ImplicitEuler stepper(model, {});
+    states[n - 1] = thrown(body, 79);
+    for (int i = 0; i < 2; ++i)
+      stepper.step(states[n - 1], {.gravity = Vec3(0, 0, -9.81), .supports = {}}, 1.0 / 60);
+  }
+  set_n_threads(1);
+  EXPECT_EQ(states[0].x, states[1].x);
+  EXPECT_EQ(states[0].v, states[1].v);
+}
+
+/// How a block was mistreated.
+enum class Mistreatment { scrambled, point, plane, inverted };
+
+/// Rest shape found again: the largest difference in distance of two corners from rest, over h, of corners with material.
+double shape_error(const Body& body, const Points& x) {
+  const Points rest = body.rest();
+  double worst = 0;
+  for (const auto a : body.complex.real_corner)
+    for (const auto b : body.complex.real_corner)
+      if (a.valid() && b.valid())
+        worst = std::max(worst, std::abs((x[a.value] - x[b.value]).norm() - (rest[a.value] - rest[b.value]).norm()));
+  return worst / body.grid.h();
+}
+
+double recovered(const Mistreatment mistreatment, const double E, const int n_steps, const int n_newton) {
+  Draw draw(80);
+  Body body = make_block({3, 3, 3}, 0.1, draw, {0.5, 0.5});
+  Corotational model(body.grid, body.cuts, body.complex,
+                     {.material = {.density = 1000, .youngs_modulus = E, .poissons_ratio = 0.3}});
+  dynamics::ImplicitEuler stepper(model, {.n_newton = n_newton, .cg_tolerance = 1e-6, .max_cg_iterations = 20000});
+  dynamics::State state{body.rest(), Points(body.complex.n_corners(), Vec3::Zero()), 0};
+  const Vec3 middle = body.grid.position(*body.grid.find_node({2, 2, 2}));
+  for (Vec3& x : state.x) {
+    if (mistreatment == Mistreatment::scrambled)
+      x = middle + 0.5 * Vec3(draw(-1, 1), draw(-1, 1), draw(-1, 1));
+    if (mistreatment == Mistreatment::point)
+      x = middle;
+    if (mistreatment == Mistreatment::plane)
+      x[2] = middle[2];
+    if (mistreatment == Mistreatment::inverted)
+      x[2] = 2 * middle[2] - x[2];
+  }
+  try {
+    for (int i = 0; i < n_steps; ++i)
+      stepper.step(state, {.mass_damping = 1, .supports = {}}, 1.0 / 60);
+  } catch (const NumericalError& error) {
+    std::cout << error.what() << '\n';
+    return 1e300;
+  }
+  return shape_error(body, state.x);
+}
+
+TEST(Motion, Measure) {
+  for (const double E : {1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9})
+    for (const auto m : {Mistreatment::scrambled, Mistreatment::point, Mistreatment::plane, Mistreatment::inverted}) {
+      std::cout << E << " " << int(m) << ":";
+      for (const int n : {1, 10, 60, 300, 1000})
+        std::cout << ' ' << recovered(m, E, n, 1);
+      std::cout << std::endl;
+    }
+}
+
+} // namespace
+} // namespace kerf::fem
