@@ -84,8 +84,7 @@ class Fitter {
 
   void fit_cell(const CellId c) {
     constexpr std::array<int, 12> lines = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11};
-    const Vec3 p = *cuts_.point(c);
-    if (lies_on_mesh(c, p))
+    if (lies_on_mesh(c, *cuts_.point(c)))
       return;
     Vec3 sum = Vec3::Zero();
     int n = 0;
@@ -95,7 +94,7 @@ class Fitter {
         ++n;
       }
     constexpr int no_axis = -1;
-    if (const auto fitted = fit(c, n > 0 ? Vec3(sum / n) : p, outward_direction(c, lines), no_axis))
+    if (const auto fitted = fit(c, sum / n, outward_direction(c, lines), no_axis))
       cuts_.set_point(c, *fitted);
   }
 
@@ -119,26 +118,36 @@ class Fitter {
     });
   }
 
-  /// The point of the mesh nearest to p along the line through it, inside the cell; nothing when there is none, or when p is on
-  /// the mesh. `normal` is the axis of the face that the line stays in, or -1.
+  /// The point of the mesh nearest to p along the line through it, inside the cell; where the line meets none, the nearest of
+  /// all there; nothing when there is none at all, or p is on the mesh. `normal` is the axis of the face that the vertex stays
+  /// in, or -1.
   std::optional<Vec3> fit(const CellId c, const Vec3& p, const Vec3& direction, const int normal) const {
-    if (direction.isZero() || lies_on_mesh(c, p))
+    if (lies_on_mesh(c, p))
       return std::nullopt;
-    const Vec3 lower = grid_.origin(c);
-    const double margin = grid::min_edge_parameter * grid_.h();
-    std::optional<double> nearest;
+    std::optional<Vec3> along, nearest;
+    const auto keep_nearer = [&](std::optional<Vec3>& best, const Vec3& q) {
+      if (is_inside(c, q, normal) && (!best || (q - p).squaredNorm() < (*best - p).squaredNorm()))
+        best = q;
+    };
     for (const std::uint32_t t : triangles_.of(c)) {
-      const auto s = geometry::line_meets(p, direction, geometry::corners(mesh_, t));
-      if (!s || (nearest && std::abs(*nearest) <= std::abs(*s)))
-        continue;
-      const Vec3 local = p + *s * direction - lower;
-      bool inside = true;
-      for (int axis = 0; axis < 3; ++axis)
-        inside &= axis == normal || (local[axis] >= margin && local[axis] <= grid_.h() - margin);
-      if (inside)
-        nearest = s;
+      const auto triangle = geometry::corners(mesh_, t);
+      if (const auto s = geometry::line_meets(p, direction, triangle))
+        keep_nearer(along, p + *s * direction);
+      if (normal < 0)
+        keep_nearer(nearest, geometry::closest_point(p, triangle));
+      else if (const auto q = geometry::closest_point_in_plane(p, normal, triangle))
+        keep_nearer(nearest, *q);
     }
-    return nearest ? std::optional<Vec3>(p + *nearest * direction) : std::nullopt;
+    return along ? along : nearest;
+  }
+
+  bool is_inside(const CellId c, const Vec3& p, const int normal) const {
+    const Vec3 local = p - grid_.origin(c);
+    const double margin = grid::min_edge_parameter * grid_.h();
+    for (int axis = 0; axis < 3; ++axis)
+      if (axis != normal && (local[axis] < margin || local[axis] > grid_.h() - margin))
+        return false;
+    return true;
   }
 
   const geometry::TriangleMesh& mesh_;

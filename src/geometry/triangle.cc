@@ -29,6 +29,21 @@ Vec3 closest_point(const Vec3& p, const std::array<Vec3, 3>& triangle) {
   });
 }
 
+std::optional<Vec3> closest_point_in_plane(const Vec3& p, const int axis, const std::array<Vec3, 3>& triangle) {
+  Points ends;
+  for (int i = 0; i < 3; ++i) {
+    const Vec3 &a = triangle[i], &b = triangle[(i + 1) % 3];
+    const double above_a = a[axis] - p[axis], above_b = b[axis] - p[axis];
+    if ((above_a < 0) != (above_b < 0))
+      ends.push_back(a + above_a / (above_a - above_b) * (b - a));
+  }
+  if (ends.size() != 2)
+    return std::nullopt;
+  Vec3 nearest = closest_on_segment(p, ends[0], ends[1]);
+  nearest[axis] = p[axis];
+  return nearest;
+}
+
 std::optional<double> line_meets(const Vec3& p, const Vec3& d, const std::array<Vec3, 3>& triangle) {
   const auto& [a, b, c] = triangle;
   const Vec3 e = b - a, f = c - a, df = d.cross(f);

@@ -145,25 +145,31 @@ cut::Blade compose_blade(const Section& section, const std::size_t index) {
   return blade;
 }
 
-/// A blade that stays away from the box of every body, grown by half its size for what the body may move, is a mistake.
+Box box_of(const Points& points) {
+  Box box{points[0], points[0]};
+  for (const Vec3& p : points) {
+    box.lower = box.lower.cwiseMin(p);
+    box.upper = box.upper.cwiseMax(p);
+  }
+  return box;
+}
+
+/// A blade whose key frames stay away from the box of every body, grown by half its size for what the body may move, is a
+/// mistake.
 void require_meeting(const Section& section, const cut::Blade& blade, const World& world) {
-  Vec3 lower = Vec3::Constant(1e300), upper = Vec3::Constant(-1e300);
-  for (const auto& triangle : cut::sweep(blade, 0, world.n_steps * world.time_step))
-    for (const Vec3& p : triangle) {
-      lower = lower.cwiseMin(p);
-      upper = upper.cwiseMax(p);
-    }
+  const double first = blade.key_frames.front().time, last = blade.key_frames.back().time;
+  Points path = cut::world_points(blade, first);
+  for (const auto& triangle : cut::sweep(blade, first, last))
+    path.insert(path.end(), triangle.begin(), triangle.end());
+  const Box swept = box_of(path);
   for (const Body& body : world.bodies) {
-    Vec3 low = Vec3::Constant(1e300), high = Vec3::Constant(-1e300);
-    for (const Vec3& p : body.positions) {
-      low = low.cwiseMin(p);
-      high = high.cwiseMax(p);
-    }
-    const Vec3 slack = Vec3::Constant(0.5 * (high - low).norm());
-    if ((lower.array() <= (high + slack).array()).all() && (upper.array() >= (low - slack).array()).all())
+    const Box box = box_of(body.positions);
+    const Vec3 slack = Vec3::Constant(0.5 * (box.upper - box.lower).norm());
+    if ((swept.lower.array() <= (box.upper + slack).array()).all() &&
+        (swept.upper.array() >= (box.lower - slack).array()).all())
       return;
   }
-  throw section.complaint("the blade never comes near a body between time 0 and the end",
+  throw section.complaint("the blade never comes near a body",
                           "Check units and key frames: positions are in metres, in the world frame");
 }
 

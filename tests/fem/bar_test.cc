@@ -1,6 +1,6 @@
-/// A bar of 1 x 0.2 x 0.2 m, clamped at x = 0, bends under its own weight, by so little that it stays linear. Reference: tip
-/// -0.37663 m at E = 1e6 Pa, nu = 0.3, 1000 kg/m^3, g = 9.81 m/s^2 (quadratic elements, converged); plain trilinear cubes
-/// are too stiff in bending by 13.3, 4.13 and 1.22 % with 2, 4 and 8 of them over the height.
+/// A bar of 1 x 0.2 x 0.2 m, clamped at x = 0, bends under its own weight, by so little that it stays linear.
+/// Reference: tip -0.37663 m at E = 1e6 Pa, nu = 0.3, 1000 kg/m^3, g = 9.81 m/s^2 (quadratic elements, converged);
+/// plain trilinear cubes are too stiff in bending by 13.3, 4.13 and 1.22 % with 2, 4 and 8 of them over the height.
 
 #include "cut/embed.h"
 #include "dynamics/implicit_euler.h"
@@ -11,7 +11,7 @@
 
 #include <gtest/gtest.h>
 
-#include <limits>
+#include <cmath>
 
 namespace kerf::fem {
 namespace {
@@ -93,17 +93,18 @@ TEST(Bar, FullCubesAreTooStiff) {
   const double octants = static_tip(0.05, Vec3(0, 0.5, 0.5), {.material = rubber});
   const double full =
     static_tip(0.05, Vec3(0, 0.5, 0.5), {.material = rubber, .integration = Integration::full_cube});
-  EXPECT_LT(full / octants, 0.75);
+  EXPECT_LT(full / octants, 0.8);
   RecordProperty("full_over_octants", std::to_string(full / octants));
 }
 
-/// The sliver floor is an error of its own: small, and gone with the floor.
+/// The skin just past nodes: two layers of cells hold next to nothing but the floor, which stiffens the bar in proportion.
 TEST(Bar, SliverFloorMattersLittle) {
-  const Vec3 offset(0, 0.001, 0.001);
+  const Vec3 offset(0, 1e-6, 1e-6);
   const double none = static_tip(0.05, offset, {.material = rubber, .sliver_floor = 1e-9});
   for (const double floor : {1e-3, 1e-2}) {
     const double change = static_tip(0.05, offset, {.material = rubber, .sliver_floor = floor}) / none - 1;
-    EXPECT_LT(std::abs(change), 4 * floor);
+    EXPECT_LT(change, 0);
+    EXPECT_GT(change, -4 * floor);
     RecordProperty("floor_" + std::to_string(floor), std::to_string(100 * change) + "_percent");
   }
 }

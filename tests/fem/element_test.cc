@@ -16,7 +16,8 @@ const material::Elastic rubber{.density = 1100, .youngs_modulus = 3e4, .poissons
 Matrix24 stiffness(const Element& element) { return Eigen::Map<const Matrix24>(element.stiffness.data()); }
 
 /// int B^T D B with engineering strains, the textbook's way.
-Matrix24 by_quadrature(const std::vector<WeightedPoint<Vec3>>& rule, const double h, const material::Elastic& material) {
+Matrix24 by_quadrature(const std::vector<WeightedPoint<Vec3>>& rule, const double h,
+                       const material::Elastic& material) {
   Eigen::Matrix<double, 6, 6> D = Eigen::Matrix<double, 6, 6>::Zero();
   D.topLeftCorner<3, 3>().setConstant(material.lambda());
   for (int i = 0; i < 6; ++i)
@@ -38,7 +39,7 @@ Matrix24 by_quadrature(const std::vector<WeightedPoint<Vec3>>& rule, const doubl
   return K;
 }
 
-/// A cut copy: its moments, points in it, and how much of the cube it fills.
+/// A cut copy: its moments and points in it.
 struct Sample {
   Moments moments;
   std::vector<WeightedPoint<Vec3>> rule;

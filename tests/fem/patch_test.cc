@@ -1,5 +1,5 @@
-/// Affine patch test: under u = A X the nodal forces of a cut body are the tractions on its surface, integrated by another
-/// rule over the surface's own triangles.
+/// Affine patch test: under u = A X the nodal forces of a cut body are the tractions on its surface, integrated by
+/// another rule over the surface's own triangles.
 
 #include "fem/corotational.h"
 
@@ -73,8 +73,8 @@ double imbalance(const Body& body, const Mat3& A, const grid::CellId middle) {
   return worst / (stress(A).norm() * body.grid.h() * body.grid.h());
 }
 
-/// One cell of a 3 x 3 x 3 block; its lines are cut anywhere on their edges, with any normals. The octants of the block's skin
-/// are there too: nothing is left out.
+/// One cell of a 3 x 3 x 3 block; its lines are cut anywhere on their edges, with any normals. The cells of the block's
+/// skin are there too: nothing is left out.
 TEST(Patch, EveryConfigurationOfACellInABlock) {
   Draw draw(21);
   const Body block = make_block({4, 4, 4}, 0.3, draw, {0.3, 0.7});

@@ -32,7 +32,8 @@ Matrix assembled(const Corotational& model) {
 /// Eigenvalues of K scaled to a unit diagonal: as many vanish, but a sliver's stiffness does not look like zero.
 Eigen::VectorXd scaled_spectrum(const Matrix& K) {
   const Eigen::VectorXd s = K.diagonal().cwiseSqrt().cwiseInverse();
-  return Eigen::SelfAdjointEigenSolver<Matrix>(s.asDiagonal() * K * s.asDiagonal(), Eigen::EigenvaluesOnly).eigenvalues();
+  const Matrix scaled = s.asDiagonal() * K * s.asDiagonal();
+  return Eigen::SelfAdjointEigenSolver<Matrix>(scaled, Eigen::EigenvaluesOnly).eigenvalues();
 }
 
 Points disturbed(const Points& rest, const Mat3& F, const double size, Draw& draw) {
@@ -55,7 +56,7 @@ TEST(Stiffness, HasSixRigidModesAPiece) {
       const Eigen::Index n_rigid = 6 * body.complex.n_pieces;
       ASSERT_GT(spectrum.size(), n_rigid);
       EXPECT_LT(spectrum.head(n_rigid).cwiseAbs().maxCoeff(), 1e-13) << body.complex.n_pieces << " pieces";
-      EXPECT_GT(spectrum[n_rigid], 1e-9) << body.complex.n_pieces << " pieces";
+      EXPECT_GT(spectrum[n_rigid], 1e-4) << body.complex.n_pieces << " pieces";
       most = std::max(most, spectrum.head(n_rigid).cwiseAbs().maxCoeff());
       least = std::min(least, spectrum[n_rigid]);
     }

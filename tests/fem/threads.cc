@@ -1,5 +1,5 @@
-/// Small bodies gain nothing from a second thread, and lose much where the machine is busy: these tests run on one unless
-/// they say otherwise.
+/// Small bodies gain nothing from a second thread, and lose much where the machine is busy: these tests run on one
+/// unless they say otherwise.
 
 #include "base/parallel.h"
 

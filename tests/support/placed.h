@@ -3,6 +3,7 @@
 /// Embedded bodies with their skin placed, cuts with their vertices placed, and what tests ask of them.
 
 #include "cut/embed.h"
+#include "cut/fit.h"
 #include "geometry/solid.h"
 #include "grid/complex.h"
 #include "surface/placement.h"
@@ -36,9 +37,12 @@ inline Body with_placed_skin(Body body) {
   return body;
 }
 
+/// As a scene embeds a body: cut by its mesh, placed, and fitted to it.
 inline Body embedded(const geometry::TriangleMesh& mesh, const double h, const Vec3& offset) {
   cut::Embedding embedding = cut::embed(mesh, h, offset);
-  return with_placed_skin({std::move(embedding.grid), std::move(embedding.cuts)});
+  Body body = with_placed_skin({std::move(embedding.grid), std::move(embedding.cuts)});
+  cut::fit_skin(mesh, body.grid, body.cuts);
+  return body;
 }
 
 /// All these edges in one step.

@@ -175,7 +175,7 @@ TEST_F(Inside, WhatWouldLeaveIsHeldAndCounted) {
 
 /// No vertex leaves its face or cell, with room for the octants.
 void expect_all_inside(const Body& body) {
-  const double h = body.grid.h(), margin = 0.5 * grid::min_edge_parameter * h;
+  const double h = body.grid.h(), margin = 0.25 * grid::min_edge_parameter * h;
   for (const auto c : ids<CellId>(body.grid.n_cells())) {
     const Vec3 lower = body.grid.origin(c) + Vec3::Constant(margin);
     const Vec3 upper = body.grid.origin(c) + Vec3::Constant(h - margin);

@@ -245,7 +245,7 @@ TEST(Table, ClosesAcrossEveryFaceWhateverTheRestOfBothCells) {
       }
     ASSERT_EQ(below.size(), 16u);
     for (auto [cuts, edges] : below) {
-      ASSERT_EQ(edges.size(), 4 * cuts.size());
+      ASSERT_EQ(edges.size(), 2 * cuts.size()) << "one a line and end";
       ASSERT_EQ(std::adjacent_find(edges.begin(), edges.end()), edges.end()) << "an edge twice";
       for (DirectedEdge& e : edges)
         std::swap(e.first, e.second);
