@@ -243,7 +243,7 @@ class Placer {
     if (!skin.empty() || !site.locked.empty())
       return slide(site, grid::face_point(grid_, cuts_, f));
     if (site.open.size() == 2) {
-      const Vec3 middle = mean_point(site.open);
+      const Vec3 middle = inside(site, mean_point(site.open));
       return hold_inside(site, middle, {join(site.open[0], site.open[1], in_face, sharp_angle_) - middle, Vec3::Zero()});
     }
     return meet(site, grid::centre(grid_, f));
@@ -260,16 +260,43 @@ class Placer {
     return meet(site, grid::centre(grid_, c));
   }
 
-  /// Later cuts: to the open planes along the locked ones.
+  /// Later cuts: to the open planes along the locked ones; where that ends at a side of the site, on along the side.
   Vec3 slide(const Site& site, const Vec3& p) {
     const Directions along = site.locked.empty() ? site.allowed : free_directions(site.locked, site.allowed, threshold_);
-    return hold_inside(site, p, moves_to_planes(p, site.open, along, threshold_));
+    const Vec3 q = hold_inside(site, p, moves_to_planes(p, site.open, along, threshold_));
+    const Planes sides = sides_at(site, q);
+    if (sides.empty() || along.cols() < 2)
+      return q;
+    const Vec3 move = moves_to_planes(q, site.open, free_directions(sides, along, threshold_), threshold_).back();
+    return q + part_inside(site, q, move) * move;
   }
 
   /// First cuts: the quadric's minimum nearest the middle of the cut, or nearest the centre where a front ends.
   Vec3 meet(const Site& site, const Vec3& centre) {
-    const Vec3 start = site.splits ? mean_point(site.open) : centre;
+    const Vec3 start = inside(site, site.splits ? mean_point(site.open) : centre);
     return hold_inside(site, start, moves_to_planes(start, site.open, site.inside, threshold_));
+  }
+
+  /// p, no closer to the sides of the site than a vertex may be.
+  Vec3 inside(const Site& site, Vec3 p) const {
+    const Vec3 lower = grid_.origin(site.cell);
+    const double margin = grid::min_edge_parameter * grid_.h();
+    for (int axis = 0; axis < 3; ++axis)
+      if (!site.inside.row(axis).isZero())
+        p[axis] = std::clamp(p[axis], lower[axis] + margin, lower[axis] + grid_.h() - margin);
+    return p;
+  }
+
+  /// The sides of the site that p has reached.
+  Planes sides_at(const Site& site, const Vec3& p) const {
+    const Vec3 lower = grid_.origin(site.cell);
+    const double reach = 2 * grid::min_edge_parameter * grid_.h();
+    Planes sides;
+    for (int axis = 0; axis < 3; ++axis)
+      if (!site.inside.row(axis).isZero() &&
+          (p[axis] < lower[axis] + reach || p[axis] > lower[axis] + grid_.h() - reach))
+        sides.push_back({p, Vec3::Unit(axis)});
+    return sides;
   }
 
   /// p and the first of the moves that stays in the site; the last one is shortened where none does.

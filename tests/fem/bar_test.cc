@@ -97,7 +97,7 @@ TEST(Bar, FullCubesAreTooStiff) {
   RecordProperty("full_over_octants", std::to_string(full / octants));
 }
 
-/// The skin just past nodes: two layers of cells hold next to nothing but the floor, which stiffens the bar in proportion.
+/// The skin just past nodes: layers of cells hold next to nothing but the floor, which stiffens the bar in proportion.
 TEST(Bar, SliverFloorMattersLittle) {
   const Vec3 offset(0, 1e-6, 1e-6);
   const double none = static_tip(0.05, offset, {.material = rubber, .sliver_floor = 1e-9});
