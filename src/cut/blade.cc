@@ -120,21 +120,31 @@ Points world_points(const Blade& blade, const double t) {
   return points;
 }
 
+BladePath path(const Blade& blade, const double t0, const double t1) {
+  BladePath result;
+  for (const double t : strip_times(blade, t0, t1)) {
+    result.fractions.push_back((t - t0) / (t1 - t0));
+    result.lines.push_back(world_points(blade, t));
+  }
+  return result;
+}
+
+void add_strip(const Points& before, const Points& after, std::vector<std::array<Vec3, 3>>& strip) {
+  if (after == before)
+    return;
+  for (std::size_t i = 0; i + 1 < before.size(); ++i) {
+    strip.push_back({before[i], before[i + 1], after[i + 1]});
+    strip.push_back({before[i], after[i + 1], after[i]});
+  }
+}
+
 std::vector<std::array<Vec3, 3>> sweep(const Blade& blade, const double t0, const double t1) {
   std::vector<std::array<Vec3, 3>> strip;
   if (!(t0 < t1))
     return strip;
-  const std::vector<double> times = strip_times(blade, t0, t1);
-  Points before = world_points(blade, times.front());
-  for (std::size_t k = 1; k < times.size(); ++k) {
-    Points after = world_points(blade, times[k]);
-    if (after != before)
-      for (std::size_t i = 0; i + 1 < before.size(); ++i) {
-        strip.push_back({before[i], before[i + 1], after[i + 1]});
-        strip.push_back({before[i], after[i + 1], after[i]});
-      }
-    before = std::move(after);
-  }
+  const BladePath places = path(blade, t0, t1);
+  for (std::size_t k = 1; k < places.lines.size(); ++k)
+    add_strip(places.lines[k - 1], places.lines[k], strip);
   return strip;
 }
 

@@ -47,6 +47,16 @@ Pose pose(const Blade& blade, double t);
 /// The cutting edge at time t [s], world frame [m].
 Points world_points(const Blade& blade, double t);
 
+/// Where the cutting edge stands at successive moments of a step: first at its start, last at its end.
+struct BladePath {
+  std::vector<double> fractions; ///< of the step, from 0 to 1
+  std::vector<Points> lines;     ///< world frame [m]
+};
+BladePath path(const Blade& blade, double t0, double t1);
+
+/// The triangles between two successive places of the cutting edge; none when they are the same.
+void add_strip(const Points& before, const Points& after, std::vector<std::array<Vec3, 3>>& strip);
+
 /// The triangles [m, world frame] that the cutting edge sweeps from t0 to t1 [s]; none while the blade rests.
 std::vector<std::array<Vec3, 3>> sweep(const Blade& blade, double t0, double t1);
 

@@ -7,8 +7,11 @@
 /// geometry/predicates.h; boxes keep most pairs away from them. The normal is pulled back to rest with the deformation
 /// gradient F = dx/dX at the cut, averaged over the copies around the edge: N ~ F^T n.
 ///
-/// Limit: the segments are those of one instant; material that moves through a resting blade is not cut.
+/// A body that moves is met in relative motion: each edge sees the blade's earlier places carried along with itself, by the
+/// similarity that takes the edge from where it was to where it is. So what a blade sweeps in successive steps leaves no gap
+/// for an edge to slip through, and material that moves through a resting blade is cut.
 
+#include "cut/blade.h"
 #include "grid/complex.h"
 #include "grid/cuts.h"
 
@@ -26,5 +29,9 @@ struct SweepCuts {
 /// NumericalError when a corner is not at a finite position.
 SweepCuts cut_edges(std::span<const std::array<Vec3, 3>> sweep, const grid::Grid& grid, const grid::Cuts& cuts,
                     const grid::CellComplex& complex, const Points& x, grid::CutLabel label);
+
+/// The edges that a blade cuts on its path through a step in which the corners moved from `x_before` to `x`.
+SweepCuts cut_edges(const BladePath& path, const grid::Grid& grid, const grid::Cuts& cuts,
+                    const grid::CellComplex& complex, const Points& x_before, const Points& x, grid::CutLabel label);
 
 } // namespace kerf::cut

@@ -86,28 +86,28 @@ void start(Body& body, const geometry::TriangleMesh& mesh, Timings& timings) {
   body.state.v.assign(body.complex.n_corners(), Vec3::Zero());
   build_physics(body, timings);
   follow(body);
+  if (body.cutting)
+    body.cutting->x_before = body.state.x;
 }
 
 void recut(Body& body, const std::span<const cut::Blade> blades, const double t0, const double t1, Timings& timings) {
   std::vector<grid::EdgeCut> released;
   {
     const ScopedTimer timer(timings, "cut");
+    Cutting& cutting = *body.cutting;
     for (const cut::Blade& blade : blades) {
-      const auto sweep = cut::sweep(blade, t0, t1);
-      if (sweep.empty())
-        continue;
-      const auto found = cut::cut_edges(sweep, body.grid, body.cuts, body.complex, body.state.x, blade.label);
-      body.cutting->pending.push(found.cuts);
-      body.cutting->n_double_crossings += found.n_double_crossings;
+      const auto found = cut::cut_edges(cut::path(blade, t0, t1), body.grid, body.cuts, body.complex, cutting.x_before,
+                                        body.state.x, blade.label);
+      cutting.pending.push(found.cuts);
+      cutting.n_double_crossings += found.n_double_crossings;
     }
-    if (body.cutting->pending.size() == 0)
-      return;
-    released = body.cutting->pending.release(body.grid, body.cuts);
+    released = cutting.pending.release(body.grid, body.cuts);
   }
-  if (released.empty())
-    return;
-  rebuild_topology(body, add_cuts(body, released), timings);
-  build_physics(body, timings);
+  if (!released.empty()) {
+    rebuild_topology(body, add_cuts(body, released), timings);
+    build_physics(body, timings);
+  }
+  body.cutting->x_before = body.state.x;
 }
 
 void follow(Body& body) { surface::follow(body.surface, body.state.x, body.positions); }

@@ -33,6 +33,7 @@ struct SupportRegion {
 /// What only a body in a scene with blades needs.
 struct Cutting {
   cut::PendingCuts pending;
+  Points x_before;                          ///< where the corners were when the blades were met last [m]
   std::vector<std::size_t> n_cut_edges;     ///< by blade
   std::size_t n_double_crossings = 0;       ///< edges that a sweep crossed an even number of times: left uncut
 };

@@ -89,6 +89,31 @@ TEST(ImplicitEuler, NewtonSolvesTheNonlinearStep) {
   EXPECT_LT(residual_after(12), 1e-10);
 }
 
+/// A moving support drags its neighbour by the spring and by the spring's damping: residual of the linear step.
+TEST(ImplicitEuler, StiffnessDampingFeelsMovingSupports) {
+  const double dt = 0.1, beta = 0.3, k = 50;
+  for (const int n_newton : {1, 2}) {
+    Chain model({1, 2, 1}, {.neighbour = k});
+    ImplicitEuler stepper(model, {.n_newton = n_newton, .cg_tolerance = 1e-14});
+    Loads loads{.stiffness_damping = beta, .supports = {}};
+    loads.supports = {{{0}, {model.rest()[0]}, [](const double t) { return Vec3(t, 2 * t, 0); }}};
+    State state = model.state();
+    state.v[2] = Vec3(0, 0, 1);
+    const State before = state;
+    stepper.step(state, loads, dt);
+    Points force;
+    model.force(state.x, force);
+    const auto moved = [&](const std::size_t i) -> Vec3 { return state.x[i] - before.x[i]; };
+    const auto inertia = [&](const std::size_t i) -> Vec3 {
+      return model.lumped_mass()[i] * (moved(i) - dt * before.v[i]) / (dt * dt);
+    };
+    const Vec3 first = moved(1) - moved(0), second = moved(2) - moved(1);
+    EXPECT_LT((inertia(1) + beta / dt * k * (first - second) - force[1]).norm(), 1e-11);
+    EXPECT_LT((inertia(2) + beta / dt * k * second - force[2]).norm(), 1e-11);
+    EXPECT_GT(moved(1).norm(), 1e-3);
+  }
+}
+
 TEST(ImplicitEuler, SaysThatConjugateGradientsDidNotConverge) {
   Chain model(std::vector<double>(50, 1.0), {.neighbour = 1e6});
   ImplicitEuler stepper(model, {.cg_tolerance = 1e-10, .max_cg_iterations = 3});

@@ -52,8 +52,8 @@ double error_after(const int n_steps, const Mistreatment mistreatment, const dou
 TEST(Robustness, ComesBackFromAPointAPlaneAndInsideOut) {
   for (const auto mistreatment : {Mistreatment::point, Mistreatment::plane, Mistreatment::inverted})
     for (const double E : {1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9}) {
-      const double error = error_after(E < 1e4 ? 1000 : 300, mistreatment, E, 80);
-      EXPECT_LT(error, 1e-3) << "E " << E << ", " << static_cast<int>(mistreatment);
+      const double error = error_after(E < 1e4 ? 1500 : 300, mistreatment, E, 80);
+      EXPECT_LT(error, 1e-2) << "E " << E << ", " << static_cast<int>(mistreatment);
     }
 }
 

@@ -5,8 +5,8 @@
 #include "grid/cube.h"
 #include "tests/support/bodies.h"
 
-#include <Eigen/Geometry>
 #include <gtest/gtest.h>
+#include <Eigen/Geometry>
 
 #include <stdexcept>
 
@@ -51,7 +51,7 @@ TEST(Cuts, GiveTheLineBitsOfACell) {
     body.cuts.add(cut);
   for (const auto c : ids<CellId>(body.grid.n_cells()))
     for (int line = 0; line < 12; ++line)
-      EXPECT_EQ(body.cuts.configuration(body.grid, c) >> line & 1, body.cuts.is_cut(body.grid.edges(c)[line]) ? 1u : 0u);
+      EXPECT_EQ((body.cuts.configuration(body.grid, c) >> line & 1) == 1, body.cuts.is_cut(body.grid.edges(c)[line]));
 }
 
 TEST(Cuts, KeepThePointsOfFacesAndCells) {

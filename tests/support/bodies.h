@@ -31,6 +31,14 @@ inline Vec3 random_vector(Random& random) {
 
 inline Vec3 random_direction(Random& random) { return random_vector(random).normalized(); }
 
+/// Where the lattice stands, in parts of h.
+inline Vec3 random_offset(Random& random) {
+  Vec3 offset;
+  for (int axis = 0; axis < 3; ++axis)
+    offset[axis] = uniform(random, 0, 1);
+  return offset;
+}
+
 /// The nodes 1 .. n along each axis, each kept with a probability.
 inline std::vector<Index3> some_nodes(Random& random, const Index3& n, const double probability) {
   std::vector<Index3> nodes;
@@ -66,9 +74,7 @@ inline grid::EdgeCut midway(const grid::Grid& grid, const grid::EdgeId e) {
 }
 
 /// n[0] x n[1] x n[2] cubes with one node in the middle of each: a box with its lower corner at h / 2.
-inline Body block(const Index3& n, const double h = 1) {
-  return make_body({Vec3::Zero(), h}, block_nodes(n), midway);
-}
+inline Body block(const Index3& n, const double h = 1) { return make_body({Vec3::Zero(), h}, block_nodes(n), midway); }
 
 /// A ball around the origin with exact crossings and normals; the lattice is moved by `offset` in parts of h.
 inline Body ball(const double radius, const double h, const Vec3& offset) {

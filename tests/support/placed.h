@@ -52,9 +52,7 @@ inline surface::PlacementCounts cut(Body& body, const std::span<const grid::Edge
   return place(body, cuts);
 }
 
-inline double volume(const grid::Tetrahedron& t) {
-  return (t[1] - t[0]).dot((t[2] - t[0]).cross(t[3] - t[0])) / 6;
-}
+inline double volume(const grid::Tetrahedron& t) { return (t[1] - t[0]).dot((t[2] - t[0]).cross(t[3] - t[0])) / 6; }
 
 /// Volume of each piece [m^3], from the octants.
 inline std::vector<double> octant_volumes(const Body& body, const grid::CellComplex& complex) {

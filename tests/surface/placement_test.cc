@@ -27,7 +27,9 @@ class Inside : public testing::Test {
   Body body = support::block({4, 4, 4});
   CellId cell = *body.grid.find_cell({2, 2, 2});
 
-  EdgeId edge(const int i, const int j, const int k, const int axis) const { return *body.grid.find_edge({i, j, k}, axis); }
+  EdgeId edge(const int i, const int j, const int k, const int axis) const {
+    return *body.grid.find_edge({i, j, k}, axis);
+  }
   /// The face at z = 2.
   FaceId face() const { return body.grid.faces(cell)[4]; }
   Vec3 face_point() const { return grid::face_point(body.grid, body.cuts, face()); }

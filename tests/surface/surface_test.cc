@@ -25,7 +25,8 @@ struct Cut {
   Surface surface;
 
   explicit Cut(Body b)
-    : body(std::move(b)), complex(grid::build_complex(body.grid, body.cuts)),
+    : body(std::move(b)),
+      complex(grid::build_complex(body.grid, body.cuts)),
       surface(build_surface(body.grid, body.cuts, complex)) {}
 };
 
@@ -236,9 +237,7 @@ TEST(Surface, HasTwoTrianglesACellAroundEachMaterialEnd) {
   EXPECT_NEAR(enclosed_volume(cut.surface.rest, cut.surface.triangles), 27, 1e-12);
 }
 
-TEST(Surface, OfNothingEnclosesNothing) {
-  EXPECT_EQ(enclosed_volume({}, {}), 0);
-}
+TEST(Surface, OfNothingEnclosesNothing) { EXPECT_EQ(enclosed_volume({}, {}), 0); }
 
 void expect_same_bits(const Cut& a, const Cut& b, const Points& x, const Points& y) {
   ASSERT_EQ(a.body.cuts.all().size(), b.body.cuts.all().size());

@@ -1,8 +1,8 @@
-/// The 4096 rows against a derivation of their own, from where things lie in the cell: the surface inside a cell is made
-/// of the squares between octants of neighbouring nodes.
+/// The 4096 rows against a derivation of their own, from where things lie in the cell: the surface inside a cell is
+/// made of the squares between octants of neighbouring nodes.
 ///
-/// A vertex is named by its place in {0, 1, 2}^3 (nodes at even places) and by the set of nodes that it follows: the end
-/// of its edge, or the component in its face or in the cell.
+/// A vertex is named by its place in {0, 1, 2}^3 (nodes at even places) and by the set of nodes that it follows: the
+/// end of its edge, or the component in its face or in the cell.
 
 #include "surface/table.h"
 
@@ -178,8 +178,7 @@ TEST(Table, KnowsTheComponents) {
       EXPECT_EQ(splitting_table().cell_component(cut_lines, v), std::countr_zero(nodes));
       for (int axis = 0; axis < 3; ++axis) {
         const int face = cube::face_at(v, axis);
-        EXPECT_EQ(face_component(cut_lines, face, v),
-                  std::countr_zero(component(cut_lines, cube::face_mask(face), v)));
+        EXPECT_EQ(face_component(cut_lines, face, v), std::countr_zero(component(cut_lines, cube::face_mask(face), v)));
       }
     }
     ++n_rows_with[components.size() - 1];
