@@ -54,7 +54,8 @@ void print_cutting(const scene::World& world) {
     std::printf("blade %s: cut %zu grid edges%s\n", world.blades[b].name.c_str(), n,
                 n == 0 ? ": it never met a body. Check its key frames" : "");
     if (b + 1 == world.blades.size() && n_double + n_waiting > 0)
-      std::printf("  %zu edges crossed twice in one sweep and left whole, %zu cuts still waiting\n", n_double, n_waiting);
+      std::printf("  %zu edges crossed twice in one sweep and left whole, %zu cuts still waiting\n", n_double,
+                  n_waiting);
   }
 }
 

@@ -12,7 +12,8 @@ int parse_threads(const std::string& text) {
   int n = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), n);
   if (error != std::errc() || end != text.data() + text.size() || n < 1 || n > 1024)
-    throw ParameterError(Complaint{.path = "--threads", .value = text, .rule = "must be a whole number from 1 to 1024"});
+    throw ParameterError(
+      Complaint{.path = "--threads", .value = text, .rule = "must be a whole number from 1 to 1024"});
   return n;
 }
 
@@ -34,13 +35,13 @@ SceneArguments parse_scene_arguments(const Arguments& arguments) {
     else if (argument == "--threads")
       parsed.n_threads = parse_threads(value());
     else if (argument.starts_with("-"))
-      throw ParameterError(Complaint{.value = argument, .rule = "is no option",
-                                     .remedy = "The options are --set, --output and --threads"});
+      throw ParameterError(Complaint{
+        .value = argument, .rule = "is no option", .remedy = "The options are --set, --output and --threads"});
     else if (parsed.scene.empty())
       parsed.scene = argument;
     else
-      throw ParameterError(Complaint{.value = argument, .rule = "only one scene can be given",
-                                     .remedy = "Put quotes around arguments with spaces"});
+      throw ParameterError(Complaint{
+        .value = argument, .rule = "only one scene can be given", .remedy = "Put quotes around arguments with spaces"});
   }
   if (parsed.scene.empty())
     throw ParameterError(Complaint{.rule = "a scene file must be given", .remedy = "For example: params/liver.prm"});

@@ -16,8 +16,8 @@ constexpr double max_turn = 2 * radians; ///< of one pair of strip triangles
 
 [[noreturn]] void refuse(const Blade& blade, const std::string& path, const std::string& value, const std::string& rule,
                          const std::string& remedy) {
-  throw ParameterError(Complaint{.path = "Blade " + blade.name + "/" + path, .value = value, .rule = rule,
-                                 .remedy = remedy});
+  throw ParameterError(
+    Complaint{.path = "Blade " + blade.name + "/" + path, .value = value, .rule = rule, .remedy = remedy});
 }
 
 /// Not normalised in sign: the two quaternions of one rotation tell turns by 10 and by 370 degrees apart.
@@ -107,9 +107,7 @@ void check(const Blade& blade) {
     check_pair(blade, frames[k], frames[k + 1]);
 }
 
-Pose pose(const Blade& blade, const double t) {
-  return {position(blade, t), rotation(blade, t).toRotationMatrix()};
-}
+Pose pose(const Blade& blade, const double t) { return {position(blade, t), rotation(blade, t).toRotationMatrix()}; }
 
 Points world_points(const Blade& blade, const double t) {
   const Pose placed = pose(blade, t);

@@ -60,8 +60,10 @@ grid::Lattice lattice_around(const geometry::TriangleMesh& mesh, const double h,
     throw ParameterError(Complaint{.path = "Lattice offset [1]", .rule = "each part must be in [-1, 1]"});
   const Box box = geometry::bounding_box(mesh);
   if ((box.upper - box.lower).maxCoeff() / h > (1 << index_bits) - 8)
-    throw ParameterError(Complaint{.path = "Cube edge [m]", .value = std::to_string(h),
-                                   .rule = "the body must be smaller than 2^20 cubes", .remedy = "Use larger cubes"});
+    throw ParameterError(Complaint{.path = "Cube edge [m]",
+                                   .value = std::to_string(h),
+                                   .rule = "the body must be smaller than 2^20 cubes",
+                                   .remedy = "Use larger cubes"});
   return {box.lower + h * (offset - Vec3::Constant(2)), h};
 }
 
@@ -162,7 +164,10 @@ bool is_mixed(const grid::Grid& grid, const grid::EdgeId e) {
 class Skin {
  public:
   Skin(const geometry::TriangleMesh& mesh, const grid::Grid& grid, Embedding& result)
-    : grid_(grid), result_(result), normals_(mesh), shell_(geometry::shells(mesh)),
+    : grid_(grid),
+      result_(result),
+      normals_(mesh),
+      shell_(geometry::shells(mesh)),
       is_lost_(shell_.empty() ? 0 : *std::max_element(shell_.begin(), shell_.end()) + 1, 1) {}
 
   void add(const std::span<const Crossing> of_edge) {
@@ -214,7 +219,8 @@ Embedding embed(const geometry::TriangleMesh& mesh, const double h, const Vec3& 
   const std::vector<Crossing> crossings = sorted_crossings(mesh, lattice);
   std::vector<Index3> nodes = material_nodes(crossings);
   if (nodes.empty())
-    throw DataError(Complaint{.path = "Cube edge [m]", .value = std::to_string(h),
+    throw DataError(Complaint{.path = "Cube edge [m]",
+                              .value = std::to_string(h),
                               .rule = "no lattice node is inside the mesh, it is smaller than a cube",
                               .remedy = "Use smaller cubes, or check the unit of the mesh"});
 

@@ -158,6 +158,8 @@ class Fitter {
 
 } // namespace
 
-void fit_skin(const geometry::TriangleMesh& mesh, const Grid& grid, grid::Cuts& cuts) { Fitter(mesh, grid, cuts).run(); }
+void fit_skin(const geometry::TriangleMesh& mesh, const Grid& grid, grid::Cuts& cuts) {
+  Fitter(mesh, grid, cuts).run();
+}
 
 } // namespace kerf::cut

@@ -27,10 +27,13 @@ struct Operator {
   void vmult(Vector& y, const Vector& p) const {
     const auto mass = model.lumped_mass();
     model.apply_stiffness({p.begin(), p.size()}, {y.begin(), y.size()});
-    parallel_for(mass.size(), [&](const std::size_t i) {
-      for (std::size_t k = 3 * i; k < 3 * i + 3; ++k)
-        y[k] = held[i] ? 0 : mass_factor * mass[i] * p[k] + stiffness_factor * y[k];
-    }, worth);
+    parallel_for(
+      mass.size(),
+      [&](const std::size_t i) {
+        for (std::size_t k = 3 * i; k < 3 * i + 3; ++k)
+          y[k] = held[i] ? 0 : mass_factor * mass[i] * p[k] + stiffness_factor * y[k];
+      },
+      worth);
   }
 };
 
@@ -38,9 +41,12 @@ struct BlockJacobi {
   const std::vector<Mat3>& inverse_blocks;
 
   void vmult(Vector& y, const Vector& p) const {
-    parallel_for(inverse_blocks.size(), [&](const std::size_t i) {
-      Eigen::Map<Vec3>(y.begin() + 3 * i).noalias() = inverse_blocks[i] * Eigen::Map<const Vec3>(p.begin() + 3 * i);
-    }, worth);
+    parallel_for(
+      inverse_blocks.size(),
+      [&](const std::size_t i) {
+        Eigen::Map<Vec3>(y.begin() + 3 * i).noalias() = inverse_blocks[i] * Eigen::Map<const Vec3>(p.begin() + 3 * i);
+      },
+      worth);
   }
 };
 
@@ -55,8 +61,8 @@ int solve(const Operator& A, const BlockJacobi& P, Vector& dx, const Vector& rhs
   try {
     dealii::SolverCG<Vector>(control).solve(A, dx, rhs, P);
   } catch (const dealii::SolverControl::NoConvergence& failure) {
-    throw NumericalError("conjugate gradients left a relative residual of " + std::to_string(failure.last_residual / norm) +
-                         " after " + std::to_string(failure.last_step) +
+    throw NumericalError("conjugate gradients left a relative residual of " +
+                         std::to_string(failure.last_residual / norm) + " after " + std::to_string(failure.last_step) +
                          " iterations. Use a smaller time step, a larger sliver floor or more iterations");
   }
   return static_cast<int>(control.last_step());

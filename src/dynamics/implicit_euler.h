@@ -13,8 +13,8 @@
 namespace kerf::dynamics {
 
 struct ImplicitEulerOptions {
-  int n_newton = 1;            ///< Newton iterations a step; one is the linearly implicit method
-  double cg_tolerance = 1e-6;  ///< residual over right-hand side, in the Euclidean norm [1]
+  int n_newton = 1;           ///< Newton iterations a step; one is the linearly implicit method
+  double cg_tolerance = 1e-6; ///< residual over right-hand side, in the Euclidean norm [1]
   int max_cg_iterations = 2000;
 };
 

@@ -13,14 +13,14 @@ namespace kerf::dynamics {
 /// Corners that go where they are told.
 struct Support {
   std::vector<std::uint32_t> corners;
-  Points rest;                                                ///< rest positions of these corners [m]
-  std::function<Vec3(double time)> displacement;              ///< from rest, world frame [m]
+  Points rest;                                   ///< rest positions of these corners [m]
+  std::function<Vec3(double time)> displacement; ///< from rest, world frame [m]
 };
 
 struct Loads {
-  Vec3 gravity = Vec3::Zero();     ///< acceleration [m/s^2]
-  double mass_damping = 0;         ///< Rayleigh's alpha: a force -alpha M v [1/s]
-  double stiffness_damping = 0;    ///< Rayleigh's beta: a force -beta K v [s]
+  Vec3 gravity = Vec3::Zero();  ///< acceleration [m/s^2]
+  double mass_damping = 0;      ///< Rayleigh's alpha: a force -alpha M v [1/s]
+  double stiffness_damping = 0; ///< Rayleigh's beta: a force -beta K v [s]
   std::vector<Support> supports;
 };
 

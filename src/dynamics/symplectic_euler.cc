@@ -28,8 +28,9 @@ StepReport SymplecticEuler::step(State& state, const Loads& loads, const double 
   state.time += dt;
   move_held(loads, state.time, dt, state.x, state.v);
   if (!std::isfinite(total))
-    throw NumericalError("velocities are no longer finite: symplectic Euler is unstable beyond a time step of 2 / (largest "
-                         "frequency). Use a smaller time step, or implicit Euler");
+    throw NumericalError(
+      "velocities are no longer finite: symplectic Euler is unstable beyond a time step of 2 / (largest "
+      "frequency). Use a smaller time step, or implicit Euler");
   return {};
 }
 

@@ -40,8 +40,8 @@ Corotational::Corotational(const grid::Grid& grid, const grid::Cuts& cuts, const
   elements_[0] = make_element(full_cube_moments(), h_, options.material, options.sliver_floor);
   parallel_for(partial.size(), [&](const std::size_t i) {
     const grid::Copy& copy = complex.copies[partial[i]];
-    elements_[i + 1] = make_element(octant_moments(grid, cuts, copy.cell, copy.nodes), h_, options.material,
-                                    options.sliver_floor);
+    elements_[i + 1] =
+      make_element(octant_moments(grid, cuts, copy.cell, copy.nodes), h_, options.material, options.sliver_floor);
   });
 
   corners_.reserve(8 * n);
@@ -90,21 +90,27 @@ void Corotational::local_displacement(const std::size_t e, const Points& x, cons
 }
 
 void Corotational::gather(const std::vector<double>& values, double* const y) const {
-  parallel_for(mass_.size(), [&](const std::size_t corner) {
-    Vec3 sum = Vec3::Zero();
-    for (auto k = user_start_[corner]; k < user_start_[corner + 1]; ++k)
-      sum += Eigen::Map<const Vec3>(values.data() + 3 * std::size_t(users_[k]));
-    Eigen::Map<Vec3>(y + 3 * corner) = sum;
-  }, worth_corners);
+  parallel_for(
+    mass_.size(),
+    [&](const std::size_t corner) {
+      Vec3 sum = Vec3::Zero();
+      for (auto k = user_start_[corner]; k < user_start_[corner + 1]; ++k)
+        sum += Eigen::Map<const Vec3>(values.data() + 3 * std::size_t(users_[k]));
+      Eigen::Map<Vec3>(y + 3 * corner) = sum;
+    },
+    worth_corners);
 }
 
 double Corotational::energy(const Points& x) const {
   std::vector<double> energies(n_elements());
-  parallel_for(n_elements(), [&](const std::size_t e) {
-    Eigen::Matrix<double, 24, 1> u;
-    local_displacement(e, x, material::rotation_of(deformation_gradient(e, x)), u.data());
-    energies[e] = 0.5 * u.dot(Eigen::Map<const Eigen::Matrix<double, 24, 24>>(stiffness_[e]) * u);
-  }, worth_elements);
+  parallel_for(
+    n_elements(),
+    [&](const std::size_t e) {
+      Eigen::Matrix<double, 24, 1> u;
+      local_displacement(e, x, material::rotation_of(deformation_gradient(e, x)), u.data());
+      energies[e] = 0.5 * u.dot(Eigen::Map<const Eigen::Matrix<double, 24, 24>>(stiffness_[e]) * u);
+    },
+    worth_elements);
   double sum = 0;
   for (const double energy : energies)
     sum += energy;
@@ -112,60 +118,71 @@ double Corotational::energy(const Points& x) const {
 }
 
 void Corotational::force(const Points& x, Points& forces) const {
-  parallel_for(n_elements(), [&](const std::size_t e) {
-    const Mat3 F = deformation_gradient(e, x), R = material::rotation_of(F);
-    Eigen::Matrix<double, 24, 1> u, Ku;
-    local_displacement(e, x, R, u.data());
-    Ku.noalias() = Eigen::Map<const Eigen::Matrix<double, 24, 24>>(stiffness_[e]) * u;
+  parallel_for(
+    n_elements(),
+    [&](const std::size_t e) {
+      const Mat3 F = deformation_gradient(e, x), R = material::rotation_of(F);
+      Eigen::Matrix<double, 24, 1> u, Ku;
+      local_displacement(e, x, R, u.data());
+      Ku.noalias() = Eigen::Map<const Eigen::Matrix<double, 24, 24>>(stiffness_[e]) * u;
 
-    // dE = Ku . (R^T dx) - omega . tau with R^T dR = [omega]x, tau = sum y_a x (Ku)_a and, from the polar decomposition,
-    // (tr(S) I - S) omega = sum g_a x R^T dx_a.
-    Vec3 tau = Vec3::Zero();
-    for (int a = 0; a < 8; ++a)
-      tau += u.segment<3>(3 * a).cross(Ku.segment<3>(3 * a)) +
-             h_ * vertex_offset(a).cross(Vec3(Ku.segment<3>(3 * a)));
-    const Mat3 S = R.transpose() * F;
-    const Mat3 spin = S.trace() * Mat3::Identity() - S;
-    constexpr double collapsed = 1e-6; // the rotation is not differentiable there: leave its term out
-    const Vec3 z = spin.determinant() > collapsed ? Vec3(spin.inverse() * tau) : Vec3(Vec3::Zero());
-    for (int a = 0; a < 8; ++a)
-      Eigen::Map<Vec3>(values_.data() + 24 * e + 3 * a) =
-        R * (z.cross(element(e).gradient[a]) - Ku.segment<3>(3 * a));
-  }, worth_elements);
+      // dE = Ku . (R^T dx) - omega . tau with R^T dR = [omega]x, tau = sum y_a x (Ku)_a and, from the polar decomposition,
+      // (tr(S) I - S) omega = sum g_a x R^T dx_a.
+      Vec3 tau = Vec3::Zero();
+      for (int a = 0; a < 8; ++a)
+        tau +=
+          u.segment<3>(3 * a).cross(Ku.segment<3>(3 * a)) + h_ * vertex_offset(a).cross(Vec3(Ku.segment<3>(3 * a)));
+      const Mat3 S = R.transpose() * F;
+      const Mat3 spin = S.trace() * Mat3::Identity() - S;
+      constexpr double collapsed = 1e-6; // the rotation is not differentiable there: leave its term out
+      const Vec3 z = spin.determinant() > collapsed ? Vec3(spin.inverse() * tau) : Vec3(Vec3::Zero());
+      for (int a = 0; a < 8; ++a)
+        Eigen::Map<Vec3>(values_.data() + 24 * e + 3 * a) =
+          R * (z.cross(element(e).gradient[a]) - Ku.segment<3>(3 * a));
+    },
+    worth_elements);
   forces.resize(mass_.size());
   gather(values_, forces[0].data());
 }
 
 void Corotational::linearise(const Points& x) {
-  parallel_for(n_elements(), [&](const std::size_t e) {
-    Eigen::Map<Mat3>(rotations_.data() + 9 * e) = material::rotation_of(deformation_gradient(e, x));
-  }, worth_elements);
+  parallel_for(
+    n_elements(),
+    [&](const std::size_t e) {
+      Eigen::Map<Mat3>(rotations_.data() + 9 * e) = material::rotation_of(deformation_gradient(e, x));
+    },
+    worth_elements);
 }
 
 void Corotational::apply_stiffness(const std::span<const double> p, const std::span<double> y) const {
   constexpr std::size_t block = 64;
-  parallel_for((n_elements() + block - 1) / block, [&](const std::size_t b) {
-    const std::size_t first = b * block;
-    fem::apply_stiffness({std::min(block, n_elements() - first), corners_.data() + 8 * first, stiffness_.data() + first,
-                          rotations_.data() + 9 * first},
-                         p.data(), values_.data() + 24 * first);
-  }, worth_elements / block);
+  parallel_for((n_elements() + block - 1) / block,
+               [&](const std::size_t b) {
+                 const std::size_t first = b * block;
+                 fem::apply_stiffness({std::min(block, n_elements() - first), corners_.data() + 8 * first,
+                                       stiffness_.data() + first, rotations_.data() + 9 * first},
+                                      p.data(), values_.data() + 24 * first);
+               },
+               worth_elements / block);
   gather(values_, y.data());
 }
 
 void Corotational::stiffness_diagonal(std::vector<Mat3>& blocks) const {
   blocks.resize(mass_.size());
-  parallel_for(mass_.size(), [&](const std::size_t corner) {
-    Mat3 sum = Mat3::Zero();
-    for (auto k = user_start_[corner]; k < user_start_[corner + 1]; ++k) {
-      const std::size_t e = users_[k] / 8;
-      const int a = users_[k] % 8;
-      const Eigen::Map<const Mat3> R(rotations_.data() + 9 * e);
-      const Eigen::Map<const Eigen::Matrix<double, 24, 24>> K(stiffness_[e]);
-      sum += R * K.block<3, 3>(3 * a, 3 * a) * R.transpose();
-    }
-    blocks[corner] = sum;
-  }, worth_corners);
+  parallel_for(
+    mass_.size(),
+    [&](const std::size_t corner) {
+      Mat3 sum = Mat3::Zero();
+      for (auto k = user_start_[corner]; k < user_start_[corner + 1]; ++k) {
+        const std::size_t e = users_[k] / 8;
+        const int a = users_[k] % 8;
+        const Eigen::Map<const Mat3> R(rotations_.data() + 9 * e);
+        const Eigen::Map<const Eigen::Matrix<double, 24, 24>> K(stiffness_[e]);
+        sum += R * K.block<3, 3>(3 * a, 3 * a) * R.transpose();
+      }
+      blocks[corner] = sum;
+    },
+    worth_corners);
 }
 
 } // namespace kerf::fem

@@ -56,14 +56,14 @@ class Corotational : public dynamics::ElasticModel {
   void gather(const std::vector<double>& values, double* y) const;
 
   double h_;
-  std::vector<Element> elements_;          // [0] is the full cube
-  std::vector<std::uint32_t> element_of_;  // by copy
-  std::vector<const double*> stiffness_;   // by copy
-  std::vector<std::uint32_t> corners_;     // 8 a copy
+  std::vector<Element> elements_;                 // [0] is the full cube
+  std::vector<std::uint32_t> element_of_;         // by copy
+  std::vector<const double*> stiffness_;          // by copy
+  std::vector<std::uint32_t> corners_;            // 8 a copy
   std::vector<std::uint32_t> user_start_, users_; // by corner: 8 copy + vertex
   std::vector<double> mass_;
-  std::vector<double> rotations_;          // 9 a copy, at the linearisation point
-  mutable std::vector<double> values_;     // 24 a copy, scratch
+  std::vector<double> rotations_;      // 9 a copy, at the linearisation point
+  mutable std::vector<double> values_; // 24 a copy, scratch
 };
 
 } // namespace kerf::fem

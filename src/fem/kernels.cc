@@ -2,8 +2,8 @@
 
 namespace kerf::fem {
 
-__attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default"))) void
-apply_stiffness(const ElementBlock& block, const double* const p, double* const out) {
+__attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default"))) void apply_stiffness(
+  const ElementBlock& block, const double* const p, double* const out) {
   for (std::size_t e = 0; e < block.n; ++e) {
     const std::uint32_t* const corners = block.corners + 8 * e;
     const double* const K = block.stiffness[e];

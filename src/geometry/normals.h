@@ -19,8 +19,8 @@ class LocalNormals {
 
  private:
   const TriangleMesh& mesh_;
-  Points area_normals_;                       // by triangle; length is twice the area
-  std::vector<std::uint32_t> start_, users_;  // triangles of vertex v: users_[start_[v] .. start_[v + 1]]
+  Points area_normals_;                      // by triangle; length is twice the area
+  std::vector<std::uint32_t> start_, users_; // triangles of vertex v: users_[start_[v] .. start_[v + 1]]
 };
 
 } // namespace kerf::geometry

@@ -54,8 +54,10 @@ Soup read_soup(const std::string& path) {
   if (!read)
     refuse(path, "the mesh cannot be read: its contents are not what its name promises", remedy);
   if (soup.points.empty() || soup.polygons.empty())
-    refuse(path, "the mesh is empty: " + std::to_string(soup.points.size()) + " vertices, " +
-                   std::to_string(soup.polygons.size()) + " faces", remedy);
+    refuse(path,
+           "the mesh is empty: " + std::to_string(soup.points.size()) + " vertices, " +
+             std::to_string(soup.polygons.size()) + " faces",
+           remedy);
   return soup;
 }
 

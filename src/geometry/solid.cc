@@ -1,8 +1,8 @@
 #include "geometry/solid.h"
 
 #include "base/error.h"
-#include "geometry/predicates.h"
 #include "base/union_find.h"
+#include "geometry/predicates.h"
 
 #include <Eigen/Geometry>
 
@@ -203,8 +203,9 @@ void require_no_self_intersection(const TriangleMesh& mesh, const std::string& p
   if (pairs.empty())
     return;
   const auto& [i, j] = pairs.front();
-  refuse(path, "it intersects itself: " + std::to_string(pairs.size()) + " pairs of triangles, the first " +
-                 std::to_string(i) + " and " + std::to_string(j) + " near " + to_text(centroid(mesh, i)),
+  refuse(path,
+         "it intersects itself: " + std::to_string(pairs.size()) + " pairs of triangles, the first " +
+           std::to_string(i) + " and " + std::to_string(j) + " near " + to_text(centroid(mesh, i)),
          "Repair it with a boolean union or a remesher");
 }
 

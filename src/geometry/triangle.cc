@@ -24,9 +24,8 @@ Vec3 closest_point(const Vec3& p, const std::array<Vec3, 3>& triangle) {
     return p - n * (n.dot(p - a) / n.squaredNorm());
   const std::array<Vec3, 3> candidates = {closest_on_segment(p, a, b), closest_on_segment(p, b, c),
                                           closest_on_segment(p, c, a)};
-  return *std::min_element(candidates.begin(), candidates.end(), [&](const Vec3& q, const Vec3& r) {
-    return (q - p).squaredNorm() < (r - p).squaredNorm();
-  });
+  return *std::min_element(candidates.begin(), candidates.end(),
+                           [&](const Vec3& q, const Vec3& r) { return (q - p).squaredNorm() < (r - p).squaredNorm(); });
 }
 
 std::optional<Vec3> closest_point_in_plane(const Vec3& p, const int axis, const std::array<Vec3, 3>& triangle) {

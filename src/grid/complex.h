@@ -13,16 +13,17 @@ using CornerId = Id<struct CornerTag>;
 
 struct Copy {
   CellId cell;
-  std::uint8_t nodes = 0;             ///< bits of the material nodes of its component
-  std::array<CornerId, 8> corners;    ///< in deal.II's vertex order
+  std::uint8_t nodes = 0;          ///< bits of the material nodes of its component
+  std::array<CornerId, 8> corners; ///< in deal.II's vertex order
 };
 
 struct CellComplex {
-  Table<CopyId, Copy> copies;               ///< ordered by cell, then by lowest vertex
-  Table<CellId, std::uint32_t> first_copy;  ///< copies of cell c: first_copy[c] .. first_copy[c + 1]; n_cells + 1 entries
-  Table<CornerId, NodeId> node;             ///< which node a corner is an instance of
-  Table<NodeId, CornerId> real_corner;      ///< the one corner that holds a material node; invalid for empty nodes
-  Table<CopyId, std::uint32_t> piece;       ///< connected component of the copy graph, numbered from 0
+  Table<CopyId, Copy> copies; ///< ordered by cell, then by lowest vertex
+  Table<CellId, std::uint32_t>
+    first_copy;                        ///< copies of cell c: first_copy[c] .. first_copy[c + 1]; n_cells + 1 entries
+  Table<CornerId, NodeId> node;        ///< which node a corner is an instance of
+  Table<NodeId, CornerId> real_corner; ///< the one corner that holds a material node; invalid for empty nodes
+  Table<CopyId, std::uint32_t> piece;  ///< connected component of the copy graph, numbered from 0
   std::uint32_t n_pieces = 0;
 
   std::size_t n_copies() const { return copies.size(); }

@@ -69,7 +69,7 @@ std::array<Tetrahedron, 6> octant(const Grid& grid, const Cuts& cuts, const Cell
   const auto local = [&](const Vec3& p) -> Vec3 { return (p - origin) / grid.h(); };
   const Vec3 node(vertex & 1, vertex >> 1 & 1, vertex >> 2 & 1);
   const Vec3 middle = local(cell_point(grid, cuts, c));
-  std::array<Vec3, 3> on_edge, in_face; // by the edge's direction, by the face's normal
+  std::array<Vec3, 3> on_edge, in_face;  // by the edge's direction, by the face's normal
   for (int axis = 0; axis < 3; ++axis) { // right on the edge and in the face: round-off may not turn a thin octant over
     on_edge[axis] = node;
     on_edge[axis][axis] = local(edge_point(grid, cuts, grid.edges(c)[cube::line_at(vertex, axis)]))[axis];

@@ -21,8 +21,8 @@ constexpr double min_edge_parameter = 1e-10;
 
 struct EdgeCut {
   EdgeId edge;
-  double t = 0.5;               ///< position along the edge from its lower node, in [min_edge_parameter, 1 - ...] [1]
-  Vec3 normal = Vec3::UnitX();  ///< unit normal of the cutting surface, rest frame; the sign has no meaning
+  double t = 0.5;              ///< position along the edge from its lower node, in [min_edge_parameter, 1 - ...] [1]
+  Vec3 normal = Vec3::UnitX(); ///< unit normal of the cutting surface, rest frame; the sign has no meaning
   CutLabel label = skin_label;
 };
 

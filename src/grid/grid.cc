@@ -49,9 +49,9 @@ Keys material_keys(const std::vector<Index3>& nodes) {
   keys.reserve(nodes.size());
   for (const Index3& i : nodes) {
     if (!in_range(i) || std::any_of(i.begin(), i.end(), [](const int c) { return c < 1; }))
-      throw DataError(Complaint{.rule = "a body may have at most " + std::to_string(max_coordinate - 1) +
-                               " grid nodes along an axis",
-                       .remedy = "Use a larger cube edge"});
+      throw DataError(
+        Complaint{.rule = "a body may have at most " + std::to_string(max_coordinate - 1) + " grid nodes along an axis",
+                  .remedy = "Use a larger cube edge"});
     keys.push_back(pack(i));
   }
   std::sort(keys.begin(), keys.end());
@@ -110,9 +110,8 @@ Grid::Grid(const Lattice& lattice, std::vector<Index3> material_nodes) : lattice
     const Keys& keys = edge_keys_[axis] = spread(cell_keys_, {axis != 0, axis != 1, axis != 2}, 1);
     edge_ends_.resize(first + keys.size());
     for (int end = 0; end < 2; ++end)
-      locate(keys, end * shift[axis], node_keys_, [&](const std::size_t e, const std::size_t n) {
-        edge_ends_[EdgeId(first + e)][end] = NodeId(n);
-      });
+      locate(keys, end * shift[axis], node_keys_,
+             [&](const std::size_t e, const std::size_t n) { edge_ends_[EdgeId(first + e)][end] = NodeId(n); });
     for (int line = 0; line < 12; ++line)
       if (cube::line_axis(line) == axis)
         locate(cell_keys_, vertex_shift(cube::line_vertices[line][0]), keys,

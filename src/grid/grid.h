@@ -72,8 +72,8 @@ class Grid {
 
  private:
   Lattice lattice_;
-  std::vector<std::uint64_t> node_keys_, cell_keys_;      // lattice coordinates packed into one number, sorted
-  std::array<std::vector<std::uint64_t>, 3> edge_keys_;   // of the lower nodes, by axis; ids run through x, y, z
+  std::vector<std::uint64_t> node_keys_, cell_keys_;    // lattice coordinates packed into one number, sorted
+  std::array<std::vector<std::uint64_t>, 3> edge_keys_; // of the lower nodes, by axis; ids run through x, y, z
   Table<NodeId, std::uint8_t> material_;
   Table<EdgeId, std::array<NodeId, 2>> edge_ends_;
   Table<FaceId, std::array<CellId, 2>> face_cells_;

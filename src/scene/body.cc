@@ -23,9 +23,7 @@ void find_supports(Body& body) {
   }
 }
 
-void build_surface(Body& body) {
-  body.surface = surface::build_surface(body.grid, body.cuts, body.complex);
-}
+void build_surface(Body& body) { body.surface = surface::build_surface(body.grid, body.cuts, body.complex); }
 
 void build_physics(Body& body, Timings& timings) {
   const ScopedTimer timer(timings, "assemble");

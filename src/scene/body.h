@@ -33,9 +33,9 @@ struct SupportRegion {
 /// What only a body in a scene with blades needs.
 struct Cutting {
   cut::PendingCuts pending;
-  Points x_before;                          ///< where the corners were when the blades were met last [m]
-  std::vector<std::size_t> n_cut_edges;     ///< by blade
-  std::size_t n_double_crossings = 0;       ///< edges that a sweep crossed an even number of times: left uncut
+  Points x_before;                      ///< where the corners were when the blades were met last [m]
+  std::vector<std::size_t> n_cut_edges; ///< by blade
+  std::size_t n_double_crossings = 0;   ///< edges that a sweep crossed an even number of times: left uncut
 };
 
 struct Body {
@@ -46,7 +46,7 @@ struct Body {
   surface::Placement placement = {};
   surface::PlacementCounts placed = {};
   surface::Surface surface = {};
-  Points positions = {};                    ///< of the surface's vertices, now [m]
+  Points positions = {}; ///< of the surface's vertices, now [m]
 
   std::function<Physics(const Body&)> make_physics = {};
   Physics physics = {};
@@ -55,10 +55,10 @@ struct Body {
   std::vector<SupportRegion> regions = {};
 
   std::unique_ptr<Cutting> cutting = nullptr; ///< null in a scene without blades
-  int n_recuts = 0;                         ///< how often the complex has changed
-  double mesh_volume = 0;                   ///< of the input mesh [m^3]
-  double first_volume = 0;                  ///< rest volume of the surface before any blade [m^3]
-  std::size_t n_unresolved_edges = 0;       ///< edges that the input mesh crosses more than once
+  int n_recuts = 0;                           ///< how often the complex has changed
+  double mesh_volume = 0;                     ///< of the input mesh [m^3]
+  double first_volume = 0;                    ///< rest volume of the surface before any blade [m^3]
+  std::size_t n_unresolved_edges = 0;         ///< edges that the input mesh crosses more than once
 };
 
 /// Builds complex, surface, state at rest, supports and physics of a body whose grid and skin are there, cut from `mesh`.

@@ -24,7 +24,8 @@ void TimeParameters::describe(Parameters& p) {
 }
 
 void GravityParameters::describe(Parameters& p) {
-  p.vector("Acceleration [m/s^2]", acceleration, "Acts on every body, world frame. Without this section there is none.");
+  p.vector("Acceleration [m/s^2]", acceleration,
+           "Acts on every body, world frame. Without this section there is none.");
 }
 
 void BodyParameters::describe(Parameters& p) {
@@ -33,9 +34,10 @@ void BodyParameters::describe(Parameters& p) {
   p.number("Mesh unit [m]", mesh_unit, positive, "Length of one unit of the mesh file.");
   p.number("Cube edge [m]", cube_edge, positive, "Edge h of the grid's cubes: the resolution of physics and cuts.");
   p.require_last();
-  p.vector("Lattice offset [1]", lattice_offset,
-           "Where the mesh's bounding box starts inside a cube, in parts of its edge along x, y, z. A half keeps the plane "
-           "sides of a box away from grid nodes.");
+  p.vector(
+    "Lattice offset [1]", lattice_offset,
+    "Where the mesh's bounding box starts inside a cube, in parts of its edge along x, y, z. A half keeps the plane "
+    "sides of a box away from grid nodes.");
   p.number("Sharp angle [degrees]", sharp_angle, {.min = 0, .max = 90, .min_excluded = true, .max_excluded = true},
            "Two cut planes that turn by more than this inside a face meet at a sharp edge (thesis §2.4.3).");
   p.choice("Integration", integration, {"octants", "full cube"},
@@ -88,8 +90,8 @@ void SurfaceFileParameters::describe(Parameters& p) {
 }
 
 void ObservableParameters::describe(Parameters& p) {
-  p.text("Names", names, "Quantities of every body to record at every step, separated by commas: " + observable_names() +
-                           ".");
+  p.text("Names", names,
+         "Quantities of every body to record at every step, separated by commas: " + observable_names() + ".");
   p.require_last();
 }
 
@@ -112,7 +114,11 @@ std::vector<SectionKind> grammar() {
     "A deformable solid.",
     keys_of<BodyParameters>(),
     {{"Material", Occurrence::once, "Elastic law and density.", keys_of<material::Elastic>(), {}},
-     {"Damping", Occurrence::once, "Rayleigh damping. Without this section there is none.", keys_of<DampingParameters>(), {}},
+     {"Damping",
+      Occurrence::once,
+      "Rayleigh damping. Without this section there is none.",
+      keys_of<DampingParameters>(),
+      {}},
      {"Implicit Euler", Occurrence::once, "Settings of that integrator.", keys_of<ImplicitEulerParameters>(), {}},
      {"Support", Occurrence::named, "A box whose grid nodes are held or moved.", keys_of<SupportParameters>(), {}}}};
   return {
@@ -121,11 +127,21 @@ std::vector<SectionKind> grammar() {
     body,
     {"Blade", Occurrence::named, "A moving blade that cuts every body it meets.", keys_of<BladeParameters>(), {}},
     {"Output", Occurrence::once, "What run.h5 holds.", keys_of<OutputParameters>(), {}},
-    {"Observables", Occurrence::once, "Quantities over time in run.h5. Without this section there are none.",
-     keys_of<ObservableParameters>(), {}},
-    {"Surface file", Occurrence::once, "The surface as a time series for ParaView. Without this section there is none.",
-     keys_of<SurfaceFileParameters>(), {}},
-    {"Images", Occurrence::once, "PNG images. Without this section no graphics are started.", keys_of<ImageParameters>(), {}},
+    {"Observables",
+     Occurrence::once,
+     "Quantities over time in run.h5. Without this section there are none.",
+     keys_of<ObservableParameters>(),
+     {}},
+    {"Surface file",
+     Occurrence::once,
+     "The surface as a time series for ParaView. Without this section there is none.",
+     keys_of<SurfaceFileParameters>(),
+     {}},
+    {"Images",
+     Occurrence::once,
+     "PNG images. Without this section no graphics are started.",
+     keys_of<ImageParameters>(),
+     {}},
   };
 }
 

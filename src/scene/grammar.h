@@ -22,12 +22,12 @@ struct GravityParameters {
 
 struct BodyParameters {
   std::string mesh;
-  double mesh_unit = 1;                        ///< [m]
-  double cube_edge = 0.01;                     ///< [m]
-  Vec3 lattice_offset = Vec3::Constant(0.5);   ///< parts of a cube edge [1]
-  double sharp_angle = 45;                     ///< [degrees]
+  double mesh_unit = 1;                      ///< [m]
+  double cube_edge = 0.01;                   ///< [m]
+  Vec3 lattice_offset = Vec3::Constant(0.5); ///< parts of a cube edge [1]
+  double sharp_angle = 45;                   ///< [degrees]
   std::string integration = "octants";
-  double sliver_floor = 1e-3;                  ///< [1]
+  double sliver_floor = 1e-3; ///< [1]
   std::string integrator = "implicit Euler";
   void describe(Parameters& p);
 };
@@ -52,11 +52,11 @@ struct SupportParameters {
 };
 
 struct BladeParameters {
-  Points edge;                ///< blade frame [m]
-  Vec3 spine = Vec3::Zero();  ///< blade frame [m]
-  std::vector<double> times;  ///< [s]
-  Points positions;           ///< [m]
-  Points rotations;           ///< [degrees]
+  Points edge;               ///< blade frame [m]
+  Vec3 spine = Vec3::Zero(); ///< blade frame [m]
+  std::vector<double> times; ///< [s]
+  Points positions;          ///< [m]
+  Points rotations;          ///< [degrees]
   void describe(Parameters& p);
 };
 

@@ -61,8 +61,9 @@ const std::vector<BodyObservable>& body_observables() {
     {"volume", "m^3", "enclosed by the surface now, divergence theorem over its triangles",
      [](const Body& b) { return surface::enclosed_volume(b.positions, b.surface.triangles); }},
     {"rest volume", "m^3", "enclosed by the surface at rest", rest_volume},
-    {"rest volume change", "m^3", "rest volume now less that before any blade: what placing cut vertices on a curved "
-                                  "skin gained or lost (DESIGN §4)",
+    {"rest volume change", "m^3",
+     "rest volume now less that before any blade: what placing cut vertices on a curved "
+     "skin gained or lost (DESIGN §4)",
      [](const Body& b) { return rest_volume(b) - b.first_volume; }},
     {"largest displacement", "m", "of a surface vertex from its rest position", largest_displacement},
     {"pieces", "1", "connected components of the copies", [](const Body& b) { return count(b.complex.n_pieces); }},

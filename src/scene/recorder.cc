@@ -67,7 +67,8 @@ const std::vector<std::string>& stages() {
 
 Recorder::Recorder(const std::filesystem::path& folder, const World& world, const output::RunInfo& info,
                    const std::string& scene_text)
-  : folder_(make_folder(folder, world)), run_file_(folder / "run.h5", info, make_schema(world)),
+  : folder_(make_folder(folder, world)),
+    run_file_(folder / "run.h5", info, make_schema(world)),
     bodies_(world.bodies.size()) {
   run_file_.write_scene(scene_text);
   run_file_.write_composition(world.composition);

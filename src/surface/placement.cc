@@ -83,8 +83,8 @@ Points moves_to_planes(const Vec3& p, const Planes& planes, const Directions& al
   for (std::size_t i = 0; i < planes.size(); ++i)
     distances[i] = planes[i].normal.dot(planes[i].point - p);
   for (int n = 0; n < rank(svd, threshold); ++n)
-    moves.push_back(moves.back() + allowed * svd.matrixV().col(n) * svd.matrixU().col(n).dot(distances) /
-                                     svd.singularValues()[n]);
+    moves.push_back(moves.back() +
+                    allowed * svd.matrixV().col(n) * svd.matrixU().col(n).dot(distances) / svd.singularValues()[n]);
   if (moves.size() > 1)
     moves.erase(moves.begin());
   std::reverse(moves.begin(), moves.end());
@@ -140,8 +140,11 @@ VolumeDerivatives skin_volume_derivatives(const Grid& grid, const Cuts& cuts, co
 class Placer {
  public:
   Placer(const Grid& grid, Cuts& cuts, std::span<const EdgeId> new_edges, const Placement& placement)
-    : grid_(grid), cuts_(cuts), new_edges_(new_edges.begin(), new_edges.end()),
-      sharp_angle_(placement.sharp_angle * std::numbers::pi / 180), threshold_(std::tan(0.5 * sharp_angle_)) {
+    : grid_(grid),
+      cuts_(cuts),
+      new_edges_(new_edges.begin(), new_edges.end()),
+      sharp_angle_(placement.sharp_angle * std::numbers::pi / 180),
+      threshold_(std::tan(0.5 * sharp_angle_)) {
     std::sort(new_edges_.begin(), new_edges_.end());
   }
 
@@ -195,7 +198,8 @@ class Placer {
     for (const CellId c : grid_.cells(f))
       if (c.valid()) {
         const auto& faces = grid_.faces(c);
-        sum += skin_volume_derivatives(grid_, cuts_, c).by_face[std::find(faces.begin(), faces.end(), f) - faces.begin()];
+        sum +=
+          skin_volume_derivatives(grid_, cuts_, c).by_face[std::find(faces.begin(), faces.end(), f) - faces.begin()];
       }
     return sum;
   }
@@ -244,7 +248,8 @@ class Placer {
       return slide(site, grid::face_point(grid_, cuts_, f));
     if (site.open.size() == 2) {
       const Vec3 middle = inside(site, mean_point(site.open));
-      return hold_inside(site, middle, {join(site.open[0], site.open[1], in_face, sharp_angle_) - middle, Vec3::Zero()});
+      return hold_inside(site, middle,
+                         {join(site.open[0], site.open[1], in_face, sharp_angle_) - middle, Vec3::Zero()});
     }
     return meet(site, grid::centre(grid_, f));
   }
@@ -262,7 +267,8 @@ class Placer {
 
   /// Later cuts: to the open planes along the locked ones; where that ends at a side of the site, on along the side.
   Vec3 slide(const Site& site, const Vec3& p) {
-    const Directions along = site.locked.empty() ? site.allowed : free_directions(site.locked, site.allowed, threshold_);
+    const Directions along =
+      site.locked.empty() ? site.allowed : free_directions(site.locked, site.allowed, threshold_);
     const Vec3 q = hold_inside(site, p, moves_to_planes(p, site.open, along, threshold_));
     const Planes sides = sides_at(site, q);
     if (sides.empty() || along.cols() < 2)

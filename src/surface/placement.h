@@ -25,7 +25,8 @@
 namespace kerf::surface {
 
 struct Placement {
-  double sharp_angle = 45; ///< two planes that turn by more than this meet at a sharp edge: pi - theta of §2.4.3 [degrees]
+  double sharp_angle =
+    45; ///< two planes that turn by more than this meet at a sharp edge: pi - theta of §2.4.3 [degrees]
 };
 
 /// How many vertices were placed, and how many stopped at the side of their face or cell.

@@ -38,8 +38,12 @@ double weight(const Vec3& xi, const int v, const unsigned support) {
 class Builder {
  public:
   Builder(const Grid& grid, const Cuts& cuts, const CellComplex& complex)
-    : grid_(grid), cuts_(cuts), complex_(complex), first_face_vertex_(grid.n_faces(), unset),
-      edge_vertices_(2 * cuts.all().size(), unset), centres_(complex.n_copies(), unset) {}
+    : grid_(grid),
+      cuts_(cuts),
+      complex_(complex),
+      first_face_vertex_(grid.n_faces(), unset),
+      edge_vertices_(2 * cuts.all().size(), unset),
+      centres_(complex.n_copies(), unset) {}
 
   void add_cell(const CellId cell) {
     const unsigned cut_lines = cuts_.configuration(grid_, cell);
@@ -68,9 +72,12 @@ class Builder {
  private:
   std::uint32_t vertex(const CellId cell, const CopyId copy, const TableVertex& v) {
     switch (v.kind) {
-      case VertexKind::edge: return edge_vertex(cell, copy, v);
-      case VertexKind::face: return face_vertex(cell, copy, v);
-      default: return centre(cell, copy);
+      case VertexKind::edge:
+        return edge_vertex(cell, copy, v);
+      case VertexKind::face:
+        return face_vertex(cell, copy, v);
+      default:
+        return centre(cell, copy);
     }
   }
 
@@ -119,7 +126,7 @@ class Builder {
   const Grid& grid_;
   const Cuts& cuts_;
   const CellComplex& complex_;
-  Table<FaceId, std::uint32_t> first_face_vertex_;                 // into face_vertices_, four a face
+  Table<FaceId, std::uint32_t> first_face_vertex_; // into face_vertices_, four a face
   std::vector<std::uint32_t> face_vertices_, edge_vertices_, centres_;
   std::vector<Eigen::Triplet<double>> entries_;
   Surface surface_;

@@ -16,11 +16,11 @@ namespace kerf::surface {
 using Weights = Eigen::SparseMatrix<double, Eigen::RowMajor, int>;
 
 struct Surface {
-  Points rest;                          ///< rest positions of the vertices [m]
-  std::vector<Triangle> triangles;      ///< counter-clockwise from outside
-  std::vector<grid::CutLabel> labels;   ///< per triangle: which cut made it; 0 is the skin
-  std::vector<grid::CopyId> copies;     ///< per triangle: the copy whose material it bounds
-  Weights weights;                      ///< W: n_vertices x n_corners [1]; rows sum to 1
+  Points rest;                        ///< rest positions of the vertices [m]
+  std::vector<Triangle> triangles;    ///< counter-clockwise from outside
+  std::vector<grid::CutLabel> labels; ///< per triangle: which cut made it; 0 is the skin
+  std::vector<grid::CopyId> copies;   ///< per triangle: the copy whose material it bounds
+  Weights weights;                    ///< W: n_vertices x n_corners [1]; rows sum to 1
 };
 
 Surface build_surface(const grid::Grid& grid, const grid::Cuts& cuts, const grid::CellComplex& complex);

@@ -2,8 +2,8 @@
 
 #include "base/error.h"
 
-#include <Eigen/Geometry>
 #include <gtest/gtest.h>
+#include <Eigen/Geometry>
 
 #include <functional>
 #include <limits>
@@ -15,7 +15,9 @@ namespace {
 Blade turning_blade() {
   return {.name = "hook",
           .edge = {{0, 0, 0}, {1, 0, 0}, {1.5, 0.5, 0.1}},
-          .key_frames = {{0, {0, 0, 0}, {0, 0, 0}}, {1, {1, 0, 2}, {0, 0, 90}}, {2, {1, 0, 2}, {0, 0, 90}},
+          .key_frames = {{0, {0, 0, 0}, {0, 0, 0}},
+                         {1, {1, 0, 2}, {0, 0, 90}},
+                         {2, {1, 0, 2}, {0, 0, 90}},
                          {4, {3, 1, 2}, {40, 20, 100}}}};
 }
 
@@ -40,8 +42,10 @@ TEST(Blade, PoseFollowsKeyFrames) {
 
 TEST(Blade, TurnsByMoreThanACircleFollowTheirVectors) {
   Blade blade = turning_blade();
-  blade.key_frames = {{0, Vec3::Zero(), {0, 0, 0}},   {1, Vec3::Zero(), {0, 0, 170}},
-                      {2, Vec3::Zero(), {0, 0, 340}}, {3, Vec3::Zero(), {0, 0, 500}}};
+  blade.key_frames = {{0, Vec3::Zero(), {0, 0, 0}},
+                      {1, Vec3::Zero(), {0, 0, 170}},
+                      {2, Vec3::Zero(), {0, 0, 340}},
+                      {3, Vec3::Zero(), {0, 0, 500}}};
   check(blade);
   for (double t = 0; t < 2; t += 0.1)
     EXPECT_TRUE(pose(blade, t)({1, 0, 0}).isApprox(

@@ -93,9 +93,11 @@ TEST_P(Offsets, BoxOnLatticePlanes) {
   EXPECT_EQ(e.cuts.all().size(), 2u * (8 * 6 + 6 * 4 + 4 * 8));
   EXPECT_EQ(e.n_double_crossings, 0u);
   EXPECT_EQ(e.n_lost_components, 0u);
-  expect_nodes(e, [&](const Vec3& p) { // the box moved by d
-    return (p.array() > lower.array()).all() && (p.array() <= upper.array()).all();
-  }, {lower, upper});
+  expect_nodes(e,
+               [&](const Vec3& p) { // the box moved by d
+                 return (p.array() > lower.array()).all() && (p.array() <= upper.array()).all();
+               },
+               {lower, upper});
   for (const auto& cut : e.cuts.all())
     EXPECT_EQ(cut.normal.cwiseAbs(), Vec3(Vec3::Unit(e.grid.axis(cut.edge))));
 }
@@ -117,14 +119,17 @@ TEST_P(Offsets, OctahedronAgreesWithItsFormula) {
   const Vec3 centre(3, 3, 3);
   const Embedding e = embed(sphere_mesh(1, centre, 0), 0.125, offset());
   expect_consistent(e);
-  expect_nodes(e, [&](const Vec3& p) {
-    const Vec3 q = p - centre;
-    const double distance = q.lpNorm<1>() - 1;
-    if (distance != 0)
-      return distance < 0;
-    // Moving the point by -d changes |q| by -sign(q_x) eps - ..., or by +eps where q_x is 0.
-    return q[0] > 0;
-  }, geometry::bounding_box(sphere_mesh(1, centre, 0)));
+  expect_nodes(
+    e,
+    [&](const Vec3& p) {
+      const Vec3 q = p - centre;
+      const double distance = q.lpNorm<1>() - 1;
+      if (distance != 0)
+        return distance < 0;
+      // Moving the point by -d changes |q| by -sign(q_x) eps - ..., or by +eps where q_x is 0.
+      return q[0] > 0;
+    },
+    geometry::bounding_box(sphere_mesh(1, centre, 0)));
 }
 
 TEST_P(Offsets, SphereKeepsItsVolume) {

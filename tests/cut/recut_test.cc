@@ -2,16 +2,16 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "base/union_find.h"
 #include "cut/blade.h"
 #include "cut/embed.h"
 #include "cut/pending.h"
 #include "geometry/predicates.h"
-#include "base/union_find.h"
 #include "grid/cube.h"
 #include "tests/geometry/meshes.h"
 
-#include <Eigen/Geometry>
 #include <gtest/gtest.h>
+#include <Eigen/Geometry>
 
 #include <limits>
 #include <map>
@@ -106,8 +106,8 @@ INSTANTIATE_TEST_SUITE_P(Axes, Planes, testing::Range(0, 3));
 TEST(Recut, ObliquePlanesSeparateIntoTwo) {
   const Block block;
   const std::vector<std::pair<Vec3, Vec3>> directions = {
-    {{1, -1, 0}, {0, 0, 1}}, {{1, 1, 0}, {0, 0, 1}},  {{1, -1, 0}, {0, 1, -1}}, {{2, 1, 0}, {0, 0, 1}},
-    {{0, 1, 1}, {1, 0, 0}},  {{1, 0, 1}, {0, 1, 0}},  {{1, 1, 0}, {0, 1, 1}},   {{2, 1, 0}, {0, 1, 1}},
+    {{1, -1, 0}, {0, 0, 1}}, {{1, 1, 0}, {0, 0, 1}}, {{1, -1, 0}, {0, 1, -1}}, {{2, 1, 0}, {0, 0, 1}},
+    {{0, 1, 1}, {1, 0, 0}},  {{1, 0, 1}, {0, 1, 0}}, {{1, 1, 0}, {0, 1, 1}},   {{2, 1, 0}, {0, 1, 1}},
     {{1, 0, 2}, {0, 1, 1}},  {{1, -1, 1}, {1, 1, 0}}};
   for (const auto& [u, v] : directions)
     for (const Vec3& through : {Vec3(2, 2, 2), Vec3(2.5, 2, 2), Vec3(2, 1.5, 2.5), Vec3(1, 2, 3)}) {
@@ -176,10 +176,10 @@ TEST(Recut, AgreesWithBruteForceOnTurningBlades) {
   std::uniform_real_distribution<double> number(-1, 1);
   for (Vec3& p : block.x)
     p += 0.2 * Vec3(number(random), number(random), number(random));
-  Blade blade{.name = "arc",
-              .edge = {{-4, 0, -1}, {0, 0, 2}, {1, 0.5, 5}, {3, 1, 7}},
-              .key_frames = {
-                {0, {2, -2, 0}, {0, 0, -60}}, {1, {2, 2, 0}, {10, 0, 60}}, {2, {2.5, 6, 0}, {0, 20, 170}}}};
+  Blade blade{
+    .name = "arc",
+    .edge = {{-4, 0, -1}, {0, 0, 2}, {1, 0.5, 5}, {3, 1, 7}},
+    .key_frames = {{0, {2, -2, 0}, {0, 0, -60}}, {1, {2, 2, 0}, {10, 0, 60}}, {2, {2.5, 6, 0}, {0, 20, 170}}}};
   const auto strip = sweep(blade, 0, 2);
   const auto cuts = block.cut(strip);
   std::size_t n_odd = 0, n_even = 0;

@@ -12,9 +12,9 @@ namespace kerf::dynamics {
 class Chain : public ElasticModel {
  public:
   struct Springs {
-    double anchor = 0;     ///< force -anchor d on a mass at distance d from rest [N/m]
-    double cubic = 0;      ///< force -cubic |d|^2 d beside it [N/m^3]
-    double neighbour = 0;  ///< between masses next to each other [N/m]
+    double anchor = 0;           ///< force -anchor d on a mass at distance d from rest [N/m]
+    double cubic = 0;            ///< force -cubic |d|^2 d beside it [N/m^3]
+    double neighbour = 0;        ///< between masses next to each other [N/m]
     Vec3 weights = Vec3::Ones(); ///< of the anchor's three directions [1]
   };
 

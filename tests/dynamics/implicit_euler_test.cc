@@ -20,8 +20,7 @@ TEST(ImplicitEuler, IsItsOwnFormula) {
   Vec3 x = state.x[0], v = state.v[0];
   for (int i = 0; i < 50; ++i) {
     stepper.step(state, {.mass_damping = alpha, .stiffness_damping = beta, .supports = {}}, dt);
-    const Vec3 change =
-      (v / dt - k / m * x) / (1 / (dt * dt) + alpha / dt + (1 + beta / dt) * k / m);
+    const Vec3 change = (v / dt - k / m * x) / (1 / (dt * dt) + alpha / dt + (1 + beta / dt) * k / m);
     x += change;
     v = change / dt;
     EXPECT_LT((state.x[0] - x).norm(), 1e-14);
@@ -78,9 +77,9 @@ TEST(ImplicitEuler, NewtonSolvesTheNonlinearStep) {
     for (std::size_t i = 1; i < 3; ++i) {
       const Vec3 moved = after.x[i] - before.x[i];
       const double m = model.lumped_mass()[i];
-      residual = std::max(residual, (m * (moved - dt * before.v[i]) / (dt * dt) + 0.2 * m * moved / dt - force[i] -
-                                     m * loads.gravity)
-                                      .norm());
+      residual = std::max(
+        residual,
+        (m * (moved - dt * before.v[i]) / (dt * dt) + 0.2 * m * moved / dt - force[i] - m * loads.gravity).norm());
     }
     return residual;
   };

@@ -35,8 +35,8 @@ class Steppers : public testing::TestWithParam<std::string> {
 TEST_P(Steppers, AreOfFirstOrder) {
   const double m = 2, k = 50, alpha = 0.3, beta = 0.01, end = 1.5, x0 = 0.1, v0 = -0.4;
   const double decay = 0.5 * (alpha + beta * k / m), omega = std::sqrt(k / m - decay * decay);
-  const double exact = std::exp(-decay * end) *
-                       (x0 * std::cos(omega * end) + (v0 + decay * x0) / omega * std::sin(omega * end));
+  const double exact =
+    std::exp(-decay * end) * (x0 * std::cos(omega * end) + (v0 + decay * x0) / omega * std::sin(omega * end));
   double before = 0;
   for (const int n : {400, 800, 1600, 3200}) {
     Chain model({m}, {.anchor = k});

@@ -91,8 +91,7 @@ TEST(Bar, ShiftedByHalfACellBendsAlike) {
 /// What the octants are for: counting the skin's half cells as full makes the bar far too stiff.
 TEST(Bar, FullCubesAreTooStiff) {
   const double octants = static_tip(0.05, Vec3(0, 0.5, 0.5), {.material = rubber});
-  const double full =
-    static_tip(0.05, Vec3(0, 0.5, 0.5), {.material = rubber, .integration = Integration::full_cube});
+  const double full = static_tip(0.05, Vec3(0, 0.5, 0.5), {.material = rubber, .integration = Integration::full_cube});
   EXPECT_LT(full / octants, 0.8);
   RecordProperty("full_over_octants", std::to_string(full / octants));
 }

@@ -3,8 +3,8 @@
 #include "tests/fem/bodies.h"
 #include "tests/fem/quadrature.h"
 
-#include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
+#include <Eigen/Eigenvalues>
 
 namespace kerf::fem {
 namespace {
@@ -160,8 +160,8 @@ TEST(Element, SliverMassesAreNotNegative) {
       std::vector<grid::EdgeCut> skin;
       for (const auto e : ids<grid::EdgeId>(body.grid.n_edges()))
         if (body.cuts.is_cut(e))
-          skin.push_back({e, body.grid.is_material(body.grid.ends(e)[0]) ? t : 1 - t,
-                          Vec3::Unit(body.grid.axis(e)), grid::skin_label});
+          skin.push_back({e, body.grid.is_material(body.grid.ends(e)[0]) ? t : 1 - t, Vec3::Unit(body.grid.axis(e)),
+                          grid::skin_label});
       sliver.cut(skin);
       const grid::Copy& copy = sliver.complex.copies[grid::CopyId(vertex)];
       const Element element =

@@ -4,8 +4,8 @@
 #include "surface/surface.h"
 #include "tests/fem/bodies.h"
 
-#include <Eigen/Geometry>
 #include <gtest/gtest.h>
+#include <Eigen/Geometry>
 
 namespace kerf::fem {
 namespace {
@@ -132,8 +132,7 @@ TEST(Force, UniformStretchHasItsEnergy) {
     Points x;
     for (const Vec3& X : one.body.rest())
       x.push_back(Q * X.cwiseProduct(Vec3::Ones() + strain));
-    const double density =
-      0.5 * rubber.lambda() * strain.sum() * strain.sum() + rubber.mu() * strain.squaredNorm();
+    const double density = 0.5 * rubber.lambda() * strain.sum() * strain.sum() + rubber.mu() * strain.squaredNorm();
     EXPECT_NEAR(model.energy(x) / (density * model.volume()), 1, 1e-3); // slivers carry their floor
     CorotationalOptions exact = one.options;
     exact.sliver_floor = 0;

@@ -7,9 +7,9 @@
 #include "fem/corotational.h"
 #include "tests/fem/bodies.h"
 
+#include <gtest/gtest.h>
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
-#include <gtest/gtest.h>
 
 namespace kerf::fem {
 namespace {
@@ -63,8 +63,7 @@ TEST(Motion, ImplicitEulerKeepsMomentum) {
 /// f has no torque, so x += dt v keeps the angular momentum too. Full cubes: light slivers would need shorter steps.
 TEST(Motion, SymplecticEulerKeepsBothMomenta) {
   const Body body = cut_block(73);
-  Corotational model(body.grid, body.cuts, body.complex,
-                     {.material = rubber, .integration = Integration::full_cube});
+  Corotational model(body.grid, body.cuts, body.complex, {.material = rubber, .integration = Integration::full_cube});
   dynamics::SymplecticEuler stepper(model);
   dynamics::State state = thrown(body, 74);
   const Momentum before = momentum(model, state);

@@ -8,8 +8,8 @@
 #include "tests/fem/bodies.h"
 #include "tests/fem/quadrature.h"
 
-#include <Eigen/Geometry>
 #include <gtest/gtest.h>
+#include <Eigen/Geometry>
 
 namespace kerf::fem {
 namespace {

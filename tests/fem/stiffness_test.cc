@@ -5,8 +5,8 @@
 #include "fem/kernels.h"
 #include "tests/fem/bodies.h"
 
-#include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
+#include <Eigen/Eigenvalues>
 
 namespace kerf::fem {
 namespace {

@@ -2,8 +2,8 @@
 
 #include "tests/geometry/meshes.h"
 
-#include <Eigen/Geometry>
 #include <gtest/gtest.h>
+#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <random>

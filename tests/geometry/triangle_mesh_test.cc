@@ -50,12 +50,14 @@ std::string stl(const TriangleMesh& mesh) {
   return text + "endsolid box\n";
 }
 
-const std::string quads_obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nv 0 0 1\nv 1 0 1\nv 0 1 1\nv 1 1 1\n"
-                              "f 1 5 7 3\nf 2 4 8 6\nf 1 2 6 5\nf 3 7 8 4\nf 1 3 4 2\nf 5 6 8 7\n";
-const std::string quads_ply = "ply\nformat ascii 1.0\nelement vertex 8\nproperty float x\nproperty float y\n"
-                              "property float z\nelement face 6\nproperty list uchar int vertex_indices\nend_header\n"
-                              "0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 0 1\n1 0 1\n0 1 1\n1 1 1\n"
-                              "4 0 4 6 2\n4 1 3 7 5\n4 0 1 5 4\n4 2 6 7 3\n4 0 2 3 1\n4 4 5 7 6\n";
+const std::string quads_obj =
+  "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nv 0 0 1\nv 1 0 1\nv 0 1 1\nv 1 1 1\n"
+  "f 1 5 7 3\nf 2 4 8 6\nf 1 2 6 5\nf 3 7 8 4\nf 1 3 4 2\nf 5 6 8 7\n";
+const std::string quads_ply =
+  "ply\nformat ascii 1.0\nelement vertex 8\nproperty float x\nproperty float y\n"
+  "property float z\nelement face 6\nproperty list uchar int vertex_indices\nend_header\n"
+  "0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 0 1\n1 0 1\n0 1 1\n1 1 1\n"
+  "4 0 4 6 2\n4 1 3 7 5\n4 0 1 5 4\n4 2 6 7 3\n4 0 2 3 1\n4 4 5 7 6\n";
 
 TriangleMesh unit_box() { return box_mesh(Vec3::Zero(), Vec3::Ones()); }
 
@@ -138,9 +140,7 @@ TEST(Solid, AcceptsTheLiver) {
   EXPECT_GT(volume(mesh), 0);
 }
 
-TEST(Solid, FlipsWhatIsInsideOut) {
-  EXPECT_DOUBLE_EQ(volume(require_solid(inside_out(unit_box()), "")), 1);
-}
+TEST(Solid, FlipsWhatIsInsideOut) { EXPECT_DOUBLE_EQ(volume(require_solid(inside_out(unit_box()), "")), 1); }
 
 TEST(Solid, OrientsTrianglesOneByOne) {
   TriangleMesh mesh = sphere_mesh(1, Vec3::Zero(), 3);
@@ -187,9 +187,9 @@ TEST(Solid, RefusesEachDefectByName) {
 
 /// The projective plane with six vertices, in space as it comes: closed and manifold, but one-sided.
 TEST(Solid, RefusesOneSidedSurfaces) {
-  TriangleMesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 2}, {2, 1, 1}},
-                    {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 5}, {0, 5, 1}, {1, 2, 4}, {2, 3, 5}, {3, 4, 1}, {4, 5, 2},
-                     {5, 1, 3}}};
+  TriangleMesh mesh{
+    {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 2}, {2, 1, 1}},
+    {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 5}, {0, 5, 1}, {1, 2, 4}, {2, 3, 5}, {3, 4, 1}, {4, 5, 2}, {5, 1, 3}}};
   expect_complaint(mesh, "not orientable");
 }
 

@@ -1,8 +1,8 @@
 #include "material/polar.h"
 
+#include <gtest/gtest.h>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
-#include <gtest/gtest.h>
 
 #include <random>
 
