@@ -37,11 +37,15 @@ Corotational::Corotational(const grid::Grid& grid, const grid::Cuts& cuts, const
         element_of_[c.value] = static_cast<std::uint32_t>(partial.size());
       }
   elements_.resize(partial.size() + 1);
-  elements_[0] = make_element(full_cube_moments(), h_, options.material, options.sliver_floor);
+  const auto make = [&](const Moments& moments) {
+    Element element = make_element(moments, h_, options.material, options.sliver_floor);
+    spread_mass(element, options.mass_spread);
+    return element;
+  };
+  elements_[0] = make(full_cube_moments());
   parallel_for(partial.size(), [&](const std::size_t i) {
     const grid::Copy& copy = complex.copies[partial[i]];
-    elements_[i + 1] =
-      make_element(octant_moments(grid, cuts, copy.cell, copy.nodes), h_, options.material, options.sliver_floor);
+    elements_[i + 1] = make(octant_moments(grid, cuts, copy.cell, copy.nodes));
   });
 
   corners_.reserve(8 * n);

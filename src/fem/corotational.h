@@ -27,6 +27,7 @@ struct CorotationalOptions {
   material::Elastic material;
   Integration integration = Integration::octants;
   double sliver_floor = 1e-3; ///< make_element
+  double mass_spread = 0;     ///< spread_mass
 };
 
 class Corotational : public dynamics::ElasticModel {

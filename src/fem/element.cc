@@ -117,4 +117,12 @@ Element make_element(const Moments& moments, const double h, const material::Ela
   return element;
 }
 
+void spread_mass(Element& element, const double part) {
+  double total = 0;
+  for (const double m : element.mass)
+    total += m;
+  for (double& m : element.mass)
+    m += part * (total / 8 - m);
+}
+
 } // namespace kerf::fem

@@ -44,22 +44,23 @@ std::string line(const Parts&... parts) {
 
 std::function<Physics(const Body&)> physics_maker(const Section& section, const BodyParameters& parameters,
                                                   const material::Elastic& material) {
-  const fem::CorotationalOptions fem_options{
-    material, parameters.integration == "octants" ? fem::Integration::octants : fem::Integration::full_cube,
-    parameters.sliver_floor};
-  const auto make_model = [fem_options](const Body& body) {
-    return std::make_unique<fem::Corotational>(body.grid, body.cuts, body.complex, fem_options);
-  };
-  if (parameters.integrator == "symplectic Euler")
-    return [make_model](const Body& body) {
-      Physics physics{make_model(body), nullptr};
+  fem::CorotationalOptions fem_options{.material = material};
+  if (parameters.integration == "full cube")
+    fem_options.integration = fem::Integration::full_cube;
+  if (parameters.integrator == "symplectic Euler") {
+    fem_options.sliver_floor = 0; // nothing is solved
+    fem_options.mass_spread = read_if_written<SymplecticEulerParameters>(section, "Symplectic Euler").mass_spread;
+    return [fem_options](const Body& body) {
+      Physics physics{std::make_unique<fem::Corotational>(body.grid, body.cuts, body.complex, fem_options), nullptr};
       physics.stepper = std::make_unique<dynamics::SymplecticEuler>(*physics.model);
       return physics;
     };
+  }
   const auto settings = read_if_written<ImplicitEulerParameters>(section, "Implicit Euler");
+  fem_options.sliver_floor = settings.sliver_floor;
   const dynamics::ImplicitEulerOptions options{settings.n_newton, settings.cg_tolerance, settings.max_cg_iterations};
-  return [make_model, options](const Body& body) {
-    Physics physics{make_model(body), nullptr};
+  return [fem_options, options](const Body& body) {
+    Physics physics{std::make_unique<fem::Corotational>(body.grid, body.cuts, body.complex, fem_options), nullptr};
     physics.stepper = std::make_unique<dynamics::ImplicitEuler>(*physics.model, options);
     return physics;
   };

@@ -42,8 +42,6 @@ void BodyParameters::describe(Parameters& p) {
            "Two cut planes that turn by more than this inside a face meet at a sharp edge (thesis §2.4.3).");
   p.choice("Integration", integration, {"octants", "full cube"},
            "How a partly filled cell counts: with its own material, or as a full cube.");
-  p.number("Sliver floor [1]", sliver_floor, {.min = 0, .max = 1},
-           "A copy that holds less than this part of its cube gets the stiffness of this part.");
   p.choice("Integrator", integrator, {"implicit Euler", "symplectic Euler"}, "How time advances.");
 }
 
@@ -57,6 +55,14 @@ void ImplicitEulerParameters::describe(Parameters& p) {
   p.number("CG tolerance [1]", cg_tolerance, {.min = 0, .max = 1, .min_excluded = true, .max_excluded = true},
            "Residual over right-hand side at which conjugate gradients stop.");
   p.integer("CG iterations [1]", max_cg_iterations, at_least_one, "Most iterations; more is a failure of the run.");
+  p.number("Sliver floor [1]", sliver_floor, {.min = 0, .max = 1},
+           "A copy that holds less than this part of its cube gets the stiffness of this part.");
+}
+
+void SymplecticEulerParameters::describe(Parameters& p) {
+  p.number("Mass spread [1]", mass_spread, {.min = 0, .max = 1},
+           "Part of each cell's mass that its corners share evenly: bounds the frequency of slivers, and with it the "
+           "stable time step.");
 }
 
 void SupportParameters::describe(Parameters& p) {
@@ -120,6 +126,7 @@ std::vector<SectionKind> grammar() {
       keys_of<DampingParameters>(),
       {}},
      {"Implicit Euler", Occurrence::once, "Settings of that integrator.", keys_of<ImplicitEulerParameters>(), {}},
+     {"Symplectic Euler", Occurrence::once, "Settings of that integrator.", keys_of<SymplecticEulerParameters>(), {}},
      {"Support", Occurrence::named, "A box whose grid nodes are held or moved.", keys_of<SupportParameters>(), {}}}};
   return {
     {"Time", Occurrence::once, "Steps of the run.", keys_of<TimeParameters>(), {}},

@@ -27,7 +27,6 @@ struct BodyParameters {
   Vec3 lattice_offset = Vec3::Constant(0.5); ///< parts of a cube edge [1]
   double sharp_angle = 45;                   ///< [degrees]
   std::string integration = "octants";
-  double sliver_floor = 1e-3; ///< [1]
   std::string integrator = "implicit Euler";
   void describe(Parameters& p);
 };
@@ -42,6 +41,12 @@ struct ImplicitEulerParameters {
   int n_newton = 1;
   double cg_tolerance = 1e-6;
   int max_cg_iterations = 2000;
+  double sliver_floor = 1e-3; ///< [1]
+  void describe(Parameters& p);
+};
+
+struct SymplecticEulerParameters {
+  double mass_spread = 0.2; ///< [1]
   void describe(Parameters& p);
 };
 
