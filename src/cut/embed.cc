@@ -164,9 +164,7 @@ bool is_mixed(const grid::Grid& grid, const grid::EdgeId e) {
 class Skin {
  public:
   Skin(const geometry::TriangleMesh& mesh, const grid::Grid& grid, Embedding& result)
-    : grid_(grid),
-      result_(result),
-      normals_(mesh),
+    : mesh_(mesh), grid_(grid), result_(result),
       shell_(geometry::shells(mesh)),
       is_lost_(shell_.empty() ? 0 : *std::max_element(shell_.begin(), shell_.end()) + 1, 1) {}
 
@@ -183,12 +181,8 @@ class Skin {
       ++result_.n_triple_crossings;
     const Crossing& kept = grid_.is_material(grid_.ends(*edge)[0]) ? of_edge.front() : of_edge.back();
     is_lost_[shell_[kept.triangle]] = 0;
-    constexpr double smoothing = 0.5; // of a cube edge: what is finer than the grid is noise to it
-    Vec3 point = grid_.position(grid_.ends(*edge)[0]);
-    point[lattice_edge.axis] += kept.t * grid_.h();
-    const Vec3 normal = normals_.at(kept.triangle, point, smoothing * grid_.h());
-    const bool is_rounded_away = normal.isZero(0); // of a sliver
-    cuts_.push_back({*edge, kept.t, is_rounded_away ? Vec3(Vec3::Unit(lattice_edge.axis)) : normal, grid::skin_label});
+    cuts_.push_back({*edge, kept.t, Vec3::Zero(), grid::skin_label});
+    triangles_.push_back(kept.triangle);
   }
 
   void finish() {
@@ -197,6 +191,7 @@ class Skin {
       n_mixed += is_mixed(grid_, e) ? 1 : 0;
     if (n_mixed != cuts_.size())
       throw std::logic_error("embed: an edge of the skin is crossed by nothing; the mesh is not closed");
+    find_normals();
     std::sort(cuts_.begin(), cuts_.end(), [](const auto& a, const auto& b) { return a.edge < b.edge; });
     for (const grid::EdgeCut& cut : cuts_)
       result_.cuts.add(cut);
@@ -204,12 +199,26 @@ class Skin {
   }
 
  private:
+  void find_normals() {
+    const geometry::LocalNormals normals(mesh_);
+    parallel_for(cuts_.size(), [&](const std::size_t i) {
+      constexpr double smoothing = 0.4; // of a cube edge: what is finer than the grid is noise to it
+      grid::EdgeCut& cut = cuts_[i];
+      Vec3 point = grid_.position(grid_.ends(cut.edge)[0]);
+      point[grid_.axis(cut.edge)] += cut.t * grid_.h();
+      cut.normal = normals.at(triangles_[i], point, smoothing * grid_.h());
+      if (cut.normal.isZero(0)) // rounded away, of a sliver
+        cut.normal = Vec3::Unit(grid_.axis(cut.edge));
+    });
+  }
+
+  const geometry::TriangleMesh& mesh_;
   const grid::Grid& grid_;
   Embedding& result_;
-  geometry::LocalNormals normals_;
   std::vector<std::uint32_t> shell_;
   std::vector<std::uint8_t> is_lost_;
   std::vector<grid::EdgeCut> cuts_;
+  std::vector<std::uint32_t> triangles_; // that made each cut
 };
 
 } // namespace

@@ -9,7 +9,7 @@
 /// depends neither on the order of the triangles nor on threads; memory grows with the surface, plus the material nodes
 /// themselves. Since the displaced surface is closed, y and z lines must tell the same classes; that is checked.
 ///
-/// The normal of a skin cut is the mesh's, averaged over half a cube edge but not across its sharp edges.
+/// The normal of a skin cut is the mesh's, averaged over two fifths of a cube edge but not across its sharp edges.
 ///
 /// Limit: what is thinner than an edge and passes between nodes is lost; it is counted, not repaired.
 

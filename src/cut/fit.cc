@@ -60,16 +60,17 @@ class Fitter {
     : mesh_(mesh), grid_(grid), cuts_(cuts), triangles_(mesh, grid) {}
 
   void run() {
-    for (const CellId c : ids<CellId>(grid_.n_cells())) {
-      if (cuts_.configuration(grid_, c) == 0)
-        continue;
-      for (int face = 0; face < cube::n_faces; ++face)
-        if ((face & 1) == 1 || !grid_.cells(grid_.faces(c)[face])[0].valid())
-          fit_face(c, face);
-    }
+    std::vector<CellId> cells;
     for (const CellId c : ids<CellId>(grid_.n_cells()))
       if (cuts_.configuration(grid_, c) != 0)
-        fit_cell(c);
+        cells.push_back(c);
+    // Every vertex that is moved exists already, so each cell and face writes its own place.
+    parallel_for(cells.size(), [&](const std::size_t i) {
+      for (int face = 0; face < cube::n_faces; ++face)
+        if ((face & 1) == 1 || !grid_.cells(grid_.faces(cells[i])[face])[0].valid())
+          fit_face(cells[i], face);
+    });
+    parallel_for(cells.size(), [&](const std::size_t i) { fit_cell(cells[i]); });
   }
 
  private:
@@ -114,31 +115,44 @@ class Fitter {
     const double tolerance = 1e-9 * grid_.h();
     const auto triangles = triangles_.of(c);
     return std::any_of(triangles.begin(), triangles.end(), [&](const std::uint32_t t) {
-      return (geometry::closest_point(p, geometry::corners(mesh_, t)) - p).norm() < tolerance;
+      const auto triangle = geometry::corners(mesh_, t);
+      for (int axis = 0; axis < 3; ++axis) {
+        const auto [low, high] = std::minmax({triangle[0][axis], triangle[1][axis], triangle[2][axis]});
+        if (p[axis] < low - tolerance || p[axis] > high + tolerance)
+          return false;
+      }
+      return (geometry::closest_point(p, triangle) - p).norm() < tolerance;
     });
   }
 
   /// The point of the mesh nearest to p along the line through it, inside the cell; where the line meets none, the nearest of
-  /// all there; nothing when there is none at all, or p is on the mesh. `normal` is the axis of the face that the vertex stays
-  /// in, or -1.
+  /// all there; nothing when there is none at all, or p is on the mesh. `normal` is the axis of the face that the vertex
+  /// stays in, or -1.
   std::optional<Vec3> fit(const CellId c, const Vec3& p, const Vec3& direction, const int normal) const {
     if (lies_on_mesh(c, p))
       return std::nullopt;
-    std::optional<Vec3> along, nearest;
-    const auto keep_nearer = [&](std::optional<Vec3>& best, const Vec3& q) {
-      if (is_inside(c, q, normal) && (!best || (q - p).squaredNorm() < (*best - p).squaredNorm()))
-        best = q;
-    };
+    const auto along = nearest(c, p, normal, [&](const auto& triangle) -> std::optional<Vec3> {
+      const auto s = geometry::line_meets(p, direction, triangle);
+      return s ? std::optional<Vec3>(p + *s * direction) : std::nullopt;
+    });
+    if (along)
+      return along;
+    return nearest(c, p, normal, [&](const auto& triangle) {
+      return normal < 0 ? std::optional(geometry::closest_point(p, triangle))
+                        : geometry::closest_point_in_plane(p, normal, triangle);
+    });
+  }
+
+  /// Of the points that `candidate` finds on the cell's triangles, the one inside that is nearest to p.
+  template <class Candidate>
+  std::optional<Vec3> nearest(const CellId c, const Vec3& p, const int normal, const Candidate& candidate) const {
+    std::optional<Vec3> best;
     for (const std::uint32_t t : triangles_.of(c)) {
-      const auto triangle = geometry::corners(mesh_, t);
-      if (const auto s = geometry::line_meets(p, direction, triangle))
-        keep_nearer(along, p + *s * direction);
-      if (normal < 0)
-        keep_nearer(nearest, geometry::closest_point(p, triangle));
-      else if (const auto q = geometry::closest_point_in_plane(p, normal, triangle))
-        keep_nearer(nearest, *q);
+      const auto q = candidate(geometry::corners(mesh_, t));
+      if (q && is_inside(c, *q, normal) && (!best || (*q - p).squaredNorm() < (*best - p).squaredNorm()))
+        best = q;
     }
-    return along ? along : nearest;
+    return best;
   }
 
   bool is_inside(const CellId c, const Vec3& p, const int normal) const {

@@ -1,0 +1,87 @@
+/// How long the first tessellation of a body takes (thesis §2.8: 1,177 cells in 282 ms), stage by stage, over six grids of
+/// the liver; and how fast its surface follows the corners. Prints n, seconds, n/s; medians of several runs.
+
+#include "base/parallel.h"
+#include "cut/embed.h"
+#include "cut/fit.h"
+#include "geometry/solid.h"
+#include "surface/placement.h"
+#include "surface/surface.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+
+namespace {
+
+using namespace kerf;
+
+/// Median seconds of a call.
+template <class Function>
+double seconds(const int n_runs, const Function& f) {
+  std::vector<double> times;
+  for (int i = 0; i < n_runs; ++i) {
+    const auto start = std::chrono::steady_clock::now();
+    f();
+    times.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+  }
+  std::nth_element(times.begin(), times.begin() + n_runs / 2, times.end());
+  return times[n_runs / 2];
+}
+
+std::size_t n_surface_cells(const cut::Embedding& body) {
+  std::size_t n = 0;
+  for (const auto c : ids<grid::CellId>(body.grid.n_cells()))
+    n += body.cuts.configuration(body.grid, c) != 0;
+  return n;
+}
+
+void measure(const geometry::TriangleMesh& mesh, const double h) {
+  constexpr int n_runs = 9;
+  const Vec3 offset = Vec3::Constant(0.5);
+  const double embedding = seconds(n_runs, [&] { cut::embed(mesh, h, offset); });
+  const cut::Embedding bare = cut::embed(mesh, h, offset);
+  std::vector<grid::EdgeId> skin;
+  for (const grid::EdgeCut& cut : bare.cuts.all())
+    skin.push_back(cut.edge);
+
+  grid::Cuts cuts = bare.cuts;
+  const double placing = seconds(n_runs, [&] {
+    cuts = bare.cuts;
+    surface::place(bare.grid, cuts, skin, {});
+  });
+  grid::Cuts fitted = cuts;
+  const double fitting = seconds(n_runs, [&] {
+    fitted = cuts;
+    cut::fit_skin(mesh, bare.grid, fitted);
+  });
+  grid::CellComplex complex;
+  const double copying = seconds(n_runs, [&] { complex = grid::build_complex(bare.grid, fitted); });
+  surface::Surface surface;
+  const double tessellating =
+    seconds(n_runs, [&] { surface = surface::build_surface(bare.grid, fitted, complex); });
+  const Points corners = grid::rest_positions(bare.grid, complex);
+  Points positions;
+  const double following = seconds(n_runs, [&] { surface::follow(surface, corners, positions); });
+
+  const std::size_t n = n_surface_cells(bare);
+  const double total = embedding + placing + fitting + copying + tessellating;
+  std::printf("%7.2f %9zu %9zu %8.2f %8.2f %8.2f %8.2f %8.2f %8.2f %12.3g %10.3g\n", 1e3 * h, bare.grid.n_cells(), n,
+              1e3 * embedding, 1e3 * placing, 1e3 * fitting, 1e3 * copying, 1e3 * tessellating, 1e3 * total,
+              static_cast<double>(n) / total, static_cast<double>(positions.size()) / following);
+}
+
+} // namespace
+
+int main(const int argc, char** const argv) {
+  if (argc > 1)
+    set_n_threads(std::max(1, std::atoi(argv[1])));
+  const std::string path = KERF_SOURCE_DIR "/params/meshes/liver_25k.off";
+  const geometry::TriangleMesh mesh = geometry::require_solid(geometry::read_mesh(path, 1e-3), path);
+  std::printf("threads: %d (first argument); times in ms\n", n_threads());
+  std::printf("%7s %9s %9s %8s %8s %8s %8s %8s %8s %12s %10s\n", "h [mm]", "cells", "surface", "embed", "place", "fit",
+              "copies", "surface", "total", "surface c/s", "follow v/s");
+  for (const double h : {0.0102, 0.008, 0.0057, 0.004, 0.0028, 0.002})
+    measure(mesh, h);
+}
