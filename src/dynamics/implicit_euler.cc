@@ -50,19 +50,22 @@ struct BlockJacobi {
   }
 };
 
-int solve(const Operator& A, const BlockJacobi& P, Vector& dx, const Vector& rhs, const ImplicitEulerOptions& options) {
+/// `scale` [N]: norm of the forces that balance in the right-hand side.
+int solve(const Operator& A, const BlockJacobi& P, Vector& dx, const Vector& rhs, const double scale,
+          const ImplicitEulerOptions& options) {
   const double norm = rhs.l2_norm();
   if (!std::isfinite(norm))
     throw NumericalError("forces are not finite");
   constexpr double nothing = 1e-100; // [N]: squares of less underflow, and conjugate gradients divide by them
-  if (norm < nothing)
+  const double tolerance = options.cg_tolerance * scale;
+  if (norm < std::max(nothing, tolerance))
     return 0;
-  dealii::SolverControl control(options.max_cg_iterations, options.cg_tolerance * norm, false, false);
+  dealii::SolverControl control(options.max_cg_iterations, tolerance, false, false);
   try {
     dealii::SolverCG<Vector>(control).solve(A, dx, rhs, P);
   } catch (const dealii::SolverControl::NoConvergence& failure) {
     throw NumericalError("conjugate gradients left a relative residual of " +
-                         std::to_string(failure.last_residual / norm) + " after " + std::to_string(failure.last_step) +
+                         std::to_string(failure.last_residual / scale) + " after " + std::to_string(failure.last_step) +
                          " iterations. Use a smaller time step, a larger sliver floor or more iterations");
   }
   return static_cast<int>(control.last_step());
@@ -88,8 +91,11 @@ StepReport ImplicitEuler::step(State& state, const Loads& loads, const double dt
       moved[i] = flat(x)[i] - flat(state.x)[i];
     if (loads.stiffness_damping > 0)
       model_.apply_stiffness({moved.begin(), moved.size()}, {damping.begin(), damping.size()});
+    double square_of_scale = 0;
     for (std::size_t i = 0; i < n; ++i) {
       Eigen::Map<Vec3> r(rhs.begin() + 3 * i);
+      const double magnitude = force[i].norm() + mass[i] * (loads.gravity.norm() + state.v[i].norm() / dt);
+      square_of_scale += held[i] ? 0 : magnitude * magnitude;
       r = force[i] + mass[i] * (loads.gravity + state.v[i] / dt) -
           mass_factor * mass[i] * Eigen::Map<const Vec3>(moved.begin() + 3 * i);
       r -= loads.stiffness_damping / dt * Eigen::Map<const Vec3>(damping.begin() + 3 * i);
@@ -102,7 +108,8 @@ StepReport ImplicitEuler::step(State& state, const Loads& loads, const double dt
         held[i] ? Mat3::Identity()
                 : Mat3((stiffness_factor * inverse_blocks_[i] + mass_factor * mass[i] * Mat3::Identity()).inverse());
     dx = 0;
-    report.n_iterations += solve({model_, held, mass_factor, stiffness_factor}, {inverse_blocks_}, dx, rhs, options_);
+    report.n_iterations += solve({model_, held, mass_factor, stiffness_factor}, {inverse_blocks_}, dx, rhs,
+                                 std::sqrt(square_of_scale), options_);
     for (std::size_t i = 0; i < 3 * n; ++i)
       flat(x)[i] += dx[i];
   }

@@ -14,7 +14,9 @@ namespace kerf::dynamics {
 
 struct ImplicitEulerOptions {
   int n_newton = 1;           ///< Newton iterations a step; one is the linearly implicit method
-  double cg_tolerance = 1e-6; ///< residual over right-hand side, in the Euclidean norm [1]
+  /// Residual over the forces that balance in it (elastic, weight, inertia), in the Euclidean norm [1]. Not over the
+  /// right-hand side, which vanishes at rest and would be solved ever more exactly there.
+  double cg_tolerance = 1e-6;
   int max_cg_iterations = 2000;
 };
 

@@ -4,6 +4,7 @@
 
 #include "base/timer.h"
 #include "cut/blade.h"
+#include "cut/cut_surface.h"
 #include "cut/pending.h"
 #include "dynamics/model.h"
 #include "dynamics/stepper.h"
@@ -30,12 +31,12 @@ struct SupportRegion {
   std::function<Vec3(double time)> displacement; ///< [m]
 };
 
-/// What only a body in a scene with blades needs.
+/// What only a body in a scene that cuts needs.
 struct Cutting {
   cut::PendingCuts pending;
   Points x_before;                      ///< where the corners were when the blades were met last [m]
-  std::vector<std::size_t> n_cut_edges; ///< by blade
-  std::size_t n_double_crossings = 0;   ///< edges that a sweep crossed an even number of times: left uncut
+  std::vector<std::size_t> n_cut_edges; ///< by label, from 1: the blades, then the cut surfaces
+  std::size_t n_double_crossings = 0;   ///< edges that one cut crossed an even number of times: left uncut
 };
 
 struct Body {
@@ -52,12 +53,13 @@ struct Body {
   Physics physics = {};
   dynamics::State state = {};
   dynamics::Loads loads = {};
+  dynamics::StepReport report = {}; ///< of the last step
   std::vector<SupportRegion> regions = {};
 
-  std::unique_ptr<Cutting> cutting = nullptr; ///< null in a scene without blades
+  std::unique_ptr<Cutting> cutting = nullptr; ///< null in a scene that cuts nothing
   int n_recuts = 0;                           ///< how often the complex has changed
   double mesh_volume = 0;                     ///< of the input mesh [m^3]
-  double first_volume = 0;                    ///< rest volume of the surface before any blade [m^3]
+  double first_volume = 0;                    ///< rest volume of the surface before any cut [m^3]
   std::size_t n_unresolved_edges = 0;         ///< edges that the input mesh crosses more than once
 };
 
@@ -67,6 +69,9 @@ void start(Body& body, const geometry::TriangleMesh& mesh, Timings& timings);
 /// Cuts the body with what the blades sweep between two times, as it stands now (DESIGN §5), and carries the state over: new
 /// corners take position and velocity from the copy they came from (DESIGN §6).
 void recut(Body& body, std::span<const cut::Blade> blades, double t0, double t1, Timings& timings);
+
+/// Cuts the body with a surface, all of it at once, as it stands now; else like recut().
+void cut_at_once(Body& body, const cut::CutSurface& surface, Timings& timings);
 
 /// Moves the surface to the corners.
 void follow(Body& body);

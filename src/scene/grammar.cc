@@ -3,6 +3,8 @@
 #include "material/elastic.h"
 #include "scene/observables.h"
 
+#include <algorithm>
+
 namespace kerf::scene {
 
 namespace {
@@ -53,7 +55,7 @@ void DampingParameters::describe(Parameters& p) {
 void ImplicitEulerParameters::describe(Parameters& p) {
   p.integer("Newton iterations [1]", n_newton, at_least_one, "Corrections a step; 1 is the linearly implicit method.");
   p.number("CG tolerance [1]", cg_tolerance, {.min = 0, .max = 1, .min_excluded = true, .max_excluded = true},
-           "Residual over right-hand side at which conjugate gradients stop.");
+           "Residual over the forces that balance in it, at which conjugate gradients stop.");
   p.integer("CG iterations [1]", max_cg_iterations, at_least_one, "Most iterations; more is a failure of the run.");
   p.number("Sliver floor [1]", sliver_floor, {.min = 0, .max = 1},
            "A copy that holds less than this part of its cube gets the stiffness of this part.");
@@ -84,6 +86,47 @@ void BladeParameters::describe(Parameters& p) {
   p.require_last();
   p.points("Rotations [degrees]", rotations,
            "How the blade's frame is turned at these times: rotation vectors. Empty: never turned.");
+}
+
+void CutSurfaceParameters::describe(Parameters& p) {
+  p.number("Time [s]", time, non_negative, "When it cuts: before the first step that begins then or later.");
+  p.choice("Shape", shape, {"plane", "sphere", "cylinder", "disc", "mesh"},
+           "What cuts, in the world frame, every body as it stands at that time. Of the keys below, those of the shape "
+           "must be set, and no others.");
+  p.require_last();
+}
+
+void ShapeParameters::describe(Parameters& p) {
+  const auto is_any_of = [&](const std::vector<std::string>& shapes) {
+    return shape.empty() || std::find(shapes.begin(), shapes.end(), shape) != shapes.end();
+  };
+  const auto require_of_a_shape = [&] {
+    if (!shape.empty())
+      p.require_last();
+  };
+  if (is_any_of({"plane", "sphere", "cylinder", "disc"})) {
+    p.vector("Point [m]", point, "Plane: a point of it. Sphere, cylinder, disc: the centre.");
+    require_of_a_shape();
+  }
+  if (is_any_of({"plane", "disc"})) {
+    p.vector("Normal [1]", normal, "Plane, disc: the normal, of any length.");
+    require_of_a_shape();
+  }
+  if (is_any_of({"cylinder"})) {
+    p.vector("Axis [1]", axis, "Cylinder: direction of its axis, of any length.");
+    require_of_a_shape();
+    p.number("Height [m]", height, positive, "Cylinder: from end face to end face, both of which cut.");
+    require_of_a_shape();
+  }
+  if (is_any_of({"sphere", "cylinder", "disc"})) {
+    p.number("Radius [m]", radius, positive, "Sphere, cylinder, disc.");
+    require_of_a_shape();
+  }
+  if (is_any_of({"mesh"})) {
+    p.text("Mesh", mesh, "Mesh: open or closed triangles (OFF, OBJ, STL, PLY); what it crosses evenly stays whole.");
+    require_of_a_shape();
+    p.number("Mesh unit [m]", mesh_unit, positive, "Mesh: length of one unit of its file.");
+  }
 }
 
 void OutputParameters::describe(Parameters& p) {
@@ -133,6 +176,11 @@ std::vector<SectionKind> grammar() {
     {"Gravity", Occurrence::once, "A uniform field.", keys_of<GravityParameters>(), {}},
     body,
     {"Blade", Occurrence::named, "A moving blade that cuts every body it meets.", keys_of<BladeParameters>(), {}},
+    {"Cut surface",
+     Occurrence::named,
+     "A surface that cuts every body it meets, all of it at once.",
+     keys_of<CutSurfaceParameters, ShapeParameters>(),
+     {}},
     {"Output", Occurrence::once, "What run.h5 holds.", keys_of<OutputParameters>(), {}},
     {"Observables",
      Occurrence::once,

@@ -62,7 +62,7 @@ const std::vector<BodyObservable>& body_observables() {
      [](const Body& b) { return surface::enclosed_volume(b.positions, b.surface.triangles); }},
     {"rest volume", "m^3", "enclosed by the surface at rest", rest_volume},
     {"rest volume change", "m^3",
-     "rest volume now less that before any blade: what placing cut vertices on a curved "
+     "rest volume now less that before any cut: what placing cut vertices on a curved "
      "skin gained or lost (DESIGN §4)",
      [](const Body& b) { return rest_volume(b) - b.first_volume; }},
     {"largest displacement", "m", "of a surface vertex from its rest position", largest_displacement},
@@ -70,7 +70,7 @@ const std::vector<BodyObservable>& body_observables() {
     {"copies", "1", "cells, once per connected component", [](const Body& b) { return count(b.complex.n_copies()); }},
     {"surface triangles", "1", "of the closed surface",
      [](const Body& b) { return count(b.surface.triangles.size()); }},
-    {"cut edges", "1", "grid edges cut by blades",
+    {"cut edges", "1", "grid edges cut by blades and cut surfaces",
      [](const Body& b) {
        std::size_t n = 0;
        if (b.cutting)
@@ -80,8 +80,10 @@ const std::vector<BodyObservable>& body_observables() {
      }},
     {"waiting cuts", "1", "cut edges that wait: at most two edges of a cell are cut in a step (thesis §2.4.3)",
      [](const Body& b) { return b.cutting ? count(b.cutting->pending.size()) : 0.0; }},
-    {"double crossings", "1", "grid edges that one sweep crossed an even number of times, left uncut",
+    {"double crossings", "1", "grid edges that one sweep or cut surface crossed an even number of times, left uncut",
      [](const Body& b) { return b.cutting ? count(b.cutting->n_double_crossings) : 0.0; }},
+    {"solver iterations", "1", "of the linear solver in the step",
+     [](const Body& b) { return count(b.report.n_iterations); }},
     {"clamped vertices", "1", "placements that were held at the side of their face or cell",
      [](const Body& b) { return count(b.placed.n_clamped); }},
   };

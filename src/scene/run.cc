@@ -1,6 +1,7 @@
 #include "scene/run.h"
 
 #include "base/error.h"
+#include "base/parameters.h"
 
 namespace kerf::scene {
 
@@ -20,20 +21,32 @@ void on(const Body& body, const int step, const double time, const Action& actio
   try {
     action();
   } catch (const NumericalError& error) {
-    throw NumericalError("body " + body.name + ", step " + std::to_string(step) + ", time " + std::to_string(time) +
+    throw NumericalError("body " + body.name + ", step " + std::to_string(step) + ", time " + to_text(time) +
                          " s: " + error.what());
   }
 }
 
-void advance(World& world, const int step, Timings& seconds) {
+void cut(World& world, const int step, Timings& seconds) {
   const double dt = world.time_step, t0 = (step - 1) * dt, t1 = step * dt;
-  for (Body& body : world.bodies)
-    if (body.cutting)
+  for (Body& body : world.bodies) {
+    if (!body.cutting)
+      continue;
+    on(body, step, t1, [&] {
+      for (const TimedSurface& timed : world.cut_surfaces)
+        if (timed.step == step)
+          cut_at_once(body, timed.surface, seconds);
       recut(body, world.blades, t0, t1, seconds);
+    });
+  }
+}
+
+void advance(World& world, const int step, Timings& seconds) {
+  const double dt = world.time_step, t1 = step * dt;
+  cut(world, step, seconds);
   for (Body& body : world.bodies) {
     const ScopedTimer timer(seconds, "solve");
     on(body, step, t1, [&] {
-      body.physics.stepper->step(body.state, body.loads, dt);
+      body.report = body.physics.stepper->step(body.state, body.loads, dt);
       require_finite(body);
     });
   }
