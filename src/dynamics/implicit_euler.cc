@@ -107,7 +107,8 @@ StepReport ImplicitEuler::step(State& state, const Loads& loads, const double dt
       inverse_blocks_[i] =
         held[i] ? Mat3::Identity()
                 : Mat3((stiffness_factor * inverse_blocks_[i] + mass_factor * mass[i] * Mat3::Identity()).inverse());
-    dx = 0;
+    for (std::size_t i = 0; i < n; ++i) // the first guess: each corner goes on as before
+      Eigen::Map<Vec3>(dx.begin() + 3 * i) = newton > 0 || held[i] ? Vec3(Vec3::Zero()) : Vec3(dt * state.v[i]);
     report.n_iterations += solve({model_, held, mass_factor, stiffness_factor}, {inverse_blocks_}, dx, rhs,
                                  std::sqrt(square_of_scale), options_);
     for (std::size_t i = 0; i < 3 * n; ++i)
