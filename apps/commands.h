@@ -12,5 +12,6 @@ using Arguments = std::vector<std::string>;
 int run(const Arguments& arguments);
 int check(const Arguments& arguments);
 int params(const Arguments& arguments);
+int table(const Arguments& arguments);
 
 } // namespace kerf::apps

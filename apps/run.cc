@@ -43,20 +43,28 @@ void print_body(const scene::Body& body) {
                 body.n_unresolved_edges);
 }
 
+void print_cut(const scene::World& world, const grid::CutLabel label, const std::string& what,
+               const std::string& remedy) {
+  std::size_t n = 0;
+  for (const scene::Body& body : world.bodies)
+    n += body.cutting->n_cut_edges[label - 1];
+  std::printf("%s: cut %zu grid edges%s\n", what.c_str(), n,
+              n == 0 ? (": it never met a body. " + remedy).c_str() : "");
+}
+
 void print_cutting(const scene::World& world) {
-  for (std::size_t b = 0; b < world.blades.size(); ++b) {
-    std::size_t n = 0, n_double = 0, n_waiting = 0;
-    for (const scene::Body& body : world.bodies) {
-      n += body.cutting->n_cut_edges[b];
+  for (const cut::Blade& blade : world.blades)
+    print_cut(world, blade.label, "blade " + blade.name, "Check its key frames");
+  for (const auto& [surface, step] : world.cut_surfaces)
+    print_cut(world, surface.label, "cut surface " + surface.name, "Check its place and time");
+  std::size_t n_double = 0, n_waiting = 0;
+  for (const scene::Body& body : world.bodies)
+    if (body.cutting) {
       n_double += body.cutting->n_double_crossings;
       n_waiting += body.cutting->pending.size();
     }
-    std::printf("blade %s: cut %zu grid edges%s\n", world.blades[b].name.c_str(), n,
-                n == 0 ? ": it never met a body. Check its key frames" : "");
-    if (b + 1 == world.blades.size() && n_double + n_waiting > 0)
-      std::printf("  %zu edges crossed twice in one sweep and left whole, %zu cuts still waiting\n", n_double,
-                  n_waiting);
-  }
+  if (n_double + n_waiting > 0)
+    std::printf("  %zu edges crossed twice by one cut and left whole, %zu cuts still waiting\n", n_double, n_waiting);
 }
 
 void print_summary(const scene::World& world, const Timings& seconds, const SceneArguments& arguments) {

@@ -1,6 +1,7 @@
 #pragma once
 
-/// Disjoint sets of 0 .. n - 1. The root of a set is its smallest member, so results do not depend on the order of unions.
+/// Disjoint sets of 0 .. n - 1. The root of a set is its smallest member, so results do not depend on the order of
+/// unions.
 
 #include <cstdint>
 #include <numeric>

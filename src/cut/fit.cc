@@ -125,9 +125,9 @@ class Fitter {
     });
   }
 
-  /// The point of the mesh nearest to p along the line through it, inside the cell; where the line meets none, the nearest of
-  /// all there; nothing when there is none at all, or p is on the mesh. `normal` is the axis of the face that the vertex
-  /// stays in, or -1.
+  /// The point of the mesh nearest to p along the line through it, inside the cell; where the line meets none, the
+  /// nearest of all there; nothing when there is none at all, or p is on the mesh. `normal` is the axis of the face
+  /// that the vertex stays in, or -1.
   std::optional<Vec3> fit(const CellId c, const Vec3& p, const Vec3& direction, const int normal) const {
     if (lies_on_mesh(c, p))
       return std::nullopt;

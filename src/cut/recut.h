@@ -1,15 +1,14 @@
 #pragma once
 
-/// Which uncut edges a sweep meets in the current configuration (thesis §2.3.3, DESIGN §5).
+/// Which uncut edges a sweep meets in the current configuration (thesis §2.3.3).
 ///
 /// Method: an uncut edge between two material nodes is one current segment, from the real corner of its lower node to
 /// that of its upper node. It is cut when an odd number of the sweep's triangles cross it, by the exact predicates of
-/// geometry/predicates.h; boxes keep most pairs away from them. The normal is pulled back to rest with the deformation
-/// gradient F = dx/dX at the cut, averaged over the copies around the edge: N ~ F^T n.
+/// geometry/predicates.h; boxes keep most pairs away from them. The normal is pulled back to rest (target.h).
 ///
-/// A body that moves is met in relative motion: each edge sees the blade's earlier places carried along with itself, by the
-/// similarity that takes the edge from where it was to where it is. So what a blade sweeps in successive steps leaves no gap
-/// for an edge to slip through, and material that moves through a resting blade is cut.
+/// A body that moves is met in relative motion: each edge sees the blade's earlier places carried along with itself,
+/// by the similarity that takes the edge from where it was to where it is. So what a blade sweeps in successive steps
+/// leaves no gap for an edge to slip through, and material that moves through a resting blade is cut.
 
 #include "cut/blade.h"
 #include "grid/complex.h"

@@ -4,8 +4,9 @@
 ///
 ///     M (x - x_n - dt v_n) / dt^2 + (alpha M + beta K) (x - x_n) / dt = f(x) + M g
 ///
-/// for x at the end of the step by Newton's method from x_n, each correction by conjugate gradients with the inverse of the
-/// diagonal 3 x 3 blocks as preconditioner and free motion as first guess. First order, dissipative, stable for every dt. Held corners are eliminated.
+/// for x at the end of the step by Newton's method from x_n, each correction by conjugate gradients with the inverse
+/// of the diagonal 3 x 3 blocks as preconditioner and free motion as first guess. First order, dissipative, stable
+/// for every dt. Held corners are eliminated.
 
 #include "dynamics/model.h"
 #include "dynamics/stepper.h"

@@ -130,8 +130,8 @@ void Corotational::force(const Points& x, Points& forces) const {
       local_displacement(e, x, R, u.data());
       Ku.noalias() = Eigen::Map<const Eigen::Matrix<double, 24, 24>>(stiffness_[e]) * u;
 
-      // dE = Ku . (R^T dx) - omega . tau with R^T dR = [omega]x, tau = sum y_a x (Ku)_a and, from the polar decomposition,
-      // (tr(S) I - S) omega = sum g_a x R^T dx_a.
+      // dE = Ku . (R^T dx) - omega . tau with R^T dR = [omega]x, tau = sum y_a x (Ku)_a and, from the polar
+      // decomposition, (tr(S) I - S) omega = sum g_a x R^T dx_a.
       Vec3 tau = Vec3::Zero();
       for (int a = 0; a < 8; ++a)
         tau +=

@@ -3,10 +3,10 @@
 /// Corotational trilinear hexahedra on the copies of a cut body (Mueller and others 2002; Hauth and Strasser 2004;
 /// thesis §2.1.6).
 ///
-/// Element energy E = 1/2 u^T K u with u = R^T x - X, K the small-strain stiffness of the copy's material and R the rotation
-/// of its mean deformation gradient over that material (the cube's centre for a full cell). Forces are the exact -dE/dx:
-/// beside R K u they hold the term of dR/dx, without which an element would exert a torque on itself. K in the
-/// linearisation leaves out the derivatives of R, which keeps it positive semi-definite.
+/// Element energy E = 1/2 u^T K u with u = R^T x - X, K the small-strain stiffness of the copy's material and R the
+/// rotation of its mean deformation gradient over that material (the cube's centre for a full cell). Forces are the
+/// exact -dE/dx: beside R K u they hold the term of dR/dx, without which an element would exert a torque on itself. K
+/// in the linearisation leaves out the derivatives of R, which keeps it positive semi-definite.
 ///
 /// Limits: trilinear, so it locks near nu = 0.5 and in bending of thin parts; Hooke's law, so no good for large strain.
 

@@ -20,9 +20,10 @@ struct Element {
 /// fraction with a full cube's, so that corners held by slivers stay solvable.
 Element make_element(const Moments& moments, double h, const material::Elastic& material, double sliver_floor);
 
-/// Gives each corner the same share of a part `part` [1] of the element's mass, the rest stays where it is. Total mass stays, and
-/// so does momentum across a cut (copies of a cell share velocities there); a full cube does not change. It bounds the largest
-/// frequency of slivers, whose far corners carry hardly any mass: what explicit integrators need.
+/// Gives each corner the same share of a part `part` [1] of the element's mass, the rest stays where it is. Total
+/// mass stays, and so does momentum across a cut (copies of a cell share velocities there); a full cube does not
+/// change. It bounds the largest frequency of slivers, whose far corners carry hardly any mass: what explicit
+/// integrators need.
 void spread_mass(Element& element, double part);
 
 } // namespace kerf::fem

@@ -7,8 +7,8 @@
 
 namespace kerf::fem {
 
-/// A block of elements: for element e, the 8 corner indices at corners + 8 e, the stiffness (24 x 24, column by column) at
-/// stiffness[e], the rotation (3 x 3, column by column) at rotations + 9 e.
+/// A block of elements: for element e, the 8 corner indices at corners + 8 e, the stiffness (24 x 24, column by
+/// column) at stiffness[e], the rotation (3 x 3, column by column) at rotations + 9 e.
 struct ElementBlock {
   std::size_t n;
   const std::uint32_t* corners;

@@ -1,7 +1,7 @@
 #pragma once
 
-/// Normals of a mesh at the scale of whoever asks: a scan's single triangles are noise to a grid of larger cubes, while a
-/// sharp edge must stay sharp.
+/// Normals of a mesh at the scale of whoever asks: a scan's single triangles are noise to a grid of larger cubes,
+/// while a sharp edge must stay sharp.
 
 #include "geometry/triangle_mesh.h"
 
@@ -12,9 +12,9 @@ class LocalNormals {
   /// The mesh must outlive it.
   explicit LocalNormals(const TriangleMesh& mesh);
 
-  /// Unit normal at a point [m] of triangle `triangle`: the mean, by area, over that triangle and those connected to it by
-  /// triangles with a vertex within `radius` [m] of the point and a normal within 45 degrees of its own. Zero for a triangle
-  /// without area.
+  /// Unit normal at a point [m] of triangle `triangle`: the mean, by area, over that triangle and those connected to
+  /// it by triangles with a vertex within `radius` [m] of the point and a normal within 45 degrees of its own. Zero
+  /// for a triangle without area.
   Vec3 at(std::uint32_t triangle, const Vec3& point, double radius) const;
 
  private:

@@ -11,8 +11,8 @@ namespace kerf::geometry {
 /// The point of the triangle nearest to p [m].
 Vec3 closest_point(const Vec3& p, const std::array<Vec3, 3>& triangle);
 
-/// The point nearest to p [m] of where the triangle meets the plane through p with the given axis as normal; nothing when it
-/// does not.
+/// The point nearest to p [m] of where the triangle meets the plane through p with the given axis as normal; nothing
+/// when it does not.
 std::optional<Vec3> closest_point_in_plane(const Vec3& p, int axis, const std::array<Vec3, 3>& triangle);
 
 /// s where the line p + s d meets the triangle; nothing when it does not, or runs along it.

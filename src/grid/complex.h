@@ -1,6 +1,6 @@
 #pragma once
 
-/// The cells, duplicated once per connected component (DESIGN §3; the virtual node algorithm of Molino, Bao and Fedkiw
+/// The cells, duplicated once per connected component (the virtual node algorithm of Molino, Bao and Fedkiw
 /// 2004, on cubes; thesis §2.4.2). Two copies in face-adjacent cells that share a material node on the common face are
 /// glued along the whole face. Corners are the node instances that come out of it, the unknowns of every physics.
 

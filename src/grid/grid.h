@@ -4,8 +4,9 @@
 /// material node, and those cells' nodes, edges and faces. Which nodes hold material never changes; which edges are cut
 /// is kept beside it (cuts.h).
 ///
-/// Notation: an edge or face is named by its lower node and its axis (the direction of the edge, the normal of the face).
-/// Packed lattice coordinates are sorted, and a shift by a node keeps their order, so everything is built by linear merges.
+/// Notation: an edge or face is named by its lower node and its axis (the direction of the edge, the normal of the
+/// face). Packed lattice coordinates are sorted, and a shift by a node keeps their order, so everything is built by
+/// linear merges.
 /// Limit: at most 2^20 nodes along an axis, none with a negative coordinate.
 
 #include "base/id.h"
@@ -34,8 +35,8 @@ struct Lattice {
 
 class Grid {
  public:
-  /// Builds the cells that touch the given material nodes (coordinates from 1; duplicates are ignored). Throws DataError
-  /// when there are none, or too many along an axis.
+  /// Builds the cells that touch the given material nodes (coordinates from 1; duplicates are ignored). Throws
+  /// DataError when there are none, or too many along an axis.
   Grid(const Lattice& lattice, std::vector<Index3> material_nodes);
 
   const Lattice& lattice() const { return lattice_; }

@@ -93,6 +93,21 @@ Object write_rows(const Object& parent, const std::string& name, const Layout& l
   return dataset;
 }
 
+Object write_array(const Object& parent, const std::string& name, const Shape& shape, const void* values) {
+  const std::vector<hsize_t> extent(shape.extent.begin(), shape.extent.end());
+  const int rank = static_cast<int>(extent.size());
+  const Handle space(H5Screate_simple(rank, extent.data(), nullptr), H5Sclose);
+  const Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+  const bool is_empty = std::ranges::count(extent, 0u) > 0; // a chunk may not be
+  if (!is_empty && (H5Pset_chunk(creation.id(), rank, extent.data()) < 0 || H5Pset_shuffle(creation.id()) < 0 ||
+                    H5Pset_deflate(creation.id(), gzip_level) < 0))
+    fail(parent, name, "compress");
+  auto dataset = create(parent, name, native(shape.number), space, creation);
+  if (!is_empty && H5Dwrite(dataset.id(), native(shape.number), H5S_ALL, H5S_ALL, H5P_DEFAULT, values) < 0)
+    fail(parent, name, "write");
+  return dataset;
+}
+
 Object create_series(const Object& parent, const std::string& name, const Layout& layout,
                      const std::size_t chunk_rows) {
   const Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);

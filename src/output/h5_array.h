@@ -39,6 +39,15 @@ struct Layout {
 Object write_rows(const Object& parent, const std::string& name, const Layout& layout, const void* rows,
                   std::size_t n_rows);
 
+/// Numbers of any rank, the last index fastest.
+struct Shape {
+  Number number = Number::float64;
+  std::vector<std::size_t> extent;
+};
+
+/// Creates a dataset of that shape, in one piece, shuffled and compressed.
+Object write_array(const Object& parent, const std::string& name, const Shape& shape, const void* values);
+
 /// Creates an empty dataset that grows by rows; uncompressed, so that a chunk never moves when it grows.
 Object create_series(const Object& parent, const std::string& name, const Layout& layout, std::size_t chunk_rows);
 void append_rows(const Object& series, const Layout& layout, const void* rows, std::size_t n_rows);

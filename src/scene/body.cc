@@ -31,22 +31,24 @@ void build_physics(Body& body, Timings& timings) {
   body.physics = body.make_physics(body);
 }
 
-void inherit_state(dynamics::State& state, const Table<grid::CornerId, grid::CornerId>& parents) {
-  Points x, v;
-  x.reserve(parents.size());
-  v.reserve(parents.size());
-  for (const auto parent : parents) {
-    x.push_back(state.x[parent.value]);
-    v.push_back(state.v[parent.value]);
-  }
-  state.x = std::move(x);
-  state.v = std::move(v);
+Points inherited(const Points& of_corners, const Table<grid::CornerId, grid::CornerId>& parents) {
+  Points values;
+  values.reserve(parents.size());
+  for (const auto parent : parents)
+    values.push_back(of_corners[parent.value]);
+  return values;
 }
 
-/// Adds released cuts to the body; returns the edges.
-std::vector<grid::EdgeId> add_cuts(Body& body, const std::vector<grid::EdgeCut>& released) {
+void inherit_state(Body& body, const Table<grid::CornerId, grid::CornerId>& parents) {
+  body.state.x = inherited(body.state.x, parents);
+  body.state.v = inherited(body.state.v, parents);
+  body.cutting->x_before = inherited(body.cutting->x_before, parents);
+}
+
+/// Adds cuts to the body; returns the edges.
+std::vector<grid::EdgeId> add_cuts(Body& body, const std::vector<grid::EdgeCut>& cuts) {
   std::vector<grid::EdgeId> edges;
-  for (const grid::EdgeCut& cut : released) {
+  for (const grid::EdgeCut& cut : cuts) {
     body.cuts.add(cut);
     edges.push_back(cut.edge);
     ++body.cutting->n_cut_edges[cut.label - 1];
@@ -60,10 +62,17 @@ void rebuild_topology(Body& body, const std::vector<grid::EdgeId>& edges, Timing
   body.placed.n_placed += placed.n_placed;
   body.placed.n_clamped += placed.n_clamped;
   grid::CellComplex complex = grid::build_complex(body.grid, body.cuts);
-  inherit_state(body.state, grid::parents(body.complex, complex));
+  inherit_state(body, grid::parents(body.complex, complex));
   body.complex = std::move(complex);
   build_surface(body);
   ++body.n_recuts;
+}
+
+void make_cuts(Body& body, const std::vector<grid::EdgeCut>& cuts, Timings& timings) {
+  if (cuts.empty())
+    return;
+  rebuild_topology(body, add_cuts(body, cuts), timings);
+  build_physics(body, timings);
 }
 
 } // namespace
@@ -101,11 +110,18 @@ void recut(Body& body, const std::span<const cut::Blade> blades, const double t0
     }
     released = cutting.pending.release(body.grid, body.cuts);
   }
-  if (!released.empty()) {
-    rebuild_topology(body, add_cuts(body, released), timings);
-    build_physics(body, timings);
-  }
+  make_cuts(body, released, timings);
   body.cutting->x_before = body.state.x;
+}
+
+void cut_at_once(Body& body, const cut::CutSurface& surface, Timings& timings) {
+  cut::SweepCuts found;
+  {
+    const ScopedTimer timer(timings, "cut");
+    found = cut::cut_edges(surface, body.grid, body.cuts, body.complex, body.state.x);
+  }
+  body.cutting->n_double_crossings += found.n_double_crossings;
+  make_cuts(body, found.cuts, timings);
 }
 
 void follow(Body& body) { surface::follow(body.surface, body.state.x, body.positions); }

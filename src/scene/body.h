@@ -63,11 +63,12 @@ struct Body {
   std::size_t n_unresolved_edges = 0;         ///< edges that the input mesh crosses more than once
 };
 
-/// Builds complex, surface, state at rest, supports and physics of a body whose grid and skin are there, cut from `mesh`.
+/// Builds complex, surface, state at rest, supports and physics of a body whose grid and skin are there, cut from
+/// `mesh`.
 void start(Body& body, const geometry::TriangleMesh& mesh, Timings& timings);
 
-/// Cuts the body with what the blades sweep between two times, as it stands now (DESIGN §5), and carries the state over: new
-/// corners take position and velocity from the copy they came from (DESIGN §6).
+/// Cuts the body with what the blades sweep between two times, as it stands now, and carries the state
+/// over: new corners take position and velocity from the copy they came from.
 void recut(Body& body, std::span<const cut::Blade> blades, double t0, double t1, Timings& timings);
 
 /// Cuts the body with a surface, all of it at once, as it stands now; else like recut().

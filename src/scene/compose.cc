@@ -7,6 +7,7 @@
 #include "geometry/solid.h"
 #include "scene/expression.h"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <sstream>
@@ -27,11 +28,41 @@ Fields read_if_written(const Section& parent, const std::string& kind) {
   return section ? section->read<Fields>() : Fields();
 }
 
+/// What another room says, to stand inside a sentence.
+std::string clause(const std::string& sentence) { return sentence.substr(0, sentence.find_last_not_of(" .") + 1); }
+
+/// A room below knows the rule, the scene knows the place: the complaint of a room about a key, at the key's line.
+ParameterError placed(const Section& section, const std::string& key, const ParameterError& error) {
+  const Complaint& complaint = error.complaint();
+  const std::string detail = complaint.value.empty() ? "" : " (here " + complaint.value + ")";
+  return section.complaint(key, complaint.rule + detail, clause(complaint.remedy));
+}
+
+/// Relative paths start at the scene file.
+std::string resolved(const std::filesystem::path& path, const Section& section) {
+  const auto folder = std::filesystem::path(section.origin().file).parent_path();
+  return (path.is_relative() ? folder / path : path).string();
+}
+
 geometry::TriangleMesh read_body_mesh(const Section& section, const BodyParameters& parameters) {
-  std::filesystem::path path = parameters.mesh;
-  if (path.is_relative())
-    path = std::filesystem::path(section.origin().file).parent_path() / path;
-  return geometry::require_solid(geometry::read_mesh(path.string(), parameters.mesh_unit), path.string());
+  const std::string path = resolved(parameters.mesh, section);
+  try {
+    return geometry::require_solid(geometry::read_mesh(path, parameters.mesh_unit), path);
+  } catch (const DataError& error) {
+    throw DataError(section.complaint("Mesh", clause(error.what()), "").complaint());
+  }
+}
+
+cut::Embedding embed_mesh(const Section& section, const BodyParameters& parameters,
+                          const geometry::TriangleMesh& mesh) {
+  try {
+    return cut::embed(mesh, parameters.cube_edge, parameters.lattice_offset);
+  } catch (const ParameterError& error) { // about one of the last two, which embed calls as the scene does
+    throw section.complaint(error.complaint().path, error.complaint().rule, error.complaint().remedy);
+  } catch (const DataError&) {
+    throw section.complaint("Cube edge [m]", "no grid node is inside the mesh, it is smaller than a cube",
+                            "Use smaller cubes, or check Mesh unit [m]");
+  }
 }
 
 /// A line of the composition, from anything that prints.
@@ -87,11 +118,7 @@ Body compose_body(const Section& section, const GravityParameters* gravity, Worl
   const geometry::TriangleMesh mesh = read_body_mesh(section, parameters);
   cut::Embedding embedding = [&] {
     const ScopedTimer timer(world.setup_seconds, "cut");
-    try {
-      return cut::embed(mesh, parameters.cube_edge, parameters.lattice_offset);
-    } catch (const DataError& error) {
-      throw section.complaint("Cube edge [m]", error.what(), "");
-    }
+    return embed_mesh(section, parameters, mesh);
   }();
   Body body{section.name(), std::move(embedding.grid), std::move(embedding.cuts)};
   body.placement.sharp_angle = parameters.sharp_angle;
@@ -106,9 +133,9 @@ Body compose_body(const Section& section, const GravityParameters* gravity, Worl
     body.regions.push_back(compose_support(*support));
     require_held_nodes(*support, body, body.regions.back());
   }
-  if (!world.blades.empty()) {
+  if (const std::size_t n_cuts = world.blades.size() + world.cut_surfaces.size(); n_cuts > 0) {
     body.cutting = std::make_unique<Cutting>();
-    body.cutting->n_cut_edges.assign(world.blades.size(), 0);
+    body.cutting->n_cut_edges.assign(n_cuts, 0);
   }
   start(body, mesh, world.setup_seconds);
   world.composition.push_back(line("body ", body.name, ": ", mesh.triangles.size(), " mesh triangles in ",
@@ -141,9 +168,68 @@ cut::Blade compose_blade(const Section& section, const std::size_t index) {
   try {
     cut::check(blade);
   } catch (const ParameterError& error) {
-    throw section.complaint(error.what(), "");
+    const bool is_about_edge = error.complaint().path.ends_with("Edge [m]");
+    throw placed(section, is_about_edge ? "Edge [m]" : "Times [s]", error);
   }
   return blade;
+}
+
+/// Each shape needs keys of its own and reads no others.
+void require_keys_of_shape(const Section& section, ShapeParameters parameters) {
+  Parameters mine, all;
+  parameters.describe(mine);
+  ShapeParameters().describe(all);
+  std::string names;
+  for (const Parameter& key : mine.list())
+    names += (names.empty() ? "" : ", ") + key.name;
+  for (const Parameter& key : mine.list())
+    if (key.required && !section.writes(key.name))
+      throw section.complaint("the shape '" + parameters.shape + "' must have the key '" + key.name + "'",
+                              "Write 'set " + key.name + " = ...'. " + key.text);
+  for (const Parameter& key : all.list()) {
+    const auto is_it = [&](const Parameter& p) { return p.name == key.name; };
+    if (section.writes(key.name) && std::none_of(mine.list().begin(), mine.list().end(), is_it))
+      throw section.complaint(key.name, "the shape '" + parameters.shape + "' does not read this key",
+                              "Remove it: the keys of this shape are " + names);
+  }
+}
+
+cut::Shape make_shape(const ShapeParameters& p, const Section& section) {
+  if (p.shape == "plane")
+    return cut::Plane{p.point, p.normal.stableNormalized()};
+  if (p.shape == "sphere")
+    return cut::Sphere{p.point, p.radius};
+  if (p.shape == "cylinder")
+    return cut::Cylinder{p.point, p.axis.stableNormalized(), p.radius, p.height};
+  if (p.shape == "disc")
+    return cut::Disc{p.point, p.normal.stableNormalized(), p.radius};
+  try {
+    return geometry::read_mesh(resolved(p.mesh, section), p.mesh_unit);
+  } catch (const DataError& error) {
+    throw DataError(section.complaint("Mesh", clause(error.what()), "").complaint());
+  }
+}
+
+TimedSurface compose_cut_surface(const Section& section, const World& world) {
+  const auto parameters = section.read<CutSurfaceParameters>();
+  ShapeParameters shape;
+  shape.shape = parameters.shape;
+  require_keys_of_shape(section, shape);
+  section.read(shape);
+  cut::CutSurface surface{section.name(), make_shape(shape, section),
+                          static_cast<grid::CutLabel>(world.blades.size() + world.cut_surfaces.size() + 1)};
+  try {
+    cut::check(surface);
+  } catch (const ParameterError& error) {
+    throw placed(section, error.complaint().path, error); // check() calls the keys as the scene does
+  }
+  constexpr double rounding = 1e-6; // of a step: a time that is a multiple of it is meant to be one
+  const double steps_before = std::ceil(parameters.time / world.time_step - rounding);
+  if (steps_before >= world.n_steps)
+    throw section.complaint(
+      "Time [s]", line("must be before the last step, which begins at ", (world.n_steps - 1) * world.time_step, " s"),
+      "Cut earlier, or let the run end later");
+  return {std::move(surface), static_cast<int>(steps_before) + 1};
 }
 
 Box box_of(const Points& points) {
@@ -155,8 +241,8 @@ Box box_of(const Points& points) {
   return box;
 }
 
-/// A blade whose key frames stay away from the box of every body, grown by half its size for what the body may move, is a
-/// mistake.
+/// A blade whose key frames stay away from the box of every body, grown by half its size for what the body may move,
+/// is a mistake.
 void require_meeting(const Section& section, const cut::Blade& blade, const World& world) {
   const double first = blade.key_frames.front().time, last = blade.key_frames.back().time;
   Points path = cut::world_points(blade, first);
@@ -181,7 +267,7 @@ Images compose_images(const Section& section) {
   try {
     render::check(camera);
   } catch (const ParameterError& error) {
-    throw section.complaint("Eye [m]", error.what(), "");
+    throw placed(section, error.complaint().path.ends_with("up") ? "Up [1]" : "Eye [m]", error);
   }
   return {parameters.every, std::make_unique<render::Renderer>(camera, render::Look())};
 }
@@ -197,6 +283,8 @@ std::vector<const BodyObservable*> compose_observables(const Section& section) {
     if (!observable)
       throw section.complaint("Names", "'" + word + "' is not an observable",
                               "The observables and their units are listed by: kerf params");
+    if (std::find(chosen.begin(), chosen.end(), observable) != chosen.end())
+      throw section.complaint("Names", "'" + word + "' is named twice", "Name it once");
     chosen.push_back(observable);
   }
   return chosen;
@@ -219,7 +307,8 @@ void say_what_is_left_out(const Section& root, World& world) {
       world.composition.push_back("left out: " + kind + " (" + consequence + ")");
   };
   say("Gravity", "no field");
-  say("Blade", "no cut machinery in memory");
+  say("Blade", root.find("Cut surface") ? "nothing is swept" : "no cut machinery in memory");
+  say("Cut surface", "nothing is cut at once");
   say("Observables", "no series but time");
   say("Surface file", "no file for ParaView");
   say("Images", "no GL context");
@@ -239,6 +328,12 @@ World compose(const SceneText& text) {
   for (std::size_t i = 0; i < blades.size(); ++i) {
     world.blades.push_back(compose_blade(*blades[i], i));
     world.composition.push_back("blade " + world.blades[i].name);
+  }
+  for (const Section* section : root.all("Cut surface")) {
+    world.cut_surfaces.push_back(compose_cut_surface(*section, world));
+    const TimedSurface& timed = world.cut_surfaces.back();
+    world.composition.push_back(
+      line("cut surface ", timed.surface.name, ": cuts at ", (timed.step - 1) * world.time_step, " s"));
   }
   for (const Section* body : root.all("Body"))
     world.bodies.push_back(compose_body(*body, gravity_section ? &gravity : nullptr, world));

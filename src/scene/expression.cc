@@ -4,9 +4,26 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iostream>
 #include <memory>
 
 namespace kerf::scene {
+
+namespace {
+
+/// deal.II prints what the parser says to std::cerr before it throws; users get our own message instead.
+class SilentErrors {
+ public:
+  SilentErrors() : buffer_(std::cerr.rdbuf(nullptr)) {}
+  ~SilentErrors() { std::cerr.rdbuf(buffer_); }
+  SilentErrors(const SilentErrors&) = delete;
+  SilentErrors& operator=(const SilentErrors&) = delete;
+
+ private:
+  std::streambuf* buffer_;
+};
+
+} // namespace
 
 std::function<Vec3(double time)> displacement_of_time(const Section& section, const std::string& expressions) {
   constexpr const char* key = "Displacement [m]";
@@ -19,6 +36,7 @@ std::function<Vec3(double time)> displacement_of_time(const Section& section, co
     return Vec3(parser->value(t, 0), parser->value(t, 1), parser->value(t, 2));
   };
   try {
+    const SilentErrors silent;
     parser->initialize("t", expressions, {{"pi", std::acos(-1.0)}});
     if (!evaluate(0).allFinite())
       throw section.complaint(key, "must be finite at t = 0", remedy);

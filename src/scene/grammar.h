@@ -65,6 +65,24 @@ struct BladeParameters {
   void describe(Parameters& p);
 };
 
+struct CutSurfaceParameters {
+  double time = 0; ///< [s]
+  std::string shape;
+  void describe(Parameters& p);
+};
+
+/// What places a cut surface. Describes the keys of `shape`, all of which must be set but the last one of a mesh;
+/// those of all shapes while it is empty.
+struct ShapeParameters {
+  std::string shape;
+  Vec3 point = Vec3::Zero();                         ///< [m]
+  Vec3 normal = Vec3::UnitZ(), axis = Vec3::UnitZ(); ///< any length [1]
+  double radius = 0.01, height = 0.01;               ///< [m]
+  std::string mesh;
+  double mesh_unit = 1; ///< [m]
+  void describe(Parameters& p);
+};
+
 struct OutputParameters {
   int frames_every = 10; ///< steps
   void describe(Parameters& p);

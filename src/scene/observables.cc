@@ -63,7 +63,7 @@ const std::vector<BodyObservable>& body_observables() {
     {"rest volume", "m^3", "enclosed by the surface at rest", rest_volume},
     {"rest volume change", "m^3",
      "rest volume now less that before any cut: what placing cut vertices on a curved "
-     "skin gained or lost (DESIGN §4)",
+     "skin gained or lost",
      [](const Body& b) { return rest_volume(b) - b.first_volume; }},
     {"largest displacement", "m", "of a surface vertex from its rest position", largest_displacement},
     {"pieces", "1", "connected components of the copies", [](const Body& b) { return count(b.complex.n_pieces); }},

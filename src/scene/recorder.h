@@ -16,8 +16,9 @@ class Recorder {
   Recorder(const std::filesystem::path& folder, const World& world, const output::RunInfo& info,
            const std::string& scene_text);
 
-  /// Records step `step` of the world, with the seconds of its stages. What recording itself takes (images, output) stands in
-  /// `seconds` afterwards, in place of those stages, and so counts with the next step. The last step is always recorded in full.
+  /// Records step `step` of the world, with the seconds of its stages. What recording itself takes (images, output)
+  /// stands in `seconds` afterwards, in place of those stages, and so counts with the next step. The last step is
+  /// always recorded in full.
   void record(const World& world, int step, Timings& seconds);
 
   void complete() { run_file_.complete(); }

@@ -20,11 +20,18 @@ struct Images {
   std::unique_ptr<render::Renderer> renderer;
 };
 
+/// A surface that cuts once.
+struct TimedSurface {
+  cut::CutSurface surface;
+  int step = 1; ///< before which it cuts
+};
+
 struct World {
   double time_step = 0; ///< [s]
   int n_steps = 0;
   std::vector<Body> bodies;
   std::vector<cut::Blade> blades;
+  std::vector<TimedSurface> cut_surfaces;
   OutputParameters output;
   std::optional<SurfaceFileParameters> surface_file;
   std::optional<Images> images; ///< empty in a scene without images: no GL context exists

@@ -72,8 +72,8 @@ Directions free_directions(const Planes& planes, const Directions& allowed, cons
   return allowed * svd.matrixV().rightCols(allowed.cols() - rank(svd, threshold));
 }
 
-/// The smallest moves of p within the allowed directions that minimise the squared distances to the planes [GH97]: first
-/// to as many independent ones as there are, then to ever fewer, the weakest left out first. Never empty.
+/// The smallest moves of p within the allowed directions that minimise the squared distances to the planes [GH97]:
+/// first to as many independent ones as there are, then to ever fewer, the weakest left out first. Never empty.
 Points moves_to_planes(const Vec3& p, const Planes& planes, const Directions& allowed, const double threshold) {
   Points moves = {Vec3::Zero()};
   if (allowed.cols() == 0 || planes.empty())
@@ -107,8 +107,8 @@ Vec3 join(const Plane& a, const Plane& b, const Directions& in_face, const doubl
   return turn > sharp_angle ? meeting : Vec3(0.25 * (a.point + 2 * meeting + b.point));
 }
 
-/// The derivatives of a cell's skin volume (times 6) by its vertices, summed over the skin's triangles in the cell. Volume is
-/// linear in each vertex: a move at right angles to the derivative keeps it exactly.
+/// The derivatives of a cell's skin volume (times 6) by its vertices, summed over the skin's triangles in the cell.
+/// Volume is linear in each vertex: a move at right angles to the derivative keeps it exactly.
 struct VolumeDerivatives {
   Vec3 by_centre = Vec3::Zero();
   std::array<Vec3, 6> by_face{Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
@@ -180,7 +180,8 @@ class Placer {
     return cells;
   }
 
-  /// Locks a vertex of the skin: it moves at right angles to the volume's derivative, and along a sharp edge of the skin only.
+  /// Locks a vertex of the skin: it moves at right angles to the volume's derivative, and along a sharp edge of the
+  /// skin only.
   void lock_skin(Site& site, const Planes& skin, const Vec3& p, const Vec3& derivative) const {
     Vec3 normal = Vec3::Zero();
     for (int k = 0; k < site.inside.cols(); ++k)

@@ -3,19 +3,19 @@
 /// Where the vertices that a cut makes in faces and cells lie at rest (thesis §2.4.3, figure 2.15).
 ///
 /// A cut edge gives a cut plane: its edge vertex and the normal of the cutting surface there.
-/// Face, inside the body: one plane, the face's centre projected onto it (a front ends here); two planes, the middle of the Bezier
-/// curve of edge vertices and the planes' intersection where they meet smoothly (b), that intersection where they are sharp
-/// (c); later cuts of a face already split, the vertex projected onto the new planes (d, e).
-/// Cell, inside the body: the point nearest its centre that minimises the squared distances to all planes [GH97]; later cuts
-/// of a cell already split project it.
-/// On the skin: the input's planes are known all at once and give the quadric's minimum; later cuts move the vertex
-/// at right angles to the derivative of the enclosed volume by its position. The volume is linear in each vertex, so the
-/// rest volume is kept to round-off, for a curved skin too (the thesis lets the skin jump: §2.8); sharp edges of the skin stay.
+/// Face, inside the body: one plane, the face's centre projected onto it (a front ends here); two planes, the middle
+/// of the Bezier curve of edge vertices and the planes' intersection where they meet smoothly (b), that intersection
+/// where they are sharp (c); later cuts of a face already split, the vertex projected onto the new planes (d, e).
+/// Cell, inside the body: the point nearest its centre that minimises the squared distances to all planes [GH97];
+/// later cuts of a cell already split project it. On the skin: the input's planes are known all at once and give the
+/// quadric's minimum; later cuts move the vertex at right angles to the derivative of the enclosed volume by its
+/// position. The volume is linear in each vertex, so the rest volume is kept to round-off, for a curved skin too (the
+/// thesis lets the skin jump: §2.8); sharp edges of the skin stay.
 ///
-/// Departures: a cell with a front takes the quadric too, not the mean of its face vertices, which may lie beside the plane that
-/// is cut; a face whose two edges are cut in different steps by different fronts is (b) or (c) all the same.
-/// A vertex never leaves its face or cell: where all planes would meet outside, the weakest of them is given up, then the
-/// next; where even the strongest one leads outside, the vertex stops at the side.
+/// Departures: a cell with a front takes the quadric too, not the mean of its face vertices, which may lie beside the
+/// plane that is cut; a face whose two edges are cut in different steps by different fronts is (b) or (c) all the
+/// same. A vertex never leaves its face or cell: where all planes would meet outside, the weakest of them is given
+/// up, then the next; where even the strongest one leads outside, the vertex stops at the side.
 /// Limit: more than three planes in a cell are met in the least-squares sense.
 
 #include "grid/cuts.h"
@@ -25,8 +25,8 @@
 namespace kerf::surface {
 
 struct Placement {
-  double sharp_angle =
-    45; ///< two planes that turn by more than this meet at a sharp edge: pi - theta of §2.4.3 [degrees]
+  /// Two planes that turn by more than this meet at a sharp edge: pi - theta of §2.4.3 [degrees].
+  double sharp_angle = 45;
 };
 
 /// How many vertices were placed, and how many stopped at the side of their face or cell.

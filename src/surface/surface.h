@@ -2,10 +2,10 @@
 
 /// The closed surface of a cut body (thesis §2.4, §2.5) and how it follows the corners: x_surface = W x_corners.
 ///
-/// For each cut edge, each of its material ends s and each of the (up to four) cells around it, one quadrilateral, split
-/// along the diagonal edge vertex - centre, which both sides of a cut share. A vertex takes the weights of its place in
-/// its copy: linear on an edge, bilinear in a face, trilinear in a cell (§2.4.4, with corners as unknowns instead of
-/// extrapolated frames).
+/// For each cut edge, each of its material ends s and each of the (up to four) cells around it, one quadrilateral,
+/// split along the diagonal edge vertex - centre, which both sides of a cut share. A vertex takes the weights of its
+/// place in its copy: linear on an edge, bilinear in a face, trilinear in a cell (§2.4.4, with corners as unknowns
+/// instead of extrapolated frames).
 
 #include "grid/complex.h"
 

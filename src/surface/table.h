@@ -1,12 +1,13 @@
 #pragma once
 
-/// The Splitting Cubes table (thesis §2.4.2, §2.5): for each of the 4096 sets of cut lines of a cell, the quadrilaterals of the
-/// surface inside it. Built from first principles: for each cut line and each of its two ends s, one quadrilateral
-/// (edge vertex, face vertex, centre, face vertex), counter-clockwise seen from outside of the material of s.
+/// The Splitting Cubes table (thesis §2.4.2, §2.5): for each of the 4096 sets of cut lines of a cell, the
+/// quadrilaterals of the surface inside it. Built from first principles: for each cut line and each of its two ends
+/// s, one quadrilateral (edge vertex, face vertex, centre, face vertex), counter-clockwise seen from outside of the
+/// material of s.
 ///
-/// Which vertices are one: an edge vertex belongs to (line, end); a face vertex to (face, component within the face's own
-/// four lines); a centre to (component of the cell). A component is named by its smallest vertex.
-/// The face's own lines decide, as the thesis says in words; reachability through the cell, as its figure may be read, differs
+/// Which vertices are one: an edge vertex belongs to (line, end); a face vertex to (face, component within the face's
+/// own four lines); a centre to (component of the cell). A component is named by its smallest vertex. The face's own
+/// lines decide, as the thesis says in words; reachability through the cell, as its figure may be read, differs
 /// between the two cells of a face at a cut's front and would tear the surface there.
 
 #include <array>

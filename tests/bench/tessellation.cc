@@ -1,5 +1,5 @@
-/// How long the first tessellation of a body takes (thesis §2.8: 1,177 cells in 282 ms), stage by stage, over six grids of
-/// the liver; and how fast its surface follows the corners. Prints n, seconds, n/s; medians of several runs.
+/// How long the first tessellation of a body takes (thesis §2.8: 1,177 cells in 282 ms), stage by stage, over six
+/// grids of the liver; and how fast its surface follows the corners. Prints n, seconds, n/s; medians of several runs.
 
 #include "base/parallel.h"
 #include "cut/embed.h"

@@ -1,4 +1,4 @@
-/// The complex of copies against a slow one made from the definitions of DESIGN §3, on random cut sets and on embedded
+/// The complex of copies against a slow one made from the definitions of grid/complex.h, on random cut sets and on embedded
 /// bodies.
 
 #include "grid/complex.h"

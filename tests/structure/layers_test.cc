@@ -22,7 +22,7 @@ struct Room {
   Names uses;
 };
 
-/// Ground floor first (DESIGN §1): a room uses only rooms before it.
+/// Ground floor first: a room uses only rooms before it.
 const std::vector<Room> rooms = {
   {"base", {}},
   {"geometry", {"base"}},

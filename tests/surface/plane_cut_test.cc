@@ -1,7 +1,7 @@
 /// A box cut by planes, against the exact volumes on both sides.
 ///
-/// The total is exact for every plane. The pieces are where the lattice resolves the plane; elsewhere a crossing is lost
-/// in the layer between the skin and the last nodes, because an edge is cut once.
+/// The total is exact for every plane. The pieces are where the lattice resolves the plane; elsewhere a crossing is
+/// lost in the layer between the skin and the last nodes, because an edge is cut once.
 
 #include "cut/pending.h"
 #include "grid/cube.h"
@@ -57,7 +57,8 @@ grid::NodeId only_material(const grid::Grid& grid, const CellId c, const unsigne
 }
 
 /// Where a plane cannot be told from the lattice: it crosses the part of a skin edge that is material (that edge is cut
-/// already), or passes between a node and the sharp edge or corner of the box that only this node has in a face or cell.
+/// already), or passes between a node and the sharp edge or corner of the box that only this node has in a face or
+/// cell.
 std::size_t n_unresolved(const Body& body, const Plane& plane) {
   const grid::Grid& grid = body.grid;
   const auto parted = [&](const grid::NodeId n, const Vec3& p) {

@@ -128,8 +128,8 @@ double worst_inheritance(Body& body, grid::CellComplex& complex, const std::span
 }
 
 TEST(Volume, CornersShareTheMassOfTheirParent) {
-  // Exact where a cell held one copy before, and where later cuts keep the vertices on the earlier, plane ones. Momentum
-  // and energy then pass a cut unchanged.
+  // Exact where a cell held one copy before, and where later cuts keep the vertices on the earlier, plane ones.
+  // Momentum and energy then pass a cut unchanged.
   Random random(33);
   const double h = 0.13;
   for (int i = 0; i < 40; ++i) {
