@@ -1,0 +1,66 @@
+#pragma once
+
+/// A cut by a surface that is known at once, instead of swept step by step (thesis §2.4.3 limits sweeps to two edges of
+/// a cell a step; what is known at once needs no such limit): a plane, a sphere, a closed cylinder, a disc, a mesh.
+///
+/// Method: a signed function of position alone is sampled at the ends of each current edge: f < 0 is below a plane or
+/// inside a body, and 0 counts as positive. Plane, sphere and cylinder cut an edge when its ends have different signs:
+/// what they cut is the border of a set of nodes, so it has no hole, whatever the rounding. A disc cuts an edge that
+/// its plane cuts at less than the radius from its centre. Where along the edge follows in closed form. A mesh, open
+/// or closed, cuts like a sweep (recut.h): edges that an odd number of its triangles cross, by exact predicates. So
+/// where a mesh runs through itself, or lies on itself twice, the edges that it crosses evenly stay whole.
+///
+/// Limits: an edge is cut once, so where a sphere or cylinder passes an edge between its two ends, it is left whole and
+/// counted; what is crossed between the skin and the last nodes inside it is not seen.
+
+#include "cut/recut.h"
+#include "geometry/triangle_mesh.h"
+
+#include <string>
+#include <variant>
+
+namespace kerf::cut {
+
+/// All shapes are in the world frame, current configuration.
+struct Plane {
+  Vec3 point = Vec3::Zero();   ///< [m]
+  Vec3 normal = Vec3::UnitZ(); ///< unit
+};
+
+struct Sphere {
+  Vec3 centre = Vec3::Zero(); ///< [m]
+  double radius = 0;          ///< [m]
+};
+
+/// Closed: the side and both end faces cut.
+struct Cylinder {
+  Vec3 centre = Vec3::Zero(); ///< halfway between the end faces [m]
+  Vec3 axis = Vec3::UnitZ();  ///< unit
+  double radius = 0;          ///< [m]
+  double height = 0;          ///< from end face to end face [m]
+};
+
+struct Disc {
+  Vec3 centre = Vec3::Zero();  ///< [m]
+  Vec3 normal = Vec3::UnitZ(); ///< unit
+  double radius = 0;           ///< [m]
+};
+
+using Shape = std::variant<Plane, Sphere, Cylinder, Disc, geometry::TriangleMesh>;
+
+struct CutSurface {
+  std::string name;
+  Shape shape;
+  grid::CutLabel label = 1;
+};
+
+/// Throws ParameterError, with the key at fault as path: a radius or height that is not > 0, a direction that is not a
+/// unit vector, numbers that are not finite, a mesh without triangles.
+void check(const CutSurface& surface);
+
+/// The edges that the surface cuts when the corners are at `x` [m, world frame, one a corner]; check() must accept the
+/// surface. Throws NumericalError when a corner is not at a finite position.
+SweepCuts cut_edges(const CutSurface& surface, const grid::Grid& grid, const grid::Cuts& cuts,
+                    const grid::CellComplex& complex, const Points& x);
+
+} // namespace kerf::cut

@@ -1,0 +1,122 @@
+#pragma once
+
+/// Runs the program in a folder of its own, and what tests ask of the way it ends.
+
+#include "geometry/triangle_mesh.h"
+#include "tests/output/samples.h"
+#include "tests/scene/scene_text.h"
+
+#include <gtest/gtest.h>
+
+#include <sys/wait.h>
+#include <unistd.h>
+#include <algorithm>
+#include <fstream>
+#include <sstream>
+
+namespace kerf::apps {
+
+using scene::all_outputs;
+using scene::cube_scene;
+using scene::falling_blade;
+using scene::line_of;
+using scene::mesh_path;
+using Words = std::vector<std::string>;
+
+struct Result {
+  int exit_code = -1; ///< -1 when a signal ended it
+  int signal = 0;
+  std::string out, err;
+};
+
+inline std::string read_text(const std::filesystem::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+/// The text with the first `from` replaced.
+inline std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  const auto at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return at == std::string::npos ? text : text.replace(at, from.size(), to);
+}
+
+inline void write_off(const std::filesystem::path& path, const geometry::TriangleMesh& mesh) {
+  std::ofstream out(path);
+  out << "OFF\n" << mesh.vertices.size() << ' ' << mesh.triangles.size() << " 0\n";
+  for (const Vec3& v : mesh.vertices)
+    out << v[0] << ' ' << v[1] << ' ' << v[2] << '\n';
+  for (const Triangle& t : mesh.triangles)
+    out << "3 " << t[0] << ' ' << t[1] << ' ' << t[2] << '\n';
+}
+
+/// The program, in a folder that goes away.
+class Program : public testing::Test {
+ protected:
+  /// Runs `kerf arguments...` after the shell commands `before`, such as a limit.
+  Result kerf(const Words& arguments, const std::string& before = ":") const {
+    const std::string out = (folder / "stdout").string(), err = (folder / "stderr").string();
+    const std::string script =
+      "cd '" + (folder / "").string() + "' && exec >stdout 2>stderr && " + before + " && exec \"$0\" \"$@\"";
+    Words words = {"/bin/sh", "-c", script, KERF_PROGRAM};
+    words.insert(words.end(), arguments.begin(), arguments.end());
+    const int status = wait_for(words);
+    Result result{.out = read_text(out), .err = read_text(err)};
+    if (WIFEXITED(status))
+      result.exit_code = WEXITSTATUS(status);
+    else
+      result.signal = WTERMSIG(status);
+    return result;
+  }
+
+  void write(const std::string& name, const std::string& text) const { std::ofstream(folder / name) << text; }
+
+  /// Runs a scene into the folder "out".
+  Result run(const std::string& scene, Words more = {}, const std::string& before = ":") const {
+    write("scene.prm", scene);
+    const Words start = {"run", "scene.prm", "--output", "out"};
+    more.insert(more.begin(), start.begin(), start.end());
+    return kerf(more, before);
+  }
+
+  /// A scene that must be refused before anything is written.
+  void expect_refused(const std::string& scene, const Words& parts, const Words& more = {}) const {
+    expect_error(run(scene, more), 1, parts);
+    EXPECT_FALSE(std::filesystem::exists(folder / "out"));
+  }
+
+  /// The last word of the program is one line for users that holds all the parts.
+  static void expect_error(const Result& result, const int exit_code, const Words& parts) {
+    EXPECT_EQ(result.signal, 0);
+    EXPECT_EQ(result.exit_code, exit_code);
+    EXPECT_TRUE(result.err.starts_with("kerf: ")) << result.err;
+    EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+    for (const std::string& part : parts)
+      EXPECT_NE(result.err.find(part), std::string::npos) << "no '" << part << "' in: " << result.err;
+    for (const char* inner : {"internal error", "terminate", "what()", "std::", "dealii", "Eigen", "Stack", "HDF5-DIAG",
+                              "Message:", "nan", "0.000000"})
+      EXPECT_EQ(result.err.find(inner), std::string::npos) << "'" << inner << "' in: " << result.err;
+  }
+
+  output::TemporaryFolder folder;
+
+ private:
+  static int wait_for(Words& words) {
+    std::vector<char*> pointers;
+    for (std::string& word : words)
+      pointers.push_back(word.data());
+    pointers.push_back(nullptr);
+    const pid_t id = fork();
+    if (id == 0) {
+      execv(pointers[0], pointers.data());
+      _exit(127);
+    }
+    int status = 0;
+    waitpid(id, &status, 0);
+    return status;
+  }
+};
+
+} // namespace kerf::apps

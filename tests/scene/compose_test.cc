@@ -1,0 +1,110 @@
+// A scene names what exists; what it does not name is not built.
+
+#include "dynamics/implicit_euler.h"
+#include "dynamics/symplectic_euler.h"
+#include "fem/corotational.h"
+#include "tests/scene/worlds.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace kerf::scene {
+namespace {
+
+constexpr std::array optional_kinds = {"Gravity", "Blade", "Observables", "Surface file", "Images"};
+
+bool says(const World& world, const std::string& start) {
+  return std::any_of(world.composition.begin(), world.composition.end(),
+                     [&](const std::string& line) { return line.starts_with(start); });
+}
+
+TEST(Compose, BuildsNothingThatTheSceneDoesNotWrite) {
+  const World world = world_of(cube_scene());
+  EXPECT_FALSE(world.images);
+  EXPECT_FALSE(world.surface_file);
+  EXPECT_TRUE(world.observables.empty());
+  EXPECT_TRUE(world.blades.empty());
+  ASSERT_EQ(world.bodies.size(), 1u);
+  EXPECT_EQ(world.bodies[0].cutting, nullptr);
+  EXPECT_TRUE(world.bodies[0].loads.supports.empty());
+  EXPECT_EQ(world.bodies[0].loads.gravity, Vec3(Vec3::Zero()));
+  for (const char* kind : optional_kinds)
+    EXPECT_TRUE(says(world, std::string("left out: ") + kind)) << kind;
+}
+
+TEST(Compose, BuildsWhatTheSceneWrites) {
+  const World world = world_of(cube_scene() + falling_blade() + all_outputs());
+  EXPECT_TRUE(world.images && world.images->renderer);
+  EXPECT_TRUE(world.surface_file);
+  EXPECT_EQ(world.observables.size(), 7u);
+  EXPECT_EQ(world.n_steps, 5);
+  ASSERT_EQ(world.blades.size(), 1u);
+  ASSERT_NE(world.bodies.at(0).cutting, nullptr);
+  EXPECT_EQ(world.bodies[0].cutting->n_cut_edges, std::vector<std::size_t>{0});
+  EXPECT_EQ(world.bodies[0].loads.gravity, Vec3(0, 0, -9.81));
+  for (const char* kind : optional_kinds)
+    EXPECT_FALSE(says(world, std::string("left out: ") + kind)) << kind;
+  EXPECT_TRUE(says(world, "blade knife"));
+  EXPECT_TRUE(says(world, "body cube"));
+  EXPECT_TRUE(says(world, "images"));
+}
+
+TEST(Compose, EveryBodyOfASceneWithABladeCanBeCut) {
+  const std::string second =
+    "subsection Body other\n  set Mesh = " + mesh_path("cube.off") + "\n  set Cube edge [m] = 0.1\nend\n";
+  const World world = world_of(cube_scene() + second + falling_blade());
+  ASSERT_EQ(world.bodies.size(), 2u);
+  EXPECT_EQ(world.bodies[1].name, "other");
+  for (const Body& body : world.bodies)
+    EXPECT_NE(body.cutting, nullptr) << body.name;
+}
+
+TEST(Compose, TakesTheIntegratorThatIsNamed) {
+  const World by_default = world_of(cube_scene());
+  EXPECT_TRUE(dynamic_cast<dynamics::ImplicitEuler*>(by_default.bodies.at(0).physics.stepper.get()));
+  const World explicit_one = world_of(cube_scene(), {"Body cube/Integrator=symplectic Euler"});
+  EXPECT_TRUE(dynamic_cast<dynamics::SymplecticEuler*>(explicit_one.bodies.at(0).physics.stepper.get()));
+}
+
+TEST(Compose, IntegratesOverOctantsOrFullCubes) {
+  const double cube_mass = 1000 * 0.2 * 0.2 * 0.2;
+  EXPECT_NEAR(value(world_of(cube_scene()).bodies.at(0), "mass"), cube_mass, 1e-12 * cube_mass);
+  const World full = world_of(cube_scene(), {"Body cube/Integration=full cube"});
+  EXPECT_NEAR(value(full.bodies.at(0), "mass"), 1000 * 0.25 * 0.25 * 0.25, 1e-9); // 5 cells an edge touch material
+}
+
+TEST(Compose, AMeshPathStartsAtTheScene) {
+  const std::string file = std::string(KERF_SOURCE_DIR) + "/params/here.prm";
+  const World world = compose(scan_scene_text(cube_scene(), file, {"Body cube/Mesh=meshes/cube.off"}));
+  EXPECT_NEAR(world.bodies.at(0).mesh_volume, 0.008, 1e-15);
+}
+
+TEST(Compose, SupportsHoldTheirNodesAndMoveThem) {
+  World world =
+    world_of(cube_scene(), {"Body cube/Support top/Lower [m]=-1,-1,0.06", "Body cube/Support top/Upper [m]=1,1,1",
+                            "Body cube/Support top/Displacement [m]=t; 2*t; sin(pi*t)"});
+  const dynamics::Loads& loads = world.bodies.at(0).loads;
+  ASSERT_EQ(loads.supports.size(), 1u);
+  EXPECT_EQ(loads.supports[0].corners.size(), 2u * 6 * 6); // the layers at 0.075 and above the skin, at 0.125
+  for (const Vec3& X : loads.supports[0].rest)
+    EXPECT_GT(X[2], 0.06);
+  EXPECT_LT((loads.supports[0].displacement(0.5) - Vec3(0.5, 1, 1)).norm(), 1e-15);
+}
+
+TEST(Compose, EveryObservableHasUnitAndSourceAndIsFinite) {
+  std::string names;
+  for (const BodyObservable& o : body_observables()) {
+    names += (names.empty() ? "" : ", ") + o.name;
+    EXPECT_FALSE(o.unit.empty()) << o.name;
+    EXPECT_FALSE(o.source.empty()) << o.name;
+  }
+  const World world = world_of(cube_scene(), {"Observables/Names=" + names});
+  ASSERT_EQ(world.observables.size(), body_observables().size());
+  for (const BodyObservable* o : world.observables)
+    EXPECT_TRUE(std::isfinite(o->value(world.bodies.at(0)))) << o->name;
+  EXPECT_EQ(find_observable("no such thing"), nullptr);
+}
+
+} // namespace
+} // namespace kerf::scene

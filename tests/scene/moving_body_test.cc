@@ -1,0 +1,164 @@
+// A body that moves while a blade passes: however fast either moves, the body is parted along the surface of their
+// relative motion without a gap.
+
+#include "tests/scene/worlds.h"
+
+#include <Eigen/Geometry>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+#include <sstream>
+
+namespace kerf::scene {
+namespace {
+
+constexpr double duration = 0.1;     // [s]
+constexpr int n_steps = 10;          // a step's relative motion is more than a cube
+constexpr double distance = 0.7;     // of relative motion [m]; the diagonal of the cube is 0.35
+const Vec3 middle(0.003, 0, 0.0021); // where in the cube the blade is halfway [m]; no node lies on its plane
+
+/// A blade along y that moves by `velocity` [m/s] and is at the world's origin at half of the duration.
+std::string blade_text(const Vec3& velocity) {
+  const Vec3 reach = 0.5 * duration * velocity;
+  std::ostringstream text;
+  text.precision(17);
+  text << "subsection Blade knife\n  set Edge [m] = 0, -0.3, 0; 0, 0.3, 0\n  set Times [s] = 0, " << duration
+       << "\n  set Positions [m] = " << -reach[0] << ", 0, " << -reach[2] << "; " << reach[0] << ", 0, " << reach[2]
+       << "\nend\n";
+  return text.str();
+}
+
+/// Where a body stands that moves rigidly through the world's origin.
+struct Motion {
+  Vec3 velocity; ///< [m/s]
+  Vec3 spin;     ///< rotation vector a second [rad/s]
+
+  void place(Body& body, const double time) const {
+    const double t = time - 0.5 * duration;
+    const double angle = t * spin.norm();
+    const Eigen::AngleAxisd turn(angle, spin.norm() > 0 ? Vec3(spin.normalized()) : Vec3::UnitX());
+    for (const auto c : ids<grid::CornerId>(body.complex.n_corners()))
+      body.state.x[c.value] = t * velocity + turn * (body.grid.position(body.complex.node[c]) - middle);
+  }
+};
+
+/// Moves body and blade past each other, and lets the last cuts through.
+void pass(World& world, const Motion& motion) {
+  Body& body = world.bodies.at(0);
+  Timings timings;
+  motion.place(body, 0);
+  body.cutting->x_before = body.state.x;
+  for (int step = 1; step <= n_steps || body.cutting->pending.size() > 0; ++step) {
+    const double t0 = (step - 1) * duration / n_steps, t1 = step * duration / n_steps;
+    if (step <= n_steps)
+      motion.place(body, t1);
+    recut(body, world.blades, t0, t1, timings);
+  }
+}
+
+/// What the body's own relative motion to the blade makes of a node.
+bool is_above(const Vec3& node, const Vec3& relative_velocity) {
+  return (node - middle).dot(relative_velocity.cross(Vec3::UnitY())) > 0;
+}
+
+/// Edges that are cut where they should not be, or the other way round.
+std::size_t n_wrong(const Body& body, const Vec3& relative_velocity) {
+  std::size_t n = 0;
+  for (const auto e : ids<grid::EdgeId>(body.grid.n_edges())) {
+    const auto& [a, b] = body.grid.ends(e);
+    if (body.grid.is_material(a) && body.grid.is_material(b))
+      n += body.cuts.is_cut(e) !=
+           (is_above(body.grid.position(a), relative_velocity) != is_above(body.grid.position(b), relative_velocity));
+  }
+  return n;
+}
+
+World passing_world(const Vec3& blade_velocity) {
+  return world_of(cube_scene() + blade_text(blade_velocity), {"Body cube/Cube edge [m]=0.025"});
+}
+
+/// The part of the relative motion that is the blade's own: all, half, little, none, backwards, more than all.
+const std::vector<double> blade_shares = {1, 0.5, 0.05, 0, -0.5, 3};
+
+TEST(MovingBody, IsPartedAlongTheRelativeMotion) {
+  for (const double angle : {0.0, 0.5, 1.1})
+    for (const double share : blade_shares) {
+      SCOPED_TRACE("angle " + std::to_string(angle) + ", the blade's share " + std::to_string(share));
+      const Vec3 relative = distance / duration * Vec3(std::sin(angle), 0, -std::cos(angle)); // of the blade
+      World world = passing_world(share * relative);
+      pass(world, {(share - 1) * relative, Vec3::Zero()});
+      EXPECT_EQ(n_wrong(world.bodies[0], relative), 0u);
+      EXPECT_EQ(world.bodies[0].complex.n_pieces, 2u);
+    }
+}
+
+TEST(MovingBody, IsPartedWhileItTurns) {
+  for (const double turn : {0.2, -0.7, 1.5})
+    for (const double share : blade_shares) {
+      SCOPED_TRACE("turn " + std::to_string(turn) + ", the blade's share " + std::to_string(share));
+      const Vec3 relative = distance / duration * Vec3(0, 0, -1);
+      World world = passing_world(share * relative);
+      pass(world, {(share - 1) * relative, turn / duration * Vec3::UnitY()});
+      EXPECT_EQ(world.bodies[0].complex.n_pieces, 2u);
+    }
+}
+
+/// The whole flow: held at its top, the cube is driven down through a blade that rests.
+TEST(MovingBody, IsDrivenThroughARestingBlade) {
+  World world =
+    world_of(cube_scene() +
+               "subsection Blade knife\n  set Edge [m] = 0.003, -0.3, -0.15; 0.003, 0.3, -0.15\n"
+               "  set Times [s] = 0\n  set Positions [m] = 0, 0, 0\nend\n",
+             {"Time/Time step [s]=0.01", "Time/End time [s]=0.5", "Body cube/Support all/Lower [m]=-1,-1,-1",
+              "Body cube/Support all/Upper [m]=1,1,1", "Body cube/Support all/Displacement [m]=0;0;-0.8*t"});
+  const output::TemporaryFolder folder;
+  run_silently(world, folder / "out");
+  EXPECT_EQ(world.bodies[0].complex.n_pieces, 2u);
+  EXPECT_EQ(n_wrong(world.bodies[0], Vec3::UnitZ()), 0u); // the plane x = 0.003, as `middle` has it
+}
+
+/// The same without a hand that drives: it falls.
+TEST(MovingBody, FallsThroughARestingBlade) {
+  World world = world_of(cube_scene() +
+                           "subsection Gravity\nend\nsubsection Blade knife\n"
+                           "  set Edge [m] = 0.003, -0.3, -0.15; 0.003, 0.3, -0.15\n"
+                           "  set Times [s] = 0\n  set Positions [m] = 0, 0, 0\nend\n",
+                         {"Time/Time step [s]=0.01", "Time/End time [s]=0.4"});
+  const output::TemporaryFolder folder;
+  run_silently(world, folder / "out");
+  EXPECT_EQ(world.bodies[0].complex.n_pieces, 2u);
+  EXPECT_EQ(n_wrong(world.bodies[0], Vec3::UnitZ()), 0u);
+}
+
+/// The pieces of all nodes on one side, beyond `distance` [m] from the middle.
+std::set<std::uint32_t> pieces_beside(const Body& body, const double distance) {
+  std::set<std::uint32_t> pieces;
+  for (const auto c : ids<grid::CopyId>(body.complex.n_copies())) {
+    const double x = grid::centre(body.grid, body.complex.copies[c].cell)[0];
+    if (distance > 0 ? x > distance : x < distance)
+      pieces.insert(body.complex.piece[c]);
+  }
+  return pieces;
+}
+
+/// Held at its top and shaken across the blade that sinks through it, the body swings and cuts itself along a wave.
+TEST(MovingBody, IsPartedWhileItIsShaken) {
+  World world = world_of(
+    cube_scene() + falling_blade(),
+    {"Blade knife/Times [s]=0, 0.3", "Time/Time step [s]=0.005", "Time/End time [s]=0.35",
+     "Body cube/Cube edge [m]=0.025", "Body cube/Support top/Lower [m]=-1,-1,0.08",
+     "Body cube/Support top/Upper [m]=1,1,1", "Body cube/Support top/Displacement [m]=0.02*sin(2*pi*12*t); 0; 0"});
+  const output::TemporaryFolder folder;
+  run_silently(world, folder / "out");
+  const Body& body = world.bodies[0];
+  std::vector<std::uint32_t> on_both_sides;
+  std::ranges::set_intersection(pieces_beside(body, -0.06), pieces_beside(body, 0.06),
+                                std::back_inserter(on_both_sides));
+  EXPECT_TRUE(on_both_sides.empty());
+  EXPECT_GE(body.complex.n_pieces, 2u);
+}
+
+} // namespace
+} // namespace kerf::scene

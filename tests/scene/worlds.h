@@ -1,0 +1,42 @@
+#pragma once
+
+/// Worlds composed from texts, and runs of them without a word.
+
+#include "output/reader.h"
+#include "scene/compose.h"
+#include "scene/run.h"
+#include "tests/output/samples.h"
+#include "tests/scene/scene_text.h"
+
+#include <random>
+
+namespace kerf::scene {
+
+inline World world_of(const std::string& text, const Overrides& overrides = {}) {
+  return compose(scan_scene_text(text, "scene.prm", overrides));
+}
+
+/// Runs a world into a folder; returns the seconds of its stages.
+inline Timings run_silently(World& world, const std::filesystem::path& folder) {
+  Recorder recorder(folder, world, output::sample_info(), "the scene");
+  Progress progress(world.n_steps, world.n_steps * world.time_step, ProgressStyle::silent, stdout);
+  return run(world, recorder, progress);
+}
+
+/// n vectors, normally distributed.
+inline Points random_points(const std::size_t n, const double deviation, const unsigned seed) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> normal(0, deviation);
+  Points points(n);
+  for (Vec3& p : points)
+    for (int axis = 0; axis < 3; ++axis)
+      p[axis] = normal(random);
+  return points;
+}
+
+/// What an observable says now.
+inline double value(const Body& body, const std::string& observable) {
+  return find_observable(observable)->value(body);
+}
+
+} // namespace kerf::scene
