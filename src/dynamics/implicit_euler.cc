@@ -3,8 +3,9 @@
 #include "base/error.h"
 #include "base/parallel.h"
 
-#include <Eigen/LU>
+#include <Eigen/Cholesky>
 
+#include <deal.II/lac/precondition.h>
 #include <deal.II/lac/solver_cg.h>
 #include <deal.II/lac/vector.h>
 
@@ -18,51 +19,59 @@ using Vector = dealii::Vector<double>;
 
 constexpr std::size_t worth = 4096; // corners from which on a second thread pays
 
-/// a M + b K with held corners as identity rows and columns.
+/// The lower Cholesky factors L of the diagonal 3 x 3 blocks of A.
+using Factors = std::vector<Eigen::LLT<Mat3>>;
+
+/// L^-1 A L^-T for A = a M + b K, zero where corners are held. What conjugate gradients see is then scaled corner by corner:
+/// they stop when each is solved in its own measure, a corner of hardly any mass like every other.
 struct Operator {
   const ElasticModel& model;
   const std::vector<std::uint8_t>& held;
+  const Factors& factors;
   double mass_factor, stiffness_factor;
 
   void vmult(Vector& y, const Vector& p) const {
     const auto mass = model.lumped_mass();
-    model.apply_stiffness({p.begin(), p.size()}, {y.begin(), y.size()});
+    Vector& q = scratch;
+    q.reinit(p.size(), true);
+    parallel_for(
+      mass.size(), [&](const std::size_t i) { at(q, i) = held[i] ? Vec3(Vec3::Zero()) : unscaled(i, at(p, i)); },
+      worth);
+    model.apply_stiffness({q.begin(), q.size()}, {y.begin(), y.size()});
     parallel_for(
       mass.size(),
       [&](const std::size_t i) {
-        for (std::size_t k = 3 * i; k < 3 * i + 3; ++k)
-          y[k] = held[i] ? 0 : mass_factor * mass[i] * p[k] + stiffness_factor * y[k];
+        const Vec3 Aq = mass_factor * mass[i] * at(q, i) + stiffness_factor * at(y, i);
+        at(y, i) = held[i] ? Vec3(Vec3::Zero()) : scaled(i, Aq);
       },
       worth);
   }
-};
 
-struct BlockJacobi {
-  const std::vector<Mat3>& inverse_blocks;
+  /// L^-1 f of a corner.
+  Vec3 scaled(const std::size_t i, const Vec3& f) const { return factors[i].matrixL().solve(f); }
+  /// L^-T p of a corner.
+  Vec3 unscaled(const std::size_t i, const Vec3& p) const { return factors[i].matrixU().solve(p); }
+  /// L^T x of a corner.
+  Vec3 rescaled(const std::size_t i, const Vec3& x) const { return factors[i].matrixU() * x; }
 
-  void vmult(Vector& y, const Vector& p) const {
-    parallel_for(
-      inverse_blocks.size(),
-      [&](const std::size_t i) {
-        Eigen::Map<Vec3>(y.begin() + 3 * i).noalias() = inverse_blocks[i] * Eigen::Map<const Vec3>(p.begin() + 3 * i);
-      },
-      worth);
+  static Eigen::Map<Vec3> at(Vector& v, const std::size_t i) { return Eigen::Map<Vec3>(v.begin() + 3 * i); }
+  static Eigen::Map<const Vec3> at(const Vector& v, const std::size_t i) {
+    return Eigen::Map<const Vec3>(v.begin() + 3 * i);
   }
+
+  mutable Vector scratch = {};
 };
 
-/// `scale` [N]: norm of the forces that balance in the right-hand side.
-int solve(const Operator& A, const BlockJacobi& P, Vector& dx, const Vector& rhs, const double scale,
-          const ImplicitEulerOptions& options) {
+/// `scale`: norm of the scaled forces that balance in the right-hand side.
+int solve(const Operator& A, Vector& x, const Vector& rhs, const double scale, const ImplicitEulerOptions& options) {
   const double norm = rhs.l2_norm();
   if (!std::isfinite(norm))
     throw NumericalError("forces are not finite");
-  constexpr double nothing = 1e-100; // [N]: squares of less underflow, and conjugate gradients divide by them
-  const double tolerance = options.cg_tolerance * scale;
-  if (norm < std::max(nothing, tolerance))
-    return 0;
-  dealii::SolverControl control(options.max_cg_iterations, tolerance, false, false);
+  constexpr double nothing = 1e-100; // squares of less underflow, and conjugate gradients divide by them
+  dealii::SolverControl control(options.max_cg_iterations, std::max(nothing, options.cg_tolerance * scale), false,
+                                false);
   try {
-    dealii::SolverCG<Vector>(control).solve(A, dx, rhs, P);
+    dealii::SolverCG<Vector>(control).solve(A, x, rhs, dealii::PreconditionIdentity());
   } catch (const dealii::SolverControl::NoConvergence& failure) {
     throw NumericalError("conjugate gradients left a relative residual of " +
                          std::to_string(failure.last_residual / scale) + " after " + std::to_string(failure.last_step) +
@@ -72,6 +81,20 @@ int solve(const Operator& A, const BlockJacobi& P, Vector& dx, const Vector& rhs
 }
 
 } // namespace
+
+void ImplicitEuler::factorise(const std::vector<std::uint8_t>& held, const double mass_factor,
+                              const double stiffness_factor) {
+  model_.stiffness_diagonal(blocks_);
+  factors_.resize(blocks_.size());
+  const auto mass = model_.lumped_mass();
+  parallel_for(
+    blocks_.size(),
+    [&](const std::size_t i) {
+      if (!held[i])
+        factors_[i].compute(stiffness_factor * blocks_[i] + mass_factor * mass[i] * Mat3::Identity());
+    },
+    worth);
+}
 
 StepReport ImplicitEuler::step(State& state, const Loads& loads, const double dt) {
   const std::size_t n = state.x.size();
@@ -87,32 +110,31 @@ StepReport ImplicitEuler::step(State& state, const Loads& loads, const double dt
   for (int newton = 0; newton < options_.n_newton; ++newton) {
     model_.linearise(x);
     model_.force(x, force);
-    for (std::size_t i = 0; i < 3 * n; ++i)
-      moved[i] = flat(x)[i] - flat(state.x)[i];
+    factorise(held, mass_factor, stiffness_factor);
+    const Operator A{model_, held, factors_, mass_factor, stiffness_factor};
+    for (std::size_t i = 0; i < n; ++i)
+      A.at(moved, i) = x[i] - state.x[i];
     if (loads.stiffness_damping > 0)
       model_.apply_stiffness({moved.begin(), moved.size()}, {damping.begin(), damping.size()});
     double square_of_scale = 0;
     for (std::size_t i = 0; i < n; ++i) {
-      Eigen::Map<Vec3> r(rhs.begin() + 3 * i);
-      const double magnitude = force[i].norm() + mass[i] * (loads.gravity.norm() + state.v[i].norm() / dt);
-      square_of_scale += held[i] ? 0 : magnitude * magnitude;
-      r = force[i] + mass[i] * (loads.gravity + state.v[i] / dt) -
-          mass_factor * mass[i] * Eigen::Map<const Vec3>(moved.begin() + 3 * i);
-      r -= loads.stiffness_damping / dt * Eigen::Map<const Vec3>(damping.begin() + 3 * i);
-      if (held[i])
-        r.setZero();
+      if (held[i]) {
+        A.at(rhs, i).setZero();
+        A.at(dx, i).setZero();
+        continue;
+      }
+      const Vec3 elastic = A.scaled(i, force[i]), weight = A.scaled(i, mass[i] * loads.gravity),
+                 inertia = A.scaled(i, mass[i] * state.v[i] / dt);
+      square_of_scale += elastic.squaredNorm() + weight.squaredNorm() + inertia.squaredNorm();
+      A.at(rhs, i) =
+        elastic + weight + inertia -
+        A.scaled(i, mass_factor * mass[i] * A.at(moved, i) + loads.stiffness_damping / dt * A.at(damping, i));
+      A.at(dx, i) = newton > 0 ? Vec3(Vec3::Zero()) : A.rescaled(i, dt * state.v[i]); // first guess: free motion
     }
-    model_.stiffness_diagonal(inverse_blocks_);
+    report.n_iterations += solve(A, dx, rhs, std::sqrt(square_of_scale), options_);
     for (std::size_t i = 0; i < n; ++i)
-      inverse_blocks_[i] =
-        held[i] ? Mat3::Identity()
-                : Mat3((stiffness_factor * inverse_blocks_[i] + mass_factor * mass[i] * Mat3::Identity()).inverse());
-    for (std::size_t i = 0; i < n; ++i) // the first guess: each corner goes on as before
-      Eigen::Map<Vec3>(dx.begin() + 3 * i) = newton > 0 || held[i] ? Vec3(Vec3::Zero()) : Vec3(dt * state.v[i]);
-    report.n_iterations += solve({model_, held, mass_factor, stiffness_factor}, {inverse_blocks_}, dx, rhs,
-                                 std::sqrt(square_of_scale), options_);
-    for (std::size_t i = 0; i < 3 * n; ++i)
-      flat(x)[i] += dx[i];
+      if (!held[i])
+        x[i] += A.unscaled(i, A.at(dx, i));
   }
   for (std::size_t i = 0; i < n; ++i)
     state.v[i] = (x[i] - state.x[i]) / dt;

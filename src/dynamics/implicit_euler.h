@@ -11,10 +11,12 @@
 #include "dynamics/model.h"
 #include "dynamics/stepper.h"
 
+#include <Eigen/Cholesky>
+
 namespace kerf::dynamics {
 
 struct ImplicitEulerOptions {
-  int n_newton = 1;           ///< Newton iterations a step; one is the linearly implicit method
+  int n_newton = 1; ///< Newton iterations a step; one is the linearly implicit method
   /// Residual over the forces that balance in it (elastic, weight, inertia), in the Euclidean norm [1]. Not over the
   /// right-hand side, which vanishes at rest and would be solved ever more exactly there.
   double cg_tolerance = 1e-6;
@@ -29,9 +31,12 @@ class ImplicitEuler : public Stepper {
   StepReport step(State& state, const Loads& loads, double dt) override;
 
  private:
+  void factorise(const std::vector<std::uint8_t>& held, double mass_factor, double stiffness_factor);
+
   ElasticModel& model_;
   ImplicitEulerOptions options_;
-  std::vector<Mat3> inverse_blocks_;
+  std::vector<Mat3> blocks_;              // diagonal of the stiffness
+  std::vector<Eigen::LLT<Mat3>> factors_; // of the diagonal of the whole operator
 };
 
 } // namespace kerf::dynamics

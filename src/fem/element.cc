@@ -105,14 +105,15 @@ Element make_element(const Moments& moments, const double h, const material::Ela
   for (int a = 0; a < 8; ++a) {
     // Far from a sliver the integral is below the round-off of its moments, and may come out negative.
     element.mass[a] = material.density * h * h * h * std::max(0.0, integrate_shape(moments, a, -1));
-    for (int axis = 0; axis < 3; ++axis)
-      element.gradient[a][axis] = integrate_shape(moments, a, axis) / (fraction * h);
   }
   Moments stiff = moments;
   const double missing = std::max(0.0, sliver_floor - fraction);
   const Moments full = full_cube_moments();
   for (int n = 0; n < 27; ++n)
     stiff[n] += missing * full[n];
+  for (int a = 0; a < 8; ++a)
+    for (int axis = 0; axis < 3; ++axis)
+      element.gradient[a][axis] = integrate_shape(stiff, a, axis) / (stiff[0] * h);
   fill_stiffness(element, stiff, h, material);
   return element;
 }

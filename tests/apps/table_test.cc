@@ -69,8 +69,9 @@ TEST_F(TableOfTheProgram, IsEnoughByItself) {
       for (const std::size_t corner : {1u, 3u}) {
         const std::size_t f = quads({q, corner, 1});
         for (std::size_t i = 0; i < 4; ++i)
-          if (faces({f, i}) == static_cast<int>(end))
+          if (faces({f, i}) == static_cast<int>(end)) {
             ASSERT_EQ(quads({q, corner, 2}), face({row, f, i}));
+          }
       }
     }
     ASSERT_EQ(found, expected) << row;
