@@ -13,7 +13,7 @@ std::string to_string(const Complaint& c) {
   text += c.rule;
   if (!c.remedy.empty())
     text += ". " + c.remedy;
-  return text + ".";
+  return text.ends_with('.') || text.ends_with('?') ? text : text + ".";
 }
 
 } // namespace kerf

@@ -138,7 +138,7 @@ void Corotational::force(const Points& x, Points& forces) const {
           u.segment<3>(3 * a).cross(Ku.segment<3>(3 * a)) + h_ * vertex_offset(a).cross(Vec3(Ku.segment<3>(3 * a)));
       const Mat3 S = R.transpose() * F;
       const Mat3 spin = S.trace() * Mat3::Identity() - S;
-      constexpr double collapsed = 1e6; // the rotation is not differentiable there: leave its term out
+      constexpr double collapsed = 1e-6; // the rotation is not differentiable there: leave its term out
       const Vec3 z = spin.determinant() > collapsed ? Vec3(spin.inverse() * tau) : Vec3(Vec3::Zero());
       for (int a = 0; a < 8; ++a)
         Eigen::Map<Vec3>(values_.data() + 24 * e + 3 * a) =

@@ -38,8 +38,8 @@ void BodyParameters::describe(Parameters& p) {
   p.require_last();
   p.vector(
     "Lattice offset [1]", lattice_offset,
-    "Where the mesh's bounding box starts inside a cube, in parts of its edge along x, y, z. A half keeps the plane "
-    "sides of a box away from grid nodes.");
+    "How far inside the lower end of the mesh's bounding box the first grid nodes stand along x, y, z, in parts of "
+    "a cube's edge. A half keeps the plane sides of a box away from grid nodes.");
   p.number("Sharp angle [degrees]", sharp_angle, {.min = 0, .max = 90, .min_excluded = true, .max_excluded = true},
            "Two cut planes that turn by more than this inside a face meet at a sharp edge (thesis §2.4.3).");
   p.choice("Integration", integration, {"octants", "full cube"},
