@@ -10,7 +10,15 @@ namespace kerf::scene {
 
 namespace {
 
-/// Folder of the run, empty of images of an earlier one.
+/// Removes what an earlier run into the same folder has left of a kind.
+void remove_old(const std::filesystem::path& folder, const std::string& prefix, const std::string& extension) {
+  std::error_code ignored; // what cannot be removed is overwritten, or its writer says why not
+  for (const auto& entry : std::filesystem::directory_iterator(folder, ignored))
+    if (entry.path().extension() == extension && entry.path().filename().string().starts_with(prefix))
+      std::filesystem::remove(entry.path(), ignored);
+}
+
+/// Folder of the run, empty of an earlier one's surfaces and images.
 std::filesystem::path make_folder(const std::filesystem::path& folder, const World& world) {
   std::error_code error;
   std::filesystem::create_directories(world.images ? folder / "frames" : folder, error);
@@ -18,10 +26,8 @@ std::filesystem::path make_folder(const std::filesystem::path& folder, const Wor
     throw DataError(Complaint{.file = folder.string(),
                               .rule = "the results folder cannot be made: " + error.message(),
                               .remedy = "Choose another folder with --output, or change its permissions"});
-  if (world.images)
-    for (const auto& entry : std::filesystem::directory_iterator(folder / "frames"))
-      if (entry.path().extension() == ".png")
-        std::filesystem::remove(entry.path());
+  remove_old(folder, "surface_", ".vtkhdf");
+  remove_old(folder / "frames", "", ".png");
   return folder;
 }
 
