@@ -19,15 +19,12 @@ using Vector = dealii::Vector<double>;
 
 constexpr std::size_t worth = 4096; // corners from which on a second thread pays
 
-/// The lower Cholesky factors L of the diagonal 3 x 3 blocks of A.
-using Factors = std::vector<Eigen::LLT<Mat3>>;
-
-/// L^-1 A L^-T for A = a M + b K, zero where corners are held. What conjugate gradients see is then scaled corner by corner:
+/// L^-1 A L^-T for A = a M + b K with the Cholesky factors L of A's diagonal 3 x 3 blocks, zero where corners are held. What conjugate gradients see is then scaled corner by corner:
 /// they stop when each is solved in its own measure, a corner of hardly any mass like every other.
 struct Operator {
   const ElasticModel& model;
   const std::vector<std::uint8_t>& held;
-  const Factors& factors;
+  const std::vector<Mat3>& inverse_factors; ///< L^-1 of each corner
   double mass_factor, stiffness_factor;
 
   void vmult(Vector& y, const Vector& p) const {
@@ -48,11 +45,13 @@ struct Operator {
   }
 
   /// L^-1 f of a corner.
-  Vec3 scaled(const std::size_t i, const Vec3& f) const { return factors[i].matrixL().solve(f); }
+  Vec3 scaled(const std::size_t i, const Vec3& f) const { return inverse_factors[i] * f; }
   /// L^-T p of a corner.
-  Vec3 unscaled(const std::size_t i, const Vec3& p) const { return factors[i].matrixU().solve(p); }
+  Vec3 unscaled(const std::size_t i, const Vec3& p) const { return inverse_factors[i].transpose() * p; }
   /// L^T x of a corner.
-  Vec3 rescaled(const std::size_t i, const Vec3& x) const { return factors[i].matrixU() * x; }
+  Vec3 rescaled(const std::size_t i, const Vec3& x) const {
+    return inverse_factors[i].transpose().triangularView<Eigen::Upper>().solve(x);
+  }
 
   static Eigen::Map<Vec3> at(Vector& v, const std::size_t i) { return Eigen::Map<Vec3>(v.begin() + 3 * i); }
   static Eigen::Map<const Vec3> at(const Vector& v, const std::size_t i) {
@@ -85,13 +84,15 @@ int solve(const Operator& A, Vector& x, const Vector& rhs, const double scale, c
 void ImplicitEuler::factorise(const std::vector<std::uint8_t>& held, const double mass_factor,
                               const double stiffness_factor) {
   model_.stiffness_diagonal(blocks_);
-  factors_.resize(blocks_.size());
+  inverse_factors_.resize(blocks_.size());
   const auto mass = model_.lumped_mass();
   parallel_for(
     blocks_.size(),
     [&](const std::size_t i) {
       if (!held[i])
-        factors_[i].compute(stiffness_factor * blocks_[i] + mass_factor * mass[i] * Mat3::Identity());
+        inverse_factors_[i] = Eigen::LLT<Mat3>(stiffness_factor * blocks_[i] + mass_factor * mass[i] * Mat3::Identity())
+                                .matrixL()
+                                .solve(Mat3::Identity());
     },
     worth);
 }
@@ -111,7 +112,7 @@ StepReport ImplicitEuler::step(State& state, const Loads& loads, const double dt
     model_.linearise(x);
     model_.force(x, force);
     factorise(held, mass_factor, stiffness_factor);
-    const Operator A{model_, held, factors_, mass_factor, stiffness_factor};
+    const Operator A{model_, held, inverse_factors_, mass_factor, stiffness_factor};
     for (std::size_t i = 0; i < n; ++i)
       A.at(moved, i) = x[i] - state.x[i];
     if (loads.stiffness_damping > 0)

@@ -11,8 +11,6 @@
 #include "dynamics/model.h"
 #include "dynamics/stepper.h"
 
-#include <Eigen/Cholesky>
-
 namespace kerf::dynamics {
 
 struct ImplicitEulerOptions {
@@ -35,8 +33,7 @@ class ImplicitEuler : public Stepper {
 
   ElasticModel& model_;
   ImplicitEulerOptions options_;
-  std::vector<Mat3> blocks_;              // diagonal of the stiffness
-  std::vector<Eigen::LLT<Mat3>> factors_; // of the diagonal of the whole operator
+  std::vector<Mat3> blocks_, inverse_factors_; // of the stiffness' diagonal; of the Cholesky factors of the operator's
 };
 
 } // namespace kerf::dynamics
