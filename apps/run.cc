@@ -38,6 +38,9 @@ void print_body(const scene::Body& body) {
               100 * (volume / rest - 1));
   std::printf("  energy: elastic %.4e J, kinetic %.4e J\n", body.physics.model->energy(body.state.x),
               scene::find_observable("kinetic energy")->value(body));
+  if (body.n_lost_shells > 0)
+    std::printf("  %zu shells of the mesh hold no grid node and are lost: use a smaller cube edge\n",
+                body.n_lost_shells);
   if (body.n_unresolved_edges > 0)
     std::printf("  %zu grid edges cross the mesh more than once: parts thinner than a cell are not resolved\n",
                 body.n_unresolved_edges);
@@ -97,7 +100,10 @@ int run(const Arguments& arguments) {
     std::printf("%s\n", line.c_str());
   std::fflush(stdout);
 
-  scene::Recorder recorder(parsed.output, world, run_info(arguments), text.text);
+  std::string scene_text = text.text;
+  for (const std::string& change : parsed.overrides)
+    scene_text += "# --set \"" + change + "\"\n";
+  scene::Recorder recorder(parsed.output, world, run_info(arguments), scene_text);
   scene::Progress progress(world.n_steps, world.n_steps * world.time_step, scene::progress_style(stdout), stdout);
   const Timings seconds = scene::run(world, recorder, progress);
   print_summary(world, seconds, parsed);

@@ -164,7 +164,9 @@ bool is_mixed(const grid::Grid& grid, const grid::EdgeId e) {
 class Skin {
  public:
   Skin(const geometry::TriangleMesh& mesh, const grid::Grid& grid, Embedding& result)
-    : mesh_(mesh), grid_(grid), result_(result),
+    : mesh_(mesh),
+      grid_(grid),
+      result_(result),
       shell_(geometry::shells(mesh)),
       is_lost_(shell_.empty() ? 0 : *std::max_element(shell_.begin(), shell_.end()) + 1, 1) {}
 

@@ -64,7 +64,7 @@ struct Operator {
 /// `scale`: norm of the scaled forces that balance in the right-hand side.
 int solve(const Operator& A, Vector& x, const Vector& rhs, const double scale, const ImplicitEulerOptions& options) {
   const double norm = rhs.l2_norm();
-  if (!std::isfinite(norm))
+  if (!std::isfinite(norm) || !std::isfinite(scale))
     throw NumericalError("forces are not finite");
   constexpr double nothing = 1e-100; // squares of less underflow, and conjugate gradients divide by them
   dealii::SolverControl control(options.max_cg_iterations, std::max(nothing, options.cg_tolerance * scale), false,

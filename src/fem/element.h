@@ -17,8 +17,8 @@ struct Element {
 
 /// Hooke's law, small strain: K_(ai)(bj) = int lambda N_a,i N_b,j + mu (N_a,j N_b,i + delta_ij grad N_a . grad N_b).
 /// Where the material fills less than `sliver_floor` of the cube, the stiffness (not the mass) is topped up to that
-/// fraction with a full cube's, so that corners held by slivers stay solvable. The mean
-/// gradient, and with it the rotation, is that of the same topped-up material.
+/// fraction with a full cube's, so that corners held by slivers stay solvable. The mean gradient, and with it
+/// the rotation, is that of the same topped-up material.
 Element make_element(const Moments& moments, double h, const material::Elastic& material, double sliver_floor);
 
 /// Gives each corner the same share of a part `part` [1] of the element's mass, the rest stays where it is. Total

@@ -1,8 +1,8 @@
 #pragma once
 
 /// Moments of the material in a cell: m(i, j, k) = integral of x^i y^j z^k over the material, in the unit cube [1].
-/// A trilinear cube's mass and stiffness for any distribution of material are linear in the 27 moments i, j, k <= 2
-///, so a cut cell costs one set of moments, exact for every position of the cut.
+/// A trilinear cube's mass and stiffness for any distribution of material are linear in the 27 moments i, j, k <= 2,
+/// so a cut cell costs one set of moments, exact for every position of the cut.
 
 #include "grid/complex.h"
 

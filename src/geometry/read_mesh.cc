@@ -36,7 +36,7 @@ std::string extension(const std::string& path) {
 
 void require_file(const std::string& path) {
   if (!std::filesystem::is_regular_file(path))
-    refuse(path, "the mesh file does not exist", "Check the path; it is relative to the folder kerf runs in");
+    refuse(path, "the mesh file does not exist", "Check the path");
   const std::array<std::string, 4> known = {".off", ".obj", ".stl", ".ply"};
   if (std::find(known.begin(), known.end(), extension(path)) == known.end())
     refuse(path, "the name must end in .off, .obj, .stl or .ply", "Convert the mesh to one of these");

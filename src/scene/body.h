@@ -60,6 +60,7 @@ struct Body {
   int n_recuts = 0;                           ///< how often the complex has changed
   double mesh_volume = 0;                     ///< of the input mesh [m^3]
   double first_volume = 0;                    ///< rest volume of the surface before any cut [m^3]
+  std::size_t n_lost_shells = 0;              ///< shells of the input mesh that hold no grid node
   std::size_t n_unresolved_edges = 0;         ///< edges that the input mesh crosses more than once
 };
 

@@ -4,6 +4,7 @@
 #include "dynamics/implicit_euler.h"
 #include "dynamics/symplectic_euler.h"
 #include "fem/corotational.h"
+#include "geometry/box_tree.h"
 #include "geometry/solid.h"
 #include "scene/expression.h"
 
@@ -53,8 +54,22 @@ geometry::TriangleMesh read_body_mesh(const Section& section, const BodyParamete
   }
 }
 
+/// A line of the composition, from anything that prints.
+template <class... Parts>
+std::string line(const Parts&... parts) {
+  std::ostringstream text;
+  (text << ... << parts);
+  return text.str();
+}
+
 cut::Embedding embed_mesh(const Section& section, const BodyParameters& parameters,
                           const geometry::TriangleMesh& mesh) {
+  constexpr double most_cells = 1e8;
+  const double n_cells = geometry::volume(mesh) / std::pow(parameters.cube_edge, 3);
+  if (n_cells > most_cells)
+    throw section.complaint("Cube edge [m]",
+                            line("would fill the mesh with ", n_cells, " cells, more than ", most_cells),
+                            "Use larger cubes, or check Mesh unit [m]");
   try {
     return cut::embed(mesh, parameters.cube_edge, parameters.lattice_offset);
   } catch (const ParameterError& error) { // about one of the last two, which embed calls as the scene does
@@ -63,14 +78,6 @@ cut::Embedding embed_mesh(const Section& section, const BodyParameters& paramete
     throw section.complaint("Cube edge [m]", "no grid node is inside the mesh, it is smaller than a cube",
                             "Use smaller cubes, or check Mesh unit [m]");
   }
-}
-
-/// A line of the composition, from anything that prints.
-template <class... Parts>
-std::string line(const Parts&... parts) {
-  std::ostringstream text;
-  (text << ... << parts);
-  return text.str();
 }
 
 std::function<Physics(const Body&)> physics_maker(const Section& section, const BodyParameters& parameters,
@@ -124,6 +131,7 @@ Body compose_body(const Section& section, const GravityParameters* gravity, Worl
   body.placement.sharp_angle = parameters.sharp_angle;
   body.mesh_volume = geometry::volume(mesh);
   body.n_unresolved_edges = embedding.n_double_crossings + embedding.n_triple_crossings;
+  body.n_lost_shells = embedding.n_lost_components;
   body.make_physics = physics_maker(section, parameters, material);
   const auto damping = read_if_written<DampingParameters>(section, "Damping");
   body.loads.gravity = gravity ? gravity->acceleration : Vec3(Vec3::Zero());
@@ -232,15 +240,6 @@ TimedSurface compose_cut_surface(const Section& section, const World& world) {
   return {std::move(surface), static_cast<int>(steps_before) + 1};
 }
 
-Box box_of(const Points& points) {
-  Box box{points[0], points[0]};
-  for (const Vec3& p : points) {
-    box.lower = box.lower.cwiseMin(p);
-    box.upper = box.upper.cwiseMax(p);
-  }
-  return box;
-}
-
 /// A blade whose key frames stay away from the box of every body, grown by half its size for what the body may move,
 /// is a mistake.
 void require_meeting(const Section& section, const cut::Blade& blade, const World& world) {
@@ -248,9 +247,9 @@ void require_meeting(const Section& section, const cut::Blade& blade, const Worl
   Points path = cut::world_points(blade, first);
   for (const auto& triangle : cut::sweep(blade, first, last))
     path.insert(path.end(), triangle.begin(), triangle.end());
-  const Box swept = box_of(path);
+  const Box swept = geometry::box_around(path);
   for (const Body& body : world.bodies) {
-    const Box box = box_of(body.positions);
+    const Box box = geometry::box_around(body.positions);
     const Vec3 slack = Vec3::Constant(0.5 * (box.upper - box.lower).norm());
     if ((swept.lower.array() <= (box.upper + slack).array()).all() &&
         (swept.upper.array() >= (box.lower - slack).array()).all())
@@ -301,17 +300,20 @@ void compose_time(const Section& section, World& world) {
   world.n_steps = static_cast<int>(steps);
 }
 
-void say_what_is_left_out(const Section& root, World& world) {
-  const auto say = [&](const std::string& kind, const std::string& consequence) {
+/// A line for each section that can be left out: there, or not there and what that means.
+void say_what_there_is(const Section& root, World& world) {
+  const auto say = [&](const std::string& kind, const std::string& present, const std::string& absent) {
+    if (root.find(kind) && !present.empty())
+      world.composition.push_back(present);
     if (!root.find(kind))
-      world.composition.push_back("left out: " + kind + " (" + consequence + ")");
+      world.composition.push_back("left out: " + kind + " (" + absent + ")");
   };
-  say("Gravity", "no field");
-  say("Blade", root.find("Cut surface") ? "nothing is swept" : "no cut machinery in memory");
-  say("Cut surface", "nothing is cut at once");
-  say("Observables", "no series but time");
-  say("Surface file", "no file for ParaView");
-  say("Images", "no GL context");
+  say("Gravity", "gravity", "no field");
+  say("Blade", "", root.find("Cut surface") ? "nothing is swept" : "no cut machinery in memory");
+  say("Cut surface", "", "nothing is cut at once");
+  say("Observables", line(world.observables.size(), " observables a body"), "no series but time");
+  say("Surface file", "surface files for ParaView", "no file for ParaView");
+  say("Images", "images: off-screen OpenGL", "no GL context");
 }
 
 } // namespace
@@ -347,9 +349,8 @@ World compose(const SceneText& text) {
     world.observables = compose_observables(*section);
   if (const Section* section = root.find("Images")) {
     world.images = compose_images(*section);
-    world.composition.push_back("images: off-screen OpenGL");
   }
-  say_what_is_left_out(root, world);
+  say_what_there_is(root, world);
   root.require_all_read();
   return world;
 }

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include "base/parameters.h"
 
 namespace kerf::scene {
 
@@ -21,7 +20,7 @@ void require_sound(const Body& body, const double dt) {
   }
   if (!std::isfinite(sum) || fastest * dt > cells_per_step * body.grid.h())
     throw NumericalError("the motion has diverged: the fastest corner moves at " + to_text(fastest) +
-                         " m/s. Use a smaller time step, or more Newton iterations");
+                         " m/s. Use a smaller time step");
 }
 
 /// Runs `action` on a body; an error says which body, step and time.
