@@ -79,7 +79,7 @@ TEST_F(ProgramTest, StoresWhatItRanAndComposed) {
   const Result result = run(scene, {"--threads", "1", "--set", "Time/End time [s]=0.02"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
   const output::Reader reader(folder / "out/run.h5");
-  EXPECT_EQ(reader.scene(), scene);
+  EXPECT_EQ(reader.scene(), scene + "# --set \"Time/End time [s]=0.02\"\n");
   EXPECT_EQ(reader.outcome(), output::Outcome::completed);
   EXPECT_EQ(reader.n_steps(), 3u);
   for (const std::string& line : reader.composition())
