@@ -1,0 +1,108 @@
+/// The geometric core under random and degenerate cuts: bodies in any state, sequences of sweeps, and after every
+/// release every invariant (invariants.h). A failure prints the shortest case that fails; repeat it with
+///
+///   KERF_FUZZ_CASE=seed:sweep,sweep,... build/release/tests/test_fuzz --gtest_filter=Fuzz.Repeat
+
+#include "base/parallel.h"
+#include "tests/fuzz/cases.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <iostream>
+
+namespace kerf::fuzz {
+namespace {
+
+/// Cases on large specimens have seeds from here, so that a seed alone tells which case it is.
+constexpr std::uint32_t first_large_seed = 1u << 30;
+
+const std::vector<Specimen>& specimens_of(const std::uint32_t seed) {
+  static const std::vector<Specimen> small = small_specimens(), large = large_specimens();
+  return seed < first_large_seed ? small : large;
+}
+
+std::string told(const Case& one) {
+  Tally unused;
+  const Outcome outcome = run(one, specimens_of(one.seed), unused);
+  return outcome.failure.value_or("does not fail") + "\ncase " + to_string(one) + '\n' + outcome.story +
+         "repeat: KERF_FUZZ_CASE=" + to_string(one) + " test_fuzz --gtest_filter=Fuzz.Repeat\n";
+}
+
+void expect_sound(const Case& one, Tally& tally) {
+  const auto& specimens = specimens_of(one.seed);
+  if (run(one, specimens, tally).failure)
+    ADD_FAILURE() << told(one) << "smallest: " << told(shrunk(one, specimens));
+}
+
+/// One thread gives the bits that two give.
+void expect_same_bits(const Case& one, Tally& tally) {
+  const int n_before = n_threads();
+  std::array<Outcome, 2> outcomes;
+  for (int n = 1; n <= 2; ++n) {
+    set_n_threads(n);
+    outcomes[n - 1] = run(one, specimens_of(one.seed), tally);
+  }
+  set_n_threads(n_before);
+  ++tally.n_thread_pairs;
+  if (outcomes[0].failure)
+    ADD_FAILURE() << told(one) << "smallest: " << told(shrunk(one, specimens_of(one.seed)));
+  EXPECT_EQ(outcomes[0].digest, outcomes[1].digest) << "1 and 2 threads differ: " << told(one);
+}
+
+void print(const Tally& tally, const double seconds) {
+  std::cout << tally.n_cases << " cases, " << tally.n_sweeps << " sweeps (" << tally.n_idle_sweeps << " cut nothing), "
+            << tally.n_releases << " releases, " << tally.n_cut_edges << " cut edges, " << tally.n_placed
+            << " placed vertices (" << tally.n_clamped << " clamped), " << tally.n_double_crossings
+            << " double crossings, " << tally.n_masses << " corner masses, " << tally.n_thread_pairs
+            << " cases on 1 and 2 threads; at most " << tally.n_most_pieces << " pieces and " << tally.n_most_waiting
+            << " waiting cuts\nworst change of volume " << tally.worst_volume
+            << ", of volumes by octants and triangles " << tally.worst_disagreement
+            << " of the body; of a corner's mass " << tally.worst_mass << " h^3; " << seconds << " s\n";
+}
+
+/// Cases from `first_seed` on until that many sweeps are done; every hundredth is large, and run with 1 and 2 threads.
+void fuzz(const std::uint32_t first_seed, const std::size_t n_sweeps) {
+  using Clock = std::chrono::steady_clock;
+  const auto start = Clock::now();
+  const auto seconds = [&] { return std::chrono::duration<double>(Clock::now() - start).count(); };
+  Tally tally;
+  std::size_t n_told = 0;
+  constexpr int max_failures = 10;
+  for (std::uint32_t seed = first_seed; tally.n_sweeps < n_sweeps; ++seed) {
+    if (seed % 100 == 50)
+      expect_same_bits(whole_case(first_large_seed + seed), tally);
+    else
+      expect_sound(whole_case(seed), tally);
+    if (testing::Test::HasFailure() &&
+        testing::UnitTest::GetInstance()->current_test_info()->result()->total_part_count() >= max_failures)
+      break;
+    if (tally.n_sweeps / 20000 > n_told) {
+      n_told = tally.n_sweeps / 20000;
+      print(tally, seconds());
+    }
+  }
+  print(tally, seconds());
+  EXPECT_GT(tally.n_cut_edges, n_sweeps);
+  EXPECT_GT(tally.n_masses, n_sweeps);
+  EXPECT_GT(tally.n_double_crossings, 0u);
+  EXPECT_GT(tally.n_thread_pairs, 0u);
+}
+
+TEST(Fuzz, Short) { fuzz(0, 2000); }
+
+TEST(Fuzz, Long) { fuzz(1000000, 100000); }
+
+TEST(Fuzz, Repeat) {
+  const char* text = std::getenv("KERF_FUZZ_CASE");
+  if (!text)
+    GTEST_SKIP() << "KERF_FUZZ_CASE names no case";
+  const Case one = parse_case(text);
+  std::cout << told(one);
+  Tally tally;
+  expect_sound(one, tally);
+}
+
+} // namespace
+} // namespace kerf::fuzz

@@ -1,0 +1,318 @@
+#include "tests/fuzz/invariants.h"
+
+#include "grid/cube.h"
+#include "tests/support/placed.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <sstream>
+
+namespace kerf::fuzz {
+
+namespace cube = grid::cube;
+using grid::CellComplex;
+using grid::CellId;
+using grid::Copy;
+using grid::CopyId;
+using grid::CornerId;
+using grid::NodeId;
+
+namespace {
+
+constexpr double tolerance = 1e-12; // of the body's volume, and of h^3 for a corner's mass
+
+using Labels = std::vector<std::uint32_t>;
+using Links = std::vector<std::array<std::uint32_t, 2>>;
+
+[[noreturn]] void complain(const std::string& what) { throw Violation(what); }
+
+std::string number(const double value) {
+  std::ostringstream text;
+  text << value;
+  return text.str();
+}
+
+/// Names 0 .. n - 1 by the smallest member of the set that links join them to.
+Labels flooded(const std::size_t n, const Links& links) {
+  Labels start(n + 1, 0), neighbours(2 * links.size());
+  for (const auto& link : links)
+    for (const auto end : link)
+      ++start[end + 1];
+  std::partial_sum(start.begin(), start.end(), start.begin());
+  Labels next(start.begin(), start.end() - 1);
+  for (const auto& [a, b] : links) {
+    neighbours[next[a]++] = b;
+    neighbours[next[b]++] = a;
+  }
+  constexpr std::uint32_t unseen = Id<void>::no_value;
+  Labels label(n, unseen), open;
+  for (std::uint32_t seed = 0; seed < n; ++seed) {
+    if (label[seed] != unseen)
+      continue;
+    label[seed] = seed;
+    for (open.push_back(seed); !open.empty();) {
+      const auto i = open.back();
+      open.pop_back();
+      for (auto k = start[i]; k < start[i + 1]; ++k)
+        if (label[neighbours[k]] == unseen) {
+          label[neighbours[k]] = seed;
+          open.push_back(neighbours[k]);
+        }
+    }
+  }
+  return label;
+}
+
+/// Two ways to name the same things must tell the same sets apart. Returns how many sets there are.
+std::size_t require_same_sets(const Labels& a, const Labels& b, const std::string& what) {
+  constexpr std::uint32_t none = Id<void>::no_value;
+  Labels to_b(a.empty() ? 0 : *std::max_element(a.begin(), a.end()) + 1, none);
+  Labels to_a(b.empty() ? 0 : *std::max_element(b.begin(), b.end()) + 1, none);
+  std::size_t n = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    if (to_b[a[i]] == none && to_a[b[i]] == none) {
+      to_b[a[i]] = b[i];
+      to_a[b[i]] = a[i];
+      ++n;
+    }
+    if (to_b[a[i]] != b[i] || to_a[b[i]] != a[i])
+      complain(what);
+  }
+  return n;
+}
+
+/// The smallest vertex of the cell that each vertex reaches along uncut lines.
+std::array<int, 8> components(const grid::Grid& grid, const grid::Cuts& cuts, const CellId c) {
+  std::array<int, 8> label = {0, 1, 2, 3, 4, 5, 6, 7};
+  for (int round = 0; round < 8; ++round)
+    for (int line = 0; line < cube::n_lines; ++line)
+      if (!cuts.is_cut(grid.edges(c)[line])) {
+        auto &a = label[cube::line_vertices[line][0]], &b = label[cube::line_vertices[line][1]];
+        a = b = std::min(a, b);
+      }
+  return label;
+}
+
+void require_sound_copies(const grid::Grid& grid, const grid::Cuts& cuts, const CellComplex& complex) {
+  for (const CellId c : ids<CellId>(grid.n_cells())) {
+    const auto component = components(grid, cuts, c);
+    std::array<std::uint32_t, 8> copy_of{};
+    for (int v = 0; v < 8; ++v) {
+      const CopyId copy = complex.copy_at(c, v);
+      if (copy.valid() != grid.is_material(grid.nodes(c)[v]))
+        complain("a vertex of cell " + std::to_string(c.value) + " is in a copy, but not material, or the reverse");
+      copy_of[v] = copy.value;
+      for (int w = 0; w < v; ++w)
+        if (copy.valid() && (copy_of[w] == copy_of[v]) != (component[w] == component[v]))
+          complain("the copies of cell " + std::to_string(c.value) + " are not its components");
+    }
+  }
+}
+
+/// The copies without a node's material may hold its real corner all the same: those at a cut's front.
+void require_real_corners(const grid::Grid& grid, const CellComplex& complex) {
+  Table<NodeId, std::uint8_t> is_held(grid.n_nodes(), 0);
+  for (const Copy& copy : complex.copies)
+    for (int v = 0; v < 8; ++v) {
+      const NodeId node = grid.nodes(copy.cell)[v];
+      const bool is_real = (copy.nodes >> v & 1) != 0;
+      if (complex.node[copy.corners[v]] != node || (is_real && complex.real_corner[node] != copy.corners[v]))
+        complain("node " + std::to_string(node.value) + " has a wrong corner in cell " +
+                 std::to_string(copy.cell.value));
+      is_held[node] |= is_real ? 1 : 0;
+    }
+  for (const NodeId node : ids<NodeId>(grid.n_nodes()))
+    if ((is_held[node] != 0) != grid.is_material(node) || complex.real_corner[node].valid() != grid.is_material(node))
+      complain("node " + std::to_string(node.value) + " has a real corner, but is not material, or the reverse");
+}
+
+void require_pieces(const grid::Grid& grid, const grid::Cuts& cuts, const CellComplex& complex) {
+  Links links;
+  for (const auto e : ids<grid::EdgeId>(grid.n_edges()))
+    if (!cuts.is_cut(e))
+      links.push_back({grid.ends(e)[0].value, grid.ends(e)[1].value});
+  const Labels component = flooded(grid.n_nodes(), links);
+  Labels by_nodes, by_copies;
+  for (const CopyId c : ids<CopyId>(complex.n_copies()))
+    for (int v = 0; v < 8; ++v)
+      if (complex.copies[c].nodes >> v & 1) {
+        by_nodes.push_back(component[grid.nodes(complex.copies[c].cell)[v].value]);
+        by_copies.push_back(complex.piece[c]);
+      }
+  if (require_same_sets(by_nodes, by_copies, "pieces are not the components of material nodes") != complex.n_pieces)
+    complain("the number of pieces is wrong");
+}
+
+/// Node by node: the copies on both sides of a face that hold a node of it are one along the whole face.
+Links glued_slots(const grid::Grid& grid, const CellComplex& complex) {
+  Links links;
+  for (const CellId below : ids<CellId>(grid.n_cells()))
+    for (int axis = 0; axis < 3; ++axis) {
+      const CellId above = grid.cells(grid.faces(below)[2 * axis + 1])[1];
+      if (!above.valid())
+        continue;
+      for (const int v : cube::face_vertices[2 * axis]) {
+        const CopyId a = complex.copy_at(below, v | 1 << axis), b = complex.copy_at(above, v);
+        if (a.valid() && b.valid())
+          for (const int w : cube::face_vertices[2 * axis])
+            links.push_back({8 * a.value + (w | 1 << axis), 8 * b.value + w});
+      }
+    }
+  return links;
+}
+
+void require_gluing(const grid::Grid& grid, const CellComplex& complex) {
+  const Labels glued = flooded(8 * complex.n_copies(), glued_slots(grid, complex));
+  Labels corners;
+  for (const Copy& copy : complex.copies)
+    for (const CornerId corner : copy.corners)
+      corners.push_back(corner.value);
+  if (require_same_sets(glued, corners, "corners are not what gluing joins") != complex.n_corners())
+    complain("the number of corners is wrong");
+}
+
+/// Adds the mass of a tetrahedron in cell coordinates, by a rule that is exact for trilinear shape functions.
+void add_mass(const grid::Tetrahedron& t, std::array<double, 8>& mass) {
+  const Vec3 centre = 0.25 * (t[0] + t[1] + t[2] + t[3]);
+  const double volume = support::volume(t);
+  const auto add = [&](const Vec3& p, const double weight) {
+    for (int v = 0; v < 8; ++v)
+      mass[v] += weight * (v & 1 ? p[0] : 1 - p[0]) * (v & 2 ? p[1] : 1 - p[1]) * (v & 4 ? p[2] : 1 - p[2]);
+  };
+  add(centre, -0.8 * volume);
+  for (const Vec3& p : t)
+    add(centre + (p - centre) / 3, 0.45 * volume);
+}
+
+} // namespace
+
+void require_sound_complex(const grid::Grid& grid, const grid::Cuts& cuts, const CellComplex& complex) {
+  require_sound_copies(grid, cuts, complex);
+  require_real_corners(grid, complex);
+  require_pieces(grid, cuts, complex);
+  require_gluing(grid, complex);
+}
+
+void require_sound_parents(const CellComplex& before, const CellComplex& after,
+                           const Table<CornerId, CornerId>& parents) {
+  for (const Copy& copy : after.copies)
+    for (int v = 0; v < 8; ++v) {
+      const CornerId parent = parents[copy.corners[v]];
+      for (int w = 0; w < 8; ++w)
+        if ((copy.nodes >> w & 1) && before.copies[before.copy_at(copy.cell, w)].corners[v] != parent)
+          complain("a corner of cell " + std::to_string(copy.cell.value) + " has several parents");
+      if (before.node[parent] != after.node[copy.corners[v]])
+        complain("a corner and its parent are instances of different nodes");
+      if ((copy.nodes >> v & 1) && before.real_corner[before.node[parent]] != parent)
+        complain("a real corner has a virtual parent");
+    }
+}
+
+void require_closed(const surface::Surface& surface) {
+  std::vector<std::uint64_t> forth, back;
+  for (const Triangle& triangle : surface.triangles)
+    for (int i = 0; i < 3; ++i) {
+      const std::uint64_t a = triangle[i], b = triangle[(i + 1) % 3];
+      if (a == b || std::max(a, b) >= surface.rest.size())
+        complain("a triangle holds a vertex twice, or one that is not there");
+      forth.push_back(a << 32 | b);
+      back.push_back(b << 32 | a);
+    }
+  std::sort(forth.begin(), forth.end());
+  std::sort(back.begin(), back.end());
+  if (std::adjacent_find(forth.begin(), forth.end()) != forth.end())
+    complain("a directed edge of the surface is met twice");
+  if (forth != back)
+    complain("the surface is not closed");
+}
+
+void require_sound_weights(const grid::Grid& grid, const CellComplex& complex, const surface::Surface& surface) {
+  const Points corners = grid::rest_positions(grid, complex);
+  Points followed;
+  surface::follow(surface, corners, followed);
+  double reach = grid.h();
+  for (const Vec3& p : corners)
+    reach = std::max(reach, p.norm());
+  for (std::size_t i = 0; i < surface.rest.size(); ++i) {
+    double sum = 0;
+    for (surface::Weights::InnerIterator w(surface.weights, static_cast<int>(i)); w; ++w)
+      sum += w.value();
+    if (!(std::abs(sum - 1) < 1e-14))
+      complain("a row of W sums to 1 + " + number(sum - 1));
+    if (!((followed[i] - surface.rest[i]).norm() < 1e-14 * reach))
+      complain("W misses a rest position by " + number((followed[i] - surface.rest[i]).norm()) + " m");
+  }
+}
+
+OctantVolumes require_positive_octants(const grid::Grid& grid, const grid::Cuts& cuts, const CellId cell) {
+  OctantVolumes volumes{};
+  for (int v = 0; v < 8; ++v)
+    for (const auto& t : grid::octant(grid, cuts, cell, v)) {
+      const double volume = support::volume(t);
+      if (!(volume > 0))
+        complain("a tetrahedron of cell " + std::to_string(cell.value) + " has the volume " + number(volume) + " h^3");
+      volumes[v] += volume;
+    }
+  return volumes;
+}
+
+void require_kept_volumes(const Subject& subject, Tally& tally) {
+  const CellComplex& complex = subject.complex;
+  std::vector<double> by_octants(complex.n_pieces, 0.0);
+  const double cube = std::pow(subject.grid().h(), 3);
+  for (const CopyId c : ids<CopyId>(complex.n_copies()))
+    for (int v = 0; v < 8; ++v)
+      if (complex.copies[c].nodes >> v & 1)
+        by_octants[complex.piece[c]] += cube * subject.octants[complex.copies[c].cell][v];
+  const auto by_triangles = surface::piece_volumes(subject.surface, complex);
+  for (std::size_t p = 0; p < by_octants.size(); ++p) {
+    const double difference = std::abs(by_octants[p] - by_triangles[p]) / subject.volume;
+    tally.worst_disagreement = std::max(tally.worst_disagreement, difference);
+    if (!(difference < tolerance))
+      complain("piece " + std::to_string(p) + ": volumes by octants and by triangles differ by " + number(difference) +
+               " of the body");
+  }
+  const double change = std::accumulate(by_octants.begin(), by_octants.end(), 0.0) / subject.volume - 1;
+  tally.worst_volume = std::max(tally.worst_volume, std::abs(change));
+  if (!(std::abs(change) < tolerance))
+    complain("the rest volume has changed by " + number(change) + " of the body");
+}
+
+void require_same(const CellComplex& a, const CellComplex& b) {
+  const auto same_copy = [](const Copy& p, const Copy& q) {
+    return p.cell == q.cell && p.nodes == q.nodes && p.corners == q.corners;
+  };
+  const bool same = std::equal(a.copies.begin(), a.copies.end(), b.copies.begin(), b.copies.end(), same_copy) &&
+                    a.first_copy.items() == b.first_copy.items() && a.node.items() == b.node.items() &&
+                    a.real_corner.items() == b.real_corner.items() && a.piece.items() == b.piece.items() &&
+                    a.n_pieces == b.n_pieces;
+  if (!same)
+    complain("the complex depends on the order in which edges were cut");
+}
+
+Table<CornerId, double> corner_masses(const grid::Grid& grid, const grid::Cuts& cuts, const CellComplex& complex,
+                                      const std::span<const CellId> cells) {
+  Table<CornerId, double> masses(complex.n_corners(), 0.0);
+  for (const CellId cell : cells)
+    for (auto c = complex.first_copy[cell]; c < complex.first_copy[CellId(cell.value + 1)]; ++c) {
+      const Copy& copy = complex.copies[CopyId(c)];
+      std::array<double, 8> mass{};
+      for (int v = 0; v < 8; ++v)
+        if (copy.nodes >> v & 1)
+          for (const auto& t : grid::octant(grid, cuts, cell, v))
+            add_mass(t, mass);
+      for (int v = 0; v < 8; ++v)
+        masses[copy.corners[v]] += mass[v];
+    }
+  return masses;
+}
+
+void require_sound(const Subject& subject, Tally& tally) {
+  require_sound_complex(subject.grid(), subject.cuts, subject.complex);
+  require_closed(subject.surface);
+  require_sound_weights(subject.grid(), subject.complex, subject.surface);
+  require_kept_volumes(subject, tally);
+}
+
+} // namespace kerf::fuzz

@@ -1,0 +1,51 @@
+#pragma once
+
+/// What holds after every cut, whatever was cut, in whatever configuration (DESIGN §3, §4). Each check is written from
+/// the definitions, not with the code under test: floods instead of union-find, gluing node by node instead of by masks.
+///
+/// Volumes are compared as parts of the whole body's: no piece's volume can be known better than the round-off of
+/// positions, which is relative to the body.
+
+#include "tests/fuzz/subject.h"
+
+#include <stdexcept>
+
+namespace kerf::fuzz {
+
+/// An invariant that does not hold.
+class Violation : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Copies are the components of their cells; each material node has one real corner; pieces are the components of
+/// material nodes over uncut edges; corners are the slots that gluing joins, no more and no fewer.
+void require_sound_complex(const grid::Grid& grid, const grid::Cuts& cuts, const grid::CellComplex& complex);
+
+/// Every corner has one parent, whatever copy is asked, an instance of the same node; real corners have real ones.
+void require_sound_parents(const grid::CellComplex& before, const grid::CellComplex& after,
+                           const Table<grid::CornerId, grid::CornerId>& parents);
+
+/// Each directed edge is met once each way, and no triangle holds a vertex twice.
+void require_closed(const surface::Surface& surface);
+
+/// Rows of W sum to 1 and take rest positions to rest positions.
+void require_sound_weights(const grid::Grid& grid, const grid::CellComplex& complex, const surface::Surface& surface);
+
+/// Volumes of the octants of a cell [1]; each of their tetrahedra must be positive.
+OctantVolumes require_positive_octants(const grid::Grid& grid, const grid::Cuts& cuts, grid::CellId cell);
+
+/// The octants of each piece enclose what its triangles enclose, and the pieces together the volume of the uncut body.
+void require_kept_volumes(const Subject& subject, Tally& tally);
+
+/// The same copies, corners and pieces, with the same names.
+void require_same(const grid::CellComplex& a, const grid::CellComplex& b);
+
+/// Lumped mass of each corner [h^3, at unit density] in the given cells.
+Table<grid::CornerId, double> corner_masses(const grid::Grid& grid, const grid::Cuts& cuts,
+                                            const grid::CellComplex& complex, std::span<const grid::CellId> cells);
+
+/// All of it but parents and masses.
+void require_sound(const Subject& subject, Tally& tally);
+
+} // namespace kerf::fuzz

@@ -1,0 +1,30 @@
+#pragma once
+
+/// Where the corners of a body may be when a blade meets it: physics never promises more than finite numbers.
+
+#include "tests/fuzz/subject.h"
+
+namespace kerf::fuzz {
+
+/// Puts the corners into a state drawn at random: at rest, moved rigidly, stretched and sheared, twisted, folded over
+/// itself, scrambled, collapsed to a plane, a line or a point. Returns its name.
+std::string put_into_state(Subject& subject, Random& random);
+
+/// What happens to the body between two sweeps: nothing, a rigid motion, a jitter, its pieces and copies pulled
+/// apart, a new state. `x_before` stays. Returns its name.
+std::string move(Subject& subject, Random& random);
+
+/// 0 .. n - 1.
+inline int draw(Random& random, const int n) { return std::uniform_int_distribution<int>(0, n - 1)(random); }
+
+/// Lower and upper end of all corners, and a margin of h [m].
+Box reach(const Subject& subject);
+
+inline Vec3 random_point(Random& random, const Box& box) {
+  Vec3 p;
+  for (int axis = 0; axis < 3; ++axis)
+    p[axis] = support::uniform(random, box.lower[axis], box.upper[axis]);
+  return p;
+}
+
+} // namespace kerf::fuzz
