@@ -1,5 +1,6 @@
 #include "scene_arguments.h"
 
+#include "base/error.h"
 #include "scene/compose.h"
 
 #include <cstdio>
@@ -7,6 +8,10 @@
 namespace kerf::apps {
 
 int check(const Arguments& arguments) {
+  for (const std::string& argument : arguments)
+    if (argument == "--output" || argument == "--threads")
+      throw ParameterError(
+        Complaint{.value = argument, .rule = "check takes no such option", .remedy = "Nothing is run"});
   const SceneArguments parsed = parse_scene_arguments(arguments);
   const scene::World world = scene::compose(scene::read_scene_text(parsed.scene, parsed.overrides));
   for (const std::string& line : world.composition)

@@ -26,6 +26,7 @@ TEST_F(ProgramTest, RefusesArgumentsThatMeanNothing) {
   expect_error(kerf({"run"}), 1, {"a scene file must be given", "params/liver.prm"});
   expect_error(kerf({"run", "scene.prm", "--bogus"}), 1,
                {"'--bogus'", "is no option", "--set, --output and --threads"});
+  expect_error(kerf({"check", "scene.prm", "--output", "out"}), 1, {"'--output'", "takes no such option"});
   expect_error(kerf({"run", "scene.prm", "--output"}), 1, {"--output", "needs a value"});
   expect_error(kerf({"run", "scene.prm", "other.prm"}), 1, {"'other.prm'", "only one scene"});
   expect_error(kerf({"params", "scene.prm"}), 1, {"'scene.prm'", "no arguments"});
@@ -122,7 +123,8 @@ TEST_F(ProgramTest, TellsHowAComputationFailed) {
     "subsection Gravity\nend\nsubsection Output\n  set Frames every [1] = 1\nend\n";
   const Result result = run(scene, {"--set", "Time/Time step [s]=0.5", "--set", "Time/End time [s]=500"});
   expect_error(result, 3,
-               {"body cube, step ", ", time ", " s: the motion has diverged: the fastest corner moves at ", "Use a smaller time step"});
+               {"body cube, step ", ", time ", " s: the motion has diverged: the fastest corner moves at ",
+                "Use a smaller time step"});
 
   const output::Reader reader(folder / "out/run.h5");
   EXPECT_EQ(reader.outcome(), output::Outcome::failed);
