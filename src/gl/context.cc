@@ -65,6 +65,12 @@ void Context::make_current() const {
     throw DataError({.path = "OpenGL", .value = "OSMesa", .rule = "the context cannot be used", .remedy = remedy});
 }
 
+void Context::clip(const int n) const {
+  make_current();
+  for (int i = 0; i < 8; ++i)
+    (i < n ? glEnable : glDisable)(GL_CLIP_DISTANCE0 + static_cast<GLenum>(i));
+}
+
 Version Context::version() const {
   make_current();
   Version v;

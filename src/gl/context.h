@@ -24,6 +24,9 @@ class Context {
   /// Directs the GL calls of this thread to this context; throws DataError if Mesa refuses.
   void make_current() const;
 
+  /// Clips what is drawn from now on where gl_ClipDistance[i] < 0, i < n, n <= 8.
+  void clip(int n) const;
+
   Version version() const;
 
   /// Who draws: "llvmpipe (LLVM 15.0.6, 256 bits)".
