@@ -1,0 +1,176 @@
+#include "pba/corners.h"
+
+#include "base/parallel.h"
+#include "pba/kernel.h"
+#include "pba/point_grid.h"
+#include "pba/reach.h"
+
+#include <algorithm>
+#include <bit>
+#include <numeric>
+
+namespace kerf::pba {
+
+namespace {
+
+constexpr std::size_t worth = 512; // corners from which on a second thread pays
+
+/// x + F (X - X_i) as a + F X: F in columns 0 .. 2, a in column 3.
+using Motion = Eigen::Matrix<double, 3, 4>;
+
+/// Row of each material node.
+Table<grid::NodeId, std::uint32_t> rows_of(const grid::CellComplex& complex, const NodePairs& pairs) {
+  Table<grid::NodeId, std::uint32_t> rows(complex.real_corner.size(), Id<void>::no_value);
+  for (std::uint32_t r = 0; r < pairs.nodes.size(); ++r)
+    rows[pairs.nodes[r]] = r;
+  return rows;
+}
+
+/// The phyxels that each row sees, and those that carry rows that see none.
+void fill_rows(const grid::CellComplex& complex, const Phyxels& phyxels, std::span<const grid::CopyId> copies,
+               const NodePairs& pairs, std::span<const Sight> sights, CornerMap& map) {
+  std::vector<double> weights, sums(pairs.nodes.size(), 0.0);
+  for (std::size_t p = 0; p < pairs.pairs.size(); ++p) {
+    weights.push_back(weight(sights[p], pairs.support[p]));
+    sums[pairs.pairs[p][0]] += weights[p];
+  }
+  std::vector<std::uint32_t> blind;
+  for (std::uint32_t r = 0; r < sums.size(); ++r)
+    if (!(sums[r] > 0))
+      blind.push_back(r);
+  map.n_blind = blind.size();
+  const Reached reached = reach(complex, pairs.nodes, pairs.rest, phyxels.rest, copies, blind);
+  map.n_orphans = reached.n_orphans;
+
+  map.start.push_back(0);
+  std::size_t p = 0, b = 0;
+  for (std::uint32_t r = 0; r < sums.size(); ++r) {
+    for (; p < pairs.pairs.size() && pairs.pairs[p][0] == r; ++p)
+      if (sums[r] > 0 && weights[p] > 0) {
+        map.phyxel.push_back(pairs.pairs[p][1]);
+        map.weight.push_back(weights[p] / sums[r]);
+      }
+    if (!(sums[r] > 0)) {
+      map.phyxel.push_back(reached.phyxel[b++]);
+      map.weight.push_back(1);
+    }
+    map.start.push_back(static_cast<std::uint32_t>(map.phyxel.size()));
+  }
+}
+
+/// Real corners of a copy the fewest edges away from one of its corners, as rows of the map.
+struct Sources {
+  int n_edges = 99;
+  std::vector<std::uint32_t> rows;
+
+  void offer(const int distance, const std::uint32_t row) {
+    if (distance > n_edges)
+      return;
+    if (distance < n_edges)
+      rows.clear();
+    n_edges = distance;
+    if (std::find(rows.begin(), rows.end(), row) == rows.end())
+      rows.push_back(row);
+  }
+};
+
+void fill_sources(const grid::CellComplex& complex, const NodePairs& pairs, CornerMap& map) {
+  const auto rows = rows_of(complex, pairs);
+  std::vector<Sources> sources(complex.n_corners());
+  for (const grid::Copy& copy : complex.copies)
+    for (unsigned v = 0; v < 8; ++v)
+      for (unsigned real = 0; real < 8; ++real)
+        if (copy.nodes >> real & 1)
+          sources[copy.corners[v].value].offer(std::popcount(v ^ real), rows[complex.node[copy.corners[real]]]);
+  map.source_start.push_back(0);
+  for (Sources& s : sources) {
+    std::sort(s.rows.begin(), s.rows.end());
+    map.source.insert(map.source.end(), s.rows.begin(), s.rows.end());
+    map.source_start.push_back(static_cast<std::uint32_t>(map.source.size()));
+  }
+}
+
+} // namespace
+
+NodePairs find_node_pairs(const grid::Grid& grid, const Phyxels& phyxels) {
+  const double widest = *std::max_element(phyxels.support.begin(), phyxels.support.end());
+  const PointGrid points(phyxels.rest, widest);
+  NodePairs pairs;
+  std::vector<std::uint32_t> near;
+  for (const auto n : ids<grid::NodeId>(grid.n_nodes())) {
+    if (!grid.is_material(n))
+      continue;
+    const auto row = static_cast<std::uint32_t>(pairs.nodes.size());
+    pairs.nodes.push_back(n);
+    pairs.rest.push_back(grid.position(n));
+    points.within(pairs.rest.back(), widest, near);
+    for (const auto i : near)
+      if ((phyxels.rest[i] - pairs.rest.back()).norm() < phyxels.support[i]) {
+        pairs.pairs.push_back({row, i});
+        pairs.support.push_back(phyxels.support[i]);
+      }
+  }
+  return pairs;
+}
+
+CornerMap build_corner_map(const grid::Grid& grid, const grid::CellComplex& complex, const Phyxels& phyxels,
+                           const std::span<const grid::CopyId> copies, const NodePairs& pairs,
+                           const std::span<const Sight> sights) {
+  CornerMap map;
+  map.rest = phyxels.rest;
+  map.corners = grid::rest_positions(grid, complex);
+  fill_rows(complex, phyxels, copies, pairs, sights, map);
+  fill_sources(complex, pairs, map);
+  return map;
+}
+
+void follow(const CornerMap& map, const Points& x, const std::vector<Mat3>& F, Points& corners) {
+  std::vector<Motion> motions(x.size()), rows(map.start.size() - 1);
+  for (std::size_t i = 0; i < x.size(); ++i)
+    motions[i] << F[i], x[i] - F[i] * map.rest[i];
+  parallel_for(
+    rows.size(),
+    [&](const std::size_t r) {
+      rows[r].setZero();
+      for (auto k = map.start[r]; k < map.start[r + 1]; ++k)
+        rows[r] += map.weight[k] * motions[map.phyxel[k]];
+    },
+    worth);
+  corners.resize(map.corners.size());
+  parallel_for(
+    corners.size(),
+    [&](const std::size_t c) {
+      const auto begin = map.source_start[c], end = map.source_start[c + 1];
+      Vec3 sum = Vec3::Zero();
+      for (auto k = begin; k < end; ++k)
+        sum += rows[map.source[k]].leftCols<3>() * map.corners[c] + rows[map.source[k]].col(3);
+      corners[c] = sum / (end - begin);
+    },
+    worth);
+}
+
+std::vector<std::uint32_t> phyxel_pieces(const grid::CellComplex& complex, const std::span<const grid::CopyId> copies) {
+  std::vector<std::uint32_t> pieces;
+  for (const auto c : copies)
+    pieces.push_back(complex.piece[c]);
+  return pieces;
+}
+
+std::vector<std::uint32_t> node_pieces(const grid::CellComplex& complex, const NodePairs& pairs) {
+  const auto rows = rows_of(complex, pairs);
+  std::vector<std::uint32_t> pieces(pairs.nodes.size(), 0);
+  for (const auto c : ids<grid::CopyId>(complex.n_copies()))
+    for (int v = 0; v < 8; ++v)
+      if (complex.copies[c].nodes >> v & 1)
+        pieces[rows[complex.node[complex.copies[c].corners[v]]]] = complex.piece[c];
+  return pieces;
+}
+
+void part(const std::span<const Pair> pairs, const std::span<const std::uint32_t> first_pieces,
+          const std::span<const std::uint32_t> second_pieces, const std::span<Sight> sights) {
+  for (std::size_t p = 0; p < pairs.size(); ++p)
+    if (first_pieces[pairs[p][0]] != second_pieces[pairs[p][1]])
+      sights[p].factor = 0;
+}
+
+} // namespace kerf::pba

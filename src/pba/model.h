@@ -1,0 +1,107 @@
+#pragma once
+
+/// Point-based animation (thesis §2.1.7; Mueller, Keiser, Nealen, Pauly, Gross and Alexa 2004, Symposium on Computer
+/// Animation, 141-151) as a model. Unknowns are the positions of the phyxels,
+///
+///     energy(x) = sum_i V_i Psi(B_i M_i) + 1/2 sum_i kappa_i sum_j w_ij |x_j - x_i - B_i X_ij|^2
+///
+/// with B_i the gradient by moving least squares, M_i what is known of it (fit.h) and Psi the law (law.h). Forces are
+/// the exact -dE/dx. Written pair by pair they are
+///
+///     f_i += (T_i + T_j) w_ij X_ij + (kappa_i + kappa_j) w_ij (x_j - x_i),   T_i = V_i (P_i M_i) A_i^+ - kappa_i B_i
+///
+/// and f_j the opposite, bit by bit: momentum is kept. E does not see rotations, so angular momentum is kept too.
+///
+/// The second sum controls the zero-energy modes: gradients do not see a phyxel that moves against all its neighbours.
+/// It punishes what an affine motion of the neighbourhood leaves over, as Ganzenmueller 2015 does (Computer Methods in
+/// Applied Mechanics and Engineering 286, 87-106); departs from it in that the whole residual counts, not only its
+/// part along the pair, and that the weights are those of the fit: the energy is then a quadratic form, derivatives of
+/// B drop out, no state is unstable, and it fades with the sights. kappa_i = c E V_i / (tr(A_i) / 3 with nothing in
+/// sight), c the option.
+///
+/// The law of material::Elastic is not asked for: it is Green's strain with Hooke's law whatever its name.
+///
+/// Limits: nodal integration passes the patch test of equilibrium only where the phyxels lie on a lattice; Green's
+/// strain with Hooke's law softens in strong compression.
+
+#include "dynamics/model.h"
+#include "material/elastic.h"
+#include "pba/fit.h"
+#include "pba/law.h"
+#include "pba/neighbours.h"
+
+namespace kerf::pba {
+
+struct ModelOptions {
+  double stabilisation = 1; ///< c [1]
+  double volume_share = 1;  ///< of lambda, where positive: acts on the volume [1]
+  /// Where the extent of a neighbourhood across some direction, squared, falls below this part of an uncut one's, the
+  /// direction is let go. A quarter of a neighbourhood keeps about 0.1, an eighth 0.05.
+  double rank_threshold = 0.1;
+  dynamics::Tangent tangent = dynamics::Tangent::positive; ///< of linearise()
+
+  void describe(Parameters& p) {
+    p.number("Stabilisation [1]", stabilisation, non_negative,
+             "Penalty on motion that gradients do not see, over Young's modulus.");
+    p.number("Volume share [1]", volume_share, {.min = 0, .max = 1},
+             "Part of Lame's lambda that acts on the volume; the rest acts on the trace of Green's strain.");
+    p.number("Rank threshold [1]", rank_threshold, {.min = 0, .max = 0.1, .min_excluded = true},
+             "Extent of a neighbourhood, squared, over that of an uncut one, below which a direction is let go.");
+  }
+};
+
+class PhyxelModel : public dynamics::ElasticModel {
+ public:
+  /// Nothing in sight. Throws ParameterError for an option out of its range.
+  PhyxelModel(Phyxels phyxels, const material::Elastic& material, const ModelOptions& options);
+
+  /// What stands between the phyxels now: one sight for each of neighbours().pairs. Only what changed is made anew.
+  void update(std::span<const Sight> sights);
+
+  const Phyxels& phyxels() const { return phyxels_; }
+  const Neighbours& neighbours() const { return neighbours_; }
+  /// What is known of the gradient at each phyxel.
+  const std::vector<Fit>& fits() const { return fits_; }
+  /// Weight of each pair [1].
+  std::span<const double> weights() const { return weights_; }
+
+  std::span<const double> lumped_mass() const override { return mass_; }
+  double energy(const Points& x) const override;
+  void force(const Points& x, Points& forces) const override;
+  void linearise(const Points& x) override;
+  void apply_stiffness(std::span<const double> p, std::span<double> y) const override;
+  void stiffness_diagonal(std::vector<Mat3>& blocks) const override;
+
+  /// Deformation gradient at each phyxel [1], completed where it is not known.
+  void deformation(const Points& x, std::vector<Mat3>& F) const;
+
+ private:
+  /// What phyxel i sees of phyxel j.
+  struct Bond {
+    Vec3 moment; ///< w_ij X_ij [m]
+    double weight;
+    std::uint32_t other;
+  };
+
+  void make(std::size_t i);
+  std::span<const Bond> bonds(std::size_t i) const;
+  /// B_i for any field of points, positions or changes of them.
+  template <class At>
+  Mat3 gradient(std::size_t i, const At& at) const;
+  /// T for each phyxel, then the sum over pairs: f_i += (T_i + T_j) w_ij X_ij + (kappa_i + kappa_j) w_ij (x_j - x_i).
+  template <class At, class Stress>
+  void pair_forces(const At& at, const Stress& stress, double* forces) const;
+
+  Phyxels phyxels_;
+  Neighbours neighbours_;
+  ModelOptions options_;
+  double youngs_modulus_;
+  Law law_;
+  std::vector<double> mass_, weights_;
+  std::vector<double> reference_, kappa_; // by phyxel: tr(A) / 3 with nothing in sight; [N/m]
+  std::vector<Bond> bonds_;
+  std::vector<Fit> fits_;
+  std::vector<Linearised> linearised_;
+};
+
+} // namespace kerf::pba
