@@ -1,0 +1,120 @@
+#include "lattice/shares.h"
+
+#include "base/parallel.h"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <bit>
+
+namespace kerf::lattice {
+
+namespace {
+
+/// Integral over a tetrahedron of a product of three functions that are linear in it and not negative at its vertices,
+/// over its volume: products of barycentric coordinates integrate to 3! times the factorials of the exponents over 6!.
+double mean_product(const Eigen::Array4d& f, const Eigen::Array4d& g, const Eigen::Array4d& h) {
+  const double F = f.sum(), G = g.sum(), H = h.sum();
+  return (F * G * H + F * (g * h).sum() + G * (f * h).sum() + H * (f * g).sum() + 2 * (f * g * h).sum()) / 120;
+}
+
+/// By the vertex of a node, and of a corner.
+using CopyShares = std::array<std::array<double, 8>, 8>;
+
+/// The integral of each N_a over the octant of each node of the copy.
+CopyShares octant_integrals(const grid::Grid& grid, const grid::Cuts& cuts, const grid::Copy& copy) {
+  CopyShares integrals{};
+  for (int vertex = 0; vertex < 8; ++vertex)
+    if (copy.nodes >> vertex & 1)
+      for (const grid::Tetrahedron& t : grid::octant(grid, cuts, copy.cell, vertex)) {
+        const auto of_tetrahedron = shape_integrals(t);
+        for (int a = 0; a < 8; ++a)
+          integrals[vertex][a] += of_tetrahedron[a];
+      }
+  return integrals;
+}
+
+/// Bits of those vertices of `nodes` that are the fewest edges away from `corner`.
+unsigned nearest(const unsigned nodes, const int corner) {
+  for (int distance = 0; distance <= 3; ++distance) {
+    unsigned found = 0;
+    for (int v = 0; v < 8; ++v)
+      if ((nodes >> v & 1) != 0 && std::popcount(static_cast<unsigned>(v ^ corner)) == distance)
+        found |= 1u << v;
+    if (found != 0)
+      return found;
+  }
+  return 0;
+}
+
+CopyShares shares_of(const grid::Grid& grid, const grid::Cuts& cuts, const grid::Copy& copy) {
+  CopyShares shares{};
+  if (copy.nodes == 0xff) { // a full cube, wherever its octants meet
+    for (int a = 0; a < 8; ++a)
+      shares[a][a] = 1.0 / 8;
+    return shares;
+  }
+  const CopyShares integrals = octant_integrals(grid, cuts, copy);
+  for (int a = 0; a < 8; ++a) {
+    const unsigned owners = nearest(copy.nodes, a);
+    double total = 0, of_owners = 0;
+    for (int v = 0; v < 8; ++v) {
+      total += integrals[v][a];
+      of_owners += (owners >> v & 1) != 0 ? integrals[v][a] : 0;
+    }
+    for (int v = 0; v < 8; ++v)
+      if ((owners >> v & 1) != 0)
+        shares[v][a] = total * (integrals[v][a] / of_owners);
+  }
+  return shares;
+}
+
+bool is_before(const Share& a, const Share& b) { return a.node != b.node ? a.node < b.node : a.corner < b.corner; }
+
+/// One share for each pair; sums in the order of the copies.
+std::vector<Share> merged(std::vector<Share> shares) {
+  std::stable_sort(shares.begin(), shares.end(), is_before);
+  std::vector<Share> unique;
+  for (const Share& share : shares) {
+    if (!unique.empty() && unique.back().node == share.node && unique.back().corner == share.corner)
+      unique.back().mass += share.mass;
+    else
+      unique.push_back(share);
+  }
+  return unique;
+}
+
+} // namespace
+
+std::array<double, 8> shape_integrals(const grid::Tetrahedron& t) {
+  const double volume = (t[1] - t[0]).dot((t[2] - t[0]).cross(t[3] - t[0])) / 6;
+  std::array<std::array<Eigen::Array4d, 2>, 3> factor; // by axis and by the side of the cube
+  for (int axis = 0; axis < 3; ++axis) {
+    factor[axis][1] = Eigen::Array4d(t[0][axis], t[1][axis], t[2][axis], t[3][axis]).max(0).min(1);
+    factor[axis][0] = 1 - factor[axis][1];
+  }
+  std::array<double, 8> integrals;
+  for (int a = 0; a < 8; ++a)
+    integrals[a] = volume * mean_product(factor[0][a & 1], factor[1][a >> 1 & 1], factor[2][a >> 2 & 1]);
+  return integrals;
+}
+
+std::vector<Share> material_shares(const grid::Grid& grid, const grid::Cuts& cuts, const grid::CellComplex& complex,
+                                   const double density) {
+  std::vector<CopyShares> of_copy(complex.n_copies());
+  parallel_for(
+    complex.n_copies(),
+    [&](const std::size_t c) { of_copy[c] = shares_of(grid, cuts, complex.copies[grid::CopyId(c)]); }, 256);
+  const double scale = density * grid.h() * grid.h() * grid.h();
+  std::vector<Share> shares;
+  for (const auto c : ids<grid::CopyId>(complex.n_copies())) {
+    const grid::Copy& copy = complex.copies[c];
+    for (int vertex = 0; vertex < 8; ++vertex)
+      for (int a = 0; a < 8; ++a)
+        if (const double share = of_copy[c.value][vertex][a]; share > 0)
+          shares.push_back({grid.nodes(copy.cell)[vertex], copy.corners[a], scale * share});
+  }
+  return merged(std::move(shares));
+}
+
+} // namespace kerf::lattice

@@ -1,0 +1,207 @@
+#include "spring/mass_spring.h"
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "base/parameters.h"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace kerf::spring {
+
+namespace {
+
+constexpr std::size_t worth_springs = 8192, worth_corners = 4096; // from which on a second thread pays
+
+void require_positive(const std::string& path, const double value) {
+  if (!positive.contains(value))
+    throw ParameterError({.path = path, .value = to_text(value), .rule = positive.rule()});
+}
+
+double volume(const grid::Tetrahedron& t) { return (t[1] - t[0]).dot((t[2] - t[0]).cross(t[3] - t[0])) / 6; }
+
+/// The material's part of the copy's cube [1].
+double fill_of(const grid::Grid& grid, const grid::Cuts& cuts, const grid::Copy& copy) {
+  if (copy.nodes == 0xff)
+    return 1;
+  double sum = 0;
+  for (int vertex = 0; vertex < 8; ++vertex)
+    if (copy.nodes >> vertex & 1)
+      for (const grid::Tetrahedron& t : grid::octant(grid, cuts, copy.cell, vertex))
+        sum += volume(t);
+  return sum;
+}
+
+/// Vertices of a cube that a spring joins: all that differ in one coordinate (edges) or two (face diagonals).
+struct Pair {
+  int a, b;
+  bool is_edge;
+};
+
+std::vector<Pair> pairs_of_cube() {
+  std::vector<Pair> pairs;
+  for (int a = 0; a < 8; ++a)
+    for (int b = a + 1; b < 8; ++b)
+      if (const int n_different = std::popcount(static_cast<unsigned>(a ^ b)); n_different < 3)
+        pairs.push_back({a, b, n_different == 1});
+  return pairs;
+}
+
+} // namespace
+
+MassSpring::MassSpring(const grid::Grid& grid, const grid::Cuts& cuts, const grid::CellComplex& complex,
+                       const MassSpringOptions& options)
+  : mass_(complex.n_corners(), 0.0) {
+  require_positive("Density [kg/m^3]", options.density);
+  require_positive("Young's modulus [Pa]", options.youngs_modulus);
+  std::vector<double> fill(complex.n_copies());
+  parallel_for(
+    fill.size(), [&](const std::size_t c) { fill[c] = fill_of(grid, cuts, complex.copies[grid::CopyId(c)]); }, 256);
+  const double eighth = options.density * grid.h() * grid.h() * grid.h() / 8;
+  for (const auto c : ids<grid::CopyId>(complex.n_copies()))
+    for (const auto corner : complex.copies[c].corners)
+      mass_[corner.value] += fill[c.value] * eighth;
+  add_springs(complex, fill, grid.h(), options);
+  find_users();
+}
+
+void MassSpring::add_springs(const grid::CellComplex& complex, const std::vector<double>& fill, const double h,
+                             const MassSpringOptions& options) {
+  const double edge = options.youngs_modulus * h / 10, diagonal = options.youngs_modulus * h / 5;
+  const auto pairs = pairs_of_cube();
+  std::vector<Spring> all;
+  all.reserve(pairs.size() * complex.n_copies());
+  for (const auto c : ids<grid::CopyId>(complex.n_copies()))
+    for (const Pair& pair : pairs) {
+      const auto a = complex.copies[c].corners[pair.a].value, b = complex.copies[c].corners[pair.b].value;
+      all.push_back({std::min(a, b), std::max(a, b), fill[c.value] * (pair.is_edge ? edge : diagonal),
+                     pair.is_edge ? h : std::sqrt(2.0) * h});
+    }
+  std::stable_sort(all.begin(), all.end(),
+                   [](const Spring& s, const Spring& t) { return s.a != t.a ? s.a < t.a : s.b < t.b; });
+  for (const Spring& spring : all) { // sums in the order of the copies
+    if (!springs_.empty() && springs_.back().a == spring.a && springs_.back().b == spring.b)
+      springs_.back().stiffness += spring.stiffness;
+    else
+      springs_.push_back(spring);
+  }
+}
+
+void MassSpring::find_users() {
+  user_start_.assign(mass_.size() + 1, 0);
+  for (const Spring& s : springs_) {
+    ++user_start_[s.a + 1];
+    ++user_start_[s.b + 1];
+  }
+  for (std::size_t c = 0; c < mass_.size(); ++c)
+    user_start_[c + 1] += user_start_[c];
+  users_.resize(2 * springs_.size());
+  std::vector<std::uint32_t> next(user_start_.begin(), user_start_.end() - 1);
+  for (std::uint32_t i = 0; i < springs_.size(); ++i) {
+    users_[next[springs_[i].a]++] = 2 * i;
+    users_[next[springs_[i].b]++] = 2 * i + 1;
+  }
+}
+
+void MassSpring::gather(const Points& of_springs, double* const y) const {
+  parallel_for(
+    mass_.size(),
+    [&](const std::size_t c) {
+      Vec3 sum = Vec3::Zero();
+      for (auto k = user_start_[c]; k < user_start_[c + 1]; ++k)
+        sum += (users_[k] & 1) != 0 ? Vec3(-of_springs[users_[k] / 2]) : of_springs[users_[k] / 2];
+      Eigen::Map<Vec3>(y + 3 * c) = sum;
+    },
+    worth_corners);
+}
+
+double MassSpring::energy(const Points& x) const {
+  double sum = 0;
+  for (const Spring& s : springs_) {
+    const double stretch = (x[s.b] - x[s.a]).norm() - s.length;
+    sum += 0.5 * s.stiffness * stretch * stretch;
+  }
+  return sum;
+}
+
+void MassSpring::force(const Points& x, Points& forces) const {
+  of_springs_.resize(springs_.size());
+  parallel_for(
+    springs_.size(),
+    [&](const std::size_t i) {
+      const Spring& s = springs_[i];
+      const Vec3 d = x[s.b] - x[s.a];
+      const double length = d.norm();
+      // A spring of no length has no direction: it waits for its ends to part.
+      of_springs_[i] = length > 0 ? Vec3(s.stiffness * (length - s.length) / length * d) : Vec3(Vec3::Zero());
+    },
+    worth_springs);
+  forces.resize(mass_.size());
+  gather(of_springs_, forces[0].data());
+}
+
+MassSpring::Direction MassSpring::direction(const Spring& spring, const Points& x, const dynamics::Tangent kind) {
+  const Vec3 d = x[spring.b] - x[spring.a];
+  const double length = d.norm();
+  if (!(length > 0))
+    return {Vec3::Zero(), spring.stiffness, spring.stiffness};
+  const double across = spring.stiffness * (1 - spring.length / length);
+  return {d / length, spring.stiffness, kind == dynamics::Tangent::positive ? std::max(0.0, across) : across};
+}
+
+void MassSpring::linearise(const Points& x) {
+  directions_.resize(springs_.size());
+  parallel_for(
+    springs_.size(),
+    [&](const std::size_t i) { directions_[i] = direction(springs_[i], x, dynamics::Tangent::positive); },
+    worth_springs);
+}
+
+Eigen::SparseMatrix<double> MassSpring::stiffness_matrix(const Points& x, const dynamics::Tangent kind) const {
+  std::vector<Eigen::Triplet<double>> entries;
+  entries.reserve(36 * springs_.size());
+  const auto add = [&](const std::uint32_t a, const std::uint32_t b, const Mat3& block) {
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j)
+        entries.emplace_back(static_cast<int>(3 * a + i), static_cast<int>(3 * b + j), block(i, j));
+  };
+  for (const Spring& s : springs_) {
+    const Mat3 block = direction(s, x, kind).matrix();
+    add(s.a, s.a, block);
+    add(s.b, s.b, block);
+    add(s.a, s.b, -block);
+    add(s.b, s.a, -block);
+  }
+  const auto n = static_cast<Eigen::Index>(3 * mass_.size());
+  Eigen::SparseMatrix<double> K(n, n);
+  K.setFromTriplets(entries.begin(), entries.end());
+  return K;
+}
+
+void MassSpring::apply_stiffness(const std::span<const double> p, const std::span<double> y) const {
+  of_springs_.resize(springs_.size());
+  const auto at = [&](const std::uint32_t c) { return Eigen::Map<const Vec3>(p.data() + 3 * std::size_t(c)); };
+  parallel_for(
+    springs_.size(),
+    [&](const std::size_t i) { of_springs_[i] = directions_[i].times(at(springs_[i].a) - at(springs_[i].b)); },
+    worth_springs);
+  gather(of_springs_, y.data());
+}
+
+void MassSpring::stiffness_diagonal(std::vector<Mat3>& blocks) const {
+  blocks.resize(mass_.size());
+  parallel_for(
+    mass_.size(),
+    [&](const std::size_t c) {
+      Mat3 sum = Mat3::Zero();
+      for (auto k = user_start_[c]; k < user_start_[c + 1]; ++k)
+        sum += directions_[users_[k] / 2].matrix();
+      blocks[c] = sum;
+    },
+    worth_corners);
+}
+
+} // namespace kerf::spring
