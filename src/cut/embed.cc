@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <span>
 #include <stdexcept>
 #include <tuple>
@@ -17,15 +18,15 @@ namespace {
 constexpr int index_bits = 20; // the grid's limit
 constexpr std::size_t triangles_per_chunk = 2048;
 
-/// An edge of the lattice, stored or not; ordered by axis, then line by line, then upwards.
+/// An edge of the lattice, stored or not; keys are ordered by axis, then as the grid orders lower nodes: by z, y, x. So
+/// crossings of a line along x follow each other, and sorted cut edges are sorted by their ids.
 struct LatticeEdge {
   int axis = 0;
   Index3 lower{};
 
   std::uint64_t key() const {
-    const int i = (axis + 1) % 3, j = (axis + 2) % 3;
     std::uint64_t k = axis;
-    for (const int d : {i, j, axis})
+    for (const int d : {2, 1, 0})
       k = k << index_bits | static_cast<std::uint64_t>(lower[d]);
     return k;
   }
@@ -34,13 +35,14 @@ struct LatticeEdge {
 LatticeEdge edge_of(std::uint64_t key) {
   LatticeEdge edge;
   edge.axis = static_cast<int>(key >> 3 * index_bits);
-  for (const int d : {edge.axis, (edge.axis + 2) % 3, (edge.axis + 1) % 3}) {
-    edge.lower[d] = static_cast<int>(key & ((1u << index_bits) - 1));
+  for (int& coordinate : edge.lower) {
+    coordinate = static_cast<int>(key & ((1u << index_bits) - 1));
     key >>= index_bits;
   }
   return edge;
 }
 
+/// Of an edge along x.
 std::uint64_t line_of(const std::uint64_t key) { return key >> index_bits; }
 
 struct Crossing {
@@ -156,70 +158,91 @@ std::vector<Index3> material_nodes(const std::vector<Crossing>& crossings) {
   return nodes;
 }
 
-bool is_mixed(const grid::Grid& grid, const grid::EdgeId e) {
-  return grid.is_material(grid.ends(e)[0]) != grid.is_material(grid.ends(e)[1]);
-}
-
 /// Turns the crossings of each edge into a cut, or into a count.
 class Skin {
  public:
-  Skin(const geometry::TriangleMesh& mesh, const grid::Grid& grid, Embedding& result)
+  Skin(const geometry::TriangleMesh& mesh, Embedding& result)
     : mesh_(mesh),
-      grid_(grid),
       result_(result),
       shell_(geometry::shells(mesh)),
       is_lost_(shell_.empty() ? 0 : *std::max_element(shell_.begin(), shell_.end()) + 1, 1) {}
 
-  void add(const std::span<const Crossing> of_edge) {
-    const LatticeEdge lattice_edge = edge_of(of_edge.front().edge);
-    const auto edge = grid_.find_edge(lattice_edge.lower, lattice_edge.axis);
-    if ((of_edge.size() % 2 == 1) != (edge && is_mixed(grid_, *edge)))
-      throw std::logic_error("embed: lines along different axes disagree on a node; the mesh is not closed");
-    if (of_edge.size() % 2 == 0) {
-      ++result_.n_double_crossings;
-      return;
+  /// Walks through the stored edges and the crossings, both sorted: every edge between a material and an empty node is
+  /// crossed an odd number of times, and no other.
+  void add(const std::vector<Crossing>& crossings) {
+    const grid::Grid& grid = result_.grid;
+    auto next = crossings.begin();
+    for (const grid::EdgeId e : ids<grid::EdgeId>(grid.n_edges())) {
+      const auto& [lower, upper] = grid.ends(e);
+      if (grid.is_material(lower) == grid.is_material(upper))
+        continue;
+      const std::uint64_t key = LatticeEdge{grid.axis(e), grid.index(lower)}.key();
+      next = count_even(next, crossings.end(), key);
+      const auto last = end_of_edge(next, crossings.end());
+      if (next == last || next->edge != key || (last - next) % 2 == 0)
+        throw std::logic_error("embed: lines along different axes disagree on a node; the mesh is not closed");
+      add_cut(e, {next, last});
+      next = last;
     }
-    if (of_edge.size() > 1)
-      ++result_.n_triple_crossings;
-    const Crossing& kept = grid_.is_material(grid_.ends(*edge)[0]) ? of_edge.front() : of_edge.back();
-    is_lost_[shell_[kept.triangle]] = 0;
-    cuts_.push_back({*edge, kept.t, Vec3::Zero(), grid::skin_label});
-    triangles_.push_back(kept.triangle);
+    count_even(next, crossings.end(), std::numeric_limits<std::uint64_t>::max());
   }
 
   void finish() {
-    std::size_t n_mixed = 0;
-    for (const grid::EdgeId e : ids<grid::EdgeId>(grid_.n_edges()))
-      n_mixed += is_mixed(grid_, e) ? 1 : 0;
-    if (n_mixed != cuts_.size())
-      throw std::logic_error("embed: an edge of the skin is crossed by nothing; the mesh is not closed");
     find_normals();
-    std::sort(cuts_.begin(), cuts_.end(), [](const auto& a, const auto& b) { return a.edge < b.edge; });
     for (const grid::EdgeCut& cut : cuts_)
       result_.cuts.add(cut);
     result_.n_lost_components = std::count(is_lost_.begin(), is_lost_.end(), 1);
   }
 
  private:
+  using Place = std::vector<Crossing>::const_iterator;
+
+  static Place end_of_edge(const Place first, const Place end) {
+    return std::find_if(first, end, [&](const Crossing& c) { return c.edge != first->edge; });
+  }
+
+  /// Counts the edges before `key`, which must be crossed an even number of times; returns what follows them.
+  Place count_even(Place next, const Place end, const std::uint64_t key) {
+    while (next != end && next->edge < key) {
+      const Place last = end_of_edge(next, end);
+      if ((last - next) % 2 != 0)
+        throw std::logic_error("embed: lines along different axes disagree on a node; the mesh is not closed");
+      const auto lower = result_.grid.find_node(edge_of(next->edge).lower);
+      ++(lower && result_.grid.is_material(*lower) ? result_.n_thin_gaps : result_.n_thin_walls);
+      next = last;
+    }
+    return next;
+  }
+
+  void add_cut(const grid::EdgeId edge, const std::span<const Crossing> of_edge) {
+    if (of_edge.size() > 1)
+      ++result_.n_triple_crossings;
+    const grid::Grid& grid = result_.grid;
+    const Crossing& kept = grid.is_material(grid.ends(edge)[0]) ? of_edge.front() : of_edge.back();
+    is_lost_[shell_[kept.triangle]] = 0;
+    cuts_.push_back({edge, kept.t, Vec3::Zero(), grid::skin_label});
+    triangles_.push_back(kept.triangle);
+  }
+
   void find_normals() {
+    const grid::Grid& grid = result_.grid;
     const geometry::LocalNormals normals(mesh_);
     parallel_for(cuts_.size(), [&](const std::size_t i) {
       constexpr double smoothing = 0.4; // of a cube edge: what is finer than the grid is noise to it
       grid::EdgeCut& cut = cuts_[i];
-      Vec3 point = grid_.position(grid_.ends(cut.edge)[0]);
-      point[grid_.axis(cut.edge)] += cut.t * grid_.h();
-      cut.normal = normals.at(triangles_[i], point, smoothing * grid_.h());
+      Vec3 point = grid.position(grid.ends(cut.edge)[0]);
+      point[grid.axis(cut.edge)] += cut.t * grid.h();
+      cut.normal = normals.at(triangles_[i], point, smoothing * grid.h());
       if (cut.normal.isZero(0)) // rounded away, of a sliver
-        cut.normal = Vec3::Unit(grid_.axis(cut.edge));
+        cut.normal = Vec3::Unit(grid.axis(cut.edge));
     });
   }
 
   const geometry::TriangleMesh& mesh_;
-  const grid::Grid& grid_;
   Embedding& result_;
   std::vector<std::uint32_t> shell_;
   std::vector<std::uint8_t> is_lost_;
-  std::vector<grid::EdgeCut> cuts_;
+  std::vector<grid::EdgeCut> cuts_;      // ordered by edge
   std::vector<std::uint32_t> triangles_; // that made each cut
 };
 
@@ -238,12 +261,8 @@ Embedding embed(const geometry::TriangleMesh& mesh, const double h, const Vec3& 
   grid::Grid grid(lattice, std::move(nodes));
   grid::Cuts cuts(grid);
   Embedding result{std::move(grid), std::move(cuts)};
-  Skin skin(mesh, result.grid, result);
-  for (auto first = crossings.begin(); first != crossings.end();) {
-    const auto last = std::find_if(first, crossings.end(), [&](const Crossing& c) { return c.edge != first->edge; });
-    skin.add({first, last});
-    first = last;
-  }
+  Skin skin(mesh, result);
+  skin.add(crossings);
   skin.finish();
   return result;
 }

@@ -11,7 +11,8 @@
 ///
 /// The normal of a skin cut is the mesh's, averaged over two fifths of a cube edge but not across its sharp edges.
 ///
-/// Limit: what is thinner than an edge and passes between nodes is lost; it is counted, not repaired.
+/// Limit: what is thinner than an edge and passes between nodes is lost: walls vanish, gaps are filled. Both are
+/// counted, by edges, and not repaired.
 
 #include "geometry/triangle_mesh.h"
 #include "grid/cuts.h"
@@ -22,7 +23,8 @@ namespace kerf::cut {
 struct Embedding {
   grid::Grid grid;
   grid::Cuts cuts;                    ///< the skin: every edge between a material and an empty node
-  std::size_t n_double_crossings = 0; ///< edges with both ends alike that the mesh crosses 2, 4, ... times: left uncut
+  std::size_t n_thin_walls = 0;       ///< edges with both ends empty that the mesh crosses 2, 4, ... times: left uncut
+  std::size_t n_thin_gaps = 0;        ///< edges with both ends material that it crosses so: left uncut
   std::size_t n_triple_crossings = 0; ///< edges crossed 3, 5, ... times: cut nearest to their material end only
   std::size_t n_lost_components = 0;  ///< connected shells of the mesh that cut no edge
 };

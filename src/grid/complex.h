@@ -3,8 +3,15 @@
 /// The cells, duplicated once per connected component (the virtual node algorithm of Molino, Bao and Fedkiw
 /// 2004, on cubes; thesis §2.4.2). Two copies in face-adjacent cells that share a material node on the common face are
 /// glued along the whole face. Corners are the node instances that come out of it, the unknowns of every physics.
+///
+/// A cut splits copies, and a corner depends on the copies of the (up to eight) cells around its node alone. So an update
+/// looks at the cells around the new cut edges and at the nodes of those that split; all that is there keeps its name:
+/// a copy the component with its lowest vertex, a corner the class with the node's own material, else the first one;
+/// what is new comes last. Names depend on the sequence of cuts, the complex up to names does not.
 
 #include "grid/cuts.h"
+
+#include <span>
 
 namespace kerf::grid {
 
@@ -15,28 +22,79 @@ struct Copy {
   CellId cell;
   std::uint8_t nodes = 0;          ///< bits of the material nodes of its component
   std::array<CornerId, 8> corners; ///< in deal.II's vertex order
+  CopyId next;                     ///< the cell's next copy, by lowest vertex; invalid for the last
+};
+
+/// The copies of one cell: for (const CopyId c : complex.copies_of(cell)).
+class CopiesOfCell {
+ public:
+  CopiesOfCell(const Table<CopyId, Copy>& copies, CopyId first) : copies_(copies), first_(first) {}
+
+  struct iterator {
+    const Table<CopyId, Copy>& copies;
+    CopyId copy;
+    CopyId operator*() const { return copy; }
+    iterator& operator++() {
+      copy = copies[copy].next;
+      return *this;
+    }
+    bool operator!=(const iterator& other) const { return copy != other.copy; }
+  };
+  iterator begin() const { return {copies_, first_}; }
+  iterator end() const { return {copies_, CopyId()}; }
+
+ private:
+  const Table<CopyId, Copy>& copies_;
+  CopyId first_;
 };
 
 struct CellComplex {
-  Table<CopyId, Copy> copies; ///< ordered by cell, then by lowest vertex
-  Table<CellId, std::uint32_t>
-    first_copy;                        ///< copies of cell c: first_copy[c] .. first_copy[c + 1]; n_cells + 1 entries
+  Table<CopyId, Copy> copies;
+  Table<CellId, CopyId> first_copy;    ///< the copy with the cell's lowest material vertex
   Table<CornerId, NodeId> node;        ///< which node a corner is an instance of
   Table<NodeId, CornerId> real_corner; ///< the one corner that holds a material node; invalid for empty nodes
-  Table<CopyId, std::uint32_t> piece;  ///< connected component of the copy graph, numbered from 0
-  std::uint32_t n_pieces = 0;
 
   std::size_t n_copies() const { return copies.size(); }
   std::size_t n_corners() const { return node.size(); }
 
+  CopiesOfCell copies_of(CellId cell) const { return {copies, first_copy[cell]}; }
   /// The copy of `cell` whose component holds the material node at `vertex`; invalid when that node is empty.
   CopyId copy_at(CellId cell, int vertex) const;
+  /// Memory of all tables [B].
+  std::size_t n_bytes() const;
 };
 
+/// Copies are ordered by cell, then by lowest vertex; corners by node.
 CellComplex build_complex(const Grid& grid, const Cuts& cuts);
 
-/// For each corner of `after`, the corner of `before` it came from. `after` must come from `before` by further cuts.
-Table<CornerId, CornerId> parents(const CellComplex& before, const CellComplex& after);
+/// What an update did to a complex.
+struct ComplexChange {
+  std::size_t n_copies_before = 0, n_corners_before = 0;
+  std::vector<CopyId> copies;    ///< those that are new, or whose nodes or corners have changed; ascending
+  std::vector<CornerId> parents; ///< of the corners n_corners_before, ... in their order: where they came from
+};
+
+/// Brings a complex up to date with edges that `cuts` holds, but did not when it was built or updated last. What it costs
+/// depends on the new edges alone, not on the size of the body.
+ComplexChange update_complex(const Grid& grid, const Cuts& cuts, std::span<const EdgeId> new_edges,
+                             CellComplex& complex);
+
+/// Appends for each new corner what its parent has.
+template <class T>
+void inherit(const ComplexChange& change, std::vector<T>& of_corners) {
+  for (const CornerId parent : change.parents)
+    of_corners.push_back(T(of_corners[parent.value]));
+}
+
+/// The connected components of the copies. Found from scratch whenever asked for, linear in the copies.
+struct Pieces {
+  Table<CopyId, std::uint32_t> piece; ///< of each copy, numbered from 0 in the order of their first copies
+  std::uint32_t n_pieces = 0;
+};
+Pieces pieces(const CellComplex& complex);
+
+/// How many pieces there are.
+inline std::uint32_t n_pieces(const CellComplex& complex) { return pieces(complex).n_pieces; }
 
 /// Rest positions of the corners [m].
 Points rest_positions(const Grid& grid, const CellComplex& complex);

@@ -27,6 +27,12 @@ unsigned Cuts::configuration(const Grid& grid, const CellId c) const {
   return lines;
 }
 
+std::size_t Cuts::n_bytes() const {
+  const std::size_t n_indices =
+    edge_cut_.items().capacity() + face_point_.items().capacity() + cell_point_.items().capacity();
+  return n_indices * sizeof(std::uint32_t) + cuts_.capacity() * sizeof(EdgeCut) + points_.capacity() * sizeof(Vec3);
+}
+
 void Cuts::set(std::uint32_t& index, const Vec3& p) {
   if (index == none) {
     index = static_cast<std::uint32_t>(points_.size());

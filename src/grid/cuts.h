@@ -47,6 +47,11 @@ class Cuts {
   void set_point(FaceId f, const Vec3& p) { set(face_point_[f], p); }
   void set_point(CellId c, const Vec3& p) { set(cell_point_[c], p); }
 
+  /// The place of a cut edge in all().
+  std::uint32_t index(EdgeId e) const { return edge_cut_[e]; }
+  /// Memory of all tables [B].
+  std::size_t n_bytes() const;
+
  private:
   static constexpr std::uint32_t none = Id<void>::no_value;
 

@@ -87,68 +87,111 @@ std::optional<std::size_t> position_of(const Keys& keys, const Index3& i) {
   return found - keys.begin();
 }
 
+template <class Key, class T>
+std::size_t bytes(const Table<Key, T>& table) {
+  return table.items().capacity() * sizeof(T);
+}
+
 } // namespace
 
 Grid::Grid(const Lattice& lattice, std::vector<Index3> material_nodes) : lattice_(lattice) {
   const Keys material = material_keys(material_nodes);
   if (material.empty())
     throw DataError(Complaint{.rule = "the body holds no grid node", .remedy = "Use a smaller cube edge"});
-  cell_keys_ = spread(material, {true, true, true}, -1);
-  node_keys_ = spread(cell_keys_, {true, true, true}, 1);
-
+  const Keys cells = spread(material, {true, true, true}, -1);
+  node_keys_ = spread(cells, {true, true, true}, 1);
+  node_keys_.shrink_to_fit();
   material_.resize(node_keys_.size(), 0);
   locate(material, 0, node_keys_, [&](std::size_t, const std::size_t n) { material_[NodeId(n)] = 1; });
+  make_cells(cells);
+  make_edges(cells);
+  make_faces(cells);
+}
 
-  cell_nodes_.resize(cell_keys_.size());
+void Grid::make_cells(const Keys& cells) {
+  cell_nodes_.resize(cells.size());
   for (int v = 0; v < 8; ++v)
-    locate(cell_keys_, vertex_shift(v), node_keys_,
+    locate(cells, vertex_shift(v), node_keys_,
            [&](const std::size_t c, const std::size_t n) { cell_nodes_[CellId(c)][v] = NodeId(n); });
+  lowest_of_cell_ = RankedSet(n_nodes());
+  for (const auto& nodes : cell_nodes_)
+    lowest_of_cell_.push_back(nodes[0].value);
+}
 
-  cell_edges_.resize(cell_keys_.size());
+void Grid::make_edges(const Keys& cells) {
+  std::array<Keys, 3> keys;
+  std::size_t n_edges = 0;
   for (int axis = 0; axis < 3; ++axis) {
-    const std::size_t first = edge_ends_.size();
-    const Keys& keys = edge_keys_[axis] = spread(cell_keys_, {axis != 0, axis != 1, axis != 2}, 1);
-    edge_ends_.resize(first + keys.size());
-    for (int end = 0; end < 2; ++end)
-      locate(keys, end * shift[axis], node_keys_,
-             [&](const std::size_t e, const std::size_t n) { edge_ends_[EdgeId(first + e)][end] = NodeId(n); });
+    keys[axis] = spread(cells, {axis != 0, axis != 1, axis != 2}, 1);
+    first_edge_[axis] = static_cast<std::uint32_t>(n_edges);
+    n_edges += keys[axis].size();
+  }
+  edge_ends_.resize(n_edges);
+  cell_edges_.resize(cells.size());
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::size_t first = first_edge_[axis];
+    lower_of_edge_[axis] = RankedSet(n_nodes());
+    locate(keys[axis], 0, node_keys_, [&](const std::size_t e, const std::size_t n) {
+      edge_ends_[EdgeId(first + e)][0] = NodeId(n);
+      lower_of_edge_[axis].push_back(n);
+    });
+    locate(keys[axis], shift[axis], node_keys_,
+           [&](const std::size_t e, const std::size_t n) { edge_ends_[EdgeId(first + e)][1] = NodeId(n); });
     for (int line = 0; line < 12; ++line)
       if (cube::line_axis(line) == axis)
-        locate(cell_keys_, vertex_shift(cube::line_vertices[line][0]), keys,
+        locate(cells, vertex_shift(cube::line_vertices[line][0]), keys[axis],
                [&](const std::size_t c, const std::size_t e) { cell_edges_[CellId(c)][line] = EdgeId(first + e); });
   }
+}
 
-  cell_faces_.resize(cell_keys_.size());
+void Grid::make_faces(const Keys& cells) {
+  std::array<Keys, 3> keys;
+  for (int axis = 0; axis < 3; ++axis)
+    keys[axis] = spread(cells, {axis == 0, axis == 1, axis == 2}, 1);
+  face_cells_.resize(keys[0].size() + keys[1].size() + keys[2].size());
+  cell_faces_.resize(cells.size());
+  std::size_t first = 0;
   for (int axis = 0; axis < 3; ++axis) {
-    const std::size_t first = face_cells_.size();
-    const Keys keys = spread(cell_keys_, {axis == 0, axis == 1, axis == 2}, 1);
-    face_cells_.resize(first + keys.size());
     for (int upper = 0; upper < 2; ++upper)
-      locate(cell_keys_, upper * shift[axis], keys, [&](const std::size_t c, const std::size_t f) {
+      locate(cells, upper * shift[axis], keys[axis], [&](const std::size_t c, const std::size_t f) {
         cell_faces_[CellId(c)][2 * axis + upper] = FaceId(first + f);
         face_cells_[FaceId(first + f)][1 - upper] = CellId(c);
       });
+    first += keys[axis].size();
   }
 }
 
 Index3 Grid::index(const NodeId n) const { return unpack(node_keys_[n.value]); }
 
-int Grid::axis(const EdgeId e) const {
-  const std::size_t n_x = edge_keys_[0].size(), n_y = edge_keys_[1].size();
-  return e.value < n_x ? 0 : e.value < n_x + n_y ? 1 : 2;
-}
-
 std::array<CellId, 4> Grid::cells(const EdgeId e) const {
   const int b = (axis(e) + 1) % 3, c = (axis(e) + 2) % 3;
   std::array<CellId, 4> result;
+  result[0] = cell(edge_ends_[e][0]);
+  if (result[0].valid()) { // across faces; all four cells are there when an end of the edge is material
+    result[1] = neighbour(result[0], 2 * b);
+    result[2] = neighbour(result[0], 2 * c);
+    if (result[1].valid() && result[2].valid()) {
+      result[3] = neighbour(result[1], 2 * c);
+      return result;
+    }
+  }
   for (int i = 0; i < 4; ++i) {
     Index3 lower = index(edge_ends_[e][0]);
     lower[b] -= i & 1;
     lower[c] -= i >> 1;
-    if (const auto cell = find_cell(lower))
-      result[i] = *cell;
+    result[i] = find_cell(lower).value_or(CellId());
   }
   return result;
+}
+
+EdgeId Grid::edge(const NodeId lower, const int axis) const {
+  const auto place = lower_of_edge_[axis].place(lower.value);
+  return place ? EdgeId(first_edge_[axis] + *place) : EdgeId();
+}
+
+CellId Grid::cell(const NodeId lowest) const {
+  const auto place = lowest_of_cell_.place(lowest.value);
+  return place ? CellId(*place) : CellId();
 }
 
 std::optional<NodeId> Grid::find_node(const Index3& i) const {
@@ -157,18 +200,23 @@ std::optional<NodeId> Grid::find_node(const Index3& i) const {
 }
 
 std::optional<EdgeId> Grid::find_edge(const Index3& lower, const int axis) const {
-  const auto position = position_of(edge_keys_[axis], lower);
-  if (!position)
-    return std::nullopt;
-  std::size_t first = 0;
-  for (int a = 0; a < axis; ++a)
-    first += edge_keys_[a].size();
-  return EdgeId(first + *position);
+  const auto node = find_node(lower);
+  const EdgeId e = node ? edge(*node, axis) : EdgeId();
+  return e.valid() ? std::optional(e) : std::nullopt;
 }
 
 std::optional<CellId> Grid::find_cell(const Index3& lower) const {
-  const auto position = position_of(cell_keys_, lower);
-  return position ? std::optional(CellId(*position)) : std::nullopt;
+  const auto node = find_node(lower);
+  const CellId c = node ? cell(*node) : CellId();
+  return c.valid() ? std::optional(c) : std::nullopt;
+}
+
+std::size_t Grid::n_bytes() const {
+  std::size_t sum = node_keys_.capacity() * sizeof(node_keys_[0]) + lowest_of_cell_.n_bytes();
+  for (const RankedSet& set : lower_of_edge_)
+    sum += set.n_bytes();
+  return sum + bytes(material_) + bytes(edge_ends_) + bytes(face_cells_) + bytes(cell_nodes_) + bytes(cell_edges_) +
+         bytes(cell_faces_);
 }
 
 } // namespace kerf::grid

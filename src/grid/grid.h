@@ -6,11 +6,12 @@
 ///
 /// Notation: an edge or face is named by its lower node and its axis (the direction of the edge, the normal of the
 /// face). Packed lattice coordinates are sorted, and a shift by a node keeps their order, so everything is built by
-/// linear merges.
+/// linear merges, and edges and cells are found by the place of their lowest node among all lowest nodes.
 /// Limit: at most 2^20 nodes along an axis, none with a negative coordinate.
 
 #include "base/id.h"
 #include "base/vec.h"
+#include "grid/ranked_set.h"
 
 #include <array>
 #include <cstdint>
@@ -61,20 +62,37 @@ class Grid {
 
   /// Lower node first.
   const std::array<NodeId, 2>& ends(EdgeId e) const { return edge_ends_[e]; }
-  int axis(EdgeId e) const;
+  int axis(EdgeId e) const { return e.value < first_edge_[1] ? 0 : e.value < first_edge_[2] ? 1 : 2; }
   /// The stored cells around an edge (up to four; the rest invalid).
   std::array<CellId, 4> cells(EdgeId e) const;
   /// The cells below and above a face; invalid where none is stored.
   const std::array<CellId, 2>& cells(FaceId f) const { return face_cells_[f]; }
 
+  /// The edge from a node up along an axis, and the cell with this lowest node; invalid where none is stored.
+  EdgeId edge(NodeId lower, int axis) const;
+  CellId cell(NodeId lowest) const;
+  /// The cell on the other side of the cell's local face; invalid where none is stored.
+  CellId neighbour(CellId c, int face) const { return face_cells_[cell_faces_[c][face]][face & 1]; }
+
   std::optional<NodeId> find_node(const Index3& i) const;
   std::optional<EdgeId> find_edge(const Index3& lower, int axis) const;
   std::optional<CellId> find_cell(const Index3& lower) const;
 
+  /// Memory of all tables [B].
+  std::size_t n_bytes() const;
+
  private:
+  using Keys = std::vector<std::uint64_t>;
+
+  void make_cells(const Keys& cells);
+  void make_edges(const Keys& cells);
+  void make_faces(const Keys& cells);
+
   Lattice lattice_;
-  std::vector<std::uint64_t> node_keys_, cell_keys_;    // lattice coordinates packed into one number, sorted
-  std::array<std::vector<std::uint64_t>, 3> edge_keys_; // of the lower nodes, by axis; ids run through x, y, z
+  Keys node_keys_;                            // lattice coordinates packed into one number, sorted
+  RankedSet lowest_of_cell_;                  // nodes
+  std::array<RankedSet, 3> lower_of_edge_;    // nodes, by axis
+  std::array<std::uint32_t, 3> first_edge_{}; // by axis: ids run through x, y, z
   Table<NodeId, std::uint8_t> material_;
   Table<EdgeId, std::array<NodeId, 2>> edge_ends_;
   Table<FaceId, std::array<CellId, 2>> face_cells_;

@@ -3,20 +3,23 @@
 /// Where the vertices that a cut makes in faces and cells lie at rest (thesis §2.4.3, figure 2.15).
 ///
 /// A cut edge gives a cut plane: its edge vertex and the normal of the cutting surface there.
-/// Face, inside the body: one plane, the face's centre projected onto it (a front ends here); two planes, the middle
-/// of the Bezier curve of edge vertices and the planes' intersection where they meet smoothly (b), that intersection
-/// where they are sharp (c); later cuts of a face already split, the vertex projected onto the new planes (d, e).
-/// Cell, inside the body: the point nearest its centre that minimises the squared distances to all planes [GH97];
-/// later cuts of a cell already split project it. On the skin: the input's planes are known all at once and give the
-/// quadric's minimum; later cuts move the vertex at right angles to the derivative of the enclosed volume by its
-/// position. The volume is linear in each vertex, so the rest volume is kept to round-off, for a curved skin too (the
-/// thesis lets the skin jump: §2.8); sharp edges of the skin stay.
+/// Face, inside the body: (a) one plane, the face's centre projected onto it (a front ends here); two planes, (b) the
+/// middle of the Bezier curve of edge vertices and the planes' intersection where they meet smoothly, (c) that
+/// intersection where they are sharp; (d), (e) later cuts of a face already split project the vertex onto the new
+/// planes, within the planes of each earlier cut. Cell, inside the body: the point nearest its centre that minimises
+/// the squared distances to all planes [GH97]; later cuts of a cell already split project it, in the same way. On the
+/// skin: the input's planes are known all at once and give the quadric's minimum; later cuts move the vertex at right
+/// angles to the derivative of the enclosed volume by its position. The volume is linear in each vertex, so the rest
+/// volume is kept to round-off, for a curved skin too (the thesis lets the skin jump: §2.8); sharp edges of the skin
+/// stay.
 ///
-/// Departures: a cell with a front takes the quadric too, not the mean of its face vertices, which may lie beside the
-/// plane that is cut; a face whose two edges are cut in different steps by different fronts is (b) or (c) all the
-/// same. A vertex never leaves its face or cell: where all planes would meet outside, the weakest of them is given
-/// up, then the next; where even the strongest one leads outside, the vertex stops at the side.
-/// Limit: more than three planes in a cell are met in the least-squares sense.
+/// Departures: the thesis projects plainly onto the new plane, which would bend an earlier cut that it does not meet at
+/// a right angle, and move volume from one of its sides to the other; here what was flat stays flat. A cell with a
+/// front takes the quadric too, not the mean of its face vertices, which may lie beside the plane that is cut; a face
+/// whose two edges are cut in different steps by different fronts is (b) or (c) all the same. A vertex never leaves its
+/// face or cell, so that every octant (grid/cuts.h) has six positive tetrahedra: where all planes would meet outside,
+/// the weakest of them is given up, then the next; where even the strongest one leads outside, the vertex stops at the
+/// side. Limit: more than three planes in a cell are met in the least-squares sense.
 
 #include "grid/cuts.h"
 
@@ -29,7 +32,8 @@ struct Placement {
   double sharp_angle = 45;
 };
 
-/// How many vertices were placed, and how many stopped at the side of their face or cell.
+/// How many vertices were placed, and how many of them the sides of their face or cell held back from where their
+/// planes ask for them.
 struct PlacementCounts {
   std::size_t n_placed = 0, n_clamped = 0;
 };

@@ -91,7 +91,7 @@ TEST_P(Offsets, BoxOnLatticePlanes) {
   expect_consistent(e);
   EXPECT_EQ(n_material(e.grid), 8u * 6 * 4) << "one node a cube, wherever the lattice is";
   EXPECT_EQ(e.cuts.all().size(), 2u * (8 * 6 + 6 * 4 + 4 * 8));
-  EXPECT_EQ(e.n_double_crossings, 0u);
+  EXPECT_EQ(e.n_thin_walls + e.n_thin_gaps, 0u);
   EXPECT_EQ(e.n_lost_components, 0u);
   expect_nodes(e,
                [&](const Vec3& p) { // the box moved by d
@@ -172,14 +172,15 @@ TEST(Embed, CountsWhatTheGridCannotResolve) {
   const Embedding e = embed(together(cube, plate), 1, midway);
   expect_consistent(e);
   EXPECT_EQ(n_material(e.grid), 64u);
-  EXPECT_EQ(e.n_double_crossings, 16u);
+  EXPECT_EQ(e.n_thin_walls, 16u);
+  EXPECT_EQ(e.n_thin_gaps, 0u);
   EXPECT_EQ(e.n_lost_components, 1u);
 
   // A thin void just under the skin: three crossings of each edge of the cube's top but its border.
   const auto slit = inside_out(box_mesh({1, 1, 3.6}, {3, 3, 3.8}));
   const Embedding f = embed(together(cube, slit), 1, midway);
   expect_consistent(f);
-  EXPECT_EQ(f.n_double_crossings, 0u);
+  EXPECT_EQ(f.n_thin_walls + f.n_thin_gaps, 0u);
   EXPECT_EQ(f.n_triple_crossings, 4u);
   for (const auto& cut : f.cuts.all()) { // the void's bottom is nearest to the material
     const Vec3 p = grid::edge_point(f.grid, f.cuts, cut.edge);
@@ -187,6 +188,31 @@ TEST(Embed, CountsWhatTheGridCannotResolve) {
       EXPECT_NEAR(p[2], 3.6, 1e-12);
     }
   }
+}
+
+TEST(Embed, TellsThinWallsFromThinGaps) {
+  // Two halves of a block, apart by less than an edge between two planes of nodes: as if there were no gap.
+  const Embedding gap = embed(together(box_mesh({0, 0, 0}, {4, 4, 3.7}), box_mesh({0, 0, 3.9}, {4, 4, 8})), 1, midway);
+  expect_consistent(gap);
+  EXPECT_EQ(gap.n_thin_gaps, 16u) << "the edges along z between the halves";
+  EXPECT_EQ(gap.n_thin_walls, 0u);
+  EXPECT_EQ(n_material(gap.grid), 128u);
+
+  // The same gap as a void inside, and a hollow box whose wall is thinner than an edge on one side.
+  const auto block = box_mesh({0, 0, 0}, {6, 6, 6});
+  const Embedding closed = embed(together(block, inside_out(box_mesh({1, 1, 2.7}, {5, 5, 2.9}))), 1, midway);
+  EXPECT_EQ(closed.n_thin_gaps, 16u);
+  EXPECT_EQ(closed.n_thin_walls, 0u);
+  const Embedding hollow = embed(together(block, inside_out(box_mesh({1, 1, 1}, {5, 5, 5.8}))), 1, Vec3(0.5, 0.5, 0.1));
+  EXPECT_EQ(hollow.n_thin_gaps, 0u);
+  EXPECT_EQ(hollow.n_thin_walls, 16u) << "no node is between 5.8 and 6: they are at 4.1, 5.1, 6.1";
+  // Both at once, one after the other along the same lines.
+  const auto plate = box_mesh({0, 0, 9.6}, {6, 6, 9.8});
+  const auto slit = inside_out(box_mesh({1, 1, 2.7}, {5, 5, 2.9}));
+  const Embedding both = embed(together(together(block, slit), plate), 1, midway);
+  EXPECT_EQ(both.n_thin_gaps, 16u);
+  EXPECT_EQ(both.n_thin_walls, 36u);
+  EXPECT_EQ(both.n_lost_components, 2u) << "the slit and the plate";
 }
 
 TEST(Embed, VoidsAreEmpty) {
@@ -230,7 +256,7 @@ TEST(Embed, BenchmarkPrintsNAndSeconds) {
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     std::cout << mesh.triangles.size() << " triangles, " << e.grid.n_cells() << " cells, " << e.cuts.all().size()
               << " cuts: " << seconds << " s\n";
-    EXPECT_EQ(e.n_double_crossings, 0u);
+    EXPECT_EQ(e.n_thin_walls + e.n_thin_gaps, 0u);
   }
 }
 

@@ -2,9 +2,12 @@
 /// release every invariant (invariants.h). A failure prints the shortest case that fails; repeat it with
 ///
 ///   KERF_FUZZ_CASE=seed:sweep,sweep,... build/release/tests/test_fuzz --gtest_filter=Fuzz.Repeat
+///
+/// The long run also cuts every solid mesh of the folder that KERF_FUZZ_MESHES names, and says which it skipped.
 
 #include "base/parallel.h"
 #include "tests/fuzz/cases.h"
+#include "tests/fuzz/specimens.h"
 
 #include <gtest/gtest.h>
 
@@ -15,19 +18,40 @@
 namespace kerf::fuzz {
 namespace {
 
-/// Cases on large specimens have seeds from here, so that a seed alone tells which case it is.
-constexpr std::uint32_t first_large_seed = 1u << 30;
+/// Cases on large specimens have seeds from here, and those of the long run from there, so that a seed alone tells
+/// which case it is.
+constexpr std::uint32_t first_large_seed = 1u << 30, first_long_seed = 1000000;
+
+const char* mesh_folder() { return std::getenv("KERF_FUZZ_MESHES"); }
+
+/// The long run also cuts the meshes of a folder.
+Specimens long_specimens() {
+  Specimens all = own_specimens();
+  if (mesh_folder())
+    add_meshes(mesh_folder(), all);
+  return all;
+}
+
+const Specimens& all_specimens_of(const std::uint32_t seed) {
+  if (seed % first_large_seed < first_long_seed) {
+    static const Specimens own = own_specimens();
+    return own;
+  }
+  static const Specimens with_folder = long_specimens();
+  return with_folder;
+}
 
 const std::vector<Specimen>& specimens_of(const std::uint32_t seed) {
-  static const std::vector<Specimen> small = small_specimens(), large = large_specimens();
-  return seed < first_large_seed ? small : large;
+  const Specimens& all = all_specimens_of(seed);
+  return seed < first_large_seed ? all.small : all.large;
 }
 
 std::string told(const Case& one) {
   Tally unused;
   const Outcome outcome = run(one, specimens_of(one.seed), unused);
   return outcome.failure.value_or("does not fail") + "\ncase " + to_string(one) + '\n' + outcome.story +
-         "repeat: KERF_FUZZ_CASE=" + to_string(one) + " test_fuzz --gtest_filter=Fuzz.Repeat\n";
+         "repeat: " + (mesh_folder() ? "KERF_FUZZ_MESHES=" + std::string(mesh_folder()) + ' ' : "") +
+         "KERF_FUZZ_CASE=" + to_string(one) + " test_fuzz --gtest_filter=Fuzz.Repeat\n";
 }
 
 void expect_sound(const Case& one, Tally& tally) {
@@ -59,7 +83,9 @@ void print(const Tally& tally, const double seconds) {
             << " cases on 1 and 2 threads; at most " << tally.n_most_pieces << " pieces and " << tally.n_most_waiting
             << " waiting cuts\nworst change of volume " << tally.worst_volume
             << ", of volumes by octants and triangles " << tally.worst_disagreement
-            << " of the body; of a corner's mass " << tally.worst_mass << " h^3; " << seconds << " s\n";
+            << " of the body; of a corner's mass " << tally.worst_mass
+            << " h^3; of the material in one cell of the skin " << tally.worst_skin_cell << " h^3; " << seconds
+            << " s\n";
 }
 
 /// Cases from `first_seed` on until that many sweeps are done; every hundredth is large, and run with 1 and 2 threads.
@@ -90,9 +116,40 @@ void fuzz(const std::uint32_t first_seed, const std::size_t n_sweeps) {
   EXPECT_GT(tally.n_thread_pairs, 0u);
 }
 
+void tell_specimens(const Specimens& specimens) {
+  std::cout << "bodies:";
+  for (const auto* list : {&specimens.small, &specimens.large})
+    for (const Specimen& one : *list)
+      std::cout << ' ' << one.name << " (" << one.body.grid.n_cells() << " cells);";
+  std::cout << '\n';
+  for (const std::string& why : specimens.skipped)
+    std::cout << "skipped: " << why << '\n' << std::flush;
+}
+
 TEST(Fuzz, Short) { fuzz(0, 2000); }
 
-TEST(Fuzz, Long) { fuzz(1000000, 100000); }
+TEST(Fuzz, Long) {
+  tell_specimens(all_specimens_of(first_long_seed));
+  fuzz(first_long_seed, 100000);
+}
+
+/// Sweeps on one curved body at three resolutions. A vertex in a face slides along the chord of its edge vertices, and
+/// one in a cell at right angles to the volume's derivative. So not only the skin as a whole, but each of its cells
+/// keeps the volume of its material to round-off: there is no error left that could have an order in h.
+TEST(Fuzz, SkinCellsKeepTheirVolume) {
+  for (const double h : {0.4, 0.2, 0.1}) {
+    const std::vector<Specimen> one = {fine_sphere(h)};
+    Tally tally;
+    for (std::uint32_t seed = 500; seed < 512; ++seed)
+      EXPECT_EQ(run(whole_case(seed), one, tally).failure, std::nullopt) << "case " << seed;
+    std::cout << "h = " << h << " R: " << tally.n_sweeps << " sweeps, " << tally.n_placed
+              << " placed vertices; the volume of the skin changes by at most " << tally.worst_volume
+              << " of the body, that of one of its cells by " << tally.worst_skin_cell << " h^3\n";
+    EXPECT_GT(tally.n_placed, 1000u);
+    EXPECT_LT(tally.worst_volume, 1e-12);
+    EXPECT_LT(tally.worst_skin_cell, 1e-12);
+  }
+}
 
 TEST(Fuzz, Repeat) {
   const char* text = std::getenv("KERF_FUZZ_CASE");

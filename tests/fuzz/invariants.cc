@@ -2,6 +2,7 @@
 
 #include "grid/cube.h"
 #include "tests/support/placed.h"
+#include "tests/support/same.h"
 
 #include <algorithm>
 #include <cmath>
@@ -133,14 +134,15 @@ void require_pieces(const grid::Grid& grid, const grid::Cuts& cuts, const CellCo
     if (!cuts.is_cut(e))
       links.push_back({grid.ends(e)[0].value, grid.ends(e)[1].value});
   const Labels component = flooded(grid.n_nodes(), links);
+  const grid::Pieces pieces = grid::pieces(complex);
   Labels by_nodes, by_copies;
   for (const CopyId c : ids<CopyId>(complex.n_copies()))
     for (int v = 0; v < 8; ++v)
       if (complex.copies[c].nodes >> v & 1) {
         by_nodes.push_back(component[grid.nodes(complex.copies[c].cell)[v].value]);
-        by_copies.push_back(complex.piece[c]);
+        by_copies.push_back(pieces.piece[c]);
       }
-  if (require_same_sets(by_nodes, by_copies, "pieces are not the components of material nodes") != complex.n_pieces)
+  if (require_same_sets(by_nodes, by_copies, "pieces are not the components of material nodes") != pieces.n_pieces)
     complain("the number of pieces is wrong");
 }
 
@@ -209,6 +211,20 @@ void require_sound_parents(const CellComplex& before, const CellComplex& after,
     }
 }
 
+void require_sound_change(const CellComplex& before, const CellComplex& after, const grid::ComplexChange& change) {
+  if (change.n_copies_before != before.n_copies() || change.n_corners_before != before.n_corners() ||
+      change.parents.size() != after.n_corners() - before.n_corners())
+    complain("a change does not say how large the complex was");
+  if (!std::is_sorted(change.copies.begin(), change.copies.end()))
+    complain("changed copies are not in order");
+  for (const CopyId c : ids<CopyId>(after.n_copies())) {
+    const bool same = c.value < before.n_copies() && before.copies[c].nodes == after.copies[c].nodes &&
+                      before.copies[c].corners == after.copies[c].corners;
+    if (same == std::binary_search(change.copies.begin(), change.copies.end(), c))
+      complain("copy " + std::to_string(c.value) + " has changed, but is not named, or the reverse");
+  }
+}
+
 void require_closed(const surface::Surface& surface) {
   std::vector<std::uint64_t> forth, back;
   for (const Triangle& triangle : surface.triangles)
@@ -236,8 +252,8 @@ void require_sound_weights(const grid::Grid& grid, const CellComplex& complex, c
     reach = std::max(reach, p.norm());
   for (std::size_t i = 0; i < surface.rest.size(); ++i) {
     double sum = 0;
-    for (surface::Weights::InnerIterator w(surface.weights, static_cast<int>(i)); w; ++w)
-      sum += w.value();
+    for (auto k = surface.weights.row_start[i]; k < surface.weights.row_start[i + 1]; ++k)
+      sum += surface.weights.values[k];
     if (!(std::abs(sum - 1) < 1e-14))
       complain("a row of W sums to 1 + " + number(sum - 1));
     if (!((followed[i] - surface.rest[i]).norm() < 1e-14 * reach))
@@ -259,12 +275,13 @@ OctantVolumes require_positive_octants(const grid::Grid& grid, const grid::Cuts&
 
 void require_kept_volumes(const Subject& subject, Tally& tally) {
   const CellComplex& complex = subject.complex;
-  std::vector<double> by_octants(complex.n_pieces, 0.0);
+  const grid::Pieces pieces = grid::pieces(complex);
+  std::vector<double> by_octants(pieces.n_pieces, 0.0);
   const double cube = std::pow(subject.grid().h(), 3);
   for (const CopyId c : ids<CopyId>(complex.n_copies()))
     for (int v = 0; v < 8; ++v)
       if (complex.copies[c].nodes >> v & 1)
-        by_octants[complex.piece[c]] += cube * subject.octants[complex.copies[c].cell][v];
+        by_octants[pieces.piece[c]] += cube * subject.octants[complex.copies[c].cell][v];
   const auto by_triangles = surface::piece_volumes(subject.surface, complex);
   for (std::size_t p = 0; p < by_octants.size(); ++p) {
     const double difference = std::abs(by_octants[p] - by_triangles[p]) / subject.volume;
@@ -280,14 +297,7 @@ void require_kept_volumes(const Subject& subject, Tally& tally) {
 }
 
 void require_same(const CellComplex& a, const CellComplex& b) {
-  const auto same_copy = [](const Copy& p, const Copy& q) {
-    return p.cell == q.cell && p.nodes == q.nodes && p.corners == q.corners;
-  };
-  const bool same = std::equal(a.copies.begin(), a.copies.end(), b.copies.begin(), b.copies.end(), same_copy) &&
-                    a.first_copy.items() == b.first_copy.items() && a.node.items() == b.node.items() &&
-                    a.real_corner.items() == b.real_corner.items() && a.piece.items() == b.piece.items() &&
-                    a.n_pieces == b.n_pieces;
-  if (!same)
+  if (!support::renaming(a, b))
     complain("the complex depends on the order in which edges were cut");
 }
 
@@ -295,8 +305,8 @@ Table<CornerId, double> corner_masses(const grid::Grid& grid, const grid::Cuts& 
                                       const std::span<const CellId> cells) {
   Table<CornerId, double> masses(complex.n_corners(), 0.0);
   for (const CellId cell : cells)
-    for (auto c = complex.first_copy[cell]; c < complex.first_copy[CellId(cell.value + 1)]; ++c) {
-      const Copy& copy = complex.copies[CopyId(c)];
+    for (const CopyId c : complex.copies_of(cell)) {
+      const Copy& copy = complex.copies[c];
       std::array<double, 8> mass{};
       for (int v = 0; v < 8; ++v)
         if (copy.nodes >> v & 1)

@@ -1,7 +1,8 @@
 #pragma once
 
-/// What holds after every cut, whatever was cut, in whatever configuration (DESIGN §3, §4). Each check is written from
-/// the definitions, not with the code under test: floods instead of union-find, gluing node by node instead of by masks.
+/// What holds after every cut, whatever was cut, in whatever configuration (thesis §2.4, §2.5). Each check is written
+/// from the definitions, not with the code under test: floods instead of union-find, gluing node by node instead of by
+/// masks.
 ///
 /// Volumes are compared as parts of the whole body's: no piece's volume can be known better than the round-off of
 /// positions, which is relative to the body.
@@ -26,6 +27,10 @@ void require_sound_complex(const grid::Grid& grid, const grid::Cuts& cuts, const
 void require_sound_parents(const grid::CellComplex& before, const grid::CellComplex& after,
                            const Table<grid::CornerId, grid::CornerId>& parents);
 
+/// What an update does not name as changed is as it was.
+void require_sound_change(const grid::CellComplex& before, const grid::CellComplex& after,
+                          const grid::ComplexChange& change);
+
 /// Each directed edge is met once each way, and no triangle holds a vertex twice.
 void require_closed(const surface::Surface& surface);
 
@@ -38,7 +43,7 @@ OctantVolumes require_positive_octants(const grid::Grid& grid, const grid::Cuts&
 /// The octants of each piece enclose what its triangles enclose, and the pieces together the volume of the uncut body.
 void require_kept_volumes(const Subject& subject, Tally& tally);
 
-/// The same copies, corners and pieces, with the same names.
+/// The same copies and corners, whatever their names.
 void require_same(const grid::CellComplex& a, const grid::CellComplex& b);
 
 /// Lumped mass of each corner [h^3, at unit density] in the given cells.

@@ -103,13 +103,14 @@ std::string drifted(Subject& subject, Random& random) {
 /// Every piece goes its own way, and virtual corners leave the node's material: cuts gape.
 std::string pulled_apart(Subject& subject, Random& random) {
   const double size = subject.grid().h() * uniform(random, 0.05, 1.5);
-  Points way(subject.complex.n_pieces);
+  const grid::Pieces pieces = grid::pieces(subject.complex);
+  Points way(pieces.n_pieces);
   for (Vec3& d : way)
     d = size * support::random_direction(random);
   std::vector<std::uint32_t> piece(subject.complex.n_corners());
   for (const auto c : ids<grid::CopyId>(subject.complex.n_copies()))
     for (const auto corner : subject.complex.copies[c].corners)
-      piece[corner.value] = subject.complex.piece[c];
+      piece[corner.value] = pieces.piece[c];
   for (std::size_t i = 0; i < subject.x.size(); ++i) {
     const grid::CornerId corner(i);
     subject.x[i] += way[piece[i]];

@@ -2,6 +2,7 @@
 
 #include "tests/fuzz/invariants.h"
 #include "tests/support/placed.h"
+#include "tests/support/same.h"
 
 #include <algorithm>
 #include <cstring>
@@ -12,14 +13,6 @@ using grid::CellId;
 using grid::CornerId;
 
 namespace {
-
-Specimen box(const std::string& name, const Vec3& size, const double h, const Vec3& offset) {
-  return {name, support::embedded(geometry::box_mesh(Vec3::Zero(), size), h, offset), Skin::plane};
-}
-
-Specimen sphere(const std::string& name, const double h, const Vec3& offset) {
-  return {name, support::embedded(geometry::sphere_mesh(1, Vec3::Zero(), 3), h, offset), Skin::curved};
-}
 
 std::vector<CellId> cells_around(const grid::Grid& grid, const std::span<const grid::EdgeCut> cuts) {
   std::vector<CellId> cells;
@@ -34,12 +27,23 @@ std::vector<CellId> cells_around(const grid::Grid& grid, const std::span<const g
 
 /// Those whose heirs must share the mass corner by corner: a cell of one copy that a plane skin bounds, or none.
 std::vector<CellId> cells_that_keep_mass(const Subject& subject, std::vector<CellId> cells) {
-  const auto& first_copy = subject.complex.first_copy;
+  const grid::CellComplex& complex = subject.complex;
   std::erase_if(cells, [&](const CellId c) {
-    const bool one_copy = first_copy[CellId(c.value + 1)] - first_copy[c] == 1;
+    const bool one_copy = !complex.copies[complex.first_copy[c]].next.valid();
     return !one_copy || (subject.specimen.skin == Skin::curved && support::is_skin_cell(subject.grid(), c));
   });
   return cells;
+}
+
+/// The skin keeps its volume vertex by vertex: what one cell loses, its neighbour wins. How much that is, is told.
+void measure_skin_cells(const Subject& subject, const std::vector<CellId>& cells, Tally& tally) {
+  for (const CellId c : cells) {
+    double change = 0;
+    for (int v = 0; v < 8; ++v)
+      if (subject.grid().is_material(subject.grid().nodes(c)[v]))
+        change += subject.octants[c][v] - subject.first_octants[c][v];
+    tally.worst_skin_cell = std::max(tally.worst_skin_cell, std::abs(change));
+  }
 }
 
 void require_inherited(const Table<CornerId, double>& before, const Table<CornerId, double>& after,
@@ -57,11 +61,24 @@ void require_inherited(const Table<CornerId, double>& before, const Table<Corner
   }
 }
 
-Points inherited(const Points& of_corners, const Table<CornerId, CornerId>& parents) {
-  Points values;
-  for (const auto parent : parents)
-    values.push_back(of_corners[parent.value]);
-  return values;
+/// Where each corner comes from; the old ones stay.
+Table<CornerId, CornerId> all_parents(const grid::ComplexChange& change) {
+  Table<CornerId, CornerId> parents;
+  for (const auto corner : ids<CornerId>(change.n_corners_before))
+    parents.push_back(corner);
+  for (const CornerId parent : change.parents)
+    parents.push_back(parent);
+  return parents;
+}
+
+/// Updated is built anew.
+void require_as_built(const Subject& subject) {
+  const auto complex = grid::build_complex(subject.grid(), subject.cuts);
+  const auto names = support::renaming(subject.complex, complex);
+  if (!names)
+    throw Violation("the updated complex is not the one that is built");
+  if (!support::is_same(subject.surface, surface::build_surface(subject.grid(), subject.cuts, complex), *names))
+    throw Violation("the updated surface is not the one that is built");
 }
 
 class Fnv {
@@ -86,39 +103,27 @@ class Fnv {
 
 } // namespace
 
-std::vector<Specimen> small_specimens() {
-  const auto liver = support::liver_mesh();
-  std::vector<Specimen> all;
-  all.push_back(box("box on lattice planes", {0.5, 0.4, 0.3}, 0.1, Vec3::Zero()));
-  all.push_back(box("box midway", {0.4, 0.4, 0.3}, 0.1, Vec3::Constant(0.5)));
-  all.push_back(box("box anywhere", {0.53, 0.37, 0.31}, 0.1, {0.31, 0.83, 0.12}));
-  all.push_back(box("cube in binary fractions", Vec3::Ones(), 0.25, Vec3::Zero()));
-  all.push_back(box("plate of one node", {0.6, 0.6, 0.05}, 0.1, {0.5, 0.5, 0.25}));
-  all.push_back(box("rod", {0.9, 0.1, 0.1}, 0.1, Vec3::Constant(0.5)));
-  all.push_back(sphere("sphere", 0.37, Vec3::Zero()));
-  all.push_back(sphere("sphere off the lattice", 0.41, {0.2, 0.4, 0.9}));
-  all.push_back({"liver", support::embedded(liver, 0.032, {0.5, 0.3, 0.1}), Skin::curved});
-  all.push_back({"coarse liver", support::embedded(liver, 0.045, Vec3::Zero()), Skin::curved});
-  return all;
-}
-
-std::vector<Specimen> large_specimens() {
-  std::vector<Specimen> all;
-  all.push_back(box("large box", {1.4, 1.3, 1.2}, 0.1, Vec3::Zero()));
-  all.push_back(sphere("large sphere", 0.13, Vec3::Zero()));
-  all.push_back({"large liver", support::embedded(support::liver_mesh(), 0.011, {0.5, 0.3, 0.1}), Skin::curved});
-  return all;
-}
-
 Subject make_subject(const Specimen& specimen, Tally& tally) {
   const grid::Grid& grid = specimen.body.grid;
-  Subject subject{specimen, specimen.body.cuts, {}, {}, {}, {}, Table<CellId, OctantVolumes>(grid.n_cells()), 0};
-  subject.complex = grid::build_complex(grid, subject.cuts);
-  subject.surface = surface::build_surface(grid, subject.cuts, subject.complex);
+  auto complex = grid::build_complex(grid, specimen.body.cuts);
+  cut::EdgeBoxes boxes(grid, complex);
+  Subject subject{specimen,
+                  specimen.body.cuts,
+                  std::move(complex),
+                  {},
+                  {},
+                  std::move(boxes),
+                  {},
+                  {},
+                  Table<CellId, OctantVolumes>(grid.n_cells()),
+                  {},
+                  0};
+  subject.surface = surface::build_surface(grid, subject.cuts, subject.complex, subject.index);
   subject.x = subject.x_before = grid::rest_positions(grid, subject.complex);
   subject.volume = surface::enclosed_volume(subject.surface.rest, subject.surface.triangles);
   for (const CellId c : ids<CellId>(grid.n_cells()))
     subject.octants[c] = require_positive_octants(grid, subject.cuts, c);
+  subject.first_octants = subject.octants;
   require_sound(subject, tally);
   return subject;
 }
@@ -134,16 +139,19 @@ void cut(Subject& subject, const std::span<const grid::EdgeCut> cuts, Tally& tal
     edges.push_back(cut.edge);
   }
   const auto placed = surface::place(grid, subject.cuts, edges, {});
-  auto complex = grid::build_complex(grid, subject.cuts);
-  const auto parents = grid::parents(subject.complex, complex);
-  require_sound_parents(subject.complex, complex, parents);
-  subject.complex = std::move(complex);
-  subject.surface = surface::build_surface(grid, subject.cuts, subject.complex);
-  subject.x = inherited(subject.x, parents);
-  subject.x_before = inherited(subject.x_before, parents);
+  const auto before = subject.complex;
+  const auto change = grid::update_complex(grid, subject.cuts, edges, subject.complex);
+  const auto parents = all_parents(change);
+  require_sound_change(before, subject.complex, change);
+  require_sound_parents(before, subject.complex, parents);
+  surface::update_surface(grid, subject.cuts, subject.complex, edges, change, subject.surface, subject.index);
+  require_as_built(subject);
+  grid::inherit(change, subject.x);
+  grid::inherit(change, subject.x_before);
 
   for (const CellId c : cells)
     subject.octants[c] = require_positive_octants(grid, subject.cuts, c);
+  measure_skin_cells(subject, cells, tally);
   require_sound(subject, tally);
   require_inherited(masses, corner_masses(grid, subject.cuts, subject.complex, keeping), parents, tally);
 
@@ -151,7 +159,7 @@ void cut(Subject& subject, const std::span<const grid::EdgeCut> cuts, Tally& tal
   tally.n_cut_edges += cuts.size();
   tally.n_placed += placed.n_placed;
   tally.n_clamped += placed.n_clamped;
-  tally.n_most_pieces = std::max<std::size_t>(tally.n_most_pieces, subject.complex.n_pieces);
+  tally.n_most_pieces = std::max<std::size_t>(tally.n_most_pieces, grid::n_pieces(subject.complex));
 }
 
 std::uint64_t digest(const Subject& subject, const std::uint64_t start) {

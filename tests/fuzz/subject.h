@@ -27,12 +27,6 @@ struct Specimen {
   Skin skin = Skin::curved;
 };
 
-/// Boxes whose faces lie on lattice planes, midway and anywhere, a plate, a rod, spheres, the liver.
-std::vector<Specimen> small_specimens();
-
-/// The same kinds with so many edges that two threads share them.
-std::vector<Specimen> large_specimens();
-
 /// What the cases met, summed.
 struct Tally {
   std::size_t n_cases = 0, n_sweeps = 0, n_idle_sweeps = 0, n_cut_edges = 0, n_releases = 0, n_placed = 0;
@@ -41,6 +35,7 @@ struct Tally {
   double worst_volume = 0;       ///< change of the rest volume, relative to the body [1]
   double worst_disagreement = 0; ///< of a piece's volumes by octants and by triangles, relative to the body [1]
   double worst_mass = 0;         ///< difference of a corner's mass and that of its heirs, in h^3 [1]
+  double worst_skin_cell = 0;    ///< change of the material in one cell of the skin, in h^3 [1]
 };
 
 /// Parts of h^3 that belong to each vertex of a cell [1].
@@ -51,9 +46,11 @@ struct Subject {
   grid::Cuts cuts;
   grid::CellComplex complex;
   surface::Surface surface;
-  Points x, x_before; ///< corners now, and when the blades were met last [m]
-  Table<grid::CellId, OctantVolumes> octants;
-  double volume = 0; ///< at rest, before any cut [m^3]
+  surface::SurfaceIndex index;
+  cut::EdgeBoxes boxes;                                      ///< made before any cut
+  Points x, x_before;                                        ///< corners now, and when the blades were met last [m]
+  Table<grid::CellId, OctantVolumes> octants, first_octants; ///< now, and before any cut
+  double volume = 0;                                         ///< at rest, before any cut [m^3]
 
   const grid::Grid& grid() const { return specimen.body.grid; }
 };

@@ -1,6 +1,7 @@
 #include "tests/fuzz/sweeps.h"
 
 #include "grid/cube.h"
+#include "tests/fuzz/invariants.h"
 #include "tests/fuzz/states.h"
 #include "tests/geometry/meshes.h"
 
@@ -355,20 +356,44 @@ NamedSweep random_sweep(const Subject& subject, const std::optional<NamedSweep>&
   }
 }
 
-cut::SweepCuts meet(const Subject& subject, const Sweep& sweep, const grid::CutLabel label) {
+namespace {
+
+cut::SweepCuts meet(const Subject& subject, const Sweep& sweep, const grid::CutLabel label,
+                    const cut::EdgeBoxes* const boxes) {
   const auto met = [&](const auto& by) {
     using By = std::decay_t<decltype(by)>;
     if constexpr (std::is_same_v<By, cut::CutSurface>) {
       cut::CutSurface labelled = by;
       labelled.label = label;
-      return cut::cut_edges(labelled, subject.grid(), subject.cuts, subject.complex, subject.x);
+      return cut::cut_edges(labelled, subject.grid(), subject.cuts, subject.complex, subject.x, boxes);
     } else if constexpr (std::is_same_v<By, cut::BladePath>) {
-      return cut::cut_edges(by, subject.grid(), subject.cuts, subject.complex, subject.x_before, subject.x, label);
+      return cut::cut_edges(by, subject.grid(), subject.cuts, subject.complex, subject.x_before, subject.x, label,
+                            boxes);
     } else {
-      return cut::cut_edges(by, subject.grid(), subject.cuts, subject.complex, subject.x, label);
+      return cut::cut_edges(by, subject.grid(), subject.cuts, subject.complex, subject.x, label, boxes);
     }
   };
   return std::visit(met, sweep);
+}
+
+bool is_same(const grid::EdgeCut& a, const grid::EdgeCut& b) {
+  return a.edge == b.edge && a.t == b.t && a.normal == b.normal && a.label == b.label;
+}
+
+} // namespace
+
+cut::SweepCuts meet(Subject& subject, const Sweep& sweep, const grid::CutLabel label) {
+  if (std::holds_alternative<cut::CutSurface>(sweep))
+    subject.boxes.fit(subject.x);
+  else
+    subject.boxes.fit(subject.x_before, subject.x);
+  const auto found = meet(subject, sweep, label, &subject.boxes), all = meet(subject, sweep, label, nullptr);
+  if (found.n_double_crossings != all.n_double_crossings ||
+      !std::equal(found.cuts.begin(), found.cuts.end(), all.cuts.begin(), all.cuts.end(), is_same))
+    throw Violation("among the boxes " + std::to_string(found.cuts.size()) + " edges are cut and " +
+                    std::to_string(found.n_double_crossings) + " crossed twice, among all edges " +
+                    std::to_string(all.cuts.size()) + " and " + std::to_string(all.n_double_crossings));
+  return found;
 }
 
 } // namespace kerf::fuzz

@@ -165,6 +165,80 @@ TEST_F(Inside, ATiltedSecondPlaneIsMetAlongTheFirst) {
   }
 }
 
+/// Thesis figure 2.15: one face, cut line by line.
+using Figure215 = Inside;
+
+TEST_F(Figure215, A_AFrontEndsWhereTheCentreMeetsThePlane) {
+  cut({{edge(2, 2, 2, 0), 0.4, Vec3(0.8, 0.6, 0), 1}});
+  // From the centre (2.5, 2.5) by 0.8 * 0.1 + 0.6 * 0.5 = 0.38 against the normal.
+  expect_near(face_point(), {2.5 - 0.38 * 0.8, 2.5 - 0.38 * 0.6, 2});
+  EXPECT_EQ(grid::n_pieces(grid::build_complex(body.grid, body.cuts)), 1u);
+}
+
+TEST_F(Figure215, B_ASmoothCutTakesTheMiddleOfTheBezierCurve) {
+  // Planes of slope -1/4 and 1/4 through (2.4, 2) and (2.4, 3) meet at (2.275, 2.5).
+  cut(
+    {{edge(2, 2, 2, 0), 0.4, Vec3(4, 1, 0).normalized(), 1}, {edge(2, 3, 2, 0), 0.4, Vec3(4, -1, 0).normalized(), 1}});
+  expect_near(face_point(), {0.25 * 2.4 + 0.5 * 2.275 + 0.25 * 2.4, 2.5, 2});
+}
+
+TEST_F(Figure215, C_ASharpCutTakesTheIntersection) {
+  // Lines that turn by 90 degrees: x + y = 4.75 through (2.75, 2), y - x = 0.25 through (2.75, 3).
+  cut({{edge(2, 2, 2, 0), 0.75, Vec3(1, 1, 0).normalized(), 1},
+       {edge(2, 3, 2, 0), 0.75, Vec3(1, -1, 0).normalized(), 1}});
+  expect_near(face_point(), {2.25, 2.5, 2});
+}
+
+TEST_F(Figure215, D_ALaterCutProjectsOntoItsPlane) {
+  cut({{edge(2, 2, 2, 0), 0.4, Vec3::UnitX(), 1}, {edge(2, 3, 2, 0), 0.4, Vec3::UnitX(), 1}});
+  const Vec3 before = face_point(), q(3, 2.7, 2);
+  expect_near(before, {2.4, 2.5, 2});
+  cut({{edge(3, 2, 2, 1), 0.7, Vec3::UnitY(), 2}});
+  expect_near(face_point(), before - Vec3::UnitY() * Vec3::UnitY().dot(before - q)); // the plain projection
+}
+
+TEST_F(Figure215, D_ALaterCutAtAnAngleProjectsWithinTheEarlierPlane) {
+  const Vec3 normal = Vec3(0.5, 1, 0).normalized();
+  cut({{edge(2, 2, 2, 0), 0.4, Vec3::UnitX(), 1}, {edge(2, 3, 2, 0), 0.4, Vec3::UnitX(), 1}});
+  cut({{edge(3, 2, 2, 1), 0.3, normal, 2}});
+  // 0.5 (x - 3) + (y - 2.3) = 0 at x = 2.4; plainly projected, the vertex would leave the first cut by 0.04.
+  expect_near(face_point(), {2.4, 2.6, 2});
+}
+
+TEST_F(Figure215, E_ACrossCutTakesTheIntersectionInEitherOrder) {
+  const Vec3 m = Vec3(1, 0.3, 0).normalized(), n = Vec3(-0.2, 1, 0).normalized();
+  const auto at = [](const Vec3& normal, const Vec3& p, const int axis) { // parameter of the edge of p along the axis
+    return normal.dot(Vec3(2.5, 2.5, 2) - p) / normal[axis];
+  };
+  const std::vector<EdgeCut> across = {{edge(2, 2, 2, 0), at(m, {2, 2, 2}, 0), m, 1},
+                                       {edge(2, 3, 2, 0), at(m, {2, 3, 2}, 0), m, 1}};
+  const std::vector<EdgeCut> along = {{edge(2, 2, 2, 1), at(n, {2, 2, 2}, 1), n, 2},
+                                      {edge(3, 2, 2, 1), at(n, {3, 2, 2}, 1), n, 2}};
+  for (const bool turned : {false, true}) {
+    body = support::block({4, 4, 4});
+    cut(turned ? along : across);
+    cut(turned ? across : along);
+    expect_near(face_point(), {2.5, 2.5, 2});
+  }
+}
+
+TEST_F(Inside, TheCentreMinimisesTheQuadricOfAllPlanes) {
+  // A sphere around (0, 2.5, 2.5) cuts four lines along x: by symmetry the minimum is on the axis, where the sum of the
+  // squared distances to the four tangent planes vanishes: at their common pole.
+  const double to_chord = 2.4, radius2 = to_chord * to_chord + 0.5;
+  std::vector<EdgeCut> cuts;
+  for (const EdgeId e : body.grid.edges(cell))
+    if (body.grid.axis(e) == 0) {
+      const Vec3 p = body.grid.position(body.grid.ends(e)[0]);
+      cuts.push_back({e, to_chord - 2, (Vec3(to_chord, p[1], p[2]) - Vec3(0, 2.5, 2.5)).normalized(), 1});
+    }
+  cut(cuts);
+  const Vec3 pole(radius2 / to_chord, 2.5, 2.5);
+  for (const auto& c : cuts)
+    EXPECT_NEAR(c.normal.dot(pole - grid::edge_point(body.grid, body.cuts, c.edge)), 0, 1e-15);
+  expect_near(cell_point(), pole, 1e-14);
+}
+
 TEST_F(Inside, WhatWouldLeaveIsHeldAndCounted) {
   // From (2.5, 2.5) the nearest point of this plane has x < 2; across y = 2 it does not.
   const double lean = std::numbers::pi / 6;
@@ -205,6 +279,51 @@ TEST(Placement, NothingLeavesItsFaceOrCell) {
       ASSERT_FALSE(testing::Test::HasFatalFailure()) << "body " << i;
     }
   }
+}
+
+/// Each tetrahedron of an octant is spanned by a way along the cell's edges from the node: its volume is a product of
+/// three lengths that the clamp keeps positive.
+void expect_positive_octants(const Body& body, std::size_t& n_tetrahedra, double& smallest) {
+  for (const auto c : ids<CellId>(body.grid.n_cells()))
+    for (int v = 0; v < 8; ++v)
+      for (const auto& t : grid::octant(body.grid, body.cuts, c, v)) {
+        const auto way = [&](const Vec3& p, const int axis) { return std::abs(p[axis] - (v >> axis & 1)); };
+        // The point on the edge, then the one in the face: the order is turned where the octant is a mirror image.
+        const bool in_order = (way(t[1], 0) > 0) + (way(t[1], 1) > 0) + (way(t[1], 2) > 0) == 1;
+        const Vec3 &e = in_order ? t[1] : t[2], &f = in_order ? t[2] : t[1];
+        int first = 0;
+        while (way(e, first) == 0)
+          ++first;
+        const int second = way(f, (first + 1) % 3) > 0 ? (first + 1) % 3 : (first + 2) % 3, third = 3 - first - second;
+        const double product = way(e, first) * way(f, second) * way(t[3], third) / 6, volume = support::volume(t);
+        ASSERT_NEAR(volume / product, 1, 1e-12);
+        ASSERT_GT(way(e, first), 0.25 * grid::min_edge_parameter);
+        ASSERT_GT(way(f, second), 0.25 * grid::min_edge_parameter);
+        ASSERT_GT(way(t[3], third), 0.25 * grid::min_edge_parameter);
+        ++n_tetrahedra;
+        smallest = std::min(smallest, volume);
+      }
+}
+
+TEST(Placement, EveryOctantIsPositiveWhereverVerticesAreHeld) {
+  Random random(15);
+  const Body sphere = support::embedded(geometry::sphere_mesh(1, Vec3::Zero(), 3), 0.31, {0.2, 0.4, 0.9});
+  std::size_t n_tetrahedra = 0, n_placed = 0, n_clamped = 0;
+  double smallest = 1;
+  for (int i = 0; i < 30; ++i) {
+    Body body = i % 2 ? sphere : support::block({3, 3, 4}, 0.1);
+    for (grid::CutLabel label = 1; label <= 3; ++label) {
+      const auto counts = support::cut(body, support::random_cuts(random, body, uniform(random, 0, 0.5), label));
+      n_placed += counts.n_placed;
+      n_clamped += counts.n_clamped;
+      expect_positive_octants(body, n_tetrahedra, smallest);
+      ASSERT_FALSE(testing::Test::HasFailure()) << "body " << i;
+    }
+  }
+  std::cout << n_tetrahedra << " tetrahedra, the smallest of " << smallest << " h^3; " << n_clamped << " of "
+            << n_placed << " vertices clamped\n";
+  EXPECT_GT(smallest, 0);
+  EXPECT_GT(n_clamped, 1000u);
 }
 
 /// The largest distance of a skin triangle from the planes of the box [m]: all three vertices lie on one of them.

@@ -82,16 +82,17 @@ std::size_t n_unresolved(const Body& body, const Plane& plane) {
 /// Volume of the pieces on the lower side of a plane that cut them all.
 double cut_volume_below(const Body& body, const Plane& plane) {
   const auto complex = grid::build_complex(body.grid, body.cuts);
-  EXPECT_LE(complex.n_pieces, 2u);
+  const grid::Pieces pieces = grid::pieces(complex);
+  EXPECT_LE(pieces.n_pieces, 2u);
   const auto volumes = piece_volumes(build_surface(body.grid, body.cuts, complex), complex);
-  std::vector<bool> is_below(complex.n_pieces, false);
+  std::vector<bool> is_below(pieces.n_pieces, false);
   for (const auto n : ids<grid::NodeId>(body.grid.n_nodes()))
     if (body.grid.is_material(n) && plane.height(body.grid.position(n)) < 0)
       for (const auto c : ids<CopyId>(complex.n_copies()))
         if (const auto& copy = complex.copies[c]; complex.real_corner[n] == copy.corners[0] && (copy.nodes & 1))
-          is_below[complex.piece[c]] = true;
+          is_below[pieces.piece[c]] = true;
   double below = 0;
-  for (std::uint32_t p = 0; p < complex.n_pieces; ++p)
+  for (std::uint32_t p = 0; p < pieces.n_pieces; ++p)
     below += is_below[p] ? volumes[p] : 0;
   return below;
 }

@@ -4,6 +4,7 @@
 
 #include "base/parallel.h"
 #include "tests/support/placed.h"
+#include "tests/support/same.h"
 
 #include <gtest/gtest.h>
 
@@ -22,11 +23,13 @@ using support::uniform;
 struct Cut {
   Body body;
   CellComplex complex;
+  grid::Pieces pieces;
   Surface surface;
 
   explicit Cut(Body b)
     : body(std::move(b)),
       complex(grid::build_complex(body.grid, body.cuts)),
+      pieces(grid::pieces(complex)),
       surface(build_surface(body.grid, body.cuts, complex)) {}
 };
 
@@ -50,14 +53,14 @@ std::size_t n_open_edges(const std::vector<Triangle>& triangles) {
 void expect_closed(const Cut& cut) {
   const auto& triangles = cut.surface.triangles;
   EXPECT_EQ(n_open_edges(triangles), 0u);
-  std::vector<std::vector<Triangle>> of_piece(cut.complex.n_pieces);
+  std::vector<std::vector<Triangle>> of_piece(cut.pieces.n_pieces);
   std::vector<char> used(cut.surface.rest.size(), 0);
   for (std::size_t i = 0; i < triangles.size(); ++i) {
     const auto& [a, b, c] = triangles[i];
     ASSERT_TRUE(a != b && b != c && c != a);
     for (const auto v : triangles[i])
       used[v] = 1;
-    of_piece[cut.complex.piece[cut.surface.copies[i]]].push_back(triangles[i]);
+    of_piece[cut.pieces.piece[cut.surface.copies[i]]].push_back(triangles[i]);
   }
   EXPECT_EQ(std::count(used.begin(), used.end(), 0), 0) << "vertices without triangles";
   for (const auto& piece : of_piece) {
@@ -96,17 +99,17 @@ void expect_two_sides(const Cut& cut) {
 /// Rows sum to one, reproduce the rest positions, and ask only corners of the copies that the vertex bounds.
 void expect_weights(const Cut& cut) {
   const Weights& w = cut.surface.weights;
-  ASSERT_EQ(w.rows(), static_cast<int>(cut.surface.rest.size()));
-  ASSERT_EQ(w.cols(), static_cast<int>(cut.complex.n_corners()));
+  ASSERT_EQ(w.n_rows(), cut.surface.rest.size());
+  ASSERT_EQ(w.row_start.back(), w.corners.size());
+  ASSERT_EQ(w.row_start.back(), w.values.size());
   Points rest;
   follow(cut.surface, grid::rest_positions(cut.body.grid, cut.complex), rest);
   const double h = cut.body.grid.h();
-  for (int i = 0; i < w.rows(); ++i) {
-    const Eigen::VectorXd ones = Eigen::VectorXd::Ones(w.cols());
+  for (std::size_t i = 0; i < w.n_rows(); ++i) {
     double sum = 0, least = 1;
-    for (Weights::InnerIterator it(w, i); it; ++it) {
-      sum += it.value();
-      least = std::min(least, it.value());
+    for (auto k = w.row_start[i]; k < w.row_start[i + 1]; ++k) {
+      sum += w.values[k];
+      least = std::min(least, w.values[k]);
     }
     ASSERT_NEAR(sum, 1, 1e-14);
     ASSERT_GE(least, 0);
@@ -114,22 +117,20 @@ void expect_weights(const Cut& cut) {
               1e-14 * h + 4e-16 * cut.surface.rest[i].lpNorm<Eigen::Infinity>());
   }
   for (std::size_t i = 0; i < cut.surface.triangles.size(); ++i) {
-    std::set<int> corners;
-    for (const auto corner : cut.complex.copies[cut.surface.copies[i]].corners)
-      corners.insert(static_cast<int>(corner.value));
+    const auto& corners = cut.complex.copies[cut.surface.copies[i]].corners;
     for (const auto v : cut.surface.triangles[i])
-      for (Weights::InnerIterator it(w, static_cast<int>(v)); it; ++it)
-        ASSERT_TRUE(corners.contains(static_cast<int>(it.col())));
+      for (auto k = w.row_start[v]; k < w.row_start[v + 1]; ++k)
+        ASSERT_NE(std::find(corners.begin(), corners.end(), w.corners[k]), corners.end());
   }
 }
 
 /// Which piece a corner belongs to: there is only one.
-std::vector<std::uint32_t> piece_of_corner(const CellComplex& complex) {
+std::vector<std::uint32_t> piece_of_corner(const CellComplex& complex, const grid::Pieces& pieces) {
   std::vector<std::uint32_t> piece(complex.n_corners(), Id<void>::no_value);
   for (const auto c : ids<CopyId>(complex.n_copies()))
     for (const auto corner : complex.copies[c].corners) {
-      EXPECT_TRUE(piece[corner.value] == Id<void>::no_value || piece[corner.value] == complex.piece[c]);
-      piece[corner.value] = complex.piece[c];
+      EXPECT_TRUE(piece[corner.value] == Id<void>::no_value || piece[corner.value] == pieces.piece[c]);
+      piece[corner.value] = pieces.piece[c];
     }
   return piece;
 }
@@ -138,13 +139,13 @@ std::vector<std::uint32_t> piece_of_corner(const CellComplex& complex) {
 void expect_affine(Random& random, const Cut& cut) {
   std::vector<Mat3> stretch;
   Points shift;
-  for (std::uint32_t i = 0; i < cut.complex.n_pieces; ++i) {
+  for (std::uint32_t i = 0; i < cut.pieces.n_pieces; ++i) {
     stretch.push_back(Mat3::Identity());
     for (int axis = 0; axis < 3; ++axis)
       stretch.back().col(axis) += 0.3 * support::random_vector(random);
     shift.push_back(support::random_vector(random));
   }
-  const auto piece = piece_of_corner(cut.complex);
+  const auto piece = piece_of_corner(cut.complex, cut.pieces);
   Points corners = grid::rest_positions(cut.body.grid, cut.complex), x;
   for (std::size_t i = 0; i < corners.size(); ++i)
     corners[i] = (stretch[piece[i]] * corners[i] + shift[piece[i]]).eval();
@@ -154,13 +155,13 @@ void expect_affine(Random& random, const Cut& cut) {
   moved.rest = x;
   const auto before = piece_volumes(cut.surface, cut.complex), after = piece_volumes(moved, cut.complex);
   for (std::size_t i = 0; i < cut.surface.triangles.size(); ++i) {
-    const auto p = cut.complex.piece[cut.surface.copies[i]];
+    const auto p = cut.pieces.piece[cut.surface.copies[i]];
     for (const auto v : cut.surface.triangles[i])
       ASSERT_LE((x[v] - stretch[p] * cut.surface.rest[v] - shift[p]).norm(),
                 1e-14 * (cut.body.grid.h() + 10 * shift[p].norm() + 10 * x[v].norm()));
   }
   const double cell = std::pow(cut.body.grid.h(), 3);
-  for (std::uint32_t p = 0; p < cut.complex.n_pieces; ++p)
+  for (std::uint32_t p = 0; p < cut.pieces.n_pieces; ++p)
     ASSERT_NEAR(after[p], stretch[p].determinant() * before[p],
                 1e-12 * (std::abs(after[p]) + cell + shift[p].norm() * cell / cut.body.grid.h()));
 }
@@ -171,16 +172,16 @@ void expect_closed_when_deformed(Random& random, const Cut& cut) {
   for (Vec3& p : corners)
     p += 0.4 * cut.body.grid.h() * support::random_vector(random);
   follow(cut.surface, corners, x);
-  Points area(cut.complex.n_pieces, Vec3::Zero());
-  std::vector<double> total(cut.complex.n_pieces, 0);
+  Points area(cut.pieces.n_pieces, Vec3::Zero());
+  std::vector<double> total(cut.pieces.n_pieces, 0);
   for (std::size_t i = 0; i < cut.surface.triangles.size(); ++i) {
     const auto& [a, b, c] = cut.surface.triangles[i];
-    const auto p = cut.complex.piece[cut.surface.copies[i]];
+    const auto p = cut.pieces.piece[cut.surface.copies[i]];
     const Vec3 normal = (x[b] - x[a]).cross(x[c] - x[a]);
     area[p] += normal;
     total[p] += normal.norm();
   }
-  for (std::uint32_t p = 0; p < cut.complex.n_pieces; ++p)
+  for (std::uint32_t p = 0; p < cut.pieces.n_pieces; ++p)
     ASSERT_LE(area[p].norm(), 1e-12 * total[p]);
 }
 
@@ -225,6 +226,53 @@ TEST(Surface, IsClosedForRandomCutsOfEmbeddedBodies) {
     }
 }
 
+/// A surface kept up to date through several cuts.
+struct Updated {
+  Body body;
+  SurfaceIndex index = {};
+  CellComplex complex = grid::build_complex(body.grid, body.cuts);
+  Surface surface = build_surface(body.grid, body.cuts, complex, index);
+
+  void cut(const std::vector<grid::EdgeCut>& cuts) {
+    support::cut(body, cuts);
+    std::vector<grid::EdgeId> edges;
+    for (const auto& cut : cuts)
+      edges.push_back(cut.edge);
+    const auto change = grid::update_complex(body.grid, body.cuts, edges, complex);
+    update_surface(body.grid, body.cuts, complex, edges, change, surface, index);
+  }
+};
+
+void expect_as_built(Random& random, const Updated& updated) {
+  Cut built(updated.body);
+  const auto names = support::renaming(updated.complex, built.complex);
+  ASSERT_TRUE(names.has_value());
+  ASSERT_TRUE(support::is_same(updated.surface, built.surface, *names));
+  built.complex = updated.complex;
+  built.pieces = grid::pieces(updated.complex);
+  built.surface = updated.surface;
+  expect_good(random, built);
+}
+
+TEST(Surface, UpdatedIsTheOneThatIsBuilt) {
+  Random random(24);
+  const Body sphere = support::embedded(geometry::sphere_mesh(1, Vec3::Zero(), 3), 0.3, {0.3, 0.1, 0.8});
+  const Body liver = support::embedded(support::liver_mesh(), 0.025, {0.5, 0.5, 0.5});
+  for (int i = 0; i < 60; ++i) {
+    auto nodes = i % 2 ? support::block_nodes({4, 3, 3}) : support::some_nodes(random, {4, 4, 4}, 0.7);
+    nodes.push_back({2, 1, 1});
+    Updated updated{i % 10 == 0 ? sphere
+                    : i % 10 == 5
+                      ? liver
+                      : support::with_placed_skin(support::make_body({{0.1, -0.2, 0.3}, 0.5}, nodes, support::midway))};
+    for (grid::CutLabel label = 1; label <= 5; ++label) {
+      updated.cut(support::random_cuts(random, updated.body, uniform(random, 0, i % 3 ? 0.1 : 0.6), label));
+      expect_as_built(random, updated);
+      ASSERT_FALSE(HasFailure()) << "body " << i << ", cut " << label;
+    }
+  }
+}
+
 TEST(Surface, HasTwoTrianglesACellAroundEachMaterialEnd) {
   // An uncut block of n cubes has a quad in each of four cells around each skin edge; a cut adds two sides.
   Body body = support::with_placed_skin(support::block({3, 3, 3}));
@@ -247,13 +295,12 @@ void expect_same_bits(const Cut& a, const Cut& b, const Points& x, const Points&
     ASSERT_EQ(a.body.cuts.all()[i].normal, b.body.cuts.all()[i].normal);
   }
   ASSERT_EQ(a.complex.node.items(), b.complex.node.items());
-  ASSERT_EQ(a.complex.piece.items(), b.complex.piece.items());
+  ASSERT_EQ(a.pieces.piece.items(), b.pieces.piece.items());
   ASSERT_EQ(a.surface.rest, b.surface.rest);
   ASSERT_EQ(a.surface.triangles, b.surface.triangles);
   ASSERT_EQ(a.surface.labels, b.surface.labels);
-  ASSERT_EQ(a.surface.weights.nonZeros(), b.surface.weights.nonZeros());
-  ASSERT_TRUE(std::equal(a.surface.weights.valuePtr(), a.surface.weights.valuePtr() + a.surface.weights.nonZeros(),
-                         b.surface.weights.valuePtr()));
+  ASSERT_EQ(a.surface.weights.corners, b.surface.weights.corners);
+  ASSERT_EQ(a.surface.weights.values, b.surface.weights.values);
   ASSERT_EQ(x, y);
 }
 

@@ -1,0 +1,71 @@
+#include "grid/corner_classes.h"
+
+#include "grid/cube.h"
+
+#include <algorithm>
+
+namespace kerf::grid {
+
+namespace {
+
+constexpr std::array<unsigned, 3> lower_face = {cube::face_mask(0), cube::face_mask(2), cube::face_mask(4)};
+
+} // namespace
+
+void CellsAround::complete(const Grid& grid) {
+  // From any of the eight, each other one is at most three faces away; a gap may make the way longer.
+  for (bool grows = true; grows;) {
+    grows = false;
+    for (int v = 0; v < 8; ++v)
+      for (int axis = 0; cells_[v].valid() && axis < 3; ++axis)
+        if (const int other = v ^ 1 << axis; !cells_[other].valid()) {
+          cells_[other] = grid.neighbour(cells_[v], cube::face_at(v, axis));
+          grows |= cells_[other].valid();
+        }
+  }
+}
+
+CornerClasses::CornerClasses(const CellComplex& complex, const CellsAround& cells) {
+  for (int v = 0; v < 8; ++v) {
+    first_slot_[v] = static_cast<std::uint8_t>(n_slots_);
+    for (CopyId c = cells.at(v).valid() ? complex.first_copy[cells.at(v)] : CopyId(); c.valid();
+         c = complex.copies[c].next) {
+      slots_[n_slots_] = {c, static_cast<std::uint8_t>(v), static_cast<std::uint8_t>(n_slots_)};
+      ++n_slots_;
+    }
+  }
+  first_slot_[8] = static_cast<std::uint8_t>(n_slots_);
+  for (int v = 0; v < 8; ++v)
+    for (int axis = 0; axis < 3; ++axis)
+      if (v >> axis & 1)
+        join_across(v, axis, complex);
+  number();
+}
+
+/// The cell in which the node is the upper vertex along the axis lies below the other one.
+void CornerClasses::join_across(const int upper_vertex, const int axis, const CellComplex& complex) {
+  const int lower_vertex = upper_vertex ^ 1 << axis;
+  for (int a = first_slot_[upper_vertex]; a < first_slot_[upper_vertex + 1]; ++a)
+    for (int b = first_slot_[lower_vertex]; b < first_slot_[lower_vertex + 1]; ++b) {
+      const unsigned below = complex.copies[slots_[a].copy].nodes, above = complex.copies[slots_[b].copy].nodes;
+      if ((below >> (1 << axis) & above & lower_face[axis]) == 0)
+        continue;
+      const std::uint8_t p = slots_[a].class_number, q = slots_[b].class_number;
+      if (p != q)
+        for (std::size_t i = 0; i < n_slots_; ++i)
+          if (slots_[i].class_number == std::max(p, q))
+            slots_[i].class_number = std::min(p, q);
+    }
+}
+
+void CornerClasses::number() {
+  std::array<std::uint8_t, max_slots> number_of;
+  for (std::size_t i = 0; i < n_slots_; ++i) {
+    auto& name = slots_[i].class_number; // the first slot of the class
+    if (name == i)
+      number_of[i] = static_cast<std::uint8_t>(n_classes_++);
+    name = number_of[name];
+  }
+}
+
+} // namespace kerf::grid

@@ -1,0 +1,49 @@
+#pragma once
+
+/// Which slots (copy, vertex) at one node are one corner: those that gluing joins, face by face (complex.h).
+
+#include "grid/complex.h"
+
+namespace kerf::grid {
+
+/// Stored cells around a node, by the vertex that the node is in them.
+class CellsAround {
+ public:
+  void add(const CellId cell, const int vertex) { cells_[vertex] = cell; }
+  /// Adds all cells around the node that can be reached from those here across faces at the node. Others have no slots in
+  /// common with them.
+  void complete(const Grid& grid);
+
+  CellId at(const int vertex) const { return cells_[vertex]; }
+
+ private:
+  std::array<CellId, 8> cells_;
+};
+
+class CornerClasses {
+ public:
+  static constexpr int max_slots = 64; ///< eight copies in each of eight cells
+
+  struct Slot {
+    CopyId copy;
+    std::uint8_t vertex;
+    std::uint8_t class_number; ///< from 0, in the order of the classes' first slots
+  };
+
+  CornerClasses(const CellComplex& complex, const CellsAround& cells);
+
+  int n_classes() const { return n_classes_; }
+  /// By vertex, then along the cell's copies.
+  std::span<const Slot> slots() const { return {slots_.data(), n_slots_}; }
+
+ private:
+  void join_across(int upper_vertex, int axis, const CellComplex& complex);
+  void number();
+
+  std::array<Slot, max_slots> slots_;
+  std::array<std::uint8_t, 9> first_slot_; // by vertex
+  std::size_t n_slots_ = 0;
+  int n_classes_ = 0;
+};
+
+} // namespace kerf::grid

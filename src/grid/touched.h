@@ -1,0 +1,21 @@
+#pragma once
+
+/// The cells around edges, and by which of their lines they are among them.
+
+#include "grid/grid.h"
+
+#include <span>
+#include <vector>
+
+namespace kerf::grid {
+
+struct TouchedCell {
+  CellId cell;
+  std::uint16_t lines = 0; ///< bits of the cell's lines that are among the edges
+};
+
+/// The stored cells around any of these edges, ascending, each once. Takes time by the number of edges, and of all
+/// cells only where the edges are many.
+std::vector<TouchedCell> touched_cells(const Grid& grid, std::span<const EdgeId> edges);
+
+} // namespace kerf::grid

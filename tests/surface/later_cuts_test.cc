@@ -1,0 +1,146 @@
+/// Planes cut one after the other (thesis figure 2.15 (d), (e)): each later cut slides the vertices along the earlier
+/// ones, so what was flat stays flat. The thesis projects plainly, which would bend an earlier cut that the later one
+/// does not meet at a right angle, and move volume from one of its sides to the other.
+
+#include "grid/cube.h"
+#include "tests/support/placed.h"
+
+#include <gtest/gtest.h>
+
+#include <iostream>
+#include <numbers>
+
+namespace kerf::surface {
+namespace {
+
+using grid::CellId;
+using grid::EdgeCut;
+using support::Body;
+using support::Random;
+
+/// Cells without an empty node, or all of them.
+enum class Where { inside, everywhere };
+
+/// What later cuts leave of earlier ones.
+struct Flatness {
+  std::size_t n_vertices = 0, n_met = 0; ///< in faces and cells of earlier cuts; of those, on their plane before
+  double worst = 0;                      ///< distance of a vertex that was on its plane, afterwards [h]
+};
+
+unsigned lines_cut_under(const Body& body, const CellId c, const grid::CutLabel label) {
+  unsigned lines = 0;
+  for (int line = 0; line < grid::cube::n_lines; ++line)
+    if (const EdgeCut* cut = body.cuts.find(body.grid.edges(c)[line]); cut && cut->label == label)
+      lines |= 1u << line;
+  return lines;
+}
+
+/// The distances [h] from the plane of all vertices in the faces and cells that hold an edge cut under the label.
+std::vector<double> heights(const Body& body, const grid::CutLabel label, const support::Plane& plane,
+                            const Where where) {
+  std::vector<double> result;
+  const auto add = [&](const Vec3& p) { result.push_back(std::abs(plane.height(p)) / body.grid.h()); };
+  for (const auto c : ids<CellId>(body.grid.n_cells())) {
+    if (where == Where::inside && support::is_skin_cell(body.grid, c))
+      continue;
+    const unsigned lines = lines_cut_under(body, c, label);
+    if (lines != 0)
+      add(grid::cell_point(body.grid, body.cuts, c));
+    for (int face = 0; face < grid::cube::n_faces; ++face) {
+      const auto& of_face = grid::cube::face_lines[face];
+      if (std::any_of(of_face.begin(), of_face.end(), [&](const int line) { return (lines >> line & 1) != 0; }))
+        add(grid::face_point(body.grid, body.cuts, body.grid.faces(c)[face]));
+    }
+  }
+  return result;
+}
+
+constexpr double flat = 1e-12;
+
+/// Cuts the body by the planes, and after each one looks at all the earlier ones.
+void cut_one_by_one(Body body, const std::vector<support::Plane>& planes, const Where where, Flatness& result) {
+  for (grid::CutLabel k = 0; k < planes.size(); ++k) {
+    std::vector<std::vector<double>> before;
+    for (grid::CutLabel i = 0; i < k; ++i)
+      before.push_back(heights(body, i + 1, planes[i], where));
+    support::cut(body, support::plane_cuts(body, planes[k], k + 1));
+    for (grid::CutLabel i = 0; i < k; ++i) {
+      const auto after = heights(body, i + 1, planes[i], where);
+      ASSERT_EQ(after.size(), before[i].size());
+      for (std::size_t v = 0; v < after.size(); ++v) {
+        ++result.n_vertices;
+        if (before[i][v] < flat) {
+          ++result.n_met;
+          result.worst = std::max(result.worst, after[v]);
+        }
+      }
+    }
+  }
+}
+
+std::vector<support::Plane> planes_through(Random& random, const Vec3& p, const int n) {
+  std::vector<support::Plane> planes;
+  for (int i = 0; i < n; ++i) {
+    const Vec3 normal = support::random_direction(random);
+    planes.push_back({normal, normal.dot(p)});
+  }
+  return planes;
+}
+
+void print(const char* what, const Flatness& f) {
+  std::cout << what << ": " << f.n_vertices << " vertices of earlier cuts; " << f.n_vertices - f.n_met
+            << " never met their plane; the others are off it by at most " << f.worst << " h\n";
+}
+
+TEST(LaterCuts, LeaveEarlierPlanesFlatInsideTheBody) {
+  Random random(51);
+  const Body whole = support::with_placed_skin(support::block({7, 7, 7}));
+  Flatness pairs, triples;
+  for (int i = 0; i < 300; ++i) {
+    const Vec3 p = Vec3::Constant(4) + 0.3 * support::random_vector(random);
+    cut_one_by_one(whole, planes_through(random, p, 2), Where::inside, pairs);
+    cut_one_by_one(whole, planes_through(random, p, 3), Where::inside, triples);
+  }
+  print("pairs of planes", pairs);
+  print("triples of planes", triples);
+  EXPECT_GT(triples.n_met, 100000u);
+  EXPECT_EQ(pairs.n_met, pairs.n_vertices) << "the first plane is met in every cell";
+  EXPECT_LT(pairs.worst, flat);
+  EXPECT_LT(triples.worst, flat);
+  EXPECT_LT(static_cast<double>(triples.n_vertices - triples.n_met), 0.06 * static_cast<double>(triples.n_vertices));
+}
+
+TEST(LaterCuts, LeaveEarlierPlanesFlatUnderTheSkin) {
+  Random random(52);
+  const Body box = support::embedded(geometry::box_mesh(Vec3::Zero(), {0.73, 0.61, 0.52}), 0.1, {0.3, 0.8, 0.1});
+  const Body ball = support::embedded(geometry::sphere_mesh(0.4, Vec3::Constant(0.3), 3), 0.1, {0.2, 0.4, 0.9});
+  Flatness all;
+  for (int i = 0; i < 100; ++i)
+    for (const Body& whole : {box, ball}) {
+      const Vec3 p = Vec3::Constant(0.3) + 0.03 * support::random_vector(random);
+      cut_one_by_one(whole, planes_through(random, p, 3), Where::everywhere, all);
+    }
+  print("skin and all", all);
+  EXPECT_LT(all.worst, flat);
+  EXPECT_GT(static_cast<double>(all.n_met), 0.85 * static_cast<double>(all.n_vertices))
+    << "on the skin, a vertex keeps the volume first";
+}
+
+TEST(LaterCuts, MeetWhereTheyCrossInsideTheCell) {
+  // The second plane crosses the first one in the middle of a cell and cuts at least one line that the first one left
+  // whole; a third one crosses both there. Then the cell's vertex is on all of them.
+  const Vec3 p(4.5, 4.45, 4.55);
+  for (const double degrees : {90.0, 70.0, 50.0, 46.0, 43.0}) {
+    const double angle = degrees * std::numbers::pi / 180;
+    const Points normals = {Vec3::UnitX(), Vec3(std::cos(angle), std::sin(angle), 0), Vec3(0.2, 0.1, 1).normalized()};
+    Body body = support::with_placed_skin(support::block({7, 7, 7}));
+    for (grid::CutLabel k = 1; k <= 3; ++k)
+      support::cut(body, support::plane_cuts(body, {normals[k - 1], normals[k - 1].dot(p)}, k));
+    const Vec3 q = grid::cell_point(body.grid, body.cuts, *body.grid.find_cell({4, 4, 4}));
+    for (const Vec3& n : normals)
+      EXPECT_NEAR(n.dot(q - p), 0, 1e-13) << degrees << " degrees";
+  }
+}
+
+} // namespace
+} // namespace kerf::surface
