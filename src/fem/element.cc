@@ -6,115 +6,72 @@ namespace kerf::fem {
 
 namespace {
 
-/// Coefficients of 1, x, x^2.
-using Quadratic = std::array<double, 3>;
+using Linear = std::array<double, 2>; // coefficients of 1, x
 
-/// One-dimensional factor of a derivative of N: shape function `node` (0 or 1), differentiated or not.
-std::array<double, 2> factor(const int node, const int derivative) {
-  if (derivative == 1)
-    return {node == 1 ? 1.0 : -1.0, 0.0};
-  return node == 1 ? std::array<double, 2>{0.0, 1.0} : std::array<double, 2>{1.0, -1.0};
-}
+Linear shape_factor(const int vertex, const int axis) { return vertex >> axis & 1 ? Linear{0, 1} : Linear{1, -1}; }
 
-/// Product of two factors; index of (node_a, node_b, derivative_a, derivative_b) is their bits in this order.
-std::array<Quadratic, 16> products() {
-  std::array<Quadratic, 16> all;
-  for (int n = 0; n < 16; ++n) {
-    const auto f = factor(n & 1, n >> 2 & 1), g = factor(n >> 1 & 1, n >> 3 & 1);
-    all[n] = {f[0] * g[0], f[0] * g[1] + f[1] * g[0], f[1] * g[1]};
-  }
-  return all;
-}
-
-/// Integrals of products of derivatives of shape functions, by contracting the moments one axis at a time.
-class ShapeIntegrals {
- public:
-  explicit ShapeIntegrals(const Moments& m) {
-    std::array<std::array<double, 9>, 16> x{};
-    for (int n = 0; n < 16; ++n)
-      for (int jk = 0; jk < 9; ++jk)
-        for (int i = 0; i < 3; ++i)
-          x[n][jk] += products_[n][i] * m[i + 3 * jk];
-    for (int n = 0; n < 16; ++n)
-      for (int l = 0; l < 16; ++l)
-        for (int k = 0; k < 3; ++k) {
-          xy_[n][l][k] = 0;
-          for (int j = 0; j < 3; ++j)
-            xy_[n][l][k] += products_[l][j] * x[n][j + 3 * k];
-        }
-  }
-
-  /// Integral of N_a,i N_b,j over the material in the unit cube.
-  double operator()(const int a, const int i, const int b, const int j) const {
-    std::array<int, 3> n;
-    for (int axis = 0; axis < 3; ++axis)
-      n[axis] = (a >> axis & 1) | (b >> axis & 1) << 1 | (axis == i) << 2 | (axis == j) << 3;
-    double sum = 0;
-    for (int k = 0; k < 3; ++k)
-      sum += products_[n[2]][k] * xy_[n[0]][n[1]][k];
-    return sum;
-  }
-
- private:
-  std::array<Quadratic, 16> products_ = products();
-  std::array<std::array<std::array<double, 3>, 16>, 16> xy_;
-};
-
-/// Integral over the material of the product of one linear factor along each axis.
-double integrate(const Moments& m, const std::array<std::array<double, 2>, 3>& f) {
+/// Integral of N_a over the material in the unit cube.
+double integral_of_shape(const Moments& m, const int a) {
+  const Linear x = shape_factor(a, 0), y = shape_factor(a, 1), z = shape_factor(a, 2);
   double sum = 0;
   for (int k = 0; k < 2; ++k)
     for (int j = 0; j < 2; ++j)
       for (int i = 0; i < 2; ++i)
-        sum += f[0][i] * f[1][j] * f[2][k] * m[i + 3 * j + 9 * k];
+        sum += x[i] * y[j] * z[k] * m[i + 3 * j + 9 * k];
   return sum;
 }
 
-double integrate_shape(const Moments& m, const int a, const int derivative_axis) {
-  std::array<std::array<double, 2>, 3> f;
-  for (int axis = 0; axis < 3; ++axis)
-    f[axis] = factor(a >> axis & 1, axis == derivative_axis);
-  return integrate(m, f);
+/// Integral of N_a N_b over the material in the unit cube.
+double integral_of_product(const Moments& m, const int a, const int b) {
+  std::array<std::array<double, 3>, 3> f;
+  for (int axis = 0; axis < 3; ++axis) {
+    const Linear p = shape_factor(a, axis), q = shape_factor(b, axis);
+    f[axis] = {p[0] * q[0], p[0] * q[1] + p[1] * q[0], p[1] * q[1]};
+  }
+  double sum = 0;
+  for (int n = 0; n < 27; ++n)
+    sum += f[0][n % 3] * f[1][n / 3 % 3] * f[2][n / 9] * m[n];
+  return sum;
 }
 
-void fill_stiffness(Element& element, const Moments& moments, const double h, const material::Elastic& material) {
-  const ShapeIntegrals integral(moments);
-  const double lambda = material.lambda(), mu = material.mu();
-  for (int a = 0; a < 8; ++a)
-    for (int b = a; b < 8; ++b) {
-      Mat3 g; // g(i, j) = int N_a,i N_b,j
-      for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j)
-          g(i, j) = integral(a, i, b, j);
-      const Mat3 block = h * (lambda * g + mu * g.transpose() + mu * g.trace() * Mat3::Identity());
-      for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j) {
-          element.stiffness[(3 * a + i) + 24 * (3 * b + j)] = block(i, j);
-          element.stiffness[(3 * b + j) + 24 * (3 * a + i)] = block(i, j);
-        }
-    }
+void fill_mass(Element& element, const Moments& moments, const double mass_of_cube) {
+  for (int a = 0; a < 8; ++a) {
+    // Far from a sliver the integral is below the round-off of its moments, and may come out negative.
+    element.mass[a] = mass_of_cube * std::max(0.0, integral_of_shape(moments, a));
+    for (int b = 0; b <= a; ++b)
+      element.consistent_mass[8 * a + b] = element.consistent_mass[8 * b + a] =
+        mass_of_cube * integral_of_product(moments, a, b);
+  }
+}
+
+/// The moments of what carries stiffness.
+Moments topped_up(Moments moments, const double sliver_floor) {
+  const double missing = std::max(0.0, sliver_floor - moments[0]);
+  const Moments full = full_cube_moments();
+  for (int n = 0; n < 27; ++n)
+    moments[n] += missing * full[n];
+  return moments;
 }
 
 } // namespace
 
 Element make_element(const Moments& moments, const double h, const material::Elastic& material,
-                     const double sliver_floor) {
+                     const ElementOptions& options) {
   Element element;
-  const double fraction = moments[0];
-  element.volume = fraction * h * h * h;
-  for (int a = 0; a < 8; ++a) {
-    // Far from a sliver the integral is below the round-off of its moments, and may come out negative.
-    element.mass[a] = material.density * h * h * h * std::max(0.0, integrate_shape(moments, a, -1));
-  }
-  Moments stiff = moments;
-  const double missing = std::max(0.0, sliver_floor - fraction);
-  const Moments full = full_cube_moments();
-  for (int n = 0; n < 27; ++n)
-    stiff[n] += missing * full[n];
-  for (int a = 0; a < 8; ++a)
-    for (int axis = 0; axis < 3; ++axis)
-      element.gradient[a][axis] = integrate_shape(stiff, a, axis) / (stiff[0] * h);
-  fill_stiffness(element, stiff, h, material);
+  element.volume = moments[0] * h * h * h;
+  fill_mass(element, moments, material.density * h * h * h);
+  spread_mass(element, options.mass_spread);
+
+  const Centred stiff = centred(topped_up(moments, options.sliver_floor));
+  element.centroid = stiff.centroid;
+  element.stiff_volume = stiff.volume * h * h * h;
+  element.gradient = mean_gradients(stiff);
+  Matrix24 K = hourglass_stiffness(stiff, material, options.strain);
+  if (options.part == Part::whole)
+    K += mean_stiffness(stiff.volume, element.gradient, material);
+  Eigen::Map<Matrix24>(element.stiffness.data()) = 0.5 * h * (K + K.transpose());
+  for (Vec3& gradient : element.gradient)
+    gradient /= h;
   return element;
 }
 

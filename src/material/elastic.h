@@ -4,12 +4,15 @@
 
 #include "base/parameters.h"
 
+#include <string>
+
 namespace kerf::material {
 
 struct Elastic {
-  double density = 1000;       ///< [kg/m^3]
-  double youngs_modulus = 1e4; ///< E [Pa]
-  double poissons_ratio = 0.3; ///< nu [1]
+  double density = 1000;            ///< [kg/m^3]
+  double youngs_modulus = 1e4;      ///< E [Pa]
+  double poissons_ratio = 0.3;      ///< nu [1]
+  std::string law = "corotational"; ///< law_of() in laws.h
 
   /// Lame's parameters [Pa]: lambda = E nu / ((1 + nu) (1 - 2 nu)), mu = E / (2 (1 + nu)).
   double lambda() const { return youngs_modulus * poissons_ratio / ((1 + poissons_ratio) * (1 - 2 * poissons_ratio)); }
@@ -19,7 +22,12 @@ struct Elastic {
     p.number("Density [kg/m^3]", density, positive, "Mass per rest volume.");
     p.number("Young's modulus [Pa]", youngs_modulus, positive, "Stiffness in uniaxial tension.");
     p.number("Poisson's ratio [1]", poissons_ratio, {.min = -1, .max = 0.5, .min_excluded = true, .max_excluded = true},
-             "Lateral contraction; trilinear cells stiffen near 0.5.");
+             "Lateral contraction; trilinear cells lock near 0.5, enhanced ones do not.");
+    p.choice(
+      "Law", law, {"small strain", "corotational", "St. Venant-Kirchhoff", "neo-Hookean"},
+      "Stress of a deformation. Small strain: Hooke's law, for small rotations. Corotational: the same, turned with "
+      "the material. St. Venant-Kirchhoff: for large rotations, not for strong compression. Neo-Hookean: for "
+      "large strain.");
   }
 };
 

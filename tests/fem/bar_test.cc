@@ -4,7 +4,7 @@
 
 #include "cut/embed.h"
 #include "dynamics/implicit_euler.h"
-#include "fem/corotational.h"
+#include "fem/hexahedra.h"
 #include "surface/surface.h"
 #include "tests/fem/bodies.h"
 #include "tests/geometry/meshes.h"
@@ -58,9 +58,9 @@ double tip(const Body& bar, const Points& x) {
 }
 
 /// By one step so long that inertia does not count.
-double static_tip(const double h, const Vec3& offset, const CorotationalOptions& options) {
+double static_tip(const double h, const Vec3& offset, const HexahedraOptions& options) {
   const Body bar = make_bar(h, offset);
-  Corotational model(bar.grid, bar.cuts, bar.complex, options);
+  Hexahedra model(bar.grid, bar.cuts, bar.complex, options);
   dynamics::ImplicitEuler stepper(model, {.cg_tolerance = 1e-9, .max_cg_iterations = 20000});
   dynamics::State state{bar.rest(), Points(bar.complex.n_corners(), Vec3::Zero()), 0};
   dynamics::Loads loads{.gravity = Vec3(0, 0, -9.81e-3), .supports = {}};
@@ -91,7 +91,7 @@ TEST(Bar, ShiftedByHalfACellBendsAlike) {
 /// What the octants are for: counting the skin's half cells as full makes the bar far too stiff.
 TEST(Bar, FullCubesAreTooStiff) {
   const double octants = static_tip(0.05, Vec3(0, 0.5, 0.5), {.material = rubber});
-  const double full = static_tip(0.05, Vec3(0, 0.5, 0.5), {.material = rubber, .integration = Integration::full_cube});
+  const double full = static_tip(0.05, Vec3(0, 0.5, 0.5), {.material = rubber, .boundary = Boundary::full_cube});
   EXPECT_LT(full / octants, 0.8);
   RecordProperty("full_over_octants", std::to_string(full / octants));
 }

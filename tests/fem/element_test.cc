@@ -1,7 +1,6 @@
 #include "fem/element.h"
 
-#include "tests/fem/bodies.h"
-#include "tests/fem/quadrature.h"
+#include "tests/fem/samples.h"
 
 #include <gtest/gtest.h>
 #include <Eigen/Eigenvalues>
@@ -9,61 +8,28 @@
 namespace kerf::fem {
 namespace {
 
-using Matrix24 = Eigen::Matrix<double, 24, 24>;
-
 const material::Elastic rubber{.density = 1100, .youngs_modulus = 3e4, .poissons_ratio = 0.42};
 
 Matrix24 stiffness(const Element& element) { return Eigen::Map<const Matrix24>(element.stiffness.data()); }
 
-/// int B^T D B with engineering strains, the textbook's way.
+/// int B^T D B, the textbook's way.
 Matrix24 by_quadrature(const std::vector<WeightedPoint<Vec3>>& rule, const double h,
                        const material::Elastic& material) {
-  Eigen::Matrix<double, 6, 6> D = Eigen::Matrix<double, 6, 6>::Zero();
-  D.topLeftCorner<3, 3>().setConstant(material.lambda());
-  for (int i = 0; i < 6; ++i)
-    D(i, i) += i < 3 ? 2 * material.mu() : material.mu();
+  const auto D = elasticity(material);
   Matrix24 K = Matrix24::Zero();
-  for (const auto& [x, weight] : rule) {
-    Eigen::Matrix<double, 6, 24> B = Eigen::Matrix<double, 6, 24>::Zero();
-    for (int a = 0; a < 8; ++a) {
-      const Vec3 g = shape_gradient(a, x) / h;
-      for (int i = 0; i < 3; ++i) {
-        const int j = (i + 1) % 3;
-        B(i, 3 * a + i) = g[i];
-        B(3 + i, 3 * a + i) = g[j];
-        B(3 + i, 3 * a + j) = g[i];
-      }
-    }
-    K += weight * h * h * h * B.transpose() * D * B;
-  }
+  for (const auto& [x, weight] : rule)
+    K += h * weight * nodal_strains(x).transpose() * D * nodal_strains(x);
   return K;
 }
 
-/// A cut copy: its moments and points in it.
-struct Sample {
-  Moments moments;
-  std::vector<WeightedPoint<Vec3>> rule;
-};
-
-/// Copies of randomly cut cells, all of more than a fifth of a cube.
-std::vector<Sample> samples() {
-  std::vector<Sample> all;
-  Draw draw(3);
-  while (all.size() < 40) {
-    Body body = make_block({2, 2, 2}, 1, draw, {0.2, 0.8});
-    cut_at_random(body, 0.5, draw, {0.2, 0.8});
-    for (const grid::Copy& copy : body.complex.copies) {
-      const Moments m = octant_moments(body.grid, body.cuts, copy.cell, copy.nodes);
-      if (m[0] > 0.2 && copy.nodes != 0xff)
-        all.push_back({m, material_rule(body.grid, body.cuts, copy.cell, copy.nodes, 5)});
-    }
-  }
+const std::vector<Sample>& samples() {
+  static const std::vector<Sample> all = make_samples();
   return all;
 }
 
 TEST(Element, FullCubeAgreesWithGaussPoints) {
   const Matrix24 K = by_quadrature(cube_rule(2), 0.3, rubber);
-  const Matrix24 found = stiffness(make_element(full_cube_moments(), 0.3, rubber, 1e-3));
+  const Matrix24 found = stiffness(make_element(full_cube_moments(), 0.3, rubber, {.sliver_floor = 1e-3}));
   EXPECT_LT((K - found).norm(), 1e-14 * K.norm());
 }
 
@@ -71,16 +37,17 @@ TEST(Element, PartialCubeAgreesWithQuadratureInItsTetrahedra) {
   double worst = 0;
   for (const Sample& sample : samples()) {
     const Matrix24 K = by_quadrature(sample.rule, 0.3, rubber);
-    worst = std::max(worst, (K - stiffness(make_element(sample.moments, 0.3, rubber, 1e-3))).norm() / K.norm());
+    worst = std::max(
+      worst, (K - stiffness(make_element(sample.moments, 0.3, rubber, {.sliver_floor = 1e-3}))).norm() / K.norm());
   }
   EXPECT_LT(worst, 1e-13);
 }
 
 TEST(Element, IsSymmetricAndHasSixRigidModes) {
-  std::vector<Sample> all = samples();
+  std::vector<Sample> all = make_samples();
   all.push_back({full_cube_moments(), {}});
   for (const Sample& sample : all) {
-    const Matrix24 K = stiffness(make_element(sample.moments, 0.3, rubber, 0));
+    const Matrix24 K = stiffness(make_element(sample.moments, 0.3, rubber, {.sliver_floor = 0}));
     EXPECT_EQ((K - K.transpose()).norm(), 0);
     const auto eigenvalues = Eigen::SelfAdjointEigenSolver<Matrix24>(K, Eigen::EigenvaluesOnly).eigenvalues();
     EXPECT_LT(eigenvalues.head<6>().cwiseAbs().maxCoeff(), 1e-14 * eigenvalues[23]);
@@ -88,10 +55,21 @@ TEST(Element, IsSymmetricAndHasSixRigidModes) {
   }
 }
 
+/// Both halves of an element together, for both kinds of strain.
+TEST(Element, IsItsMeanAndItsHourglassPart) {
+  for (const Sample& sample : samples())
+    for (const Strain strain : {Strain::trilinear, Strain::enhanced}) {
+      const Element whole = make_element(sample.moments, 0.3, rubber, {.strain = strain});
+      const Element hourglass = make_element(sample.moments, 0.3, rubber, {.strain = strain, .part = Part::hourglass});
+      const Matrix24 mean = mean_stiffness(whole.stiff_volume, whole.gradient, rubber);
+      EXPECT_LT((stiffness(whole) - stiffness(hourglass) - mean).norm(), 1e-14 * mean.norm());
+    }
+}
+
 TEST(Element, MassIsDensityTimesShapeIntegrals) {
   const double h = 0.3;
   for (const Sample& sample : samples()) {
-    const Element element = make_element(sample.moments, h, rubber, 1e-3);
+    const Element element = make_element(sample.moments, h, rubber, {.sliver_floor = 1e-3});
     double sum = 0;
     for (int a = 0; a < 8; ++a) {
       double integral = 0;
@@ -108,7 +86,7 @@ TEST(Element, MassIsDensityTimesShapeIntegrals) {
 TEST(Element, GradientIsTheMeanOverTheMaterial) {
   const double h = 0.3;
   for (const Sample& sample : samples()) {
-    const Element element = make_element(sample.moments, h, rubber, 1e-3);
+    const Element element = make_element(sample.moments, h, rubber, {.sliver_floor = 1e-3});
     Vec3 sum = Vec3::Zero();
     for (int a = 0; a < 8; ++a) {
       Vec3 integral = Vec3::Zero();
@@ -125,8 +103,9 @@ TEST(Element, GradientIsTheMeanOverTheMaterial) {
 }
 
 TEST(Element, ScalesWithTheCube) {
-  const Sample sample = samples().front();
-  const Element one = make_element(sample.moments, 1, rubber, 0), small = make_element(sample.moments, 0.01, rubber, 0);
+  const Sample& sample = samples().front();
+  const Element one = make_element(sample.moments, 1, rubber, {.sliver_floor = 0}),
+                small = make_element(sample.moments, 0.01, rubber, {.sliver_floor = 0});
   EXPECT_LT((0.01 * stiffness(one) - stiffness(small)).norm(), 1e-15 * stiffness(one).norm());
   for (int a = 0; a < 8; ++a) {
     EXPECT_NEAR(small.mass[a], 1e-6 * one.mass[a], 1e-15);
@@ -136,12 +115,12 @@ TEST(Element, ScalesWithTheCube) {
 
 /// Only the stiffness, only where the material fills less than the floor, and just up to it.
 TEST(Element, SliverFloorTopsUpSlivers) {
-  const Matrix24 cube = stiffness(make_element(full_cube_moments(), 1, rubber, 0));
-  const Sample sample = samples().front();
+  const Matrix24 cube = stiffness(make_element(full_cube_moments(), 1, rubber, {.sliver_floor = 0}));
+  const Sample& sample = samples().front();
   const double fraction = sample.moments[0];
-  const Element bare = make_element(sample.moments, 1, rubber, 0);
+  const Element bare = make_element(sample.moments, 1, rubber, {.sliver_floor = 0});
   for (const double floor : {0.0, 1e-3, 0.9 * fraction, fraction, 1.2 * fraction, 0.9}) {
-    const Element topped = make_element(sample.moments, 1, rubber, floor);
+    const Element topped = make_element(sample.moments, 1, rubber, {.sliver_floor = floor});
     const Matrix24 expected = stiffness(bare) + std::max(0.0, floor - fraction) * cube;
     EXPECT_LT((stiffness(topped) - expected).norm(), 1e-14 * cube.norm()) << floor;
     EXPECT_EQ(topped.mass, bare.mass);
@@ -164,8 +143,8 @@ TEST(Element, SliverMassesAreNotNegative) {
                           grid::skin_label});
       sliver.cut(skin);
       const grid::Copy& copy = sliver.complex.copies[grid::CopyId(vertex)];
-      const Element element =
-        make_element(octant_moments(sliver.grid, sliver.cuts, copy.cell, copy.nodes), 1, rubber, 1e-3);
+      const Element element = make_element(octant_moments(sliver.grid, sliver.cuts, copy.cell, copy.nodes), 1, rubber,
+                                           {.sliver_floor = 1e-3});
       for (int a = 0; a < 8; ++a)
         EXPECT_TRUE(element.mass[a] > 0 || (element.mass[a] == 0 && t < 1e-4))
           << "t " << t << ", octant " << vertex << ", vertex " << a << ": " << element.mass[a];

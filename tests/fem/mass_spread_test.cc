@@ -10,8 +10,6 @@
 namespace kerf::fem {
 namespace {
 
-using Matrix24 = Eigen::Matrix<double, 24, 24>;
-
 const material::Elastic rubber{.density = 1100, .youngs_modulus = 3e4, .poissons_ratio = 0.42};
 
 double total(const Element& element) { return std::accumulate(element.mass.begin(), element.mass.end(), 0.0); }
@@ -21,8 +19,7 @@ double largest_frequency(const Element& element) {
   Eigen::Matrix<double, 24, 1> scale;
   for (int i = 0; i < 24; ++i)
     scale[i] = 1 / std::sqrt(element.mass[i / 3]);
-  const Matrix24 K =
-    scale.asDiagonal() * Eigen::Map<const Matrix24>(element.stiffness.data()) * scale.asDiagonal();
+  const Matrix24 K = scale.asDiagonal() * Eigen::Map<const Matrix24>(element.stiffness.data()) * scale.asDiagonal();
   return Eigen::SelfAdjointEigenSolver<Matrix24>(K).eigenvalues()[23];
 }
 
@@ -32,7 +29,8 @@ std::vector<Element> skin_elements(const double t, const double spread) {
   const Body body = make_block({2, 2, 2}, 1, draw, {t, t});
   std::vector<Element> elements;
   for (const grid::Copy& copy : body.complex.copies) {
-    elements.push_back(make_element(octant_moments(body.grid, body.cuts, copy.cell, copy.nodes), 1, rubber, 0));
+    elements.push_back(
+      make_element(octant_moments(body.grid, body.cuts, copy.cell, copy.nodes), 1, rubber, {.sliver_floor = 0}));
     spread_mass(elements.back(), spread);
   }
   return elements;
@@ -42,14 +40,14 @@ TEST(MassSpread, KeepsTheTotalAndLeavesAFullCubeAlone) {
   const auto before = skin_elements(0.3, 0), after = skin_elements(0.3, 0.4);
   for (std::size_t e = 0; e < before.size(); ++e)
     EXPECT_NEAR(total(after[e]) / total(before[e]), 1, 1e-14);
-  Element cube = make_element(full_cube_moments(), 1, rubber, 0);
+  Element cube = make_element(full_cube_moments(), 1, rubber, {.sliver_floor = 0});
   spread_mass(cube, 0.4);
   for (const double m : cube.mass)
     EXPECT_NEAR(m / (rubber.density / 8), 1, 1e-14);
 }
 
 TEST(MassSpread, BoundsTheFrequencyOfSlivers) {
-  const double cube = largest_frequency(make_element(full_cube_moments(), 1, rubber, 0));
+  const double cube = largest_frequency(make_element(full_cube_moments(), 1, rubber, {.sliver_floor = 0}));
   double bare = 0, worst = 0;
   for (const double t : {0.5, 0.1, 1e-2, 1e-3, 1e-4}) {
     for (const Element& element : skin_elements(t, 0))

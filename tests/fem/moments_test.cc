@@ -51,8 +51,8 @@ TEST(Moments, OfTheCopiesOfACellSumToTheFullCubeInEveryConfiguration) {
     const auto cell = *body.grid.find_cell({1, 1, 1});
     ASSERT_EQ(body.cuts.configuration(body.grid, cell), configuration);
     Moments sum{};
-    for (auto c = body.complex.first_copy[cell]; c < body.complex.first_copy[grid::CellId(cell.value + 1)]; ++c) {
-      const Moments m = octant_moments(body.grid, body.cuts, cell, body.complex.copies[grid::CopyId(c)].nodes);
+    for (const grid::CopyId c : body.complex.copies_of(cell)) {
+      const Moments m = octant_moments(body.grid, body.cuts, cell, body.complex.copies[c].nodes);
       EXPECT_GT(m[0], 0);
       for (int n = 0; n < 27; ++n)
         sum[n] += m[n];

@@ -4,7 +4,7 @@
 #include "base/parallel.h"
 #include "dynamics/implicit_euler.h"
 #include "dynamics/symplectic_euler.h"
-#include "fem/corotational.h"
+#include "fem/hexahedra.h"
 #include "tests/fem/bodies.h"
 
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ struct Momentum {
   Vec3 linear = Vec3::Zero(), angular = Vec3::Zero();
 };
 
-Momentum momentum(const Corotational& model, const dynamics::State& state) {
+Momentum momentum(const Hexahedra& model, const dynamics::State& state) {
   Momentum sum;
   for (std::size_t c = 0; c < state.x.size(); ++c) {
     const Vec3 p = model.lumped_mass()[c] * state.v[c];
@@ -51,7 +51,7 @@ dynamics::State thrown(const Body& body, const unsigned seed) {
 
 TEST(Motion, ImplicitEulerKeepsMomentum) {
   const Body body = cut_block(71);
-  Corotational model(body.grid, body.cuts, body.complex, {.material = rubber});
+  Hexahedra model(body.grid, body.cuts, body.complex, {.material = rubber});
   dynamics::ImplicitEuler stepper(model, {.cg_tolerance = 1e-13});
   dynamics::State state = thrown(body, 72);
   const Vec3 before = momentum(model, state).linear;
@@ -63,7 +63,7 @@ TEST(Motion, ImplicitEulerKeepsMomentum) {
 /// f has no torque, so x += dt v keeps the angular momentum too. Full cubes: light slivers would need shorter steps.
 TEST(Motion, SymplecticEulerKeepsBothMomenta) {
   const Body body = cut_block(73);
-  Corotational model(body.grid, body.cuts, body.complex, {.material = rubber, .integration = Integration::full_cube});
+  Hexahedra model(body.grid, body.cuts, body.complex, {.material = rubber, .boundary = Boundary::full_cube});
   dynamics::SymplecticEuler stepper(model);
   dynamics::State state = thrown(body, 74);
   const Momentum before = momentum(model, state);
@@ -75,7 +75,7 @@ TEST(Motion, SymplecticEulerKeepsBothMomenta) {
 }
 
 /// 2 / (largest frequency) [s], from the spectrum.
-double longest_stable_step(const Corotational& model) {
+double longest_stable_step(const Hexahedra& model) {
   const auto n = static_cast<Eigen::Index>(3 * model.lumped_mass().size());
   Eigen::MatrixXd K(n, n);
   Eigen::VectorXd scale(n), p = Eigen::VectorXd::Zero(n);
@@ -93,7 +93,7 @@ double longest_stable_step(const Corotational& model) {
 TEST(Motion, SymplecticEulerIsStableUpToTheLargestFrequency) {
   Draw draw(75);
   const Body body = make_block({2, 2, 2}, 0.1, draw, {0.4, 0.6});
-  Corotational model(body.grid, body.cuts, body.complex, {.material = rubber});
+  Hexahedra model(body.grid, body.cuts, body.complex, {.material = rubber});
   const double limit = longest_stable_step(model);
   const Points rest = body.rest();
   const auto run = [&](const double dt) {
@@ -133,7 +133,7 @@ TEST(Motion, SliversDoNotStopTheSolver) {
     Body body = make_block({4, 4, 4}, 0.1, draw, {0.5, 0.5});
     cut_plane(body, 0, 2, t);
     cut_at_random(body, 0.1, draw, {t, t});
-    Corotational model(body.grid, body.cuts, body.complex, {.material = rubber});
+    Hexahedra model(body.grid, body.cuts, body.complex, {.material = rubber});
     dynamics::ImplicitEuler stepper(model, {});
     dynamics::State state{body.rest(), Points(body.complex.n_corners(), Vec3::Zero()), 0};
     for (Vec3& v : state.v)
@@ -158,7 +158,7 @@ TEST(Motion, OneAndTwoThreadsGiveTheSameBits) {
     Draw draw(78);
     Body body = make_block({14, 14, 14}, 0.1, draw, {0.3, 0.7});
     cut_at_random(body, 0.1, draw, {0.3, 0.7});
-    Corotational model(body.grid, body.cuts, body.complex, {.material = rubber});
+    Hexahedra model(body.grid, body.cuts, body.complex, {.material = rubber});
     dynamics::ImplicitEuler stepper(model, {});
     states[n - 1] = thrown(body, 79);
     for (int i = 0; i < 2; ++i)

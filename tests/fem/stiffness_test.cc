@@ -1,4 +1,4 @@
-#include "fem/corotational.h"
+#include "fem/hexahedra.h"
 
 #include "base/parallel.h"
 #include "dynamics/state.h"
@@ -12,12 +12,11 @@ namespace kerf::fem {
 namespace {
 
 using Matrix = Eigen::MatrixXd;
-using Matrix24 = Eigen::Matrix<double, 24, 24>;
 
 const material::Elastic rubber{.density = 1000, .youngs_modulus = 2e3, .poissons_ratio = 0.4};
 
 /// K by products with unit vectors.
-Matrix assembled(const Corotational& model) {
+Matrix assembled(const Hexahedra& model) {
   const auto n = static_cast<Eigen::Index>(3 * model.lumped_mass().size());
   Matrix K(n, n);
   Eigen::VectorXd p = Eigen::VectorXd::Zero(n);
@@ -51,16 +50,17 @@ TEST(Stiffness, HasSixRigidModesAPiece) {
     Body body = make_block({2, 2, 1 + n % 3}, 0.2, draw, {0.25, 0.75});
     cut_at_random(body, 0.2 + 0.2 * (n % 4), draw, {0.25, 0.75});
     for (const double floor : {0.0, 1e-3}) {
-      const Corotational model(body.grid, body.cuts, body.complex, {.material = rubber, .sliver_floor = floor});
+      const Hexahedra model(body.grid, body.cuts, body.complex, {.material = rubber, .sliver_floor = floor});
       const Eigen::VectorXd spectrum = scaled_spectrum(assembled(model));
-      const Eigen::Index n_rigid = 6 * body.complex.n_pieces;
+      const std::uint32_t n_pieces = grid::n_pieces(body.complex);
+      const Eigen::Index n_rigid = 6 * n_pieces;
       ASSERT_GT(spectrum.size(), n_rigid);
-      EXPECT_LT(spectrum.head(n_rigid).cwiseAbs().maxCoeff(), 1e-13) << body.complex.n_pieces << " pieces";
-      EXPECT_GT(spectrum[n_rigid], 1e-4) << body.complex.n_pieces << " pieces";
+      EXPECT_LT(spectrum.head(n_rigid).cwiseAbs().maxCoeff(), 1e-13) << n_pieces << " pieces";
+      EXPECT_GT(spectrum[n_rigid], 1e-4) << n_pieces << " pieces";
       most = std::max(most, spectrum.head(n_rigid).cwiseAbs().maxCoeff());
       least = std::min(least, spectrum[n_rigid]);
     }
-    n_several += body.complex.n_pieces > 1;
+    n_several += grid::n_pieces(body.complex) > 1;
   }
   EXPECT_GE(n_several, 5u);
   RecordProperty("least", std::to_string(least * 1e9) + "e-9");
@@ -71,7 +71,7 @@ TEST(Stiffness, ProductsAreThoseOfASymmetricMatrix) {
   Draw draw(32);
   Body body = make_block({2, 3, 2}, 0.2, draw, {0.2, 0.8});
   cut_at_random(body, 0.3, draw, {0.2, 0.8});
-  Corotational model(body.grid, body.cuts, body.complex, {.material = rubber});
+  Hexahedra model(body.grid, body.cuts, body.complex, {.material = rubber});
   model.linearise(disturbed(body.rest(), draw.rotation(), 0.03, draw));
   const Matrix K = assembled(model);
   EXPECT_LT((K - K.transpose()).norm(), 1e-15 * K.norm());
@@ -96,12 +96,12 @@ TEST(Stiffness, IsTheSumOfItsElements) {
   Draw draw(33);
   Body body = make_block({2, 2, 2}, 0.2, draw, {0.2, 0.8});
   cut_at_random(body, 0.3, draw, {0.2, 0.8});
-  const Corotational model(body.grid, body.cuts, body.complex, {.material = rubber});
+  const Hexahedra model(body.grid, body.cuts, body.complex, {.material = rubber});
   const Matrix found = assembled(model);
   Matrix K = Matrix::Zero(found.rows(), found.cols());
   for (const grid::Copy& copy : body.complex.copies) {
-    const Element element =
-      make_element(octant_moments(body.grid, body.cuts, copy.cell, copy.nodes), body.grid.h(), rubber, 1e-3);
+    const Element element = make_element(octant_moments(body.grid, body.cuts, copy.cell, copy.nodes), body.grid.h(),
+                                         rubber, {.sliver_floor = 1e-3});
     const Eigen::Map<const Matrix24> k(element.stiffness.data());
     for (int a = 0; a < 8; ++a)
       for (int b = 0; b < 8; ++b)
@@ -114,7 +114,7 @@ TEST(Stiffness, TurnsWithTheBody) {
   Draw draw(34);
   Body body = make_block({2, 2, 2}, 0.2, draw, {0.2, 0.8});
   cut_at_random(body, 0.3, draw, {0.2, 0.8});
-  Corotational model(body.grid, body.cuts, body.complex, {.material = rubber});
+  Hexahedra model(body.grid, body.cuts, body.complex, {.material = rubber});
   const Matrix at_rest = assembled(model);
   const Mat3 Q = draw.rotation();
   model.linearise(disturbed(body.rest(), Q, 0, draw));
@@ -129,7 +129,7 @@ TEST(Stiffness, IsTheDerivativeOfTheForceAtRest) {
   Draw draw(35);
   Body body = make_block({2, 2, 2}, 0.2, draw, {0.2, 0.8});
   cut_at_random(body, 0.4, draw, {0.2, 0.8});
-  const Corotational model(body.grid, body.cuts, body.complex, {.material = rubber});
+  const Hexahedra model(body.grid, body.cuts, body.complex, {.material = rubber});
   const Matrix K = assembled(model);
   const Points rest = body.rest();
   const double eps = 1e-5 * body.grid.h();
@@ -149,35 +149,66 @@ TEST(Stiffness, IsTheDerivativeOfTheForceAtRest) {
   RecordProperty("error", std::to_string((derivative + K).norm() / K.norm() * 1e10) + "e-10");
 }
 
-TEST(Stiffness, KernelIsTheProductsOfItsMatrices) {
-  Draw draw(36);
-  constexpr std::size_t n = 37, n_corners = 50;
-  std::vector<Matrix24> K(n);
-  std::vector<const double*> stiffness;
-  std::vector<double> rotations;
-  std::vector<std::uint32_t> corners;
-  for (Matrix24& k : K) {
-    for (Eigen::Index i = 0; i < k.size(); ++i)
-      k(i) = draw(-1, 1);
-    stiffness.push_back(k.data());
-    const Mat3 R = draw.rotation();
-    rotations.insert(rotations.end(), R.data(), R.data() + 9);
-    for (int a = 0; a < 8; ++a)
-      corners.push_back(static_cast<std::uint32_t>(draw(0, n_corners)));
-  }
-  std::vector<double> p(3 * n_corners), out(24 * n, 1e300);
-  for (double& value : p)
-    value = draw(-1, 1);
-  apply_stiffness({n, corners.data(), stiffness.data(), rotations.data()}, p.data(), out.data());
-  for (std::size_t e = 0; e < n; ++e) {
-    Matrix24 R = Matrix24::Zero();
-    Eigen::Matrix<double, 24, 1> q;
-    for (int a = 0; a < 8; ++a) {
-      R.block<3, 3>(3 * a, 3 * a) = Eigen::Map<const Mat3>(rotations.data() + 9 * e);
-      q.segment<3>(3 * a) = Eigen::Map<const Vec3>(p.data() + 3 * corners[8 * e + a]);
+/// Elements for the kernels: 37 of five kinds, at 50 corners.
+struct Kernels {
+  static constexpr std::size_t n = 37, n_corners = 50, stride = 600;
+  std::vector<double> kinds, rotations, tangents, p;
+  std::vector<std::uint32_t> corners, element;
+
+  Kernels() : kinds(5 * stride), p(3 * n_corners) {
+    Draw draw(36);
+    for (std::vector<double>* values : {&kinds, &p})
+      for (double& value : *values)
+        value = draw(-1, 1);
+    for (std::size_t e = 0; e < n; ++e) {
+      element.push_back(static_cast<std::uint32_t>(draw(0, 5)));
+      const Mat3 R = draw.rotation();
+      rotations.insert(rotations.end(), R.data(), R.data() + 9);
+      for (int a = 0; a < 8; ++a)
+        corners.push_back(static_cast<std::uint32_t>(draw(0, n_corners)));
+      const material::Tangent A = material::Tangent::Random();
+      const material::Tangent symmetric = A + A.transpose();
+      tangents.insert(tangents.end(), symmetric.data(), symmetric.data() + 81);
     }
-    const Eigen::Matrix<double, 24, 1> expected = R * (K[e] * (R.transpose() * q));
-    EXPECT_LT((Eigen::Map<const Eigen::Matrix<double, 24, 1>>(out.data() + 24 * e) - expected).norm(), 1e-13);
+  }
+  ElementBlock block() const {
+    return {n, corners.data(), element.data(), kinds.data(), kinds.data() + 576, stride, rotations.data()};
+  }
+  Vec3 at(const std::size_t e, const int a) const { return Eigen::Map<const Vec3>(&p[3 * corners[8 * e + a]]); }
+};
+
+TEST(Stiffness, KernelIsTheProductsOfItsMatrices) {
+  const Kernels kernels;
+  std::vector<double> out(24 * Kernels::n, 1e300);
+  apply_stiffness(kernels.block(), kernels.p.data(), out.data());
+  for (std::size_t e = 0; e < Kernels::n; ++e) {
+    Matrix24 R = Matrix24::Zero();
+    Vector24 q;
+    for (int a = 0; a < 8; ++a) {
+      R.block<3, 3>(3 * a, 3 * a) = Eigen::Map<const Mat3>(&kernels.rotations[9 * e]);
+      q.segment<3>(3 * a) = kernels.at(e, a);
+    }
+    const Eigen::Map<const Matrix24> K(&kernels.kinds[Kernels::stride * kernels.element[e]]);
+    const Vector24 expected = R * (K * (R.transpose() * q));
+    EXPECT_LT((Eigen::Map<const Vector24>(&out[24 * e]) - expected).norm(), 1e-13);
+  }
+}
+
+TEST(Stiffness, KernelOfTangentsIsTheProductsOfThem) {
+  const Kernels kernels;
+  std::vector<double> out(24 * Kernels::n, 1);
+  add_mean_tangent(kernels.block(), kernels.tangents.data(), kernels.p.data(), out.data());
+  for (std::size_t e = 0; e < Kernels::n; ++e) {
+    const double* const gradients = &kernels.kinds[Kernels::stride * kernels.element[e] + 576];
+    Mat3 G = Mat3::Zero(), P;
+    for (int a = 0; a < 8; ++a)
+      G += kernels.at(e, a) * Eigen::Map<const Vec3>(gradients + 3 * a).transpose();
+    Eigen::Map<Eigen::Matrix<double, 9, 1>>(P.data()) = Eigen::Map<const material::Tangent>(&kernels.tangents[81 * e]) *
+                                                        Eigen::Map<const Eigen::Matrix<double, 9, 1>>(G.data());
+    for (int a = 0; a < 8; ++a) {
+      const Vec3 expected = Vec3::Ones() + P * Eigen::Map<const Vec3>(gradients + 3 * a);
+      EXPECT_LT((Eigen::Map<const Vec3>(&out[24 * e + 3 * a]) - expected).norm(), 1e-13);
+    }
   }
 }
 
@@ -189,7 +220,7 @@ TEST(Stiffness, OneAndTwoThreadsGiveTheSameBits) {
     Draw draw(37);
     Body body = make_block({6, 5, 7}, 0.1, draw, {0.1, 0.9});
     cut_at_random(body, 0.2, draw, {0.1, 0.9});
-    Corotational model(body.grid, body.cuts, body.complex, {.material = rubber});
+    Hexahedra model(body.grid, body.cuts, body.complex, {.material = rubber});
     const Points x = disturbed(body.rest(), draw.rotation(), 0.02, draw);
     model.linearise(x);
     Points f, y(x.size());
@@ -210,8 +241,8 @@ TEST(Stiffness, OnlySliversAreToppedUp) {
   Draw draw(38);
   Body body = make_block({3, 3, 3}, 1, draw, {0.5, 0.5});
   cut_plane(body, 0, 2, 1e-9);
-  const Corotational bare(body.grid, body.cuts, body.complex, {.material = rubber, .sliver_floor = 0});
-  const Corotational floored(body.grid, body.cuts, body.complex, {.material = rubber, .sliver_floor = 1e-3});
+  const Hexahedra bare(body.grid, body.cuts, body.complex, {.material = rubber, .sliver_floor = 0});
+  const Hexahedra floored(body.grid, body.cuts, body.complex, {.material = rubber, .sliver_floor = 1e-3});
   std::vector<Mat3> before, after;
   bare.stiffness_diagonal(before);
   floored.stiffness_diagonal(after);
@@ -221,7 +252,7 @@ TEST(Stiffness, OnlySliversAreToppedUp) {
       smallest[corner.value] =
         std::min(smallest[corner.value], octant_moments(body.grid, body.cuts, copy.cell, copy.nodes)[0]);
   std::size_t n_slivers = 0;
-  const double cube = make_element(full_cube_moments(), 1, rubber, 0).stiffness[0];
+  const double cube = make_element(full_cube_moments(), 1, rubber, {.sliver_floor = 0}).stiffness[0];
   for (std::size_t c = 0; c < before.size(); ++c) {
     const double added = (after[c] - before[c]).trace() / (3e-3 * cube); // in cubes at the floor
     if (smallest[c] > 1e-3) {

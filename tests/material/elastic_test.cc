@@ -33,7 +33,7 @@ TEST(Elastic, RefusesWhatIsNoSolid) {
   Elastic material;
   Parameters parameters;
   material.describe(parameters);
-  ASSERT_EQ(parameters.list().size(), 3u);
+  ASSERT_EQ(parameters.list().size(), 4u);
   const auto accepts = [&](const std::size_t i, const std::string& value) {
     return parameters.list()[i].check(value).empty();
   };
@@ -43,6 +43,8 @@ TEST(Elastic, RefusesWhatIsNoSolid) {
   EXPECT_FALSE(accepts(2, "-1"));
   EXPECT_TRUE(accepts(2, "0.499"));
   EXPECT_TRUE(accepts(1, "5e4"));
+  EXPECT_FALSE(accepts(3, "Mooney-Rivlin"));
+  EXPECT_TRUE(accepts(3, "neo-Hookean"));
 }
 
 } // namespace

@@ -1,0 +1,77 @@
+#include "fem/element_table.h"
+
+#include "base/parallel.h"
+
+#include <algorithm>
+
+namespace kerf::fem {
+
+std::vector<grid::CopyId> changed_copies(const grid::Grid& grid, const grid::CellComplex& complex,
+                                         const grid::ComplexChange& change,
+                                         const std::span<const grid::EdgeId> new_edges) {
+  std::vector<grid::CopyId> changed = change.copies;
+  for (const auto edge : new_edges)
+    for (const auto cell : grid.cells(edge))
+      if (cell.valid())
+        for (const auto copy : complex.copies_of(cell))
+          changed.push_back(copy);
+  std::sort(changed.begin(), changed.end());
+  changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
+  return changed;
+}
+
+ElementTable::ElementTable(const grid::Grid& grid, const grid::Cuts& cuts, const grid::CellComplex& complex,
+                           const ElementTableOptions& options)
+  : h_(grid.h()), options_(options) {
+  elements_.push_back(make_element(full_cube_moments(), h_, options.material, options.element));
+  std::vector<grid::CopyId> all;
+  all.reserve(complex.n_copies());
+  for (const auto c : ids<grid::CopyId>(complex.n_copies()))
+    all.push_back(c);
+  update(grid, cuts, complex, all);
+}
+
+void ElementTable::update(const grid::Grid& grid, const grid::Cuts& cuts, const grid::CellComplex& complex,
+                          const std::span<const grid::CopyId> changed) {
+  element_of_.resize(complex.n_copies(), 0);
+  std::vector<grid::CopyId> partial;
+  for (const auto c : changed) {
+    std::uint32_t& element = element_of_[c.value];
+    if (is_partial(grid, cuts, complex.copies[c])) {
+      partial.push_back(c);
+      element = element == 0 ? unused() : element;
+    } else if (element != 0) {
+      free_.push_back(element);
+      element = 0;
+    }
+  }
+  parallel_for(partial.size(), [&](const std::size_t i) {
+    const grid::Copy& copy = complex.copies[partial[i]];
+    elements_[element_of_[partial[i].value]] = make(octant_moments(grid, cuts, copy.cell, copy.nodes));
+  });
+}
+
+bool ElementTable::is_partial(const grid::Grid& grid, const grid::Cuts& cuts, const grid::Copy& copy) const {
+  return options_.boundary != Boundary::full_cube && copy.nodes != 0xff && cuts.configuration(grid, copy.cell) != 0;
+}
+
+Element ElementTable::make(const Moments& moments) const {
+  if (options_.boundary == Boundary::octants)
+    return make_element(moments, h_, options_.material, options_.element);
+  Moments part = full_cube_moments();
+  for (double& m : part)
+    m *= moments[0];
+  return make_element(part, h_, options_.material, options_.element);
+}
+
+std::uint32_t ElementTable::unused() {
+  if (free_.empty()) {
+    elements_.emplace_back();
+    return static_cast<std::uint32_t>(elements_.size() - 1);
+  }
+  const auto element = free_.back();
+  free_.pop_back();
+  return element;
+}
+
+} // namespace kerf::fem

@@ -1,0 +1,62 @@
+#pragma once
+
+/// The elements of a body: one for all full cubes, one for each copy whose material is less.
+
+#include "fem/element.h"
+#include "grid/complex.h"
+
+#include <span>
+#include <vector>
+
+namespace kerf::fem {
+
+/// How a copy counts that its material does not fill.
+enum class Boundary {
+  octants,         ///< with its own material: exact for every position of the cut
+  volume_fraction, ///< as a full cube, of the density and stiffness that its volume is part of the cube's
+  full_cube        ///< as a full cube, as is common: doubles mass and stiffness along a cut
+};
+
+/// The copies whose element a cut has changed: new ones, those with other corners, and all in cells with a newly cut
+/// edge, whose material has another shape. Ascending.
+std::vector<grid::CopyId> changed_copies(const grid::Grid& grid, const grid::CellComplex& complex,
+                                         const grid::ComplexChange& change, std::span<const grid::EdgeId> new_edges);
+
+struct ElementTableOptions {
+  material::Elastic material;
+  Boundary boundary = Boundary::octants;
+  ElementOptions element;
+};
+
+class ElementTable {
+ public:
+  ElementTable(const grid::Grid& grid, const grid::Cuts& cuts, const grid::CellComplex& complex,
+               const ElementTableOptions& options);
+
+  /// Makes these copies' elements anew; all others must have the material they had.
+  void update(const grid::Grid& grid, const grid::Cuts& cuts, const grid::CellComplex& complex,
+              std::span<const grid::CopyId> changed);
+
+  const Element& operator[](const std::size_t copy) const { return elements_[element_of_[copy]]; }
+  std::size_t n_copies() const { return element_of_.size(); }
+  /// How many copies have an element of their own.
+  std::size_t n_partial() const { return elements_.size() - 1 - free_.size(); }
+
+  /// For the kernels: all elements in a row, and which of them each copy has.
+  const Element* elements() const { return elements_.data(); }
+  const std::uint32_t* element_of() const { return element_of_.data(); }
+
+ private:
+  bool is_partial(const grid::Grid& grid, const grid::Cuts& cuts, const grid::Copy& copy) const;
+  Element make(const Moments& moments) const;
+  /// The index of an element that nothing uses.
+  std::uint32_t unused();
+
+  double h_;
+  ElementTableOptions options_;
+  std::vector<Element> elements_;         // [0] is the full cube
+  std::vector<std::uint32_t> element_of_; // by copy
+  std::vector<std::uint32_t> free_;       // of elements_: used no more
+};
+
+} // namespace kerf::fem

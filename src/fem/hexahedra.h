@@ -1,0 +1,91 @@
+#pragma once
+
+/// Hexahedra on the copies of a cut body, for every constitutive law (thesis §2.1.6).
+///
+/// The energy of a copy is E = V psi(F) + 1/2 u^T K u: the law at the mean deformation gradient F over the copy's
+/// material, and Hooke's stiffness K against the rest of its motion (hourglass.h), in the frame u = R^T x - X that turns
+/// with F: reduced integration with a physical stabilisation (Puso 2000; Reese and Wriggers 2000). The gradient of an
+/// affine motion is its mean, so the patch test holds on every copy. For the corotational law (Mueller and others 2002;
+/// Hauth and Strasser 2004) and for small strain, psi is Hooke's too, and both parts are one matrix: the fully
+/// integrated element.
+///
+/// Forces are the exact -dE/dx: they hold the terms of dR/dx, without which an element would exert a torque on itself.
+/// The linearisation leaves the derivatives of R out and projects the law's tangent, which keeps it positive
+/// semi-definite; stiffness_matrix() has the exact second derivative too.
+///
+/// Every copy's element is its own, and sums over copies are taken in their order: any number of threads, and any way of
+/// getting to a complex, gives the same bits. Functions that are const may be called from several threads at once.
+///
+/// Limits: strain beside the mean one is taken as small, so thin parts one cell across are good for moderate strain.
+
+#include "dynamics/model.h"
+#include "fem/element_table.h"
+#include "fem/incidence.h"
+#include "fem/scratch.h"
+#include "fem/turned.h"
+#include "material/laws.h"
+
+namespace kerf::fem {
+
+struct HexahedraOptions {
+  material::Elastic material; ///< and its law
+  Boundary boundary = Boundary::octants;
+  Strain strain = Strain::trilinear;
+  double sliver_floor = 1e-3; ///< make_element [1]
+  double mass_spread = 0;     ///< spread_mass [1]
+};
+
+class Hexahedra : public dynamics::ElasticModel, public dynamics::StiffnessMatrix {
+ public:
+  Hexahedra(const grid::Grid& grid, const grid::Cuts& cuts, const grid::CellComplex& complex,
+            const HexahedraOptions& options);
+
+  /// Follows a cut. `changed`: what changed_copies() says. All else stays as it is; the outcome is that of building anew, bit by bit. The linearisation is lost.
+  void update(const grid::Grid& grid, const grid::Cuts& cuts, const grid::CellComplex& complex,
+              std::span<const grid::CopyId> changed);
+
+  std::span<const double> lumped_mass() const override { return mass_; }
+  double energy(const Points& x) const override;
+  void force(const Points& x, Points& forces) const override;
+  void linearise(const Points& x) override;
+  void apply_stiffness(std::span<const double> p, std::span<double> y) const override;
+  void stiffness_diagonal(std::vector<Mat3>& blocks) const override;
+  Eigen::SparseMatrix<double> stiffness_matrix(const Points& x, dynamics::Tangent kind) const override;
+
+  /// y = M p with the consistent mass, whose rows sum to the lumped one where nothing is spread [kg].
+  void apply_mass(std::span<const double> p, std::span<double> y) const;
+
+  /// Volume of the material that the elements integrate over [m^3].
+  double volume() const;
+  double h() const { return h_; } ///< edge of the cubes [m]
+  std::size_t n_elements() const { return elements_.n_copies(); }
+  /// How many copies have an element of their own.
+  std::size_t n_partial() const { return elements_.n_partial(); }
+
+  const material::AnyLaw& law() const { return law_; }
+  const Element& element(const std::size_t copy) const { return elements_[copy]; }
+  const Incidence& incidence() const { return incidence_; }
+  /// Mean deformation gradient of a copy [1].
+  Mat3 deformation_gradient(std::size_t copy, const Points& x) const;
+
+ private:
+  bool is_hookean() const { return frame_ == Frame::fixed || std::holds_alternative<material::Corotational>(law_); }
+  void sum_mass(std::span<const std::uint32_t> corners);
+  std::array<Vec3, 8> corners_of(std::size_t copy, const Points& x) const;
+  Turned turned_element(std::size_t copy, const Points& x) const;
+  Matrix24 element_matrix(std::size_t copy, const Points& x, dynamics::Tangent kind) const;
+  /// y = sum over copies of their 24 values.
+  void gather(const double* values, double* y) const;
+
+  double h_;
+  material::AnyLaw law_;
+  Frame frame_;
+  ElementTable elements_;
+  Incidence incidence_;
+  std::vector<double> mass_;
+  std::vector<double> rotations_; // 9 a copy, at the linearisation point
+  std::vector<double> tangents_;  // 81 a copy, times its volume; none where the law is Hooke's
+  mutable Scratch scratch_;
+};
+
+} // namespace kerf::fem

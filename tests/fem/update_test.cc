@@ -1,0 +1,125 @@
+/// A model that follows cuts is the model that is built anew, bit by bit.
+
+#include "base/parallel.h"
+#include "dynamics/state.h"
+#include "tests/fem/models.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <thread>
+
+namespace kerf::fem {
+namespace {
+
+const material::Elastic rubber{.density = 1000, .youngs_modulus = 2e3, .poissons_ratio = 0.4};
+
+/// Everything a model says at a state.
+std::vector<double> answers(Hexahedra& model, const Points& x) {
+  std::vector<double> all = {model.energy(x), model.volume(), static_cast<double>(model.n_partial())};
+  const auto add = [&](const std::span<const double> values) { all.insert(all.end(), values.begin(), values.end()); };
+  Points f, y(x.size());
+  std::vector<Mat3> blocks;
+  model.force(x, f);
+  model.linearise(x);
+  model.apply_stiffness(dynamics::flat(x), dynamics::flat(y));
+  model.stiffness_diagonal(blocks);
+  add(model.lumped_mass());
+  add(dynamics::flat(f));
+  add(dynamics::flat(y));
+  for (const Mat3& block : blocks)
+    add({block.data(), 9});
+  model.apply_mass(dynamics::flat(x), dynamics::flat(y));
+  add(dynamics::flat(y));
+  return all;
+}
+
+Points disturbed(const Body& body, Draw& draw) {
+  Points x = body.rest();
+  for (Vec3& p : x)
+    p += 0.02 * draw.vector();
+  return x;
+}
+
+/// Cuts some inner edges, and brings the complex up to date. Returns the copies whose element is another now.
+std::vector<grid::CopyId> cut_some(Body& body, const double probability, Draw& draw) {
+  std::vector<grid::EdgeId> edges;
+  for (const auto e : inner_edges(body))
+    if (draw(0, 1) < probability) {
+      body.cuts.add({e, draw(0.1, 0.9), draw.vector().normalized(), 1});
+      edges.push_back(e);
+    }
+  surface::place(body.grid, body.cuts, edges, {});
+  const auto change = grid::update_complex(body.grid, body.cuts, edges, body.complex);
+  return changed_copies(body.grid, body.complex, change, edges);
+}
+
+TEST(Update, IsBuildingAnewBitByBit) {
+  for (const Boundary boundary : {Boundary::octants, Boundary::volume_fraction, Boundary::full_cube})
+    for (const std::string& law : {all_laws[1], all_laws[3]}) {
+      Draw draw(90);
+      Body body = make_block({3, 3, 3}, 0.2, draw, {0.3, 0.7});
+      const HexahedraOptions options{
+        .material = with_law(rubber, law), .boundary = boundary, .strain = Strain::enhanced, .mass_spread = 0.1};
+      Hexahedra model = make_model(body, options);
+      for (int step = 0; step < 6; ++step) {
+        const auto changed = cut_some(body, 0.08, draw);
+        model.update(body.grid, body.cuts, body.complex, changed);
+        const Points x = disturbed(body, draw);
+        Hexahedra anew = make_model(body, options);
+        ASSERT_EQ(answers(model, x), answers(anew, x)) << law << ", step " << step;
+      }
+      EXPECT_GT(body.complex.n_copies(), 64u);
+    }
+}
+
+/// What was full and is partial now gets an element of its own, and the table does not grow when one is remade.
+/// A small cut in a large body changes the elements of its cells alone.
+TEST(Update, ChangesFewElements) {
+  Draw draw(93);
+  Body body = make_block({8, 8, 8}, 0.1, draw, {0.5, 0.5});
+  const auto edge = inner_edges(body)[100];
+  body.cuts.add({edge, 0.5, Vec3::UnitX(), 1});
+  const auto change = grid::update_complex(body.grid, body.cuts, {&edge, 1}, body.complex);
+  EXPECT_EQ(changed_copies(body.grid, body.complex, change, {&edge, 1}).size(), 4u);
+}
+
+TEST(Update, CountsElementsOfTheirOwn) {
+  Draw draw(91);
+  Body body = make_block({4, 4, 4}, 0.2, draw, {0.5, 0.5});
+  Hexahedra model = make_model(body, {.material = rubber});
+  const std::size_t before = model.n_partial();
+  std::vector<grid::CopyId> all;
+  for (const auto c : ids<grid::CopyId>(body.complex.n_copies()))
+    all.push_back(c);
+  model.update(body.grid, body.cuts, body.complex, all);
+  EXPECT_EQ(model.n_partial(), before);
+  EXPECT_EQ(before, 125u - 27u);
+}
+
+/// Functions that leave a model as it is may be called at the same time.
+TEST(Update, ConstantFunctionsMayRunAtOnce) {
+  Draw draw(92);
+  Body body = make_block({4, 4, 4}, 0.2, draw, {0.3, 0.7});
+  const Hexahedra model = make_model(body, {.material = with_law(rubber, "neo-Hookean")});
+  const Points x = disturbed(body, draw);
+  Points expected;
+  model.force(x, expected);
+  std::vector<int> n_wrong(4, 0);
+  std::vector<std::thread> threads;
+  for (int& wrong : n_wrong)
+    threads.emplace_back([&] {
+      Points f, y(x.size());
+      for (int i = 0; i < 50; ++i) {
+        model.apply_stiffness(dynamics::flat(x), dynamics::flat(y));
+        model.force(x, f);
+        wrong += f != expected;
+      }
+    });
+  for (std::thread& thread : threads)
+    thread.join();
+  EXPECT_EQ(n_wrong, std::vector<int>(4, 0));
+}
+
+} // namespace
+} // namespace kerf::fem
