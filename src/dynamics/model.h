@@ -4,6 +4,8 @@
 
 #include "base/vec.h"
 
+#include <Eigen/SparseCore>
+
 #include <span>
 #include <vector>
 
@@ -31,6 +33,21 @@ class ElasticModel : public ForceModel {
   virtual void apply_stiffness(std::span<const double> p, std::span<double> y) const = 0;
   /// The diagonal 3 x 3 blocks of K [N/m], one a corner.
   virtual void stiffness_diagonal(std::vector<Mat3>& blocks) const = 0;
+};
+
+/// Which derivative of the forces.
+enum class Tangent {
+  positive, ///< symmetric and positive semi-definite: conjugate gradients and descent are safe
+  exact     ///< the derivative itself: Newton's method converges quadratically
+};
+
+/// What a direct solver asks; a model may offer it beside ElasticModel.
+class StiffnessMatrix {
+ public:
+  virtual ~StiffnessMatrix() = default;
+
+  /// K [N/m] at x [m], 3 n x 3 n, both triangles.
+  virtual Eigen::SparseMatrix<double> stiffness_matrix(const Points& x, Tangent kind) const = 0;
 };
 
 } // namespace kerf::dynamics

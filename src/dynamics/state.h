@@ -4,7 +4,9 @@
 
 #include "base/vec.h"
 
+#include <map>
 #include <span>
+#include <string>
 
 namespace kerf::dynamics {
 
@@ -12,10 +14,25 @@ struct State {
   Points x;        ///< current corner positions [m]
   Points v;        ///< corner velocities [m/s]
   double time = 0; ///< [s]
+
+  /// What an integrator remembers beside it, by name, one value a corner: new corners inherit it like x and v. Those
+  /// that follow from forces do not survive a cut: forget_forces().
+  std::map<std::string, Points> history = {};
+  /// What it remembers of the whole body: "time step [s]", "dissipated energy [J]".
+  std::map<std::string, double> numbers = {};
 };
 
 /// The 3 n numbers of n points.
 inline std::span<double> flat(Points& p) { return {p.empty() ? nullptr : p[0].data(), 3 * p.size()}; }
 inline std::span<const double> flat(const Points& p) { return {p.empty() ? nullptr : p[0].data(), 3 * p.size()}; }
+
+/// A remembered value a corner; null when there is none, or not for these corners.
+inline const Points* remembered(const State& state, const std::string& name) {
+  const auto it = state.history.find(name);
+  return it == state.history.end() || it->second.size() != state.x.size() ? nullptr : &it->second;
+}
+
+/// To be called when forces have changed at once, by a cut for one: what was remembered of them is no longer true.
+inline void forget_forces(State& state) { state.history.erase("acceleration"); }
 
 } // namespace kerf::dynamics

@@ -5,8 +5,13 @@
 
 namespace kerf::dynamics {
 
+/// What a step took; 0 where a stepper has no such thing.
 struct StepReport {
   int n_iterations = 0; ///< of the linear solver, summed over the step
+  int n_newton = 0;     ///< iterations of Newton's method, summed over the step
+  int n_substeps = 0;   ///< time steps or load steps inside this one, if it was divided
+  int n_rejected = 0;   ///< of them tried and thrown away
+  double residual = 0;  ///< forces out of balance at the end over the forces that balance, if it was measured [1]
 };
 
 /// All that the main loop knows of a physics.
@@ -14,7 +19,7 @@ class Stepper {
  public:
   virtual ~Stepper() = default;
 
-  /// Advances the state by dt [s]. Throws NumericalError when it cannot.
+  /// Advances the state by dt [s]. Throws NumericalError when it cannot, and then leaves the state as it was.
   virtual StepReport step(State& state, const Loads& loads, double dt) = 0;
 };
 

@@ -1,36 +1,42 @@
 #include "dynamics/symplectic_euler.h"
 
-#include "base/error.h"
-
-#include <cmath>
+#include "dynamics/constraints.h"
+#include "dynamics/explicit_steppers.h"
+#include "dynamics/forces.h"
 
 namespace kerf::dynamics {
 
+namespace {
+
+Eigen::Matrix2d of_symplectic_euler(const Mode& mode, const double dt) {
+  const Eigen::RowVector2d x(1, 0), v(0, 1),
+    v_1 = (v - dt * (mode.square * x + mode.other_damping * v)) / (1 + dt * mode.mass_damping), x_1 = x + dt * v_1;
+  Eigen::Matrix2d A;
+  A << x_1, v_1;
+  return A;
+}
+
+} // namespace
+
+ExplicitScheme SymplecticEuler::scheme() { return {"symplectic Euler", of_symplectic_euler, 1e-10}; }
+
 StepReport SymplecticEuler::step(State& state, const Loads& loads, const double dt) {
+  limit_.require(state, loads, dt);
+  const Constraints constraints(loads, state.x.size());
   const auto mass = model_.lumped_mass();
-  model_.force(state.x, force_);
-  if (loads.stiffness_damping > 0) {
-    model_.linearise(state.x);
-    damping_.resize(state.x.size());
-    model_.apply_stiffness(flat(state.v), flat(damping_));
-    for (std::size_t i = 0; i < force_.size(); ++i)
-      force_[i] -= loads.stiffness_damping * damping_[i];
+  total_force(model_, loads, {state.time, state.x, state.v}, MassDamping::left_out, force_);
+  Points x = state.x, v = state.v;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    v[i] = (v[i] + dt / mass[i] * force_[i]) / (1 + dt * loads.mass_damping);
+    x[i] += dt * v[i];
   }
-  const auto held = held_corners(loads, state.x.size());
-  double total = 0; // sum, not maximum: it keeps NaN
-  for (std::size_t i = 0; i < state.x.size(); ++i)
-    if (!held[i]) {
-      state.v[i] += dt * (force_[i] / mass[i] + loads.gravity);
-      state.v[i] /= 1 + dt * loads.mass_damping;
-      state.x[i] += dt * state.v[i];
-      total += state.v[i].squaredNorm();
-    }
+  constraints.place(state.time + dt, x);
+  for (const auto& held : constraints.held())
+    v[held.corner] = (x[held.corner] - state.x[held.corner]) / dt;
+  require_finite(v, "symplectic Euler");
+  state.x.swap(x);
+  state.v.swap(v);
   state.time += dt;
-  move_held(loads, state.time, dt, state.x, state.v);
-  if (!std::isfinite(total))
-    throw NumericalError(
-      "velocities are no longer finite: symplectic Euler is unstable beyond a time step of 2 / (largest "
-      "frequency). Use a smaller time step, or implicit Euler");
   return {};
 }
 

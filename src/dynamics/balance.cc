@@ -1,0 +1,328 @@
+#include "dynamics/balance.h"
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "dynamics/conjugate_gradients.h"
+#include "dynamics/direct.h"
+#include "dynamics/forces.h"
+#include "dynamics/state.h"
+
+#include <Eigen/Cholesky>
+
+#include <cmath>
+#include <limits>
+
+namespace kerf::dynamics {
+
+namespace {
+
+constexpr std::size_t worth = 4096; // corners from which on a second thread pays
+
+Eigen::Map<const Vec3> at(const std::span<const double> values, const std::size_t i) {
+  return Eigen::Map<const Vec3>(values.data() + 3 * i);
+}
+Eigen::Map<Vec3> at(const std::span<double> values, const std::size_t i) {
+  return Eigen::Map<Vec3>(values.data() + 3 * i);
+}
+
+/// L^-1 of a diagonal block among its free directions, in whose basis it maps; zero rows for those held.
+Mat3 inverse_factor(const Mat3& block, const Constraints::Freedom& freedom) {
+  const int n = freedom.n_free;
+  Mat3 inverse = Mat3::Zero();
+  if (n == 0)
+    return inverse;
+  const Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 3> Q = freedom.basis.leftCols(n);
+  const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 3> reduced = Q.transpose() * block * Q;
+  const Eigen::LLT<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 3>> factor(reduced);
+  if (factor.info() == Eigen::Success)
+    inverse.topRows(n) = factor.matrixL().solve(Eigen::Matrix<double, Eigen::Dynamic, 3, 0, 3, 3>(Q.transpose()));
+  else if (reduced.trace() > 0) // a block that is no more than semi-definite: at least its size
+    inverse.topRows(n) = std::sqrt(n / reduced.trace()) * Q.transpose();
+  return inverse;
+}
+
+double norm(const Points& values) { return std::sqrt(dot(flat(values), flat(values))); }
+
+double product(const Points& a, const Points& b) { return dot(flat(a), flat(b)); }
+
+} // namespace
+
+/// What stays the same during a solution.
+struct BalanceSolver::Problem {
+  const Loads& loads;
+  const Constraints& constraints;
+  const Balance& balance;
+  std::span<const double> mass;
+  double mass_factor, stiffness_factor; ///< of M and K in A
+
+  Vec3 offset(const std::size_t i) const { return balance.offset.empty() ? Vec3(Vec3::Zero()) : balance.offset[i]; }
+};
+
+BalanceSolver::BalanceSolver(ElasticModel& model, const NewtonOptions& options)
+  : model_(model), matrix_(dynamic_cast<const StiffnessMatrix*>(&model)), options_(options) {
+  if (options_.solver == LinearSolver::direct && !matrix_)
+    throw ParameterError(Complaint{.rule = "a direct solver needs an assembled stiffness, which this model has not",
+                                   .remedy = "Use conjugate gradients"});
+}
+
+NewtonReport BalanceSolver::solve(const Loads& loads, const Constraints& constraints, const Balance& balance,
+                                  Points& x) {
+  const double omega = balance.velocity_factor;
+  const Problem problem{loads,
+                        constraints,
+                        balance,
+                        model_.lumped_mass(),
+                        balance.mass_factor + loads.mass_damping * omega,
+                        1 + loads.stiffness_damping * omega};
+  x = balance.start;
+  NewtonReport report;
+  double first = 0;
+  for (;;) {
+    move_to(problem, x);
+    factorise(problem);
+    const double scale = assemble_residual(problem);
+    if (options_.tolerance > 0) {
+      const double left = norm(residual_);
+      first = std::max(first, left);
+      const double most = std::max(first, balanced_forces(problem));
+      report.residual = most > 0 ? left / most : 0;
+      report.converged = left <= std::max(options_.tolerance * most, round_off_of_forces(x));
+      if (report.converged)
+        return report;
+    }
+    if (report.n_newton == options_.max_iterations)
+      break;
+    report.n_linear += correct(problem, report.n_newton == 0 ? balance.guess : Points(), scale);
+    ++report.n_newton;
+    const double length = options_.line_search == LineSearch::none ? 1 : search(problem, x);
+    if (length == 0) {
+      report.failure = "no step along the correction lowers the energy";
+      break;
+    }
+    for (std::size_t i = 0; i < x.size(); ++i)
+      x[i] += length * correction_[i];
+    if (options_.tolerance == 0 && report.n_newton == options_.max_iterations)
+      return report;
+  }
+  report.converged = options_.tolerance == 0;
+  return report;
+}
+
+void BalanceSolver::move_to(const Problem& problem, const Points& x) {
+  const Balance& b = problem.balance;
+  position_ = x;
+  model_.linearise(x);
+  model_.force(x, force_);
+  velocity_.resize(x.size());
+  acceleration_.resize(x.size());
+  parallel_for(
+    x.size(),
+    [&](const std::size_t i) {
+      const Vec3 moved = x[i] - b.start[i];
+      velocity_[i] = b.velocity[i] + b.velocity_factor * moved;
+      acceleration_[i] = b.acceleration[i] + b.mass_factor * moved;
+    },
+    worth);
+  damping_.assign(x.size(), Vec3::Zero());
+  if (problem.loads.stiffness_damping > 0 && b.velocity_factor > 0)
+    model_.apply_stiffness(flat(velocity_), flat(damping_));
+  tangent_ = load_tangent(problem.loads, Tangent::positive, {b.time, x, velocity_}, b.velocity_factor);
+  load_force_.assign(x.size(), Vec3::Zero());
+  add_load_forces(problem.loads, {b.time, x, velocity_}, load_force_);
+}
+
+void BalanceSolver::factorise(const Problem& problem) {
+  model_.stiffness_diagonal(stiffness_blocks_);
+  blocks_.resize(stiffness_blocks_.size());
+  for (std::size_t i = 0; i < blocks_.size(); ++i)
+    blocks_[i] =
+      problem.stiffness_factor * stiffness_blocks_[i] + problem.mass_factor * problem.mass[i] * Mat3::Identity();
+  tangent_.add_diagonal(blocks_);
+  scaling_.resize(blocks_.size());
+  parallel_for(
+    blocks_.size(),
+    [&](const std::size_t i) { scaling_[i] = inverse_factor(blocks_[i], problem.constraints.freedom(i)); }, worth);
+}
+
+double BalanceSolver::assemble_residual(const Problem& problem) {
+  const auto& [loads, constraints, balance, mass, mass_factor, stiffness_factor] = problem;
+  const std::size_t n = force_.size();
+  residual_.resize(n);
+  const double square_of_scale = sum_of(n, [&](const std::size_t begin, const std::size_t end) {
+    double sum = 0;
+    for (std::size_t i = begin; i < end; ++i) {
+      const Vec3 weight = mass[i] * loads.gravity,
+                 resistance = mass[i] * (acceleration_[i] + loads.mass_damping * velocity_[i]) +
+                              loads.stiffness_damping * damping_[i];
+      residual_[i] = force_[i] + weight + load_force_[i] + problem.offset(i) - resistance;
+      if (!constraints.is_free(i))
+        residual_[i] = constraints.freedom(i).project * residual_[i];
+      const Mat3& S = scaling_[i];
+      sum += (S * force_[i]).squaredNorm() + (S * weight).squaredNorm() + (S * load_force_[i]).squaredNorm() +
+             (S * (mass[i] * balance.acceleration[i])).squaredNorm();
+    }
+    return sum;
+  });
+  if (!std::isfinite(square_of_scale) || !std::isfinite(norm(residual_)))
+    throw NumericalError("forces are not finite");
+  return std::sqrt(square_of_scale);
+}
+
+double BalanceSolver::balanced_forces(const Problem& problem) const {
+  return std::sqrt(sum_of(force_.size(), [&](const std::size_t begin, const std::size_t end) {
+    double sum = 0;
+    for (std::size_t i = begin; i < end; ++i)
+      sum += force_[i].squaredNorm() + load_force_[i].squaredNorm() +
+             (problem.mass[i] * problem.loads.gravity).squaredNorm() +
+             (problem.mass[i] * problem.balance.acceleration[i]).squaredNorm();
+    return sum;
+  }));
+}
+
+double BalanceSolver::round_off_of_forces(const Points& x) const {
+  constexpr double round_off = 8 * std::numeric_limits<double>::epsilon();
+  return round_off * std::sqrt(sum_of(x.size(), [&](const std::size_t begin, const std::size_t end) {
+           double sum = 0;
+           for (std::size_t i = begin; i < end; ++i)
+             sum += (blocks_[i].trace() * x[i]).squaredNorm(); // x itself is rounded, and A is what it meets
+           return sum;
+         }));
+}
+
+void BalanceSolver::apply(const Problem& problem, const std::span<const double> p, const std::span<double> y) {
+  scratch_.resize(p.size());
+  const std::span<double> q = scratch_;
+  parallel_for(
+    force_.size(), [&](const std::size_t i) { at(q, i) = scaling_[i].transpose() * at(p, i); }, worth);
+  model_.apply_stiffness(q, y);
+  if (!tangent_.empty()) {
+    load_product_.assign(p.size(), 0);
+    tangent_.add_product(q, load_product_);
+  }
+  parallel_for(
+    force_.size(),
+    [&](const std::size_t i) {
+      Vec3 Aq = problem.mass_factor * problem.mass[i] * at(std::span<const double>(q), i) +
+                problem.stiffness_factor * at(std::span<const double>(y), i);
+      if (!tangent_.empty())
+        Aq += at(std::span<const double>(load_product_), i);
+      at(y, i) = scaling_[i] * Aq;
+    },
+    worth);
+}
+
+int BalanceSolver::correct(const Problem& problem, const Points& guess, const double scale) {
+  int n_iterations = 0;
+  if (options_.solver == LinearSolver::conjugate_gradients) {
+    n_iterations = correct_by_cg(problem, guess, scale);
+  } else {
+    correct_directly(problem, options_.tangent);
+    if (options_.tangent == Tangent::exact && !(product(residual_, correction_) > 0))
+      correct_directly(problem, Tangent::positive); // at a saddle the exact one leads uphill
+  }
+  if (options_.line_search != LineSearch::none && !(product(residual_, correction_) > 0))
+    for (std::size_t i = 0; i < correction_.size(); ++i) // the scaled force itself always leads downhill
+      correction_[i] = scaling_[i].transpose() * (scaling_[i] * residual_[i]);
+  return n_iterations;
+}
+
+int BalanceSolver::correct_by_cg(const Problem& problem, const Points& guess, const double scale) {
+  const std::size_t n = force_.size();
+  Points rhs(n), d(n, Vec3::Zero());
+  for (std::size_t i = 0; i < n; ++i) {
+    rhs[i] = scaling_[i] * residual_[i];
+    if (!guess.empty())
+      d[i] = scaling_[i] * (blocks_[i] * (problem.constraints.freedom(i).project * guess[i]));
+  }
+  constexpr double nothing = 1e-100; // squares of less underflow
+  const auto report =
+    conjugate_gradients([&](const auto p, const auto y) { apply(problem, p, y); }, flat(rhs),
+                        std::max(nothing, options_.cg_tolerance * scale), options_.max_cg_iterations, flat(d));
+  if (!report.converged && !report.indefinite)
+    throw NumericalError("conjugate gradients left a relative residual of " + std::to_string(report.residual / scale) +
+                         " after " + std::to_string(report.n_iterations) +
+                         " iterations. Use a smaller time step, a larger sliver floor or more iterations");
+  correction_.resize(n);
+  for (std::size_t i = 0; i < n; ++i)
+    correction_[i] = scaling_[i].transpose() * d[i];
+  return report.n_iterations;
+}
+
+void BalanceSolver::correct_directly(const Problem& problem, const Tangent kind) {
+  const Balance& b = problem.balance;
+  const Points& x = position_;
+  std::vector<Eigen::Triplet<double>> entries;
+  for (std::size_t i = 0; i < x.size(); ++i)
+    for (int k = 0; k < 3; ++k)
+      entries.emplace_back(3 * i + k, 3 * i + k, problem.mass_factor * problem.mass[i]);
+  load_tangent(problem.loads, kind, {b.time, x, velocity_}, b.velocity_factor).add_entries(entries);
+  Eigen::SparseMatrix<double> A(3 * x.size(), 3 * x.size());
+  A.setFromTriplets(entries.begin(), entries.end());
+  A += problem.stiffness_factor * matrix_->stiffness_matrix(x, kind);
+  solve_directly(A, problem.constraints, residual_, correction_);
+}
+
+double BalanceSolver::search(const Problem& problem, const Points& x) {
+  const double slope = -product(residual_, correction_);
+  if (slope == 0)
+    return 1;
+  Points damped(x.size(), Vec3::Zero()), trial(x.size());
+  if (problem.loads.stiffness_damping > 0 && problem.balance.velocity_factor > 0)
+    model_.apply_stiffness(flat(correction_), flat(damped));
+  constexpr int most_halvings = 40;
+  constexpr double part = 1e-4, drowned = 1e-9; // of the slope; of the energies whose difference counts
+  double length = 1;
+  for (int i = 0; i < most_halvings; ++i, length *= 0.5) {
+    for (std::size_t k = 0; k < x.size(); ++k)
+      trial[k] = x[k] + length * correction_[k];
+    const Change c = change(problem, x, trial, length, damped);
+    if (c.potential <= part * length * slope) // false for NaN
+      return length;
+    if (std::abs(c.potential) <= drowned * c.size && c.slope <= (2 * part - 1) * slope)
+      return length;
+  }
+  return 0;
+}
+
+BalanceSolver::Change BalanceSolver::change(const Problem& problem, const Points& x, const Points& trial,
+                                            const double length, const Points& damped) const {
+  const Loads& loads = problem.loads;
+  const Balance& b = problem.balance;
+  Points force;
+  model_.force(trial, force);
+  double linear = 0, quadratic = 0; // in the length, of all that is no energy of its own
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const Vec3& d = correction_[i];
+    linear += d.dot(problem.mass[i] * (acceleration_[i] + loads.mass_damping * velocity_[i] - loads.gravity) +
+                    loads.stiffness_damping * damping_[i] - problem.offset(i));
+    quadratic += 0.5 * problem.mass_factor * problem.mass[i] * d.squaredNorm() +
+                 0.5 * loads.stiffness_damping * b.velocity_factor * d.dot(damped[i]);
+  }
+  const auto [at_x, at_trial] = without_potential(problem, x, trial, length);
+  for (const auto& load : loads.acting)
+    if (load->nature() == Nature::conservative)
+      load->add_force({b.time, trial, velocity_}, force);
+  const double before = model_.energy(x) + load_energy(loads, b.time, x),
+               after = model_.energy(trial) + load_energy(loads, b.time, trial);
+  return {after - before + length * (linear - 0.5 * (at_x + at_trial)) + length * length * quadratic,
+          std::abs(before) + std::abs(after), linear + 2 * length * quadratic - at_trial - product(force, correction_)};
+}
+
+std::array<double, 2> BalanceSolver::without_potential(const Problem& problem, const Points& x, const Points& trial,
+                                                       const double length) const {
+  const Balance& b = problem.balance;
+  Points v = velocity_;
+  const auto times_correction = [&](const Points& where) {
+    Points forces(x.size(), Vec3::Zero());
+    for (const auto& load : problem.loads.acting)
+      if (load->nature() != Nature::conservative)
+        load->add_force({b.time, where, v}, forces);
+    return product(forces, correction_);
+  };
+  const double at_x = times_correction(x);
+  for (std::size_t i = 0; i < v.size(); ++i)
+    v[i] += b.velocity_factor * length * correction_[i];
+  return {at_x, times_correction(trial)};
+}
+
+} // namespace kerf::dynamics

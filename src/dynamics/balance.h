@@ -1,0 +1,114 @@
+#pragma once
+
+/// One nonlinear equation behind all implicit integrators and behind statics: the balance of forces
+///
+///     M (a + alpha v) + beta K v = f(x) + M g + sum of loads(time, x, v) + offset,
+///     a = a_0 + kappa (x - x_0),   v = v_0 + omega (x - x_0),
+///
+/// for x, with supports eliminated: an integrator is a choice of kappa, omega, x_0, v_0, a_0 (Hughes, The Finite Element
+/// Method, 2000, ch. 9), statics is kappa = omega = 0. K is the model's stiffness at the iterate.
+///
+/// Newton's method from x_0. A correction solves A d = r with A = (kappa + alpha omega) M + (1 + beta omega) K + loads,
+/// by conjugate gradients or by a factorisation. Both see L^-1 A L^-T with the Cholesky factors L of A's diagonal 3 x 3
+/// blocks, restricted to the directions that supports leave free: each corner is solved in its own measure, one of hardly
+/// any mass like every other.
+///
+/// The line search halves a correction until the incremental potential falls by 1e-4 of what its slope promises
+/// (Armijo), or, where the fall drowns in round-off, until the slope has (Hager and Zhang 2005, A new conjugate gradient
+/// method with guaranteed descent, SIAM J. Optim. 16, sec. 3): elastic energy, gravity, conservative loads, (kappa + alpha omega) M |x - x_0|^2 / 2 and so on, and for loads
+/// without a potential their work along the correction, by the trapezoidal rule.
+
+#include "dynamics/constraints.h"
+
+#include <Eigen/SparseCore>
+
+#include <array>
+#include <string>
+
+namespace kerf::dynamics {
+
+enum class LineSearch { none, backtracking };
+enum class LinearSolver { conjugate_gradients, direct };
+
+struct NewtonOptions {
+  int max_iterations = 1;
+  /// Forces out of balance over the forces that balance, in the scaled Euclidean norm, at which iteration ends [1].
+  /// 0: no test, all iterations are done.
+  double tolerance = 0;
+  LineSearch line_search = LineSearch::none;
+  LinearSolver solver = LinearSolver::conjugate_gradients;
+  Tangent tangent = Tangent::positive; ///< what `direct` factorises; conjugate gradients take the positive one
+  /// Residual of the linear equation over the forces that balance (elastic, weight, inertia, loads). Not over the
+  /// right-hand side, which vanishes at rest and would be solved ever more exactly there.
+  double cg_tolerance = 1e-6;
+  int max_cg_iterations = 2000;
+};
+
+/// What is to be solved. `start` obeys the supports already; velocity and acceleration are those at `start`.
+struct Balance {
+  double time = 0;            ///< at which loads act [s]
+  double mass_factor = 0;     ///< kappa [1/s^2]
+  double velocity_factor = 0; ///< omega [1/s]
+  Points start, velocity, acceleration;
+  Points guess = {};  ///< first guess of x - start [m]; empty: zero
+  Points offset = {}; ///< a force on each corner [N]; empty: none
+};
+
+struct NewtonReport {
+  int n_newton = 0, n_linear = 0;
+  double residual = 0;      ///< at the last iterate that was tested, see NewtonOptions::tolerance [1]
+  bool converged = true;    ///< always without a tolerance
+  std::string failure = {}; ///< why not
+};
+
+class BalanceSolver {
+ public:
+  /// The model must outlive it. Throws ParameterError when a direct solver is asked for and the model is no
+  /// StiffnessMatrix.
+  BalanceSolver(ElasticModel& model, const NewtonOptions& options);
+
+  /// Solves for x; on failure to converge says so in the report and leaves the last iterate. Throws NumericalError for
+  /// forces that are not finite, and for linear equations that cannot be solved to tolerance.
+  NewtonReport solve(const Loads& loads, const Constraints& constraints, const Balance& balance, Points& x);
+
+ private:
+  struct Problem;
+  /// What a trial does to the incremental potential along the correction.
+  struct Change {
+    double potential, size; ///< and what it is the difference of [J]
+    double slope;           ///< at the trial, by the length [J]
+  };
+
+  void move_to(const Problem& problem, const Points& x);
+  void factorise(const Problem& problem);
+  /// Returns the scale of what balances, in the scaled norm.
+  double assemble_residual(const Problem& problem);
+  double balanced_forces(const Problem& problem) const;
+  double round_off_of_forces(const Points& x) const;
+  /// y = S A S^T p with the scaling S.
+  void apply(const Problem& problem, std::span<const double> p, std::span<double> y);
+  /// Returns the iterations of the linear solver.
+  int correct(const Problem& problem, const Points& guess, double scale);
+  int correct_by_cg(const Problem& problem, const Points& guess, double scale);
+  void correct_directly(const Problem& problem, Tangent kind);
+  /// How much of the correction to take; 0 when nothing of it helps.
+  double search(const Problem& problem, const Points& x);
+  Change change(const Problem& problem, const Points& x, const Points& trial, double length,
+                const Points& damped) const;
+  /// Forces of loads without a potential times the correction at x, and at the trial.
+  std::array<double, 2> without_potential(const Problem& problem, const Points& x, const Points& trial,
+                                          double length) const;
+
+  ElasticModel& model_;
+  const StiffnessMatrix* matrix_; // null: the model offers none
+  NewtonOptions options_;
+  Points position_, velocity_, acceleration_; // where move_to() was last
+  Points force_, load_force_, damping_;       // there
+  Points residual_, correction_;
+  LoadTangent tangent_;
+  std::vector<Mat3> stiffness_blocks_, blocks_; // diagonals of K and of A
+  std::vector<Mat3> scaling_; // L^-1 from the free directions' basis, a row of zeros for each that is held
+  std::vector<double> scratch_, load_product_;
+};
+
+} // namespace kerf::dynamics

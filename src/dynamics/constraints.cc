@@ -1,0 +1,132 @@
+#include "dynamics/constraints.h"
+
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
+
+namespace kerf::dynamics {
+
+namespace {
+
+constexpr double round_off = 1e-9; // of projectors and their sums [1]
+
+bool holds_all(const Mat3& held) { return (held - Mat3::Identity()).cwiseAbs().maxCoeff() < round_off; }
+
+Constraints::Freedom freedom_beside(const Mat3& sum) {
+  const Eigen::SelfAdjointEigenSolver<Mat3> eigen(sum); // ascending: free directions first
+  Constraints::Freedom freedom{sum, Mat3::Zero(), eigen.eigenvectors(), Mat3::Zero(), 0};
+  for (int k = 0; k < 3; ++k) {
+    const Vec3 direction = freedom.basis.col(k);
+    const double value = eigen.eigenvalues()[k];
+    if (value < round_off) {
+      ++freedom.n_free;
+      freedom.project += direction * direction.transpose();
+    } else {
+      freedom.inverse += direction * direction.transpose() / value;
+    }
+  }
+  return freedom;
+}
+
+/// Of several supports that hold a corner in all directions, the last one alone counts.
+std::span<const Constraints::Hold> those_that_count(const Loads& loads,
+                                                    const std::span<const Constraints::Hold> holds) {
+  for (std::size_t i = holds.size(); i-- > 0;)
+    if (holds_all(loads.supports[holds[i].support].held))
+      return holds.subspan(i, 1);
+  return holds;
+}
+
+} // namespace
+
+Constraints::Constraints(const Loads& loads, const std::size_t n_corners)
+  : loads_(loads), freedoms_(1), kind_(n_corners, 0) {
+  std::vector<std::pair<std::uint32_t, Hold>> all; // of which corner
+  for (std::uint32_t s = 0; s < loads.supports.size(); ++s)
+    for (std::uint32_t i = 0; i < loads.supports[s].corners.size(); ++i)
+      all.push_back({loads.supports[s].corners[i], {s, i}});
+  std::stable_sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<Hold> of_corner;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    of_corner.push_back(all[i].second);
+    if (i + 1 == all.size() || all[i + 1].first != all[i].first) {
+      add(all[i].first, those_that_count(loads, of_corner));
+      of_corner.clear();
+    }
+  }
+}
+
+void Constraints::add(const std::uint32_t corner, const std::span<const Hold> holds) {
+  Mat3 sum = Mat3::Zero();
+  for (const Hold& hold : holds)
+    sum += loads_.supports[hold.support].held;
+  kind_[corner] = kind_of(sum);
+  const auto begin = static_cast<std::uint32_t>(holds_.size());
+  holds_.insert(holds_.end(), holds.begin(), holds.end());
+  held_.push_back({corner, begin, static_cast<std::uint32_t>(holds_.size())});
+}
+
+std::uint32_t Constraints::kind_of(const Mat3& sum) {
+  for (std::uint32_t k = 0; k < freedoms_.size(); ++k)
+    if ((freedoms_[k].sum - sum).cwiseAbs().maxCoeff() < round_off)
+      return k;
+  freedoms_.push_back(freedom_beside(sum));
+  return static_cast<std::uint32_t>(freedoms_.size() - 1);
+}
+
+std::size_t Constraints::n_free() const {
+  std::size_t n = 3 * kind_.size();
+  for (const Held& held : held_)
+    n -= static_cast<std::size_t>(3 - freedom(held.corner).n_free);
+  return n;
+}
+
+void Constraints::impose(const std::vector<Points>& wanted, Points& values) const {
+  for (const Held& held : held_) {
+    Vec3& value = values[held.corner];
+    const Freedom& freedom = this->freedom(held.corner);
+    const auto holds = this->holds(held);
+    if (holds.size() == 1 && freedom.n_free == 0) { // to the last bit
+      value = wanted[holds[0].support][holds[0].index];
+      continue;
+    }
+    Vec3 missing = -freedom.sum * value;
+    for (const Hold& hold : holds)
+      missing += loads_.supports[hold.support].held * wanted[hold.support][hold.index];
+    value += freedom.inverse * missing;
+  }
+}
+
+std::vector<Points> Constraints::places(const double time) const {
+  std::vector<Points> all;
+  for (const Support& support : loads_.supports) {
+    const auto place = support.places(time);
+    Points& places = all.emplace_back();
+    for (const Vec3& rest : support.rest)
+      places.push_back(place(rest));
+  }
+  return all;
+}
+
+void Constraints::place(const double time, Points& x) const {
+  if (!held_.empty())
+    impose(places(time), x);
+}
+
+void Constraints::place_velocity(const double time, const double delta, Points& v) const {
+  if (held_.empty())
+    return;
+  std::vector<Points> velocities = places(time + delta);
+  const std::vector<Points> before = places(time - delta);
+  for (std::size_t s = 0; s < velocities.size(); ++s)
+    for (std::size_t i = 0; i < velocities[s].size(); ++i)
+      velocities[s][i] = (velocities[s][i] - before[s][i]) / (2 * delta);
+  impose(velocities, v);
+}
+
+void Constraints::project(Points& values) const {
+  for (const Held& held : held_)
+    values[held.corner] = freedom(held.corner).project * values[held.corner];
+}
+
+} // namespace kerf::dynamics

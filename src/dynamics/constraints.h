@@ -1,0 +1,70 @@
+#pragma once
+
+/// What supports leave of the corners' motion.
+///
+/// A support holds each of its corners along the range of a projector H: H (x - place) = 0. A corner in several supports
+/// obeys all of them; if some of them hold it in all directions, the last of these alone. With S the sum of its H and c
+/// the sum of its H place, it is moved by S^+ (c - S x), which is the least motion that obeys.
+
+#include "dynamics/loads.h"
+
+#include <span>
+
+namespace kerf::dynamics {
+
+class Constraints {
+ public:
+  /// The loads must outlive it.
+  Constraints(const Loads& loads, std::size_t n_corners);
+
+  /// What is left of a corner. Few corners differ, so these are shared.
+  struct Freedom {
+    Mat3 sum = Mat3::Zero();         ///< S
+    Mat3 inverse = Mat3::Zero();     ///< S^+
+    Mat3 basis = Mat3::Identity();   ///< orthonormal columns, the free ones first
+    Mat3 project = Mat3::Identity(); ///< onto the free directions
+    int n_free = 3;                  ///< directions
+  };
+  const Freedom& freedom(const std::size_t corner) const { return freedoms_[kind_[corner]]; }
+  bool is_free(const std::size_t corner) const { return kind_[corner] == 0; }
+
+  std::size_t n_corners() const { return kind_.size(); }
+  /// Components of all corners that are not held.
+  std::size_t n_free() const;
+
+  /// Moves held components of x [m] to their places at a time [s].
+  void place(double time, Points& x) const;
+  /// Gives held components of v [m/s] the velocity of their places at a time [s], by central differences over 2 delta.
+  void place_velocity(double time, double delta, Points& v) const;
+  /// Leaves of a value a corner only its free part.
+  void project(Points& values) const;
+
+  /// One of a corner's supports.
+  struct Hold {
+    std::uint32_t support, index; ///< in Loads::supports, in its corners
+  };
+  /// A held corner and its part of the list of holds.
+  struct Held {
+    std::uint32_t corner, begin, end;
+  };
+  const std::vector<Held>& held() const { return held_; }
+  /// The supports that a held corner obeys.
+  std::span<const Hold> holds(const Held& held) const {
+    return std::span<const Hold>(holds_).subspan(held.begin, held.end - held.begin);
+  }
+
+ private:
+  void add(std::uint32_t corner, std::span<const Hold> holds);
+  std::uint32_t kind_of(const Mat3& sum);
+  /// Moves held components of values to what `wanted` has for them, a value for each corner of each support.
+  void impose(const std::vector<Points>& wanted, Points& values) const;
+  std::vector<Points> places(double time) const;
+
+  const Loads& loads_;
+  std::vector<Freedom> freedoms_;
+  std::vector<std::uint32_t> kind_; // of each corner, in freedoms_
+  std::vector<Held> held_;          // by ascending corner
+  std::vector<Hold> holds_;
+};
+
+} // namespace kerf::dynamics

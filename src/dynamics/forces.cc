@@ -1,0 +1,69 @@
+#include "dynamics/forces.h"
+
+#include "base/parallel.h"
+#include "dynamics/state.h"
+
+namespace kerf::dynamics {
+
+namespace {
+
+constexpr std::size_t worth = 4096; // corners from which on a second thread pays
+
+void add_stiffness_damping(ElasticModel& model, const double beta, const Moment& moment, Points& forces) {
+  model.linearise(moment.x);
+  Points product(moment.v.size());
+  model.apply_stiffness(flat(moment.v), flat(product));
+  for (std::size_t i = 0; i < forces.size(); ++i)
+    forces[i] -= beta * product[i];
+}
+
+} // namespace
+
+void add_load_forces(const Loads& loads, const Moment& moment, Points& forces) {
+  for (const auto& load : loads.acting)
+    load->add_force(moment, forces);
+}
+
+double load_energy(const Loads& loads, const double time, const Points& x) {
+  double sum = 0;
+  for (const auto& load : loads.acting)
+    sum += load->energy(time, x);
+  return sum;
+}
+
+LoadTangent load_tangent(const Loads& loads, const Tangent kind, const Moment& moment, const double velocity_factor) {
+  LoadTangent tangent;
+  for (const auto& load : loads.acting)
+    load->add_tangent(kind, moment, velocity_factor, tangent);
+  return tangent;
+}
+
+void total_force(ElasticModel& model, const Loads& loads, const Moment& moment, const MassDamping mass_damping,
+                 Points& forces) {
+  model.force(moment.x, forces);
+  if (loads.stiffness_damping > 0)
+    add_stiffness_damping(model, loads.stiffness_damping, moment, forces);
+  const auto mass = model.lumped_mass();
+  const double alpha = mass_damping == MassDamping::included ? loads.mass_damping : 0;
+  parallel_for(
+    forces.size(), [&](const std::size_t i) { forces[i] += mass[i] * (loads.gravity - alpha * moment.v[i]); }, worth);
+  add_load_forces(loads, moment, forces);
+}
+
+double kinetic_energy(const ForceModel& model, const Points& v) {
+  const auto mass = model.lumped_mass();
+  double sum = 0;
+  for (std::size_t i = 0; i < v.size(); ++i)
+    sum += 0.5 * mass[i] * v[i].squaredNorm();
+  return sum;
+}
+
+double gravity_energy(const ForceModel& model, const Loads& loads, const Points& x) {
+  const auto mass = model.lumped_mass();
+  double sum = 0;
+  for (std::size_t i = 0; i < x.size(); ++i)
+    sum -= mass[i] * loads.gravity.dot(x[i]);
+  return sum;
+}
+
+} // namespace kerf::dynamics

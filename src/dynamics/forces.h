@@ -1,0 +1,28 @@
+#pragma once
+
+/// Sums of all that acts on a body.
+
+#include "dynamics/loads.h"
+
+namespace kerf::dynamics {
+
+/// Adds the forces of loads.acting [N].
+void add_load_forces(const Loads& loads, const Moment& moment, Points& forces);
+/// Their potentials [J]: of the conservative ones.
+double load_energy(const Loads& loads, double time, const Points& x);
+/// Sum of their tangents, see Load::add_tangent.
+LoadTangent load_tangent(const Loads& loads, Tangent kind, const Moment& moment, double velocity_factor);
+
+/// What mass damping is not part of: a stepper may take it implicitly.
+enum class MassDamping { left_out, included };
+
+/// Elastic forces, gravity, damping and loads, together [N]. Linearises the model at moment.x if stiffness is damped.
+void total_force(ElasticModel& model, const Loads& loads, const Moment& moment, MassDamping mass_damping,
+                 Points& forces);
+
+/// Kinetic energy, of the lumped mass [J].
+double kinetic_energy(const ForceModel& model, const Points& v);
+/// -sum of m g.x [J].
+double gravity_energy(const ForceModel& model, const Loads& loads, const Points& x);
+
+} // namespace kerf::dynamics

@@ -1,0 +1,92 @@
+#include "dynamics/generalised_alpha.h"
+
+#include "base/error.h"
+#include "dynamics/forces.h"
+
+namespace kerf::dynamics {
+
+namespace {
+
+constexpr double part_of_step = 1e-2; // for velocities of supports, by central differences
+
+void require(const bool holds, const std::string& path, const double value, const std::string& rule) {
+  if (!holds)
+    throw ParameterError(Complaint{.path = path, .value = to_text(value), .rule = rule, .remedy = ""});
+}
+
+} // namespace
+
+AlphaCoefficients generalised_alpha(const double rho_inf) {
+  require(rho_inf >= 0 && rho_inf <= 1, "Spectral radius [1]", rho_inf, "must be >= 0 and <= 1");
+  AlphaCoefficients c{.alpha_m = (2 * rho_inf - 1) / (rho_inf + 1), .alpha_f = rho_inf / (rho_inf + 1)};
+  const double difference = c.alpha_m - c.alpha_f;
+  c.gamma = 0.5 - difference;
+  c.beta = 0.25 * (1 - difference) * (1 - difference);
+  return c;
+}
+
+AlphaCoefficients newmark(const double beta, const double gamma) {
+  require(beta > 0, "Beta [1]", beta, "must be > 0");
+  require(gamma >= 0.5, "Gamma [1]", gamma, "must be >= 0.5");
+  return {0, 0, beta, gamma};
+}
+
+Points GeneralisedAlpha::first_acceleration(const State& state, const Loads& loads, const double dt) {
+  const Constraints constraints(loads, state.x.size());
+  Points v = state.v, a;
+  constraints.place_velocity(state.time, part_of_step * dt, v);
+  total_force(model_, loads, {state.time, state.x, v}, MassDamping::included, a);
+  const auto mass = model_.lumped_mass();
+  for (std::size_t i = 0; i < a.size(); ++i)
+    a[i] /= mass[i];
+  constraints.project(a);
+  return a;
+}
+
+Balance GeneralisedAlpha::balance(const State& state, const Points& a, const Constraints& constraints,
+                                  const double dt) const {
+  const auto [alpha_m, alpha_f, beta, gamma] = c_;
+  const std::size_t n = state.x.size();
+  Balance b{.time = state.time + (1 - alpha_f) * dt,
+            .mass_factor = (1 - alpha_m) / ((1 - alpha_f) * beta * dt * dt),
+            .velocity_factor = gamma / (beta * dt),
+            .start = state.x,
+            .velocity = Points(n),
+            .acceleration = Points(n),
+            .guess = Points(n)};
+  for (std::size_t i = 0; i < n; ++i) { // what x_1 = x_0 makes of them
+    const Vec3 a_1 = -state.v[i] / (beta * dt) - (0.5 / beta - 1) * a[i];
+    b.acceleration[i] = (1 - alpha_m) * a_1 + alpha_m * a[i];
+    b.velocity[i] = state.v[i] + (1 - alpha_f) * dt * ((1 - gamma) * a[i] + gamma * a_1);
+    b.guess[i] = (1 - alpha_f) * (dt * state.v[i] + 0.5 * dt * dt * a[i]);
+  }
+  Points end = state.x;
+  constraints.place(state.time + dt, end);
+  for (const auto& held : constraints.held())
+    b.start[held.corner] += (1 - alpha_f) * (end[held.corner] - state.x[held.corner]);
+  constraints.place_velocity(b.time, part_of_step * dt, b.velocity);
+  return b;
+}
+
+StepReport GeneralisedAlpha::step(State& state, const Loads& loads, const double dt) {
+  const Constraints constraints(loads, state.x.size());
+  const Points* const known = remembered(state, "acceleration");
+  Points a = known ? *known : first_acceleration(state, loads, dt), x;
+  const StepReport report = accepted(solver_.solve(loads, constraints, balance(state, a, constraints, dt), x));
+  const auto [alpha_m, alpha_f, beta, gamma] = c_;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const Vec3 moved = (x[i] - state.x[i]) / (1 - alpha_f);
+    const Vec3 a_1 = (moved - dt * state.v[i]) / (beta * dt * dt) - (0.5 / beta - 1) * a[i];
+    state.x[i] += moved;
+    state.v[i] += dt * ((1 - gamma) * a[i] + gamma * a_1);
+    a[i] = a_1;
+  }
+  state.time += dt;
+  constraints.place(state.time, state.x);
+  constraints.place_velocity(state.time, part_of_step * dt, state.v);
+  constraints.project(a);
+  state.history["acceleration"] = std::move(a);
+  return report;
+}
+
+} // namespace kerf::dynamics

@@ -1,0 +1,41 @@
+#include "dynamics/load.h"
+
+namespace kerf::dynamics {
+
+void LoadTangent::add_product(const std::span<const double> p, const std::span<double> y) const {
+  for (const Term& term : terms_) {
+    const Interpolation& w = *term.points;
+    Vec3 at_j = Vec3::Zero();
+    for (auto k = w.start[term.j]; k < w.start[term.j + 1]; ++k)
+      at_j += w.weights[k] * Eigen::Map<const Vec3>(p.data() + 3 * std::size_t(w.corners[k]));
+    const Vec3 at_i = term.block * at_j;
+    for (auto k = w.start[term.i]; k < w.start[term.i + 1]; ++k)
+      Eigen::Map<Vec3>(y.data() + 3 * std::size_t(w.corners[k])) += w.weights[k] * at_i;
+  }
+}
+
+void LoadTangent::add_diagonal(std::vector<Mat3>& blocks) const {
+  for (const Term& term : terms_) {
+    const Interpolation& w = *term.points;
+    const Mat3 symmetric = 0.5 * (term.block + term.block.transpose());
+    for (auto k = w.start[term.i]; k < w.start[term.i + 1]; ++k)
+      for (auto l = w.start[term.j]; l < w.start[term.j + 1]; ++l)
+        if (w.corners[k] == w.corners[l])
+          blocks[w.corners[k]] += w.weights[k] * w.weights[l] * symmetric;
+  }
+}
+
+void LoadTangent::add_entries(std::vector<Eigen::Triplet<double>>& entries) const {
+  for (const Term& term : terms_) {
+    const Interpolation& w = *term.points;
+    for (auto k = w.start[term.i]; k < w.start[term.i + 1]; ++k)
+      for (auto l = w.start[term.j]; l < w.start[term.j + 1]; ++l)
+        for (int a = 0; a < 3; ++a)
+          for (int b = 0; b < 3; ++b)
+            if (term.block(a, b) != 0)
+              entries.emplace_back(3 * w.corners[k] + a, 3 * w.corners[l] + b,
+                                   w.weights[k] * w.weights[l] * term.block(a, b));
+  }
+}
+
+} // namespace kerf::dynamics

@@ -1,0 +1,65 @@
+#pragma once
+
+/// The contract of a force from outside that depends on time, positions and velocities.
+
+#include "dynamics/interpolation.h"
+#include "dynamics/model.h"
+
+#include <Eigen/SparseCore>
+
+namespace kerf::dynamics {
+
+/// Where and how a body is at one time. Refers to points that must outlive it.
+struct Moment {
+  double time;     ///< [s]
+  const Points& x; ///< corner positions [m]
+  const Points& v; ///< corner velocities [m/s]
+};
+
+/// Derivatives of the forces of loads by the corners, with the sign of a stiffness: a sum of W_i^T B W_j.
+class LoadTangent {
+ public:
+  /// A force -B W_j p at point i for a displacement p of the corners. `points` must outlive this.
+  void add(const Interpolation& points, std::size_t i, std::size_t j, const Mat3& B) {
+    terms_.push_back({&points, i, j, B});
+  }
+
+  bool empty() const { return terms_.empty(); }
+  /// y += K p, in 3 n numbers.
+  void add_product(std::span<const double> p, std::span<double> y) const;
+  /// Adds the symmetric part of the diagonal 3 x 3 blocks.
+  void add_diagonal(std::vector<Mat3>& blocks) const;
+  /// All entries, by the numbers of the 3 n components.
+  void add_entries(std::vector<Eigen::Triplet<double>>& entries) const;
+
+ private:
+  struct Term {
+    const Interpolation* points;
+    std::size_t i, j;
+    Mat3 block;
+  };
+  std::vector<Term> terms_;
+};
+
+/// What the work of a load is booked as.
+enum class Nature {
+  conservative, ///< has a potential, at each fixed time
+  driving,      ///< does work that no potential gives back
+  dissipative   ///< only ever takes energy
+};
+
+class Load {
+ public:
+  virtual ~Load() = default;
+
+  virtual Nature nature() const = 0;
+  /// Potential energy [J]; 0 unless conservative.
+  virtual double energy(double time, const Points& x) const = 0;
+  /// Adds the forces on the corners [N].
+  virtual void add_force(const Moment& moment, Points& forces) const = 0;
+  /// Adds -df/dx - velocity_factor df/dv [N/m], velocity_factor in 1/s: what an integrator with dv = velocity_factor dx
+  /// sees. Tangent::positive leaves out what would make it unsymmetric or indefinite.
+  virtual void add_tangent(Tangent kind, const Moment& moment, double velocity_factor, LoadTangent& tangent) const = 0;
+};
+
+} // namespace kerf::dynamics

@@ -1,0 +1,168 @@
+#include "dynamics/stable_step.h"
+
+#include "base/error.h"
+#include "dynamics/conjugate_gradients.h"
+#include "dynamics/constraints.h"
+#include "dynamics/forces.h"
+
+#include <Eigen/Eigenvalues>
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+namespace kerf::dynamics {
+
+namespace {
+
+/// y = S p with a symmetric S.
+using Symmetric = std::function<void(const Points& p, Points& y)>;
+
+double norm(const Points& p) { return std::sqrt(dot(flat(p), flat(p))); }
+
+Points random_directions(const std::size_t n, const Constraints& constraints) {
+  std::mt19937 random(20090417);
+  Points p(n);
+  for (Vec3& value : p)
+    for (int k = 0; k < 3; ++k)
+      value[k] = static_cast<double>(random()) / std::mt19937::max() - 0.5;
+  constraints.project(p);
+  return p;
+}
+
+/// Largest eigenvalue of the symmetric tridiagonal matrix.
+double largest_eigenvalue(const std::vector<double>& diagonal, const std::vector<double>& beside) {
+  const auto n = static_cast<Eigen::Index>(diagonal.size());
+  const Eigen::Map<const Eigen::VectorXd> d(diagonal.data(), n), e(beside.data(), n - 1);
+  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver;
+  solver.computeFromTridiagonal(d, e, Eigen::EigenvaluesOnly);
+  return solver.eigenvalues()[n - 1];
+}
+
+/// Lanczos without orthogonalisation again, which repeats eigenvalues and does not harm the largest.
+double lanczos(const Symmetric& S, Points q) {
+  constexpr int most = 300, between = 5;
+  constexpr double accuracy = 2e-4; // of an eigenvalue, over `between` iterations
+  std::vector<double> diagonal, beside;
+  Points before(q.size(), Vec3::Zero()), y(q.size());
+  double length = norm(q), eigenvalue = 0;
+  if (length == 0)
+    return 0;
+  for (int k = 0; k < most; ++k) {
+    for (std::size_t i = 0; i < q.size(); ++i)
+      q[i] /= length;
+    S(q, y);
+    if (k > 0)
+      beside.push_back(length);
+    diagonal.push_back(dot(flat(q), flat(y)));
+    for (std::size_t i = 0; i < q.size(); ++i)
+      y[i] -= diagonal.back() * q[i] + (k > 0 ? length : 0) * before[i];
+    std::swap(before, q);
+    std::swap(q, y);
+    length = norm(q);
+    const bool ends = !(length > 1e-12 * std::abs(diagonal.back())) || k + 1 == most;
+    if (ends || k % between == between - 1) {
+      const double now = largest_eigenvalue(diagonal, beside);
+      if (ends || std::abs(now - eigenvalue) <= accuracy * std::abs(now))
+        return now;
+      eigenvalue = now;
+    }
+  }
+  return eigenvalue;
+}
+
+/// Largest eigenvalue of M^-1 A.
+double largest_of(const ForceModel& model, const Constraints& constraints, const Symmetric& A) {
+  const auto mass = model.lumped_mass();
+  Points p(mass.size());
+  const Symmetric S = [&](const Points& q, Points& y) {
+    for (std::size_t i = 0; i < p.size(); ++i)
+      p[i] = q[i] / std::sqrt(mass[i]);
+    A(p, y);
+    for (std::size_t i = 0; i < p.size(); ++i)
+      y[i] /= std::sqrt(mass[i]);
+    constraints.project(y);
+  };
+  return std::max(0.0, lanczos(S, random_directions(mass.size(), constraints)));
+}
+
+double spectral_radius(const Eigen::Matrix2d& A) {
+  const double half_trace = 0.5 * A.trace(), determinant = A.determinant(),
+               discriminant = half_trace * half_trace - determinant;
+  return discriminant < 0 ? std::sqrt(determinant) : std::abs(half_trace) + std::sqrt(discriminant);
+}
+
+} // namespace
+
+double largest_square_frequency(ElasticModel& model, const Loads& loads, const State& state) {
+  const Constraints constraints(loads, state.x.size());
+  model.linearise(state.x);
+  const LoadTangent tangent = load_tangent(loads, Tangent::positive, {state.time, state.x, state.v}, 0);
+  return largest_of(model, constraints, [&](const Points& p, Points& y) {
+    model.apply_stiffness(flat(p), flat(y));
+    tangent.add_product(flat(p), flat(y));
+  });
+}
+
+double largest_load_damping(const ForceModel& model, const Loads& loads, const State& state) {
+  const Moment moment{state.time, state.x, state.v};
+  const LoadTangent with = load_tangent(loads, Tangent::positive, moment, 1),
+                    without = load_tangent(loads, Tangent::positive, moment, 0);
+  if (with.empty())
+    return 0;
+  const Constraints constraints(loads, state.x.size());
+  Points stiffness(state.x.size());
+  return largest_of(model, constraints, [&](const Points& p, Points& y) {
+    y.assign(p.size(), Vec3::Zero());
+    stiffness.assign(p.size(), Vec3::Zero());
+    with.add_product(flat(p), flat(y));
+    without.add_product(flat(p), flat(stiffness));
+    for (std::size_t i = 0; i < y.size(); ++i)
+      y[i] -= stiffness[i];
+  });
+}
+
+double stable_step(const Amplification amplification, const Mode& fastest, const double stiffness_damping,
+                   const double allowance) {
+  const double rate = std::sqrt(fastest.square) + fastest.mass_damping + fastest.other_damping;
+  if (rate == 0)
+    return std::numeric_limits<double>::infinity();
+  const auto is_stable = [&](const double dt) {
+    constexpr int n_modes = 64; // from the fastest on, each 0.8 times the frequency of the one before
+    Mode mode = fastest;
+    for (int k = 0; k < n_modes; ++k) {
+      if (!(spectral_radius(amplification(mode, dt)) <= 1 + allowance))
+        return false;
+      mode.other_damping -= 0.36 * stiffness_damping * mode.square;
+      mode.square *= 0.64;
+    }
+    return true;
+  };
+  double stable = 0, unstable = 16 / rate + 4 * fastest.mass_damping / std::max(fastest.square, rate);
+  for (int k = 0; k < 60; ++k) {
+    const double middle = 0.5 * (stable + unstable);
+    (is_stable(middle) ? stable : unstable) = middle;
+  }
+  return stable;
+}
+
+double StepLimit::at(const State& state, const Loads& loads) const {
+  Mode mode{.square = largest_square_frequency(model_, loads, state), .mass_damping = loads.mass_damping};
+  mode.other_damping = loads.stiffness_damping * mode.square + largest_load_damping(model_, loads, state);
+  return stable_step(scheme_.amplification, mode, loads.stiffness_damping, scheme_.allowance);
+}
+
+void StepLimit::require(const State& state, const Loads& loads, const double dt) {
+  if (options_.beyond == BeyondStable::go_on || dt <= longest_checked_)
+    return;
+  const double stable = at(state, loads);
+  if (dt > stable)
+    throw ParameterError(Complaint{.path = "Time step [s]",
+                                   .value = to_text(dt),
+                                   .rule = scheme_.name + " is stable here up to " + to_text(stable) + " s",
+                                   .remedy = "Use a smaller time step or an implicit integrator, or set Beyond the "
+                                             "stable step = go on"});
+  longest_checked_ = dt;
+}
+
+} // namespace kerf::dynamics

@@ -1,0 +1,81 @@
+#pragma once
+
+/// The longest time step that an explicit integrator bears.
+///
+/// The largest eigenvalue w^2 of M^-1 K, K the tangent of model and loads at a state, and the largest d of M^-1 C, C that
+/// of the loads by velocities, come from Lanczos' method from a fixed start, which is power iteration that forgets
+/// nothing (Golub and Van Loan, Matrix Computations, 10.1). A vibration of frequency w under mass damping alpha and
+/// stiffness damping beta goes through a step by a 2 x 2 matrix that is the integrator's own; the stable step is the
+/// longest for which no frequency up to w grows by more than the integrator's allowance.
+
+#include "base/parameters.h"
+#include "dynamics/loads.h"
+#include "dynamics/state.h"
+
+#include <Eigen/Core>
+
+namespace kerf::dynamics {
+
+/// One vibration: x'' = -square x - (mass_damping + other_damping) x'.
+struct Mode {
+  double square = 0;        ///< w^2 [1/s^2]
+  double mass_damping = 0;  ///< alpha [1/s]
+  double other_damping = 0; ///< beta w^2 + d [1/s]
+};
+
+/// What an integrator makes of (x, v) of a mode in a step dt [s].
+using Amplification = Eigen::Matrix2d (*)(const Mode& mode, double dt);
+
+/// Largest w^2 [1/s^2] at the state, held components left out, to 0.1 %.
+double largest_square_frequency(ElasticModel& model, const Loads& loads, const State& state);
+/// Largest d [1/s] of the loads' own damping.
+double largest_load_damping(const ForceModel& model, const Loads& loads, const State& state);
+
+/// Longest step [s] for which the spectral radius of a mode and of all slower ones is at most 1 + allowance; infinite
+/// for a mode without frequency and damping.
+double stable_step(Amplification amplification, const Mode& fastest, double stiffness_damping, double allowance);
+
+enum class BeyondStable { refuse, go_on };
+
+struct ExplicitOptions {
+  BeyondStable beyond = BeyondStable::refuse;
+};
+
+struct ExplicitParameters {
+  std::string beyond = "refuse";
+
+  void describe(Parameters& p) {
+    p.choice("Beyond the stable step", beyond, {"refuse", "go on"},
+             "What to do with a time step that is longer than this integrator bears.");
+  }
+  ExplicitOptions options() const { return {beyond == "go on" ? BeyondStable::go_on : BeyondStable::refuse}; }
+};
+
+/// What an explicit integrator is to the stable step.
+struct ExplicitScheme {
+  std::string name;
+  Amplification amplification;
+  /// Growth a step that passes for stable [1]. Explicit Euler and midpoint Runge-Kutta let any undamped vibration grow;
+  /// theirs is 1e-3.
+  double allowance;
+};
+
+/// Watches an integrator's steps: computes its stable step at the first one, and whenever a longer one is asked for.
+class StepLimit {
+ public:
+  StepLimit(ElasticModel& model, const ExplicitScheme& scheme, const ExplicitOptions& options)
+    : model_(model), scheme_(scheme), options_(options) {}
+
+  /// Throws ParameterError with the stable step if dt is beyond it and beyond is refused.
+  void require(const State& state, const Loads& loads, double dt);
+  /// At a state [s].
+  double at(const State& state, const Loads& loads) const;
+
+ private:
+  ElasticModel& model_;
+  ExplicitScheme scheme_;
+  ExplicitOptions options_;
+  double longest_checked_ = 0; // [s]
+};
+
+} // namespace kerf::dynamics

@@ -1,0 +1,141 @@
+/// Bodies on a floor: they land, rest, stick and slide; with explicit and implicit integrators.
+
+#include "dynamics/floor.h"
+#include "dynamics/forces.h"
+#include "dynamics/quantities.h"
+#include "tests/dynamics/chain.h"
+#include "tests/dynamics/integrators.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace kerf::dynamics {
+namespace {
+
+/// Three masses in a row that hold together.
+const std::vector<double> masses = {1, 2, 1.5};
+constexpr double weight = 4.5 * 9.81;
+
+Chain block() { return Chain(masses, {.neighbour = 2000}); }
+
+ContactPoints all_points() { return {corners_themselves(masses.size()), {0.01, 0.02, 0.015}}; }
+
+void put_on(Loads& loads, const FloorParameters& parameters) {
+  auto floor = std::make_unique<Floor>(all_points(), parameters);
+  auto friction = std::make_unique<FloorFriction>(*floor);
+  loads.acting.push_back(std::move(floor));
+  loads.acting.push_back(std::move(friction));
+}
+
+class Landing : public testing::TestWithParam<Integrator> {};
+
+/// From 5 cm above, with some damping: in the end the floor carries the weight, at the depth of its stiffness.
+TEST_P(Landing, BlockComesToRestOnItsWeight) {
+  Chain model = block();
+  State state = model.state();
+  for (Vec3& x : state.x)
+    x += Vec3(0, 0, 0.05);
+  Loads loads{.gravity = Vec3(0, 0, -9.81), .mass_damping = 8, .supports = {}};
+  put_on(loads, {.stiffness = 2e5, .friction = 0.5});
+  const auto stepper = GetParam().make(model);
+  for (int i = 0; i < 4000; ++i)
+    stepper->step(state, loads, 1e-3);
+  const Vec3 reaction = load_force(*loads.acting[0], state);
+  EXPECT_NEAR(reaction[2], weight, 1e-6 * weight);
+  EXPECT_NEAR(reaction[0], 0, 1e-9);
+  for (std::size_t i = 0; i < masses.size(); ++i) {
+    EXPECT_NEAR(state.x[i][2], -masses[i] * 9.81 / (2e5 * all_points().areas[i]), 1e-6);
+    EXPECT_LT(state.v[i].norm(), 1e-6);
+  }
+}
+
+/// On a tilted floor, measured along the slope after 1 s.
+State slide(const Integrator& integrator, const double angle, const double mu) {
+  Chain model = block();
+  const Vec3 normal(-std::sin(angle), 0, std::cos(angle)), g(0, 0, -9.81);
+  Loads loads{.gravity = g, .supports = {}};
+  const FloorParameters parameters{.normal = normal, .stiffness = 2e5, .friction = mu, .creep = 1e-3};
+  put_on(loads, parameters);
+  State state = model.state();
+  for (std::size_t i = 0; i < masses.size(); ++i) // in the slope, at rest along the normal
+    state.x[i] = 0.1 * static_cast<double>(i) * Vec3::UnitY() -
+                 masses[i] * 9.81 * std::cos(angle) / (2e5 * all_points().areas[i]) * normal;
+  Chain row(masses, {}); // no springs: the row along y would be drawn to x
+  const auto stepper = integrator.make(row);
+  for (int i = 0; i < 10000; ++i)
+    stepper->step(state, loads, 1e-4);
+  return state;
+}
+
+double along_slope(const Vec3& v, const double angle) { return -v.dot(Vec3(std::cos(angle), 0, std::sin(angle))); }
+
+constexpr double degree = std::numbers::pi / 180;
+
+TEST_P(Landing, BlockSticksBelowTheAngleOfFriction) {
+  const double mu = 0.5, angle = std::atan(mu) - 3 * degree;
+  const State state = slide(GetParam(), angle, mu);
+  for (const Vec3& v : state.v) // what sticks creeps, with g(s) = tan(angle) / mu, below the creep velocity
+    EXPECT_NEAR(along_slope(v, angle), 1e-3 * (1 - std::sqrt(1 - std::tan(angle) / mu)), 2e-5);
+}
+
+TEST_P(Landing, BlockSlidesAboveTheAngleOfFriction) {
+  const double mu = 0.5, angle = std::atan(mu) + 3 * degree;
+  const State state = slide(GetParam(), angle, mu);
+  const double acceleration = 9.81 * (std::sin(angle) - mu * std::cos(angle));
+  for (const Vec3& v : state.v)
+    EXPECT_NEAR(along_slope(v, angle) / (acceleration * state.time), 1, 1e-2);
+}
+
+INSTANTIATE_TEST_SUITE_P(Integrators, Landing,
+                         testing::Values(integrators()[1], integrators()[2], integrators()[3], integrators()[4],
+                                         integrators()[8], integrators()[10]),
+                         [](const auto& info) { return info.param.name; });
+
+/// A long step of implicit Euler lands without a bounce and without sinking through.
+TEST(Landing, LongImplicitStepsLandToo) {
+  Chain model = block();
+  State state = model.state();
+  for (Vec3& x : state.x)
+    x += Vec3(0, 0, 0.3);
+  Loads loads{.gravity = Vec3(0, 0, -9.81), .supports = {}};
+  put_on(loads, {.stiffness = 1e7, .friction = 0.5});
+  ImplicitEuler stepper(
+    model, {.n_newton = 50, .cg_tolerance = 1e-10, .newton_tolerance = 1e-9, .line_search = LineSearch::backtracking});
+  for (int i = 0; i < 240; ++i)
+    stepper.step(state, loads, 1.0 / 60);
+  EXPECT_NEAR(load_force(*loads.acting[0], state)[2], weight, 1e-4 * weight);
+  for (const Vec3& x : state.x)
+    EXPECT_GT(x[2], -1e-3);
+}
+
+/// Energy of a block that slides to a stop: what was there is dissipated, none is gained.
+TEST(Landing, FrictionBooksWhatItTakes) {
+  Chain model = block();
+  State state = model.state();
+  Loads loads{.gravity = Vec3(0, 0, -9.81), .supports = {}};
+  put_on(loads, {.stiffness = 2e5, .friction = 0.3});
+  for (std::size_t i = 0; i < masses.size(); ++i) {
+    state.x[i][2] = -masses[i] * 9.81 / (2e5 * all_points().areas[i]);
+    state.v[i] = Vec3(0, 0.8, 0);
+  }
+  const auto energy = [&](const State& s) {
+    return kinetic_energy(model, s.v) + model.energy(s.x) + gravity_energy(model, loads, s.x) +
+           load_energy(loads, s.time, s.x);
+  };
+  const double before = energy(state);
+  VelocityVerlet stepper(model, go_on);
+  Points still(masses.size(), Vec3::Zero());
+  for (int i = 0; i < 20000; ++i) {
+    const Power begin = power(model, loads, state, still);
+    stepper.step(state, loads, 5e-5);
+    book(begin, power(model, loads, state, still), 5e-5, state);
+  }
+  EXPECT_LT(kinetic_energy(model, state.v), 1e-3);
+  EXPECT_NEAR(state.numbers.at("dissipated energy [J]"), 0.5 * 4.5 * 0.64, 1e-2);
+  EXPECT_NEAR(energy(state) + state.numbers.at("dissipated energy [J]"), before, 1e-4);
+}
+
+} // namespace
+} // namespace kerf::dynamics
