@@ -1,12 +1,14 @@
 #include "cut/blade.h"
 
 #include "base/error.h"
+#include "base/parameters.h"
 
 #include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace kerf::cut {
 namespace {
@@ -20,53 +22,74 @@ constexpr double max_turn = 2 * radians; ///< of one pair of strip triangles
     Complaint{.path = "Blade " + blade.name + "/" + path, .value = value, .rule = rule, .remedy = remedy});
 }
 
-/// Not normalised in sign: the two quaternions of one rotation tell turns by 10 and by 370 degrees apart.
-Eigen::Quaterniond quaternion(const Vec3& rotation_in_degrees) {
-  const double angle = rotation_in_degrees.norm() * radians;
-  const Vec3 axis = angle > 0 ? Vec3(rotation_in_degrees.normalized()) : Vec3::UnitX();
-  return Eigen::Quaterniond(Eigen::AngleAxisd(angle, axis));
+/// [degrees]
+double hinge_angle(const Hinge& hinge, const double t) {
+  const auto& angles = hinge.angles;
+  const auto after = std::find_if(angles.begin(), angles.end(), [t](const AngleFrame& a) { return a.time > t; });
+  if (after == angles.begin())
+    return angles.front().angle;
+  const AngleFrame& before = *(after - 1);
+  if (after == angles.end())
+    return before.angle;
+  return before.angle + (t - before.time) / (after->time - before.time) * (after->angle - before.angle);
 }
 
-Eigen::Quaterniond rotation(const Blade& blade, const double t) {
-  const auto& frames = blade.key_frames;
-  const auto after = std::find_if(frames.begin(), frames.end(), [t](const KeyFrame& k) { return k.time > t; });
-  if (after == frames.begin())
-    return quaternion(frames.front().rotation);
-  const KeyFrame& before = *(after - 1);
-  if (after == frames.end() || before.rotation == after->rotation) // exactly at rest, where slerp would round
-    return quaternion(before.rotation);
-  const double part = (t - before.time) / (after->time - before.time);
-  return quaternion(before.rotation).slerp(part, quaternion(after->rotation));
+Pose hinge_pose(const Hinge& hinge, const double t) {
+  const Mat3 R = Eigen::AngleAxisd(hinge_angle(hinge, t) * radians, hinge.axis).toRotationMatrix();
+  return {hinge.pivot - R * hinge.pivot, R};
 }
 
-Vec3 position(const Blade& blade, const double t) {
-  const auto& frames = blade.key_frames;
-  const auto after = std::find_if(frames.begin(), frames.end(), [t](const KeyFrame& k) { return k.time > t; });
-  if (after == frames.begin())
-    return frames.front().position;
-  const KeyFrame& before = *(after - 1);
-  if (after == frames.end())
-    return before.position;
-  return before.position + (t - before.time) / (after->time - before.time) * (after->position - before.position);
+/// At most how far the blade turns between two times without a key frame in between [rad].
+double turn(const Blade& blade, const double t0, const double t1) {
+  const double of_tool = turn(blade.key_frames, t0, t1);
+  if (!blade.hinge)
+    return of_tool;
+  return of_tool + radians * std::abs(hinge_angle(*blade.hinge, t1) - hinge_angle(*blade.hinge, t0));
+}
+
+/// The ends of a step and the key frames within, in order.
+std::vector<double> breaks(const Blade& blade, const double t0, const double t1) {
+  std::vector<double> times = {t0, t1};
+  const auto add = [&](const double t) {
+    if (t0 < t && t < t1)
+      times.push_back(t);
+  };
+  for (const KeyFrame& frame : blade.key_frames)
+    add(frame.time);
+  if (blade.hinge)
+    for (const AngleFrame& frame : blade.hinge->angles)
+      add(frame.time);
+  std::sort(times.begin(), times.end());
+  times.erase(std::unique(times.begin() + 1, times.end()), times.end()); // a step without length keeps both its ends
+  return times;
 }
 
 /// Times at which the strip has vertices.
 std::vector<double> strip_times(const Blade& blade, const double t0, const double t1) {
-  std::vector<double> breaks = {t0};
-  for (const KeyFrame& frame : blade.key_frames)
-    if (t0 < frame.time && frame.time < t1)
-      breaks.push_back(frame.time);
-  breaks.push_back(t1);
-
+  const auto ends = breaks(blade, t0, t1);
   std::vector<double> times = {t0};
-  for (std::size_t k = 0; k + 1 < breaks.size(); ++k) {
-    const double turn = rotation(blade, breaks[k]).angularDistance(rotation(blade, breaks[k + 1]));
-    const int n = std::max(1, static_cast<int>(std::ceil(turn / max_turn - 1e-9)));
+  for (std::size_t k = 0; k + 1 < ends.size(); ++k) {
+    const int n = std::max(1, static_cast<int>(std::ceil(turn(blade, ends[k], ends[k + 1]) / max_turn - 1e-9)));
     for (int i = 1; i < n; ++i)
-      times.push_back(breaks[k] + (breaks[k + 1] - breaks[k]) * i / n);
-    times.push_back(breaks[k + 1]);
+      times.push_back(ends[k] + (ends[k + 1] - ends[k]) * i / n);
+    times.push_back(ends[k + 1]);
   }
   return times;
+}
+
+/// When the blade cuts in a step, from first to last [s]; empty if it does not. Between the key frames of a hinge the
+/// angle is linear, so it falls between all of two of them or not at all.
+std::optional<std::pair<double, double>> cutting_time(const Blade& blade, const double t0, const double t1) {
+  if (!blade.hinge)
+    return std::pair(t0, t1);
+  std::optional<std::pair<double, double>> time;
+  const auto& angles = blade.hinge->angles;
+  for (std::size_t k = 0; k + 1 < angles.size(); ++k) {
+    const double from = std::max(t0, angles[k].time), to = std::min(t1, angles[k + 1].time);
+    if (from < to && std::abs(angles[k + 1].angle) < std::abs(angles[k].angle))
+      time = {time ? time->first : from, to};
+  }
+  return time;
 }
 
 void check_edge(const Blade& blade) {
@@ -82,32 +105,42 @@ void check_edge(const Blade& blade) {
       refuse(blade, "Edge [m]", "point " + std::to_string(i + 1), "must differ from the point before it", "Remove it");
 }
 
-void check_pair(const Blade& blade, const KeyFrame& before, const KeyFrame& after) {
-  if (!(before.time < after.time))
-    refuse(blade, "Key frames", "time " + std::to_string(after.time) + " s after " + std::to_string(before.time) + " s",
-           "times must increase", "Sort the key frames and remove repeated times");
-  if (quaternion(before.rotation).dot(quaternion(after.rotation)) < 1e-9)
-    refuse(blade, "Key frames", "rotation at " + std::to_string(after.time) + " s",
-           "must be turned by less than 180 degrees from the key frame before it",
-           "Add a key frame between them, to say which way the blade turns");
+void check_hinge(const Blade& blade) {
+  const Hinge& hinge = *blade.hinge;
+  if (!hinge.pivot.allFinite())
+    refuse(blade, "Pivot [m]", "", "must be finite", "Write three numbers");
+  if (!(std::abs(hinge.axis.norm() - 1) < 1e-9))
+    refuse(blade, "Axis [1]", "", "must be a direction: finite and not zero", "Write the axis that the blade turns on");
+  if (hinge.angles.empty())
+    refuse(blade, "Angles", "none", "must have at least one angle", "Write how far the blade is turned");
+  for (std::size_t k = 0; k < hinge.angles.size(); ++k) {
+    const AngleFrame& frame = hinge.angles[k];
+    if (!std::isfinite(frame.time) || !(std::abs(frame.angle) < 180))
+      refuse(blade, "Angles", to_text(frame.angle) + " degrees at " + to_text(frame.time) + " s",
+             "must be less than 180 degrees at a finite time", "Write smaller angles");
+    if (k > 0 && !(hinge.angles[k - 1].time < frame.time))
+      refuse(blade, "Angle times",
+             "time " + to_text(frame.time) + " s after " + to_text(hinge.angles[k - 1].time) + " s",
+             "times must increase", "Sort the angles and remove repeated times");
+  }
 }
 
 } // namespace
 
 void check(const Blade& blade) {
   check_edge(blade);
-  const auto& frames = blade.key_frames;
-  if (frames.empty())
-    refuse(blade, "Key frames", "none", "must have at least one key frame", "Write where the blade is");
-  for (const KeyFrame& frame : frames)
-    if (!std::isfinite(frame.time) || !frame.position.allFinite() || !frame.rotation.allFinite())
-      refuse(blade, "Key frames", "key frame " + std::to_string(&frame - frames.data() + 1), "must be finite",
-             "Write numbers");
-  for (std::size_t k = 0; k + 1 < frames.size(); ++k)
-    check_pair(blade, frames[k], frames[k + 1]);
+  check_key_frames(blade.key_frames, "Blade " + blade.name);
+  if (blade.hinge)
+    check_hinge(blade);
 }
 
-Pose pose(const Blade& blade, const double t) { return {position(blade, t), rotation(blade, t).toRotationMatrix()}; }
+Pose pose(const Blade& blade, const double t) {
+  const Pose tool = pose(blade.key_frames, t);
+  if (!blade.hinge)
+    return tool;
+  const Pose within = hinge_pose(*blade.hinge, t);
+  return {tool(within.position), tool.rotation * within.rotation};
+}
 
 Points world_points(const Blade& blade, const double t) {
   const Pose placed = pose(blade, t);
@@ -120,7 +153,8 @@ Points world_points(const Blade& blade, const double t) {
 
 BladePath path(const Blade& blade, const double t0, const double t1) {
   BladePath result;
-  for (const double t : strip_times(blade, t0, t1)) {
+  const auto time = cutting_time(blade, t0, t1);
+  for (const double t : time ? strip_times(blade, time->first, time->second) : std::vector{t1}) {
     result.fractions.push_back((t - t0) / (t1 - t0));
     result.lines.push_back(world_points(blade, t));
   }

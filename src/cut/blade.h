@@ -1,24 +1,35 @@
 #pragma once
 
 /// A blade: a polyline that moves rigidly by key frames in world space, and the strip of triangles it sweeps (thesis
-/// §2.3.3). A scalpel is one segment, scissors are two blades, a curved tool has many segments.
+/// §2.3.3). A scalpel is one segment, a curved tool has many (blade_edge.h), scissors are two blades that share their
+/// motion and turn against each other on a hinge (scissors.h).
 ///
-/// Method: position linear, rotation at constant angular velocity between key frames; constant outside them. A strip is
-/// split at key frames and wherever the blade has turned by 2 degrees. Vertices are pose(t) of the polyline, a function
-/// of t alone, so consecutive sweeps share theirs bit by bit and leave no gap.
+/// Method: a strip is split at key frames and wherever the blade has turned by 2 degrees. Vertices are pose(t) of the
+/// polyline, a function of t alone, so consecutive sweeps share theirs bit by bit and leave no gap.
 
 #include "base/vec.h"
+#include "cut/motion.h"
 #include "grid/cuts.h"
 
+#include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace kerf::cut {
 
-struct KeyFrame {
-  double time = 0;              ///< [s]
-  Vec3 position = Vec3::Zero(); ///< of the blade frame's origin, world frame [m]
-  Vec3 rotation = Vec3::Zero(); ///< rotation vector, blade to world frame [degrees]
+struct AngleFrame {
+  double time = 0;  ///< [s]
+  double angle = 0; ///< [degrees]
+};
+
+/// What turns a blade within its tool: about an axis, by an angle that is linear between key frames and constant
+/// outside of them. On a hinge a blade cuts only while its angle falls towards 0: one that opens goes with its back
+/// first, and what recoils across closed blades meets no edge.
+struct Hinge {
+  Vec3 pivot = Vec3::Zero(); ///< a point of the axis, tool frame [m]
+  Vec3 axis = Vec3::UnitZ(); ///< unit, tool frame
+  std::vector<AngleFrame> angles;
 };
 
 struct Blade {
@@ -26,19 +37,13 @@ struct Blade {
   Points edge; ///< the cutting edge, a polyline, blade frame [m]
   std::vector<KeyFrame> key_frames;
   grid::CutLabel label = 1;
-  Vec3 spine = Vec3::Zero(); ///< from the cutting edge to the back, blade frame [m]; drawn only
+  Vec3 spine = Vec3::Zero();       ///< from the cutting edge to the back, blade frame [m]; drawn only
+  std::optional<Hinge> hinge = {}; ///< turns the blade's frame in the frame that the key frames move
 };
 
-/// A rigid placement: blade frame to world frame.
-struct Pose {
-  Vec3 position = Vec3::Zero(); ///< [m]
-  Mat3 rotation = Mat3::Identity();
-
-  Vec3 operator()(const Vec3& p) const { return rotation * p + position; }
-};
-
-/// Throws ParameterError: fewer than two points, two equal points in a row, no key frames, times that do not increase,
-/// numbers that are not finite, key frames in a row that turn by 180 degrees or more (which way would be ambiguous).
+/// Throws ParameterError at the path "Blade NAME/...": fewer than two points, two equal points in a row, key frames
+/// that check_key_frames() refuses, a hinge without a direction or angles, or with angles that are not finite, beyond
+/// 180 degrees, or at times that do not increase.
 void check(const Blade& blade);
 
 /// Where the blade is at time t [s]. Here and below, check() must accept the blade.
@@ -47,7 +52,8 @@ Pose pose(const Blade& blade, double t);
 /// The cutting edge at time t [s], world frame [m].
 Points world_points(const Blade& blade, double t);
 
-/// Where the cutting edge stands at successive moments of a step: first at its start, last at its end.
+/// Where the cutting edge stands at successive moments of a step: first at its start, last at its end; on a hinge, from
+/// where it begins to close in this step to where it last does. A single place, if it does not: that sweeps nothing.
 struct BladePath {
   std::vector<double> fractions; ///< of the step, from 0 to 1
   std::vector<Points> lines;     ///< world frame [m]

@@ -1,7 +1,9 @@
 #include "cut/cut_surface.h"
 
 #include "base/error.h"
+#include "cut/may_meet.h"
 #include "cut/target.h"
+#include "geometry/box_tree.h"
 
 #include <algorithm>
 #include <cmath>
@@ -138,6 +140,38 @@ Verdict meet(const Cylinder& cylinder, const Segment& segment) {
   return judge(chord, side(out_p, up_p), side(out_q, up_q));
 }
 
+/// Whether the surface of a convex body, with its centre and half the size of its box, may meet a box. Inside of the body
+/// nothing meets it; `depth` is how far in a corner of the box is, beyond round-off.
+template <class Depth>
+bool may_meet_convex(const Vec3& centre, const Vec3& half, const Box& box, const Depth& depth) {
+  const Vec3 margin = Vec3::Constant(1e-9 * (half.sum() + centre.cwiseAbs().sum()));
+  if (!geometry::overlap({centre - half - margin, centre + half + margin}, box))
+    return false;
+  const auto corners = corners_of(box);
+  return !std::all_of(corners.begin(), corners.end(), [&](const Vec3& p) { return depth(p) > margin[0]; });
+}
+
+bool near(const Plane& plane, const Box& box) { return may_meet(plane.point, plane.normal, box); }
+
+bool near(const Disc& disc, const Box& box) {
+  const Vec3 reach = Vec3::Constant(disc.radius * (1 + 1e-9) + 1e-9 * disc.centre.cwiseAbs().sum());
+  return geometry::overlap({disc.centre - reach, disc.centre + reach}, box) && may_meet(disc.centre, disc.normal, box);
+}
+
+bool near(const Sphere& sphere, const Box& box) {
+  return may_meet_convex(sphere.centre, Vec3::Constant(sphere.radius), box,
+                         [&](const Vec3& p) { return sphere.radius - (p - sphere.centre).norm(); });
+}
+
+bool near(const Cylinder& cylinder, const Box& box) {
+  const double half = 0.5 * cylinder.height;
+  const Vec3 reach = Vec3::Constant(half + cylinder.radius);
+  return may_meet_convex(cylinder.centre, reach, box, [&](const Vec3& p) {
+    const double up = cylinder.axis.dot(p - cylinder.centre);
+    return std::min(half - std::abs(up), cylinder.radius - (p - cylinder.centre - up * cylinder.axis).norm());
+  });
+}
+
 std::vector<std::array<Vec3, 3>> triangles_of(const geometry::TriangleMesh& mesh) {
   std::vector<std::array<Vec3, 3>> triangles(mesh.triangles.size());
   for (std::size_t i = 0; i < triangles.size(); ++i)
@@ -152,13 +186,14 @@ void check(const CutSurface& surface) {
 }
 
 SweepCuts cut_edges(const CutSurface& surface, const grid::Grid& grid, const grid::Cuts& cuts,
-                    const grid::CellComplex& complex, const Points& x) {
+                    const grid::CellComplex& complex, const Points& x, const EdgeBoxes* const boxes) {
   const auto cut_by = [&](const auto& shape) {
     if constexpr (std::is_same_v<decltype(shape), const geometry::TriangleMesh&>) {
-      return cut_edges(triangles_of(shape), grid, cuts, complex, x, surface.label);
+      return cut_edges(triangles_of(shape), grid, cuts, complex, x, surface.label, boxes);
     } else {
-      const Target target(grid, cuts, complex, x);
-      return target.cut(surface.label, [&](const grid::EdgeId edge) { return meet(shape, target.segment(edge)); });
+      const Target target(grid, cuts, complex, x, x, boxes);
+      return target.cut(surface.label, {Box(), [&](const Box& box) { return near(shape, box); }},
+                        [&](const grid::EdgeId edge) { return meet(shape, target.segment(edge)); });
     }
   };
   return std::visit(cut_by, surface.shape);

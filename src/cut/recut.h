@@ -6,11 +6,14 @@
 /// that of its upper node. It is cut when an odd number of the sweep's triangles cross it, by the exact predicates of
 /// geometry/predicates.h; boxes keep most pairs away from them. The normal is pulled back to rest (target.h).
 ///
-/// A body that moves is met in relative motion: each edge sees the blade's earlier places carried along with itself,
-/// by the similarity that takes the edge from where it was to where it is. So what a blade sweeps in successive steps
-/// leaves no gap for an edge to slip through, and material that moves through a resting blade is cut.
+/// Who cuts a body often keeps boxes around its edges (edge_boxes.h) and hands them over, fitted to the corners' places:
+/// then the time goes with the area that is cut. Without them every edge is looked at. The result is the same, bit by bit.
+///
+/// A body that moves is met in relative motion (moving_edge.h): what a blade sweeps in successive steps leaves no gap
+/// for an edge to slip through, and material that moves through a resting blade is cut.
 
 #include "cut/blade.h"
+#include "cut/edge_boxes.h"
 #include "grid/complex.h"
 #include "grid/cuts.h"
 
@@ -27,10 +30,12 @@ struct SweepCuts {
 /// corner]. Where an edge is crossed 3, 5, ... times, the crossing nearest to its lower node is kept. Throws
 /// NumericalError when a corner is not at a finite position.
 SweepCuts cut_edges(std::span<const std::array<Vec3, 3>> sweep, const grid::Grid& grid, const grid::Cuts& cuts,
-                    const grid::CellComplex& complex, const Points& x, grid::CutLabel label);
+                    const grid::CellComplex& complex, const Points& x, grid::CutLabel label,
+                    const EdgeBoxes* boxes = nullptr);
 
 /// The edges that a blade cuts on its path through a step in which the corners moved from `x_before` to `x`.
 SweepCuts cut_edges(const BladePath& path, const grid::Grid& grid, const grid::Cuts& cuts,
-                    const grid::CellComplex& complex, const Points& x_before, const Points& x, grid::CutLabel label);
+                    const grid::CellComplex& complex, const Points& x_before, const Points& x, grid::CutLabel label,
+                    const EdgeBoxes* boxes = nullptr);
 
 } // namespace kerf::cut

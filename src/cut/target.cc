@@ -1,61 +1,30 @@
 #include "cut/target.h"
 
-#include "base/error.h"
 #include "base/parallel.h"
 #include "grid/cube.h"
+#include "grid/shape.h"
 
 #include <algorithm>
-#include <string>
 
 namespace kerf::cut {
 
 namespace {
 
-constexpr std::size_t edges_per_chunk = 4096;
+constexpr std::size_t edges_per_chunk = 4096, blocks_per_chunk = 16;
 
-/// dx/dX of a copy at a point of the unit cube: sum of corners times gradients of the trilinear shape functions.
+/// dx/dX of a copy at a point of the unit cube.
 Mat3 deformation_gradient(const grid::Copy& copy, const Points& x, const double h, const Vec3& at) {
   Mat3 F = Mat3::Zero();
-  for (int v = 0; v < grid::cube::n_vertices; ++v) {
-    Vec3 value, slope;
-    for (int d = 0; d < 3; ++d) {
-      const bool is_upper = v >> d & 1;
-      value[d] = is_upper ? at[d] : 1 - at[d];
-      slope[d] = is_upper ? 1 : -1;
-    }
-    const Vec3 gradient(slope[0] * value[1] * value[2], value[0] * slope[1] * value[2], value[0] * value[1] * slope[2]);
-    F += x[copy.corners[v].value] * gradient.transpose() / h;
-  }
+  for (int v = 0; v < grid::cube::n_vertices; ++v)
+    F += x[copy.corners[v].value] * grid::shape_gradient(v, at).transpose() / h;
   return F;
 }
 
-/// Exact predicates have no answer for what is not a number.
-void require_finite(const Points& x) {
-  for (std::size_t i = 0; i < x.size(); ++i)
-    if (!x[i].allFinite())
-      throw NumericalError("the position of corner " + std::to_string(i) + " is not finite, so it cannot be cut");
-}
-
-} // namespace
-
-Target::Target(const grid::Grid& grid, const grid::Cuts& cuts, const grid::CellComplex& complex, const Points& x)
-  : grid_(grid), cuts_(cuts), complex_(complex), x_(x) {
-  require_finite(x);
-}
-
-Segment Target::segment(const grid::EdgeId edge, const Points& x) const {
-  const auto& [lower, upper] = grid_.ends(edge);
-  return {x[complex_.real_corner[lower].value], x[complex_.real_corner[upper].value]};
-}
-
-SweepCuts Target::cut(const grid::CutLabel label, const std::function<Verdict(grid::EdgeId)>& judge) const {
-  std::vector<SweepCuts> parts((grid_.n_edges() + edges_per_chunk - 1) / edges_per_chunk);
-  parallel_for(parts.size(), [&](const std::size_t k) {
-    const std::size_t end = std::min(grid_.n_edges(), (k + 1) * edges_per_chunk);
-    for (std::size_t e = k * edges_per_chunk; e < end; ++e)
-      if (const grid::EdgeId edge(e); !cuts_.is_cut(edge) && is_inside(edge))
-        add(edge, judge(edge), label, parts[k]);
-  });
+/// Runs fill(k, part) for parts 0 .. n - 1 in parallel, and joins the parts in their order.
+template <class Fill>
+SweepCuts joined(const std::size_t n, const Fill& fill) {
+  std::vector<SweepCuts> parts(n);
+  parallel_for(n, [&](const std::size_t k) { fill(k, parts[k]); });
   SweepCuts result;
   for (const SweepCuts& part : parts) {
     result.cuts.insert(result.cuts.end(), part.cuts.begin(), part.cuts.end());
@@ -64,9 +33,59 @@ SweepCuts Target::cut(const grid::CutLabel label, const std::function<Verdict(gr
   return result;
 }
 
-bool Target::is_inside(const grid::EdgeId edge) const {
+} // namespace
+
+Target::Target(const grid::Grid& grid, const grid::Cuts& cuts, const grid::CellComplex& complex, const Points& x_before,
+               const Points& x, const EdgeBoxes* boxes)
+  : grid_(grid), cuts_(cuts), complex_(complex), x_before_(x_before), x_(x), boxes_(boxes) {
+  if (!boxes_) // fit() has seen to it
+    require_finite(x);
+}
+
+Segment Target::segment(const grid::EdgeId edge, const Points& x) const {
   const auto& [lower, upper] = grid_.ends(edge);
-  return grid_.is_material(lower) && grid_.is_material(upper);
+  return {x[complex_.real_corner[lower].value], x[complex_.real_corner[upper].value]};
+}
+
+SweepCuts Target::cut(const grid::CutLabel label, const Nearness& near,
+                      const std::function<Verdict(grid::EdgeId)>& judge) const {
+  return boxes_ ? cut_near(label, near, judge) : cut_anywhere(label, judge);
+}
+
+SweepCuts Target::cut_anywhere(const grid::CutLabel label, const std::function<Verdict(grid::EdgeId)>& judge) const {
+  return joined((grid_.n_edges() + edges_per_chunk - 1) / edges_per_chunk, [&](const std::size_t k, SweepCuts& part) {
+    const std::size_t end = std::min(grid_.n_edges(), (k + 1) * edges_per_chunk);
+    for (std::size_t e = k * edges_per_chunk; e < end; ++e)
+      if (const grid::EdgeId edge(e); can_be_cut(edge))
+        add(edge, judge(edge), label, part);
+  });
+}
+
+SweepCuts Target::cut_near(const grid::CutLabel label, const Nearness& near,
+                           const std::function<Verdict(grid::EdgeId)>& judge) const {
+  const auto blocks = boxes_->blocks([&](const EdgeBoxes::Block& block) {
+    return geometry::overlap(block.box, near.reach) && near.may_meet(block.box);
+  });
+  const std::size_t n = (blocks.size() + blocks_per_chunk - 1) / blocks_per_chunk;
+  SweepCuts result = joined(n, [&](const std::size_t k, SweepCuts& part) {
+    for (std::size_t b = k * blocks_per_chunk; b < std::min(blocks.size(), (k + 1) * blocks_per_chunk); ++b)
+      boxes_->for_each_edge(blocks[b], [&](const grid::CornerId lower, const grid::CornerId upper, const int axis) {
+        const Segment before{x_before_[lower.value], x_before_[upper.value]}, now{x_[lower.value], x_[upper.value]};
+        if (!geometry::overlap(room(before, now), near.reach))
+          return;
+        const grid::EdgeId edge = grid_.edge(complex_.node[lower], axis);
+        if (can_be_cut(edge))
+          add(edge, judge(edge), label, part);
+      });
+  });
+  std::sort(result.cuts.begin(), result.cuts.end(),
+            [](const grid::EdgeCut& a, const grid::EdgeCut& b) { return a.edge < b.edge; });
+  return result;
+}
+
+bool Target::can_be_cut(const grid::EdgeId edge) const {
+  const auto& [lower, upper] = grid_.ends(edge);
+  return !cuts_.is_cut(edge) && grid_.is_material(lower) && grid_.is_material(upper);
 }
 
 void Target::add(const grid::EdgeId edge, const Verdict& verdict, const grid::CutLabel label, SweepCuts& result) const {

@@ -1,12 +1,15 @@
 #pragma once
 
 /// The body that is cut, edge by edge, as it stands now. An uncut edge between two material nodes is one current
-/// segment, from the real corner of its lower node to that of its upper node; whoever cuts judges the segments one by one.
+/// segment, from the real corner of its lower node to that of its upper node; whoever cuts judges the segments one by one,
+/// all of them or those near the cut (edge_boxes.h).
 ///
 /// Normals are pulled back to rest with the deformation gradient F = dx/dX at the cut, averaged over the copies around
 /// the edge: N ~ F^T n.
 
+#include "cut/edge_boxes.h"
 #include "cut/recut.h"
+#include "geometry/box_tree.h"
 
 #include <functional>
 
@@ -15,6 +18,11 @@ namespace kerf::cut {
 /// An edge of the grid as a segment of the current configuration, lower node first [m].
 using Segment = std::array<Vec3, 2>;
 
+/// The box around where an edge was and is.
+inline Box room(const Segment& before, const Segment& now) {
+  return geometry::box_around(std::array{before[0], before[1], now[0], now[1]});
+}
+
 /// How a surface meets a segment.
 struct Verdict {
   std::size_t n_crossings = 0;
@@ -22,10 +30,18 @@ struct Verdict {
   Vec3 normal = Vec3::Zero(); ///< of the surface there, of any length, current configuration
 };
 
+/// Which edges a surface may meet: all others are not crossed.
+struct Nearness {
+  Box reach;                                ///< of the surface [m]
+  std::function<bool(const Box&)> may_meet; ///< false for boxes that hold, before and now, no edge that is crossed
+};
+
 class Target {
  public:
-  /// Everything must outlive it. Throws NumericalError when a corner is not at a finite position.
-  Target(const grid::Grid& grid, const grid::Cuts& cuts, const grid::CellComplex& complex, const Points& x);
+  /// Everything must outlive it. `boxes` are fitted to x_before and x, or null: then every edge is judged. Throws
+  /// NumericalError when a corner is not at a finite position.
+  Target(const grid::Grid& grid, const grid::Cuts& cuts, const grid::CellComplex& complex, const Points& x_before,
+         const Points& x, const EdgeBoxes* boxes);
 
   Segment segment(grid::EdgeId edge) const { return segment(edge, x_); }
   /// Where the edge is when the corners are at `x`.
@@ -33,10 +49,13 @@ class Target {
 
   /// Cuts every uncut edge inside the material that `judge` finds crossed an odd number of times. Edges are judged in
   /// parallel; the result is ordered by edge.
-  SweepCuts cut(grid::CutLabel label, const std::function<Verdict(grid::EdgeId)>& judge) const;
+  SweepCuts cut(grid::CutLabel label, const Nearness& near, const std::function<Verdict(grid::EdgeId)>& judge) const;
 
  private:
-  bool is_inside(grid::EdgeId edge) const;
+  SweepCuts cut_anywhere(grid::CutLabel label, const std::function<Verdict(grid::EdgeId)>& judge) const;
+  SweepCuts cut_near(grid::CutLabel label, const Nearness& near,
+                     const std::function<Verdict(grid::EdgeId)>& judge) const;
+  bool can_be_cut(grid::EdgeId edge) const;
   void add(grid::EdgeId edge, const Verdict& verdict, grid::CutLabel label, SweepCuts& result) const;
   Vec3 rest_normal(grid::EdgeId edge, double t, const Vec3& normal) const;
   Mat3 mean_gradient(grid::EdgeId edge, double t) const;
@@ -44,7 +63,9 @@ class Target {
   const grid::Grid& grid_;
   const grid::Cuts& cuts_;
   const grid::CellComplex& complex_;
+  const Points& x_before_;
   const Points& x_;
+  const EdgeBoxes* boxes_;
 };
 
 } // namespace kerf::cut

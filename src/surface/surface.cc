@@ -2,12 +2,14 @@
 
 #include "base/parallel.h"
 #include "grid/cube.h"
+#include "grid/shape.h"
+#include "grid/touched.h"
 #include "surface/table.h"
 
 #include <Eigen/Geometry>
 
 #include <algorithm>
-#include <numeric>
+#include <bitset>
 
 namespace kerf::surface {
 
@@ -19,136 +21,244 @@ using grid::Cuts;
 using grid::EdgeId;
 using grid::FaceId;
 using grid::Grid;
+using grid::NodeId;
 
 namespace {
 
 constexpr std::uint32_t unset = Id<void>::no_value;
+constexpr std::size_t triangles_per_end = 8; // two in each of the four cells around an edge
 
-/// Multilinear weight of vertex v at xi in the unit cube, within the edge, face or cell whose vertices are `support`.
-double weight(const Vec3& xi, const int v, const unsigned support) {
-  constexpr std::array<unsigned, 3> upper = {0xaa, 0xcc, 0xf0}; // vertices with a 1 along x, y, z
-  double w = 1;
-  for (int axis = 0; axis < 3; ++axis)
-    if ((support & upper[axis]) != 0 && (support & ~upper[axis]) != 0)
-      w *= v >> axis & 1 ? xi[axis] : 1 - xi[axis];
-  return w;
+/// Which of the four cells around a cell's line the cell is: the lattice offsets of the line across its axis.
+constexpr std::array<int, 12> place_around_line = [] {
+  std::array<int, 12> place{};
+  for (int line = 0; line < cube::n_lines; ++line) {
+    const int axis = cube::line_axis(line), lower = cube::line_vertices[line][0];
+    place[line] = (lower >> (axis + 1) % 3 & 1) | (lower >> (axis + 2) % 3 & 1) << 1;
+  }
+  return place;
+}();
+
+/// The place of a vertex among those of its face.
+constexpr int place_in_face(const int face, const int vertex) {
+  int place = 0;
+  for (int i = 1; i < 4; ++i)
+    if (cube::face_vertices[face][i] == vertex)
+      place = i;
+  return place;
 }
 
-/// Collects vertices and triangles cell by cell; a vertex shared by cells is made by the first of them.
-class Builder {
- public:
-  Builder(const Grid& grid, const Cuts& cuts, const CellComplex& complex)
-    : grid_(grid),
-      cuts_(cuts),
-      complex_(complex),
-      first_face_vertex_(grid.n_faces(), unset),
-      edge_vertices_(2 * cuts.all().size(), unset),
-      centres_(complex.n_copies(), unset) {}
+/// What a writer does with a vertex that is there already.
+enum class Known { kept, renewed };
 
-  void add_cell(const CellId cell) {
-    const unsigned cut_lines = cuts_.configuration(grid_, cell);
-    for (const Quad& quad : splitting_table().row(cut_lines)) {
-      const CopyId copy = complex_.copy_at(cell, quad.end);
-      if (!copy.valid())
-        continue; // the empty side of the skin
-      std::array<std::uint32_t, 4> v;
-      for (int i = 0; i < 4; ++i)
-        v[i] = vertex(cell, copy, quad.vertices[i]);
-      const grid::CutLabel label = cuts_.find(grid_.edges(cell)[quad.line])->label;
-      for (const Triangle& triangle : {Triangle{v[0], v[1], v[2]}, Triangle{v[0], v[2], v[3]}}) {
-        surface_.triangles.push_back(triangle);
-        surface_.labels.push_back(label);
-        surface_.copies.push_back(copy);
-      }
-    }
+/// Writes the vertices and triangles of cells. A vertex that several cells share is made by the first of them; its
+/// place and weights come from its edge or face alone, so that they are the same bits whichever cell writes them.
+class Writer {
+ public:
+  Writer(const Grid& grid, const Cuts& cuts, const CellComplex& complex, Surface& surface, SurfaceIndex& index,
+         const Known known)
+    : grid_(grid), cuts_(cuts), complex_(complex), surface_(surface), index_(index), known_(known) {
+    make_room();
   }
 
-  Surface finish() {
-    surface_.weights.resize(static_cast<int>(surface_.rest.size()), static_cast<int>(complex_.n_corners()));
-    surface_.weights.setFromTriplets(entries_.begin(), entries_.end());
-    return std::move(surface_);
+  void write(const CellId cell) {
+    const unsigned cut_lines = cuts_.configuration(grid_, cell);
+    if (cut_lines == 0)
+      return;
+    enter(cell);
+    for (const Quad& quad : splitting_table().row(cut_lines))
+      if (copy_at_[quad.end].valid()) // else the empty side of the skin
+        write(quad);
   }
 
  private:
-  std::uint32_t vertex(const CellId cell, const CopyId copy, const TableVertex& v) {
+  /// Triangles for all cuts, and tables for all copies and faces.
+  void make_room() {
+    const auto cuts = cuts_.all();
+    std::size_t n = surface_.triangles.size();
+    for (std::size_t i = index_.first_triangle.size(); i < cuts.size(); ++i) {
+      index_.first_triangle.push_back(static_cast<std::uint32_t>(n));
+      for (const NodeId end : grid_.ends(cuts[i].edge))
+        n += grid_.is_material(end) ? triangles_per_end : 0;
+      surface_.labels.resize(n, cuts[i].label);
+    }
+    surface_.triangles.resize(n);
+    surface_.copies.resize(n);
+    index_.edge_vertices.resize(2 * cuts.size(), unset);
+    index_.centres.resize(complex_.n_copies(), unset);
+  }
+
+  void enter(const CellId cell) {
+    cell_ = cell;
+    seen_.reset();
+    copy_at_.fill(CopyId());
+    for (const CopyId c : complex_.copies_of(cell))
+      for (int v = 0; v < cube::n_vertices; ++v)
+        if (complex_.copies[c].nodes >> v & 1)
+          copy_at_[v] = c;
+  }
+
+  void write(const Quad& quad) {
+    const CopyId copy = copy_at_[quad.end];
+    std::array<std::uint32_t, 4> v;
+    for (int i = 0; i < 4; ++i)
+      v[i] = vertex(copy, quad.vertices[i]);
+    const EdgeId edge = grid_.edges(cell_)[quad.line];
+    const bool is_second = quad.end == cube::line_vertices[quad.line][1] && grid_.is_material(grid_.ends(edge)[0]);
+    const std::size_t t = index_.first_triangle[cuts_.index(edge)] + (is_second ? triangles_per_end : 0) +
+                          2 * static_cast<std::size_t>(place_around_line[quad.line]);
+    surface_.triangles[t] = {v[0], v[1], v[2]};
+    surface_.triangles[t + 1] = {v[0], v[2], v[3]};
+    surface_.copies[t] = surface_.copies[t + 1] = copy;
+  }
+
+  std::uint32_t vertex(const CopyId copy, const TableVertex& v) {
     switch (v.kind) {
       case VertexKind::edge:
-        return edge_vertex(cell, copy, v);
+        return edge_vertex(copy, v);
       case VertexKind::face:
-        return face_vertex(cell, copy, v);
+        return face_vertex(copy, v);
       default:
-        return centre(cell, copy);
+        return centre(copy, v);
     }
   }
 
-  std::uint32_t edge_vertex(const CellId cell, const CopyId copy, const TableVertex& v) {
-    const EdgeId edge = grid_.edges(cell)[v.index];
+  std::uint32_t edge_vertex(const CopyId copy, const TableVertex& v) {
+    const EdgeId edge = grid_.edges(cell_)[v.index];
     const auto& [lower, upper] = cube::line_vertices[v.index];
-    std::uint32_t& id = edge_vertices_[2 * (cuts_.find(edge) - cuts_.all().data()) + (v.side == upper)];
-    if (id == unset)
-      id = new_vertex(grid::edge_point(grid_, cuts_, edge), cell, copy, (1u << lower) | (1u << upper));
-    return id;
-  }
-
-  std::uint32_t face_vertex(const CellId cell, const CopyId copy, const TableVertex& v) {
-    const FaceId face = grid_.faces(cell)[v.index];
-    std::uint32_t& first = first_face_vertex_[face];
-    if (first == unset) {
-      first = static_cast<std::uint32_t>(face_vertices_.size());
-      face_vertices_.resize(face_vertices_.size() + 4, unset);
+    std::uint32_t& id = index_.edge_vertices[2 * cuts_.index(edge) + (v.side == upper)];
+    if (is_wanted(id, 2 * v.index + (v.side == upper))) {
+      Vec3 xi = Vec3::Zero();
+      xi[grid_.axis(edge)] = cuts_.find(edge)->t;
+      set(id, grid::edge_point(grid_, cuts_, edge), xi, copy, (1u << lower) | (1u << upper));
     }
-    const auto& vertices = cube::face_vertices[v.index];
-    const auto side = std::find(vertices.begin(), vertices.end(), v.side) - vertices.begin();
-    std::uint32_t& id = face_vertices_[first + side];
-    if (id == unset)
-      id = new_vertex(grid::face_point(grid_, cuts_, face), cell, copy, cube::face_mask(v.index));
     return id;
   }
 
-  std::uint32_t centre(const CellId cell, const CopyId copy) {
-    std::uint32_t& id = centres_[copy.value];
-    if (id == unset)
-      id = new_vertex(grid::cell_point(grid_, cuts_, cell), cell, copy, 0xff);
+  std::uint32_t face_vertex(const CopyId copy, const TableVertex& v) {
+    const FaceId face = grid_.faces(cell_)[v.index];
+    std::uint32_t& first = index_.first_face_vertex[face];
+    if (first == unset) {
+      first = static_cast<std::uint32_t>(index_.face_vertices.size());
+      index_.face_vertices.resize(index_.face_vertices.size() + 4, unset);
+    }
+    std::uint32_t& id = index_.face_vertices[first + place_in_face(v.index, v.side)];
+    if (is_wanted(id, 24 + 8 * v.index + v.side)) {
+      const Vec3 p = grid::face_point(grid_, cuts_, face);
+      const NodeId lowest = grid_.nodes(cell_)[cube::face_vertices[v.index][0]];
+      set(id, p, (p - grid_.position(lowest)) / grid_.h(), copy, cube::face_mask(v.index));
+    }
     return id;
   }
 
-  /// A vertex at rest position p whose weights go to the corners in `support` (bits) of the copy.
-  std::uint32_t new_vertex(const Vec3& p, const CellId cell, const CopyId copy, const unsigned support) {
-    const int id = static_cast<int>(surface_.rest.size());
-    surface_.rest.push_back(p);
-    const Vec3 xi = (p - grid_.origin(cell)) / grid_.h();
+  std::uint32_t centre(const CopyId copy, const TableVertex& v) {
+    std::uint32_t& id = index_.centres[copy];
+    if (is_wanted(id, 72 + v.side)) {
+      const Vec3 p = grid::cell_point(grid_, cuts_, cell_);
+      set(id, p, (p - grid_.origin(cell_)) / grid_.h(), copy, 0xff);
+    }
+    return id;
+  }
+
+  /// True for a vertex that is to be made, or to be renewed for the first time in this cell.
+  bool is_wanted(const std::uint32_t id, const int vertex_of_cell) {
+    if (id != unset && (known_ == Known::kept || seen_[vertex_of_cell]))
+      return false;
+    seen_[vertex_of_cell] = true;
+    return true;
+  }
+
+  /// Writes a vertex at rest position p whose weights go to the corners in `support` (bits) of the copy.
+  void set(std::uint32_t& id, const Vec3& p, const Vec3& xi, const CopyId copy, const unsigned support) {
+    Weights& w = surface_.weights;
+    if (id == unset) {
+      id = static_cast<std::uint32_t>(surface_.rest.size());
+      surface_.rest.emplace_back();
+      w.row_start.push_back(w.row_start.back() + static_cast<std::uint32_t>(std::popcount(support)));
+      w.corners.resize(w.row_start.back());
+      w.values.resize(w.row_start.back());
+    }
+    surface_.rest[id] = p;
+    std::uint32_t entry = w.row_start[id];
     for (int v = 0; v < cube::n_vertices; ++v)
-      if (support >> v & 1)
-        entries_.emplace_back(id, static_cast<int>(complex_.copies[copy].corners[v].value), weight(xi, v, support));
-    return static_cast<std::uint32_t>(id);
+      if (support >> v & 1) {
+        w.corners[entry] = complex_.copies[copy].corners[v];
+        w.values[entry++] = grid::shape(v, xi, support);
+      }
   }
 
   const Grid& grid_;
   const Cuts& cuts_;
   const CellComplex& complex_;
-  Table<FaceId, std::uint32_t> first_face_vertex_; // into face_vertices_, four a face
-  std::vector<std::uint32_t> face_vertices_, edge_vertices_, centres_;
-  std::vector<Eigen::Triplet<double>> entries_;
-  Surface surface_;
+  Surface& surface_;
+  SurfaceIndex& index_;
+  Known known_;
+
+  CellId cell_;
+  std::array<CopyId, 8> copy_at_;
+  std::bitset<80> seen_; // 24 edge vertices, 48 face vertices, 8 centres
 };
+
+/// The cells whose part of the surface an update writes.
+std::vector<CellId> cells_to_write(const Grid& grid, const CellComplex& complex,
+                                   const std::span<const EdgeId> new_edges, const grid::ComplexChange& change) {
+  std::vector<CellId> cells;
+  for (const grid::TouchedCell& touched : grid::touched_cells(grid, new_edges))
+    cells.push_back(touched.cell);
+  for (const CopyId c : change.copies)
+    cells.push_back(complex.copies[c].cell);
+  std::sort(cells.begin(), cells.end());
+  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+  return cells;
+}
+
+template <class T>
+std::size_t bytes(const std::vector<T>& items) {
+  return items.capacity() * sizeof(T);
+}
 
 } // namespace
 
+std::size_t Surface::n_bytes() const {
+  return bytes(rest) + bytes(triangles) + bytes(labels) + bytes(copies) + bytes(weights.row_start) +
+         bytes(weights.corners) + bytes(weights.values);
+}
+
+std::size_t SurfaceIndex::n_bytes() const {
+  return bytes(first_face_vertex.items()) + bytes(face_vertices) + bytes(edge_vertices) + bytes(first_triangle) +
+         bytes(centres.items());
+}
+
 Surface build_surface(const Grid& grid, const Cuts& cuts, const CellComplex& complex) {
-  Builder builder(grid, cuts, complex);
+  SurfaceIndex index;
+  return build_surface(grid, cuts, complex, index);
+}
+
+Surface build_surface(const Grid& grid, const Cuts& cuts, const CellComplex& complex, SurfaceIndex& index) {
+  Surface surface;
+  index = {};
+  index.first_face_vertex.resize(grid.n_faces(), unset);
+  index.centres.reserve(complex.copies.items().capacity());
+  Writer writer(grid, cuts, complex, surface, index, Known::kept);
   for (const CellId cell : ids<CellId>(grid.n_cells()))
-    builder.add_cell(cell);
-  return builder.finish();
+    writer.write(cell);
+  return surface;
+}
+
+void update_surface(const Grid& grid, const Cuts& cuts, const CellComplex& complex,
+                    const std::span<const EdgeId> new_edges, const grid::ComplexChange& change, Surface& surface,
+                    SurfaceIndex& index) {
+  Writer writer(grid, cuts, complex, surface, index, Known::renewed);
+  for (const CellId cell : cells_to_write(grid, complex, new_edges, change))
+    writer.write(cell);
 }
 
 void follow(const Surface& surface, const Points& corners, Points& positions) {
   const Weights& w = surface.weights;
-  positions.resize(w.rows());
-  const int* start = w.outerIndexPtr();
+  positions.resize(w.n_rows());
   parallel_for(positions.size(), [&](const std::size_t i) {
     Vec3 p = Vec3::Zero();
-    for (int k = start[i]; k < start[i + 1]; ++k)
-      p += w.valuePtr()[k] * corners[w.innerIndexPtr()[k]];
+    for (std::uint32_t k = w.row_start[i]; k < w.row_start[i + 1]; ++k)
+      p += w.values[k] * corners[w.corners[k].value];
     positions[i] = p;
   });
 }
@@ -164,14 +274,15 @@ double enclosed_volume(const Points& positions, const std::vector<Triangle>& tri
 }
 
 std::vector<double> piece_volumes(const Surface& surface, const CellComplex& complex) {
-  std::vector<double> volumes(complex.n_pieces, 0.0);
+  const grid::Pieces pieces = grid::pieces(complex);
+  std::vector<double> volumes(pieces.n_pieces, 0.0);
   if (surface.triangles.empty())
     return volumes;
   const Vec3 reference = surface.rest[surface.triangles[0][0]];
   for (std::size_t i = 0; i < surface.triangles.size(); ++i) {
     const auto& [a, b, c] = surface.triangles[i];
     const Vec3 &p = surface.rest[a], &q = surface.rest[b], &r = surface.rest[c];
-    volumes[complex.piece[surface.copies[i]]] += (p - reference).dot((q - reference).cross(r - reference)) / 6;
+    volumes[pieces.piece[surface.copies[i]]] += (p - reference).dot((q - reference).cross(r - reference)) / 6;
   }
   return volumes;
 }

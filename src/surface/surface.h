@@ -6,24 +6,58 @@
 /// split along the diagonal edge vertex - centre, which both sides of a cut share. A vertex takes the weights of its
 /// place in its copy: linear on an edge, bilinear in a face, trilinear in a cell (§2.4.4, with corners as unknowns
 /// instead of extrapolated frames).
+///
+/// A later cut takes no vertex and no triangle away: a quadrilateral belongs to a cut edge, and an edge is cut once; a
+/// vertex belongs to a component, and of the parts that a component falls into, the one with its smallest vertex keeps
+/// the vertex and uses it, for it has an end of the edge that parts it. So an update writes the cells around what is
+/// new, and appends. The order of vertices depends on the sequence of cuts, the surface does not.
 
 #include "grid/complex.h"
 
-#include <Eigen/SparseCore>
-
 namespace kerf::surface {
 
-using Weights = Eigen::SparseMatrix<double, Eigen::RowMajor, int>;
+/// The rows of W: entries row_start[i] .. row_start[i + 1] belong to vertex i.
+struct Weights {
+  std::vector<std::uint32_t> row_start = {0}; ///< n_vertices + 1
+  std::vector<grid::CornerId> corners;
+  std::vector<double> values; ///< [1]; those of a vertex sum to 1
+
+  std::size_t n_rows() const { return row_start.size() - 1; }
+};
 
 struct Surface {
   Points rest;                        ///< rest positions of the vertices [m]
-  std::vector<Triangle> triangles;    ///< counter-clockwise from outside
+  std::vector<Triangle> triangles;    ///< counter-clockwise from outside; those of a cut edge follow each other
   std::vector<grid::CutLabel> labels; ///< per triangle: which cut made it; 0 is the skin
   std::vector<grid::CopyId> copies;   ///< per triangle: the copy whose material it bounds
-  Weights weights;                    ///< W: n_vertices x n_corners [1]; rows sum to 1
+  Weights weights;
+
+  /// Memory of all tables [B].
+  std::size_t n_bytes() const;
+};
+
+/// Which vertex is where: what an update needs to know of the surface beside the surface.
+struct SurfaceIndex {
+  Table<grid::FaceId, std::uint32_t> first_face_vertex; ///< into face_vertices, where a face has some
+  std::vector<std::uint32_t> face_vertices;             ///< four a face: by the component's smallest vertex
+  std::vector<std::uint32_t> edge_vertices;             ///< two a cut edge: of its lower and its upper end
+  std::vector<std::uint32_t> first_triangle;            ///< of each cut edge
+  Table<grid::CopyId, std::uint32_t> centres;
+
+  std::size_t n_bytes() const;
 };
 
 Surface build_surface(const grid::Grid& grid, const grid::Cuts& cuts, const grid::CellComplex& complex);
+
+/// The same, for a surface that will be updated.
+Surface build_surface(const grid::Grid& grid, const grid::Cuts& cuts, const grid::CellComplex& complex,
+                      SurfaceIndex& index);
+
+/// Brings surface and index up to date with edges that were cut, and their vertices placed, since they were built or
+/// updated last. `change` is what update_complex said of the same edges. The cost depends on the new edges alone.
+void update_surface(const grid::Grid& grid, const grid::Cuts& cuts, const grid::CellComplex& complex,
+                    std::span<const grid::EdgeId> new_edges, const grid::ComplexChange& change, Surface& surface,
+                    SurfaceIndex& index);
 
 /// x_surface = W x_corners [m].
 void follow(const Surface& surface, const Points& corners, Points& positions);

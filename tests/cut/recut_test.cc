@@ -235,11 +235,12 @@ TEST(Recut, BentBodiesAreSeparated) {
   for (const EdgeCut& cut : first)
     block.body.cuts.add(cut);
   block.complex = grid::build_complex(block.body.grid, block.body.cuts);
-  ASSERT_EQ(block.complex.n_pieces, 2u);
+  ASSERT_EQ(grid::n_pieces(block.complex), 2u);
   block.x = grid::rest_positions(block.body.grid, block.complex);
+  const grid::Pieces pieces = grid::pieces(block.complex);
   for (grid::CopyId c : ids<grid::CopyId>(block.complex.n_copies()))
     for (const grid::CornerId corner : block.complex.copies[c].corners)
-      if (Vec3& p = block.x[corner.value]; block.complex.piece[c] == 1 && p[2] < 50)
+      if (Vec3& p = block.x[corner.value]; pieces.piece[c] == 1 && p[2] < 50)
         p += Vec3(0.3, 0, 100 + 0.1 * p[0] * p[0]);
   const auto lower = block.cut(plane_sweep(Vec3(2, -9, -9), Vec3(0, 20, 0), Vec3(0, 0, 20), 2)).cuts;
   EXPECT_EQ(lower.size(), 15u) << "the other piece is elsewhere";
@@ -309,7 +310,7 @@ TEST(PendingCuts, ReleaseTwoEdgesACellInOrder) {
   EXPECT_GT(n_releases, 1);
   EXPECT_EQ(released.front(), cuts.front().edge);
   EXPECT_EQ(released.size(), cuts.size());
-  EXPECT_EQ(grid::build_complex(block.body.grid, block.body.cuts).n_pieces, 2u);
+  EXPECT_EQ(grid::n_pieces(grid::build_complex(block.body.grid, block.body.cuts)), 2u);
 }
 
 TEST(PendingCuts, DropEdgesThatWereCutMeanwhile) {
