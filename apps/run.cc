@@ -32,7 +32,8 @@ void print_body(const scene::Body& body) {
   const double volume = surface::enclosed_volume(body.positions, body.surface.triangles);
   const double rest = surface::enclosed_volume(body.surface.rest, body.surface.triangles);
   std::printf("body %s: %zu cells, %zu copies, %u pieces, %zu surface triangles\n", body.name.c_str(),
-              body.grid.n_cells(), body.complex.n_copies(), body.complex.n_pieces, body.surface.triangles.size());
+              body.grid.n_cells(), body.complex.n_copies(), grid::n_pieces(body.complex),
+              body.surface.triangles.size());
   std::printf("  volume: mesh %.6e m^3; grid %+.3f %%; cuts changed the rest volume by %+.2e; deformed now %+.3f %%\n",
               body.mesh_volume, 100 * (body.first_volume / body.mesh_volume - 1), rest / body.first_volume - 1,
               100 * (volume / rest - 1));
@@ -41,9 +42,11 @@ void print_body(const scene::Body& body) {
   if (body.n_lost_shells > 0)
     std::printf("  %zu shells of the mesh hold no grid node and are lost: use a smaller cube edge\n",
                 body.n_lost_shells);
-  if (body.n_unresolved_edges > 0)
-    std::printf("  %zu grid edges cross the mesh more than once: parts thinner than a cell are not resolved\n",
-                body.n_unresolved_edges);
+  if (body.n_thin_walls + body.n_thin_gaps + body.n_triple_crossings > 0)
+    std::printf(
+      "  thinner than a cell: %zu grid edges pass through walls that are lost, %zu through gaps that are "
+      "filled, %zu cross the skin more than once\n",
+      body.n_thin_walls, body.n_thin_gaps, body.n_triple_crossings);
 }
 
 void print_cut(const scene::World& world, const grid::CutLabel label, const std::string& what,
@@ -60,14 +63,18 @@ void print_cutting(const scene::World& world) {
     print_cut(world, blade.label, "blade " + blade.name, "Check its key frames");
   for (const auto& [surface, step] : world.cut_surfaces)
     print_cut(world, surface.label, "cut surface " + surface.name, "Check its place and time");
-  std::size_t n_double = 0, n_waiting = 0;
+  std::size_t n_double = 0, n_waiting = 0, n_passed = 0;
   for (const scene::Body& body : world.bodies)
     if (body.cutting) {
       n_double += body.cutting->n_double_crossings;
       n_waiting += body.cutting->pending.size();
+      for (const cut::PassedCells& passed : body.cutting->passed)
+        n_passed += passed.cells().size();
     }
   if (n_double + n_waiting > 0)
     std::printf("  %zu edges crossed twice by one cut and left whole, %zu cuts still waiting\n", n_double, n_waiting);
+  if (n_passed > 0)
+    std::printf("  %zu cells passed without a cut: what ends inside a cell is not resolved\n", n_passed);
 }
 
 void print_summary(const scene::World& world, const Timings& seconds, const SceneArguments& arguments) {
@@ -95,12 +102,15 @@ int run(const Arguments& arguments) {
   if (parsed.n_threads > 0)
     set_n_threads(parsed.n_threads);
   const scene::SceneText text = scene::read_scene_text(parsed.scene, parsed.overrides);
+  scene::require_writable(parsed.output);
   scene::World world = scene::compose(text);
   for (const std::string& line : world.composition)
     std::printf("%s\n", line.c_str());
   std::fflush(stdout);
 
   std::string scene_text = text.text;
+  if (!scene_text.ends_with('\n'))
+    scene_text += '\n';
   for (const std::string& change : parsed.overrides)
     scene_text += "# --set \"" + change + "\"\n";
   scene::Recorder recorder(parsed.output, world, run_info(arguments), scene_text);

@@ -150,19 +150,21 @@ void follow(const CornerMap& map, const Points& x, const std::vector<Mat3>& F, P
 }
 
 std::vector<std::uint32_t> phyxel_pieces(const grid::CellComplex& complex, const std::span<const grid::CopyId> copies) {
+  const grid::Pieces all = grid::pieces(complex);
   std::vector<std::uint32_t> pieces;
   for (const auto c : copies)
-    pieces.push_back(complex.piece[c]);
+    pieces.push_back(all.piece[c]);
   return pieces;
 }
 
 std::vector<std::uint32_t> node_pieces(const grid::CellComplex& complex, const NodePairs& pairs) {
   const auto rows = rows_of(complex, pairs);
+  const grid::Pieces all = grid::pieces(complex);
   std::vector<std::uint32_t> pieces(pairs.nodes.size(), 0);
   for (const auto c : ids<grid::CopyId>(complex.n_copies()))
     for (int v = 0; v < 8; ++v)
       if (complex.copies[c].nodes >> v & 1)
-        pieces[rows[complex.node[complex.copies[c].corners[v]]]] = complex.piece[c];
+        pieces[rows[complex.node[complex.copies[c].corners[v]]]] = all.piece[c];
   return pieces;
 }
 

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "render/blade.h"
+#include "render/rod.h"
 #include "render/shading.h"
 
 #include <cmath>
@@ -67,19 +68,22 @@ struct Appender {
 
 } // namespace
 
-Batch collect(const Camera& camera, const Look& look, std::span<const DrawnSurface> surfaces,
-              std::span<const DrawnBlade> blades) {
+Batch collect(const Camera& camera, const Look& look, const DrawnScene& scene) {
   Batch batch;
   Appender appender{camera, look, batch, view_matrix(camera).block<3, 3>(0, 0)};
-  for (std::size_t i = 0; i < surfaces.size(); ++i) {
-    check(surfaces[i], "drawn surface " + std::to_string(i));
-    appender.add(surfaces[i], Material::tissue);
+  const auto add = [&](const DrawnSurface& surface, const std::string& name, const Material material) {
+    check(surface, name);
+    appender.add(surface, material);
+  };
+  for (std::size_t i = 0; i < scene.surfaces.size(); ++i)
+    add(scene.surfaces[i], "drawn surface " + std::to_string(i), Material::tissue);
+  for (std::size_t i = 0; i < scene.blades.size(); ++i) {
+    const ToolMesh mesh = blade_mesh(scene.blades[i].edge, scene.blades[i].spine);
+    add({mesh.positions, mesh.triangles, mesh.labels}, "drawn blade " + std::to_string(i), Material::steel);
   }
-  for (std::size_t i = 0; i < blades.size(); ++i) {
-    const BladeMesh mesh = blade_mesh(blades[i].edge, blades[i].spine);
-    const DrawnSurface surface{mesh.positions, mesh.triangles, mesh.labels};
-    check(surface, "drawn blade " + std::to_string(i));
-    appender.add(surface, Material::steel);
+  for (std::size_t i = 0; i < scene.rods.size(); ++i) {
+    const ToolMesh mesh = rod_mesh(scene.rods[i].path, scene.rods[i].radius);
+    add({mesh.positions, mesh.triangles, mesh.labels}, "drawn rod " + std::to_string(i), Material::steel);
   }
   return batch;
 }

@@ -24,7 +24,6 @@ struct Batch {
 };
 
 /// Throws DataError if a triangle names no vertex or the labels do not fit, NumericalError if a position is not finite.
-Batch collect(const Camera& camera, const Look& look, std::span<const DrawnSurface> surfaces,
-              std::span<const DrawnBlade> blades);
+Batch collect(const Camera& camera, const Look& look, const DrawnScene& scene);
 
 } // namespace kerf::render

@@ -15,14 +15,6 @@ constexpr double thickness = 0.05, bevel_depth = 0.22;
 constexpr int n_outline = 5;
 constexpr std::array<std::uint16_t, n_outline> outline_labels = {1, 0, 2, 0, 1};
 
-Points without_repeats(const Points& edge) {
-  Points points;
-  for (const Vec3& p : edge)
-    if (points.empty() || p != points.back())
-      points.push_back(p);
-  return points;
-}
-
 /// Directions across the plate at each point of the edge, unit; the mean of the two segments that meet there.
 Points across(const Points& edge, const Vec3& spine) {
   Points directions;
@@ -40,8 +32,8 @@ Points across(const Points& edge, const Vec3& spine) {
 
 } // namespace
 
-BladeMesh blade_mesh(const Points& edge, const Vec3& spine) {
-  BladeMesh mesh;
+ToolMesh blade_mesh(const Points& edge, const Vec3& spine) {
+  ToolMesh mesh;
   const Points points = without_repeats(edge);
   if (points.size() < 2 || spine.norm() == 0)
     return mesh;

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 namespace kerf::render {
 
@@ -20,6 +21,19 @@ struct DrawnSurface {
 struct DrawnBlade {
   Points edge; ///< the cutting edge, a polyline [m], world
   Vec3 spine;  ///< from the edge to the back of the plate [m], world
+};
+
+/// A round bar of steel: the shank of a handle, an arm, a pin.
+struct DrawnRod {
+  Points path;       ///< its middle line [m], world
+  double radius = 0; ///< [m]
+};
+
+/// Everything that an image shows.
+struct DrawnScene {
+  std::vector<DrawnSurface> surfaces;
+  std::vector<DrawnBlade> blades;
+  std::vector<DrawnRod> rods;
 };
 
 } // namespace kerf::render

@@ -164,8 +164,8 @@ Renderer::~Renderer() {
   passes_->context.make_current();
 }
 
-Image Renderer::draw(std::span<const DrawnSurface> surfaces, std::span<const DrawnBlade> blades) const {
-  const Batch batch = collect(camera_, look_, surfaces, blades);
+Image Renderer::draw(const DrawnScene& scene) const {
+  const Batch batch = collect(camera_, look_, scene);
   passes_->context.make_current();
   passes_->samples.clear(Eigen::Vector4f::Zero());
   if (const auto depths = depth_range(batch.bounds)) {

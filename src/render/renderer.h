@@ -1,6 +1,6 @@
 #pragma once
 
-/// Images of bodies, their revealed faces and the blades that cut them.
+/// Images of bodies, their revealed faces and the tools that cut and hold them.
 ///
 /// Passes: the depths seen from the key light (shadow map); the solids, shaded in linear light at twice the
 /// resolution in each direction; ambient occlusion from their depths; the average of each 2 x 2 block over the
@@ -14,7 +14,6 @@
 #include "render/look.h"
 
 #include <memory>
-#include <span>
 
 namespace kerf::render {
 
@@ -28,7 +27,7 @@ class Renderer {
 
   /// Draws the scene as it is now; the same input gives the same bytes. Throws DataError if a triangle names no vertex
   /// or the labels do not fit, NumericalError if a position is not finite.
-  Image draw(std::span<const DrawnSurface> surfaces, std::span<const DrawnBlade> blades) const;
+  Image draw(const DrawnScene& scene) const;
 
  private:
   struct Passes;

@@ -23,7 +23,10 @@ void find_supports(Body& body) {
   }
 }
 
-void build_surface(Body& body) { body.surface = surface::build_surface(body.grid, body.cuts, body.complex); }
+void build_surface(Body& body) {
+  body.surface = body.cutting ? surface::build_surface(body.grid, body.cuts, body.complex, body.cutting->surface_index)
+                              : surface::build_surface(body.grid, body.cuts, body.complex);
+}
 
 void build_physics(Body& body, Timings& timings) {
   const ScopedTimer timer(timings, "assemble");
@@ -31,18 +34,10 @@ void build_physics(Body& body, Timings& timings) {
   body.physics = body.make_physics(body);
 }
 
-Points inherited(const Points& of_corners, const Table<grid::CornerId, grid::CornerId>& parents) {
-  Points values;
-  values.reserve(parents.size());
-  for (const auto parent : parents)
-    values.push_back(of_corners[parent.value]);
-  return values;
-}
-
-void inherit_state(Body& body, const Table<grid::CornerId, grid::CornerId>& parents) {
-  body.state.x = inherited(body.state.x, parents);
-  body.state.v = inherited(body.state.v, parents);
-  body.cutting->x_before = inherited(body.cutting->x_before, parents);
+void inherit_state(Body& body, const grid::ComplexChange& change) {
+  grid::inherit(change, body.state.x);
+  grid::inherit(change, body.state.v);
+  grid::inherit(change, body.cutting->x_before);
 }
 
 /// Adds cuts to the body; returns the edges.
@@ -52,26 +47,39 @@ std::vector<grid::EdgeId> add_cuts(Body& body, const std::vector<grid::EdgeCut>&
     body.cuts.add(cut);
     edges.push_back(cut.edge);
     ++body.cutting->n_cut_edges[cut.label - 1];
+    body.cutting->passed[cut.label - 1].remove_around(body.grid, cut.edge);
   }
   return edges;
 }
 
-void rebuild_topology(Body& body, const std::vector<grid::EdgeId>& edges, Timings& timings) {
+/// Returns what has changed, for the physics.
+grid::ComplexChange update_topology(Body& body, const std::vector<grid::EdgeId>& edges, Timings& timings) {
   const ScopedTimer timer(timings, "topology");
   const auto placed = surface::place(body.grid, body.cuts, edges, body.placement);
   body.placed.n_placed += placed.n_placed;
   body.placed.n_clamped += placed.n_clamped;
-  grid::CellComplex complex = grid::build_complex(body.grid, body.cuts);
-  inherit_state(body, grid::parents(body.complex, complex));
-  body.complex = std::move(complex);
-  build_surface(body);
+  grid::ComplexChange change = grid::update_complex(body.grid, body.cuts, edges, body.complex);
+  inherit_state(body, change);
+  surface::update_surface(body.grid, body.cuts, body.complex, edges, change, body.surface, body.cutting->surface_index);
   ++body.n_recuts;
+  return change;
+}
+
+/// Puts what a blade cuts between two times to what waits, and counts what the grid cannot resolve of it.
+void meet(Body& body, const cut::Blade& blade, const double t0, const double t1) {
+  Cutting& cutting = *body.cutting;
+  const auto found = cut::cut_edges(cut::path(blade, t0, t1), body.grid, body.cuts, body.complex, cutting.x_before,
+                                    body.state.x, blade.label, &*cutting.boxes);
+  cutting.pending.push(found.cuts);
+  cutting.n_double_crossings += found.n_double_crossings;
+  cutting.passed[blade.label - 1].pass(cut::sweep(blade, t0, t1), found.cuts, body.grid, body.cuts, body.complex,
+                                       body.state.x, *cutting.boxes, blade.label);
 }
 
 void make_cuts(Body& body, const std::vector<grid::EdgeCut>& cuts, Timings& timings) {
   if (cuts.empty())
     return;
-  rebuild_topology(body, add_cuts(body, cuts), timings);
+  update_topology(body, add_cuts(body, cuts), timings);
   build_physics(body, timings);
 }
 
@@ -90,11 +98,16 @@ void start(Body& body, const geometry::TriangleMesh& mesh, Timings& timings) {
   }
   body.first_volume = surface::enclosed_volume(body.surface.rest, body.surface.triangles);
   body.state.x = grid::rest_positions(body.grid, body.complex);
+  body.state.v.reserve(body.state.x.capacity());
   body.state.v.assign(body.complex.n_corners(), Vec3::Zero());
   build_physics(body, timings);
   follow(body);
-  if (body.cutting)
+  if (body.cutting) {
+    body.cutting->x_before.reserve(body.state.x.capacity());
     body.cutting->x_before = body.state.x;
+    body.cutting->boxes.emplace(body.grid, body.complex);
+    body.cutting->passed.resize(body.cutting->n_cut_edges.size());
+  }
 }
 
 void recut(Body& body, const std::span<const cut::Blade> blades, const double t0, const double t1, Timings& timings) {
@@ -102,12 +115,10 @@ void recut(Body& body, const std::span<const cut::Blade> blades, const double t0
   {
     const ScopedTimer timer(timings, "cut");
     Cutting& cutting = *body.cutting;
-    for (const cut::Blade& blade : blades) {
-      const auto found = cut::cut_edges(cut::path(blade, t0, t1), body.grid, body.cuts, body.complex, cutting.x_before,
-                                        body.state.x, blade.label);
-      cutting.pending.push(found.cuts);
-      cutting.n_double_crossings += found.n_double_crossings;
-    }
+    if (!blades.empty())
+      cutting.boxes->fit(cutting.x_before, body.state.x);
+    for (const cut::Blade& blade : blades)
+      meet(body, blade, t0, t1);
     released = cutting.pending.release(body.grid, body.cuts);
   }
   make_cuts(body, released, timings);
@@ -118,7 +129,8 @@ void cut_at_once(Body& body, const cut::CutSurface& surface, Timings& timings) {
   cut::SweepCuts found;
   {
     const ScopedTimer timer(timings, "cut");
-    found = cut::cut_edges(surface, body.grid, body.cuts, body.complex, body.state.x);
+    body.cutting->boxes->fit(body.state.x);
+    found = cut::cut_edges(surface, body.grid, body.cuts, body.complex, body.state.x, &*body.cutting->boxes);
   }
   body.cutting->n_double_crossings += found.n_double_crossings;
   make_cuts(body, found.cuts, timings);

@@ -5,6 +5,8 @@
 #include "base/timer.h"
 #include "cut/blade.h"
 #include "cut/cut_surface.h"
+#include "cut/edge_boxes.h"
+#include "cut/passed.h"
 #include "cut/pending.h"
 #include "dynamics/model.h"
 #include "dynamics/stepper.h"
@@ -15,6 +17,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,6 +37,9 @@ struct SupportRegion {
 /// What only a body in a scene that cuts needs.
 struct Cutting {
   cut::PendingCuts pending;
+  surface::SurfaceIndex surface_index;
+  std::optional<cut::EdgeBoxes> boxes;  ///< around the edges; there from start() on
+  std::vector<cut::PassedCells> passed; ///< by label, from 1
   Points x_before;                      ///< where the corners were when the blades were met last [m]
   std::vector<std::size_t> n_cut_edges; ///< by label, from 1: the blades, then the cut surfaces
   std::size_t n_double_crossings = 0;   ///< edges that one cut crossed an even number of times: left uncut
@@ -61,7 +67,9 @@ struct Body {
   double mesh_volume = 0;                     ///< of the input mesh [m^3]
   double first_volume = 0;                    ///< rest volume of the surface before any cut [m^3]
   std::size_t n_lost_shells = 0;              ///< shells of the input mesh that hold no grid node
-  std::size_t n_unresolved_edges = 0;         ///< edges that the input mesh crosses more than once
+  std::size_t n_thin_walls = 0;               ///< grid edges through walls of the input mesh that are lost
+  std::size_t n_thin_gaps = 0;                ///< grid edges through gaps of the input mesh that are filled
+  std::size_t n_triple_crossings = 0;         ///< grid edges of the skin that the input mesh crosses 3, 5, ... times
 };
 
 /// Builds complex, surface, state at rest, supports and physics of a body whose grid and skin are there, cut from

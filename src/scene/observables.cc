@@ -66,7 +66,8 @@ const std::vector<BodyObservable>& body_observables() {
      "skin gained or lost",
      [](const Body& b) { return rest_volume(b) - b.first_volume; }},
     {"largest displacement", "m", "of a surface vertex from its rest position", largest_displacement},
-    {"pieces", "1", "connected components of the copies", [](const Body& b) { return count(b.complex.n_pieces); }},
+    {"pieces", "1", "connected components of the copies",
+     [](const Body& b) { return count(grid::n_pieces(b.complex)); }},
     {"copies", "1", "cells, once per connected component", [](const Body& b) { return count(b.complex.n_copies()); }},
     {"surface triangles", "1", "of the closed surface",
      [](const Body& b) { return count(b.surface.triangles.size()); }},
@@ -82,6 +83,15 @@ const std::vector<BodyObservable>& body_observables() {
      [](const Body& b) { return b.cutting ? count(b.cutting->pending.size()) : 0.0; }},
     {"double crossings", "1", "grid edges that one sweep or cut surface crossed an even number of times, left uncut",
      [](const Body& b) { return b.cutting ? count(b.cutting->n_double_crossings) : 0.0; }},
+    {"cells passed uncut", "1",
+     "cells whose material a blade passed through without cutting one of their edges, so far (cut/passed.h)",
+     [](const Body& b) {
+       std::size_t n = 0;
+       if (b.cutting)
+         for (const cut::PassedCells& passed : b.cutting->passed)
+           n += passed.cells().size();
+       return count(n);
+     }},
     {"solver iterations", "1", "of the linear solver in the step",
      [](const Body& b) { return count(b.report.n_iterations); }},
     {"clamped vertices", "1", "placements that were held at the side of their face or cell",

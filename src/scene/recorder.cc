@@ -1,14 +1,24 @@
 #include "scene/recorder.h"
 
 #include "base/error.h"
+#include "scene/drawing.h"
 
+#include <cerrno>
 #include <cstdio>
 #include <system_error>
 #include <utility>
 
+#include <unistd.h>
+
 namespace kerf::scene {
 
 namespace {
+
+[[noreturn]] void refuse_folder(const std::filesystem::path& folder, const std::error_code& error) {
+  throw DataError(Complaint{.file = folder.string(),
+                            .rule = "the results folder cannot be made: " + error.message(),
+                            .remedy = "Choose another folder with --output, or change its permissions"});
+}
 
 /// Removes what an earlier run into the same folder has left of a kind.
 void remove_old(const std::filesystem::path& folder, const std::string& prefix, const std::string& extension) {
@@ -18,14 +28,21 @@ void remove_old(const std::filesystem::path& folder, const std::string& prefix, 
       std::filesystem::remove(entry.path(), ignored);
 }
 
+/// The folder itself, or what it would have to be made in.
+std::filesystem::path nearest_existing(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::path place = std::filesystem::absolute(folder);
+  while (!std::filesystem::exists(place, error) && place.has_relative_path())
+    place = place.parent_path();
+  return place;
+}
+
 /// Folder of the run, empty of an earlier one's surfaces and images.
 std::filesystem::path make_folder(const std::filesystem::path& folder, const World& world) {
   std::error_code error;
   std::filesystem::create_directories(world.images ? folder / "frames" : folder, error);
   if (error)
-    throw DataError(Complaint{.file = folder.string(),
-                              .rule = "the results folder cannot be made: " + error.message(),
-                              .remedy = "Choose another folder with --output, or change its permissions"});
+    refuse_folder(folder, error);
   remove_old(folder, "surface_", ".vtkhdf");
   remove_old(folder / "frames", "", ".png");
   return folder;
@@ -56,9 +73,10 @@ output::Complex to_record(const Body& body) {
 output::Surface to_record(const surface::Surface& surface) {
   output::Surface record{surface.triangles, surface.labels, surface.rest, {}};
   const surface::Weights& w = surface.weights;
-  record.weights.row_starts.assign(w.outerIndexPtr(), w.outerIndexPtr() + w.rows() + 1);
-  record.weights.columns.assign(w.innerIndexPtr(), w.innerIndexPtr() + w.nonZeros());
-  record.weights.values.assign(w.valuePtr(), w.valuePtr() + w.nonZeros());
+  record.weights.row_starts.assign(w.row_start.begin(), w.row_start.end());
+  for (const grid::CornerId corner : w.corners)
+    record.weights.columns.push_back(corner.value);
+  record.weights.values = w.values;
   return record;
 }
 
@@ -69,6 +87,15 @@ bool is_due(const int step, const int every, const World& world) { return step %
 const std::vector<std::string>& stages() {
   static const std::vector<std::string> names = {"cut", "topology", "assemble", "solve", "surface", "output", "images"};
   return names;
+}
+
+void require_writable(const std::filesystem::path& folder) {
+  const std::filesystem::path place = nearest_existing(folder);
+  std::error_code error;
+  if (!std::filesystem::is_directory(place, error))
+    refuse_folder(folder, error ? error : std::make_error_code(std::errc::not_a_directory));
+  if (access(place.c_str(), W_OK | X_OK) != 0)
+    refuse_folder(folder, std::error_code(errno, std::generic_category()));
 }
 
 Recorder::Recorder(const std::filesystem::path& folder, const World& world, const output::RunInfo& info,
@@ -131,17 +158,9 @@ void Recorder::append_surfaces(const World& world, const int step) {
 }
 
 void Recorder::write_image(const World& world, const int step) {
-  std::vector<render::DrawnSurface> surfaces;
-  for (const Body& body : world.bodies)
-    surfaces.push_back({body.positions, body.surface.triangles, body.surface.labels});
-  std::vector<render::DrawnBlade> blades;
-  for (const cut::Blade& blade : world.blades) {
-    const double time = step * world.time_step;
-    blades.push_back({cut::world_points(blade, time), cut::pose(blade, time).rotation * blade.spine});
-  }
   std::array<char, 32> name;
   std::snprintf(name.data(), name.size(), "%06d.png", step);
-  render::write_png(world.images->renderer->draw(surfaces, blades), (folder_ / "frames" / name.data()).string());
+  render::write_png(world.images->renderer->draw(drawing(world, step)), (folder_ / "frames" / name.data()).string());
 }
 
 } // namespace kerf::scene

@@ -10,6 +10,10 @@
 
 namespace kerf::scene {
 
+/// Throws DataError when a run's folder can neither be written nor made, as far as can be told without making it: for
+/// whoever would know before a scene is composed.
+void require_writable(const std::filesystem::path& folder);
+
 class Recorder {
  public:
   /// Makes the folder and the files that the world asks for. Throws DataError when it cannot.

@@ -53,6 +53,7 @@ void advance(World& world, const int step, Timings& seconds) {
   cut(world, step, seconds);
   for (Body& body : world.bodies) {
     const ScopedTimer timer(seconds, "solve");
+    hold(body, world.forceps, step, (step - 1) * dt);
     on(body, step, t1, [&] {
       body.report = body.physics.stepper->step(body.state, body.loads, dt);
       require_sound(body, dt);

@@ -4,6 +4,7 @@
 
 #include "render/renderer.h"
 #include "scene/body.h"
+#include "scene/forceps.h"
 #include "scene/grammar.h"
 #include "scene/observables.h"
 
@@ -26,11 +27,21 @@ struct TimedSurface {
   int step = 1; ///< before which it cuts
 };
 
+/// What is drawn of scissors beside their blades.
+struct ScissorsHandles {
+  std::size_t first_blade = 0; ///< in World::blades; the second is the next
+  Vec3 pivot = Vec3::Zero();   ///< blade frame [m]
+  Vec3 axis = Vec3::UnitZ();   ///< unit, blade frame
+  double length = 0;           ///< beyond the pivot [m]; 0: no handles
+};
+
 struct World {
   double time_step = 0; ///< [s]
   int n_steps = 0;
   std::vector<Body> bodies;
-  std::vector<cut::Blade> blades;
+  std::vector<cut::Blade> blades; ///< those of scissors come last, in pairs
+  std::vector<ScissorsHandles> scissors;
+  std::vector<Forceps> forceps;
   std::vector<TimedSurface> cut_surfaces;
   OutputParameters output;
   std::optional<SurfaceFileParameters> surface_file;

@@ -58,6 +58,10 @@ TEST_F(RefusedFile, ResultsBelowAFile) {
   expect_error(kerf({"run", "scene.prm", "--output", "file/out"}), 2,
                {"file/out", "results folder cannot be made", "Choose another folder with --output"});
   expect_error(kerf({"run", "scene.prm", "--output", "file"}), 2, {"file", "results folder"});
+  write("scene.prm", replaced(cube_scene(), mesh_path("cube.off"), "nosuch.off"));
+  const Result result = kerf({"run", "scene.prm", "--output", "file/out"});
+  expect_error(result, 2, {"file/out", "results folder cannot be made"}); // before the scene is composed
+  EXPECT_EQ(result.out, "");
 }
 
 /// A limit on the size of files stands for a full disk: the same error of the same call.

@@ -75,7 +75,8 @@ TEST(Corners, ReproduceLinearFieldsRealAndVirtual) {
 /// Each half moves by its own phyxels: real corners and virtual ones.
 TEST(Corners, FollowTheirOwnPiece) {
   const Scene scene = halved_ball();
-  ASSERT_EQ(scene.complex.n_pieces, 2u);
+  const grid::Pieces all = grid::pieces(scene.complex);
+  ASSERT_EQ(all.n_pieces, 2u);
   const CornerMap map = scene.map();
   EXPECT_EQ(map.n_orphans, 0u);
   const auto pieces = scene.pieces();
@@ -88,7 +89,7 @@ TEST(Corners, FollowTheirOwnPiece) {
   std::size_t n[2] = {0, 0};
   for (const auto c : ids<grid::CopyId>(scene.complex.n_copies()))
     for (const auto corner : scene.complex.copies[c].corners) {
-      const auto piece = scene.complex.piece[c];
+      const auto piece = all.piece[c];
       EXPECT_LT((corners[corner.value] - rest[corner.value] - Vec3(0, 0, 10.0 * piece)).norm(), 1e-12);
       ++n[piece];
     }
@@ -197,8 +198,9 @@ TEST(Corners, OrphansMoveAsOne) {
   const auto is_orphan = [&](const std::uint32_t piece) {
     return std::find(own.begin(), own.end(), piece) == own.end();
   };
-  Points middle(scene.complex.n_pieces, Vec3::Zero());
-  std::vector<int> n_nodes(scene.complex.n_pieces, 0);
+  const grid::Pieces all = grid::pieces(scene.complex);
+  Points middle(all.n_pieces, Vec3::Zero());
+  std::vector<int> n_nodes(all.n_pieces, 0);
   for (std::size_t row = 0; row < nodes.size(); ++row) {
     middle[nodes[row]] += scene.pairs.rest[row];
     ++n_nodes[nodes[row]];
@@ -206,7 +208,7 @@ TEST(Corners, OrphansMoveAsOne) {
   EXPECT_EQ(*std::max_element(n_nodes.begin(), n_nodes.end()), 2);
   const PointGrid phyxels(scene.phyxels.rest, 0.25);
   for (const auto c : ids<grid::CopyId>(scene.complex.n_copies())) {
-    const std::uint32_t piece = scene.complex.piece[c];
+    const std::uint32_t piece = all.piece[c];
     if (!is_orphan(piece))
       continue;
     const auto carrier = phyxels.nearest(middle[piece] / n_nodes[piece]);

@@ -155,7 +155,8 @@ TEST(Region, CrumbsSumToTheBody) {
 TEST(Region, KnowsInsideFromOutsideAndSideFromSide) {
   const support::Body body = cut_ball();
   const auto complex = grid::build_complex(body.grid, body.cuts);
-  ASSERT_EQ(complex.n_pieces, 2u);
+  const grid::Pieces pieces = grid::pieces(complex);
+  ASSERT_EQ(pieces.n_pieces, 2u);
   Draw draw(5);
   int n_inside = 0;
   std::uint32_t lower = 99, upper = 99;
@@ -169,8 +170,8 @@ TEST(Region, KnowsInsideFromOutsideAndSideFromSide) {
     if (!copy.valid() || std::abs(p.norm() - 0.5) < 0.2) // near the skin, the cut is drawn to it
       continue;
     std::uint32_t& piece = height < 0 ? lower : upper;
-    piece = piece == 99 ? complex.piece[copy] : piece;
-    EXPECT_EQ(complex.piece[copy], piece);
+    piece = piece == 99 ? pieces.piece[copy] : piece;
+    EXPECT_EQ(pieces.piece[copy], piece);
     ++n_inside;
   }
   EXPECT_NE(lower, upper);

@@ -4,30 +4,13 @@
 
 #include <gtest/gtest.h>
 
-#include <map>
-
 using namespace kerf;
 using namespace kerf::render;
 
-namespace {
-
-/// Each directed edge once in each direction.
-bool closed(const std::vector<Triangle>& triangles) {
-  std::map<std::pair<std::uint32_t, std::uint32_t>, int> balance;
-  for (const Triangle& t : triangles)
-    for (int i = 0; i < 3; ++i) {
-      const std::uint32_t a = t[i], b = t[(i + 1) % 3];
-      balance[std::minmax(a, b)] += a < b ? 1 : -1;
-    }
-  return std::all_of(balance.begin(), balance.end(), [](const auto& edge) { return edge.second == 0; });
-}
-
-} // namespace
-
 TEST(Blade, IsAClosedTaperedPlate) {
   const Vec3 spine(0, 0, 0.02);
-  const BladeMesh mesh = blade_mesh({{0, 0, 0}, {0.1, 0, 0}}, spine);
-  EXPECT_TRUE(closed(mesh.triangles));
+  const ToolMesh mesh = blade_mesh({{0, 0, 0}, {0.1, 0, 0}}, spine);
+  EXPECT_TRUE(shapes::closed(mesh.triangles));
   // Length x depth x thickness (5 % of the depth), less half of the bevel (22 % of the depth).
   EXPECT_NEAR(shapes::six_volumes(mesh.positions, mesh.triangles) / 6, 0.1 * 0.02 * 0.001 * (1 - 0.22 / 2), 1e-12);
   for (const Vec3& p : mesh.positions)
@@ -38,8 +21,8 @@ TEST(Blade, FollowsACurvedEdge) {
   Points edge;
   for (int i = 0; i <= 20; ++i)
     edge.emplace_back(std::cos(0.1 * i), std::sin(0.1 * i), 0);
-  const BladeMesh mesh = blade_mesh(edge, {0, 0, 0.5});
-  EXPECT_TRUE(closed(mesh.triangles));
+  const ToolMesh mesh = blade_mesh(edge, {0, 0, 0.5});
+  EXPECT_TRUE(shapes::closed(mesh.triangles));
   EXPECT_GT(shapes::six_volumes(mesh.positions, mesh.triangles), 0);
   EXPECT_EQ(mesh.labels.size(), mesh.triangles.size());
 }

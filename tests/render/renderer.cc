@@ -13,16 +13,16 @@ using namespace kerf::render;
 
 namespace {
 
-constexpr std::span<const DrawnSurface> no_surfaces;
-constexpr std::span<const DrawnBlade> no_blades;
+const std::vector<DrawnSurface> no_surfaces;
+const std::vector<DrawnBlade> no_blades;
 
 Camera camera_on_x(int width, int height) {
   return {.eye = {4, 0, 0}, .field_of_view = 40, .width = width, .height = height};
 }
 
 Image draw(const Camera& camera, const Look& look, const shapes::Mesh& mesh) {
-  const std::array surfaces = {mesh.drawn()};
-  return Renderer(camera, look).draw(surfaces, no_blades);
+  const std::vector surfaces = {mesh.drawn()};
+  return Renderer(camera, look).draw({surfaces, no_blades, {}});
 }
 
 int difference(const std::array<std::uint8_t, 3>& a, const std::array<std::uint8_t, 3>& b) {
@@ -52,7 +52,7 @@ std::size_t n_covered(const Image& image) {
 
 TEST(Renderer, AnEmptySceneIsTheBackground) {
   const Look look{.background_top = {1, 0.5, 0.2}, .background_bottom = {0, 0.3, 0.2}};
-  const Image image = Renderer(camera_on_x(40, 30), look).draw(no_surfaces, no_blades);
+  const Image image = Renderer(camera_on_x(40, 30), look).draw({no_surfaces, no_blades, {}});
   ASSERT_EQ(image.rgb.size(), 3600u);
   for (int row = 0; row < image.height; ++row) {
     const Vec3 wanted =
@@ -111,10 +111,10 @@ TEST(Renderer, CutsHaveTheirOwnColours) {
 
 TEST(Renderer, ABladeIsVisibleAndHidesWhatIsBehind) {
   const auto mesh = shapes::sphere(0.8, 5);
-  const std::array surfaces = {mesh.drawn()};
-  const std::array blades = {DrawnBlade{{{1.2, -0.5, -0.1}, {1.2, 0.5, -0.1}}, {0.02, 0, 0.2}}};
+  const std::vector surfaces = {mesh.drawn()};
+  const std::vector blades = {DrawnBlade{{{1.2, -0.5, -0.1}, {1.2, 0.5, -0.1}}, {0.02, 0, 0.2}}};
   const Renderer renderer(camera_on_x(160, 120), {});
-  const Image without = renderer.draw(surfaces, no_blades), with = renderer.draw(surfaces, blades);
+  const Image without = renderer.draw({surfaces, no_blades, {}}), with = renderer.draw({surfaces, blades, {}});
   // At 2.8 m from the eye the plate is 1 m by 0.2 m.
   const double pixels_per_metre = 60 / (2.8 * std::tan(20 * std::numbers::pi / 180));
   EXPECT_GT(n_different_pixels(without, with, 60), 0.9 * 0.2 * pixels_per_metre * pixels_per_metre);
@@ -122,13 +122,22 @@ TEST(Renderer, ABladeIsVisibleAndHidesWhatIsBehind) {
   EXPECT_LT(std::abs(steel[0] - steel[2]), 30); // grey
 }
 
+TEST(Renderer, ARodIsVisible) {
+  const DrawnRod rod{{{1.2, -0.5, 0}, {1.2, 0.5, 0}}, 0.1};
+  const Renderer renderer(camera_on_x(160, 120), {});
+  const Image without = renderer.draw({}), with = renderer.draw({{}, {}, {rod}});
+  const double pixels_per_metre = 60 / (2.8 * std::tan(20 * std::numbers::pi / 180));
+  const double n_wanted = 0.2 * pixels_per_metre * pixels_per_metre;
+  EXPECT_NEAR(n_different_pixels(without, with, 60), n_wanted, 0.2 * n_wanted);
+}
+
 TEST(Renderer, ABladeInTheLightCastsAShadow) {
   shapes::Mesh floor{{{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}, {{0, 1, 2}, {0, 2, 3}}, {}};
-  const std::array surfaces = {floor.drawn()};
-  const std::array blades = {DrawnBlade{{{-0.3, -0.1, 0.3}, {0.3, -0.1, 0.3}}, {0, 0.3, 0}}};
+  const std::vector surfaces = {floor.drawn()};
+  const std::vector blades = {DrawnBlade{{{-0.3, -0.1, 0.3}, {0.3, -0.1, 0.3}}, {0, 0.3, 0}}};
   const Camera above{.eye = {0, -2, 3}, .target = {0, 0, 0}, .up = {0, 0, 1}, .width = 160, .height = 120};
   const Renderer renderer(above, {});
-  const Image without = renderer.draw(surfaces, no_blades), with = renderer.draw(surfaces, blades);
+  const Image without = renderer.draw({surfaces, no_blades, {}}), with = renderer.draw({surfaces, blades, {}});
   std::size_t n_darker = 0;
   for (std::size_t i = 0; i < with.rgb.size(); i += 3)
     n_darker += without.rgb[i] > with.rgb[i] + 25 && with.rgb[i] > with.rgb[i + 2] + 25 ? 1 : 0; // still red: not steel
@@ -151,13 +160,13 @@ TEST(Renderer, ALitPlaneHasNoShadowOfItsOwn) {
 
 TEST(Renderer, TheSameSceneGivesTheSameBytes) {
   const auto mesh = shapes::sphere(0.9, 5);
-  const std::array surfaces = {mesh.drawn()};
-  const std::array blades = {DrawnBlade{{{1, -0.5, 0}, {1, 0.5, 0.2}}, {0.3, 0, 0.3}}};
+  const std::vector surfaces = {mesh.drawn()};
+  const std::vector blades = {DrawnBlade{{{1, -0.5, 0}, {1, 0.5, 0.2}}, {0.3, 0, 0.3}}};
   const Renderer renderer(camera_on_x(200, 150), {});
-  const Image first = renderer.draw(surfaces, blades);
-  renderer.draw(no_surfaces, blades);
-  EXPECT_EQ(renderer.draw(surfaces, blades).rgb, first.rgb);
-  EXPECT_EQ(Renderer(camera_on_x(200, 150), {}).draw(surfaces, blades).rgb, first.rgb);
+  const Image first = renderer.draw({surfaces, blades, {}});
+  renderer.draw({no_surfaces, blades, {}});
+  EXPECT_EQ(renderer.draw({surfaces, blades, {}}).rgb, first.rgb);
+  EXPECT_EQ(Renderer(camera_on_x(200, 150), {}).draw({surfaces, blades, {}}).rgb, first.rgb);
 }
 
 TEST(Renderer, FarFromTheOriginTheImageIsTheSame) {
@@ -193,8 +202,8 @@ TEST(Renderer, WhatIsBehindTheEyeIsNotSeen) {
 TEST(Renderer, RefusesWhatCannotBeDrawn) {
   const Renderer renderer(camera_on_x(8, 6), {});
   const auto draw_one = [&](const shapes::Mesh& mesh) {
-    const std::array surfaces = {mesh.drawn()};
-    return renderer.draw(surfaces, no_blades);
+    const std::vector surfaces = {mesh.drawn()};
+    return renderer.draw({surfaces, no_blades, {}});
   };
   auto mesh = shapes::cube(1);
   mesh.labels.pop_back();

@@ -7,6 +7,7 @@
 
 #include <Eigen/Geometry>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -62,6 +63,17 @@ inline Mesh sphere(double radius, int n_splits) {
     p *= radius;
   m.labels.assign(m.triangles.size(), 0);
   return m;
+}
+
+/// Each directed edge once in each direction.
+inline bool closed(const std::vector<Triangle>& triangles) {
+  std::map<std::pair<std::uint32_t, std::uint32_t>, int> balance;
+  for (const Triangle& t : triangles)
+    for (int i = 0; i < 3; ++i) {
+      const std::uint32_t a = t[i], b = t[(i + 1) % 3];
+      balance[std::minmax(a, b)] += a < b ? 1 : -1;
+    }
+  return std::all_of(balance.begin(), balance.end(), [](const auto& edge) { return edge.second == 0; });
 }
 
 /// Six times the volume that a closed mesh encloses; positive if its triangles are seen from outside.

@@ -2,7 +2,7 @@
 
 #include "dynamics/implicit_euler.h"
 #include "dynamics/symplectic_euler.h"
-#include "fem/corotational.h"
+#include "fem/hexahedra.h"
 #include "tests/scene/worlds.h"
 
 #include <gtest/gtest.h>

@@ -1,11 +1,14 @@
 // Cut surfaces as a scene writes them: when they cut, what they leave, and what is refused.
 
 #include "base/error.h"
+#include "tests/geometry/meshes.h"
 #include "tests/scene/worlds.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <fstream>
+#include <sstream>
 
 namespace kerf::scene {
 namespace {
@@ -105,6 +108,59 @@ TEST(CutSurfaceScene, EveryShapeComposes) {
   Timings timings;
   cut_at_once(world.bodies[0], world.cut_surfaces[0].surface, timings);
   EXPECT_EQ(value(world.bodies[0], "pieces"), 2);
+}
+
+std::string off_text(const geometry::TriangleMesh& mesh) {
+  std::ostringstream text;
+  text.precision(17);
+  text << "OFF\n" << mesh.vertices.size() << ' ' << mesh.triangles.size() << " 0\n";
+  for (const Vec3& v : mesh.vertices)
+    text << v[0] << ' ' << v[1] << ' ' << v[2] << '\n';
+  for (const auto& [a, b, c] : mesh.triangles)
+    text << "3 " << a << ' ' << b << ' ' << c << '\n';
+  return text.str();
+}
+
+/// The cube, cut at once by a mesh.
+World cut_by(const geometry::TriangleMesh& mesh) {
+  const output::TemporaryFolder folder;
+  std::ofstream(folder / "mesh.off") << off_text(mesh);
+  World world = world_of(cube_scene() + surface_text("box", "Shape = mesh;Mesh = " + (folder / "mesh.off").string()),
+                         {"Body cube/Cube edge [m]=0.02"});
+  Timings timings;
+  cut_at_once(world.bodies[0], world.cut_surfaces[0].surface, timings);
+  return world;
+}
+
+/// Two boxes through each other are the border of what lies in one of them alone: where both are, it crosses evenly.
+TEST(CutSurfaceScene, AMeshThroughItselfCutsWhereItCrossesOddly) {
+  const Box one{Vec3::Constant(-0.065), Vec3::Constant(0.026)}, other{Vec3::Constant(-0.034), Vec3::Constant(0.063)};
+  const World world =
+    cut_by(geometry::together(geometry::box_mesh(one.lower, one.upper), geometry::box_mesh(other.lower, other.upper)));
+  const Body& body = world.bodies[0];
+  const auto is_in_one = [&](const grid::NodeId n) {
+    const Vec3 X = body.grid.position(n);
+    return one.contains(X) != other.contains(X);
+  };
+  std::size_t n_wrong = 0, n_cut = 0;
+  for (const auto e : ids<grid::EdgeId>(body.grid.n_edges())) {
+    const auto& [a, b] = body.grid.ends(e);
+    if (body.grid.is_material(a) && body.grid.is_material(b)) {
+      n_wrong += body.cuts.is_cut(e) != (is_in_one(a) != is_in_one(b)) ? 1 : 0;
+      n_cut += body.cuts.is_cut(e) ? 1 : 0;
+    }
+  }
+  EXPECT_EQ(n_wrong, 0u);
+  EXPECT_EQ(value(body, "cut edges"), n_cut);
+  EXPECT_EQ(value(body, "pieces"), 4) << "outside, in both, and in either alone";
+  EXPECT_NEAR(value(body, "mass"), 8, 1e-11);
+}
+
+TEST(CutSurfaceScene, AMeshThatLiesOnItselfTwiceCutsNothing) {
+  const auto box = geometry::box_mesh(Vec3::Constant(-0.065), Vec3::Constant(0.026));
+  const World world = cut_by(geometry::together(box, box));
+  EXPECT_EQ(value(world.bodies[0], "cut edges"), 0);
+  EXPECT_GT(value(world.bodies[0], "double crossings"), 0) << "and says what it left whole";
 }
 
 void expect_refused(const std::string& section, const std::vector<std::string>& words) {

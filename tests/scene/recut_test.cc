@@ -86,11 +86,12 @@ bool meets_skin(const Body& body, const grid::EdgeId edge) {
 
 /// The piece that holds each corner.
 std::vector<std::uint32_t> piece_of_corners(const grid::CellComplex& complex) {
-  std::vector<std::uint32_t> piece(complex.n_corners(), complex.n_pieces);
+  const grid::Pieces pieces = grid::pieces(complex);
+  std::vector<std::uint32_t> piece(complex.n_corners(), pieces.n_pieces);
   for (const auto c : ids<grid::CopyId>(complex.n_copies()))
     for (const grid::CornerId corner : complex.copies[c].corners) {
-      EXPECT_TRUE(piece[corner.value] == complex.n_pieces || piece[corner.value] == complex.piece[c]);
-      piece[corner.value] = complex.piece[c];
+      EXPECT_TRUE(piece[corner.value] == pieces.n_pieces || piece[corner.value] == pieces.piece[c]);
+      piece[corner.value] = pieces.piece[c];
     }
   return piece;
 }
@@ -105,7 +106,7 @@ TEST(Recut, ACutInsideKeepsEveryBalance) {
     cut_through(world);
 
     ASSERT_GT(body.complex.n_corners(), n_corners) << "the cut opens nowhere";
-    EXPECT_EQ(body.complex.n_pieces, 1u);
+    EXPECT_EQ(grid::n_pieces(body.complex), 1u);
     for (const grid::EdgeCut& cut : body.cuts.all())
       EXPECT_TRUE(cut.label == grid::skin_label || !meets_skin(body, cut.edge));
     if (integration == "octants")
@@ -119,7 +120,7 @@ TEST(Recut, ACompleteCutOfAPlaneSkinKeepsEveryBalance) {
   World world = tumbling_world(long_blade(), "octants");
   const Balance before = balance(world.bodies[0]);
   cut_through(world);
-  EXPECT_EQ(world.bodies[0].complex.n_pieces, 2u);
+  EXPECT_EQ(grid::n_pieces(world.bodies[0].complex), 2u);
   EXPECT_EQ(world.bodies[0].cutting->n_double_crossings, 0u);
   expect_same(before, balance(world.bodies[0]), 1e-12);
 }
@@ -164,7 +165,7 @@ TEST(Recut, APieceMovedRigidlyIsWithoutForce) {
   World world = world_of(cube_scene() + long_blade(), {"Body cube/Cube edge [m]=0.025"});
   Body& body = world.bodies[0];
   cut_through(world);
-  ASSERT_EQ(body.complex.n_pieces, 2u);
+  ASSERT_EQ(grid::n_pieces(body.complex), 2u);
   const auto piece = piece_of_corners(body.complex);
   for (std::size_t i = 0; i < body.state.x.size(); ++i)
     if (piece[i] == 0)

@@ -9,17 +9,12 @@
 #include <fstream>
 #include <numeric>
 
+#include <unistd.h>
+
 namespace kerf::scene {
 namespace {
 
 double sum(const std::vector<double>& values) { return std::accumulate(values.begin(), values.end(), 0.0); }
-
-/// Gives all corners one velocity and a random one each.
-void set_in_motion(Body& body, const Vec3& common, const double deviation) {
-  body.state.v = random_points(body.state.v.size(), deviation, 5);
-  for (Vec3& v : body.state.v)
-    v += common;
-}
 
 TEST(Run, TimesEveryStageOfEveryStep) {
   const output::TemporaryFolder folder;
@@ -189,6 +184,17 @@ TEST(Run, NeedsAFolderThatCanBeMade) {
   std::ofstream(folder / "file") << "no folder";
   World world = world_of(cube_scene());
   EXPECT_THROW(run_silently(world, folder / "file/out"), DataError);
+  EXPECT_THROW(require_writable(folder / "file/out"), DataError);
+  EXPECT_THROW(require_writable(folder / "file"), DataError);
+  std::filesystem::create_directory(folder / "locked");
+  std::filesystem::permissions(folder / "locked", std::filesystem::perms::owner_read);
+  if (geteuid() != 0) { // root may write everywhere
+    EXPECT_THROW(require_writable(folder / "locked/out"), DataError);
+  }
+  std::filesystem::permissions(folder / "locked", std::filesystem::perms::owner_all);
+  EXPECT_NO_THROW(require_writable(folder / "a/b/c"));
+  EXPECT_NO_THROW(require_writable(folder / "."));
+  EXPECT_FALSE(std::filesystem::exists(folder / "a")) << "asking makes nothing";
 }
 
 } // namespace

@@ -34,6 +34,13 @@ inline Points random_points(const std::size_t n, const double deviation, const u
   return points;
 }
 
+/// Gives all corners one velocity and a random one each.
+inline void set_in_motion(Body& body, const Vec3& common, const double deviation) {
+  body.state.v = random_points(body.state.v.size(), deviation, 5);
+  for (Vec3& v : body.state.v)
+    v += common;
+}
+
 /// What an observable says now.
 inline double value(const Body& body, const std::string& observable) {
   return find_observable(observable)->value(body);

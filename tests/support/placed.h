@@ -56,13 +56,14 @@ inline double volume(const grid::Tetrahedron& t) { return (t[1] - t[0]).dot((t[2
 
 /// Volume of each piece [m^3], from the octants.
 inline std::vector<double> octant_volumes(const Body& body, const grid::CellComplex& complex) {
-  std::vector<double> volumes(complex.n_pieces, 0.0);
+  const grid::Pieces pieces = grid::pieces(complex);
+  std::vector<double> volumes(pieces.n_pieces, 0.0);
   const double h = body.grid.h();
   for (const auto c : ids<grid::CopyId>(complex.n_copies()))
     for (int v = 0; v < 8; ++v)
       if (complex.copies[c].nodes >> v & 1)
         for (const auto& t : grid::octant(body.grid, body.cuts, complex.copies[c].cell, v))
-          volumes[complex.piece[c]] += h * h * h * volume(t);
+          volumes[pieces.piece[c]] += h * h * h * volume(t);
   return volumes;
 }
 

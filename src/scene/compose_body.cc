@@ -1,0 +1,98 @@
+#include "scene/compose_body.h"
+
+#include "cut/embed.h"
+#include "geometry/solid.h"
+#include "material/elastic.h"
+#include "scene/compose_physics.h"
+#include "scene/expression.h"
+
+#include <cmath>
+
+namespace kerf::scene {
+
+namespace {
+
+geometry::TriangleMesh read_body_mesh(const Section& section, const BodyParameters& parameters) {
+  const std::string path = resolved(parameters.mesh, section);
+  try {
+    return geometry::require_solid(geometry::read_mesh(path, parameters.mesh_unit), path);
+  } catch (const DataError& error) {
+    throw DataError(section.complaint("Mesh", clause(error.what()), "").complaint());
+  }
+}
+
+cut::Embedding embed_mesh(const Section& section, const BodyParameters& parameters,
+                          const geometry::TriangleMesh& mesh) {
+  constexpr double most_cells = 1e8;
+  const double n_cells = geometry::volume(mesh) / std::pow(parameters.cube_edge, 3);
+  if (n_cells > most_cells)
+    throw section.complaint("Cube edge [m]",
+                            line("would fill the mesh with ", n_cells, " cells, more than ", most_cells),
+                            "Use larger cubes, or check Mesh unit [m]");
+  try {
+    return cut::embed(mesh, parameters.cube_edge, parameters.lattice_offset);
+  } catch (const ParameterError& error) { // about one of the last two, which embed calls as the scene does
+    throw section.complaint(error.complaint().path, error.complaint().rule, error.complaint().remedy);
+  } catch (const DataError&) {
+    throw section.complaint("Cube edge [m]", "no grid node is inside the mesh, it is smaller than a cube",
+                            "Use smaller cubes, or check Mesh unit [m]");
+  }
+}
+
+SupportRegion compose_support(const Section& section) {
+  const auto parameters = section.read<SupportParameters>();
+  if ((parameters.lower.array() > parameters.upper.array()).any())
+    throw section.complaint("Upper [m]", "must not be below Lower [m] in any direction", "Swap the two");
+  return {{parameters.lower, parameters.upper}, displacement_of_time(section, parameters.displacement)};
+}
+
+void require_held_nodes(const Section& section, const Body& body, const SupportRegion& region) {
+  for (const auto n : ids<grid::NodeId>(body.grid.n_nodes()))
+    if (region.box.contains(body.grid.position(n)))
+      return;
+  throw section.complaint("the box holds no grid node of the body",
+                          "Move or enlarge the box: it is meant in the rest configuration, in metres");
+}
+
+} // namespace
+
+Body compose_body(const Section& section, const GravityParameters* gravity, World& world) {
+  const auto parameters = section.read<BodyParameters>();
+  const geometry::TriangleMesh mesh = read_body_mesh(section, parameters);
+  cut::Embedding embedding = [&] {
+    const ScopedTimer timer(world.setup_seconds, "cut");
+    return embed_mesh(section, parameters, mesh);
+  }();
+  Body body{section.name(), std::move(embedding.grid), std::move(embedding.cuts)};
+  body.placement.sharp_angle = parameters.sharp_angle;
+  body.mesh_volume = geometry::volume(mesh);
+  body.n_thin_walls = embedding.n_thin_walls;
+  body.n_thin_gaps = embedding.n_thin_gaps;
+  body.n_triple_crossings = embedding.n_triple_crossings;
+  body.n_lost_shells = embedding.n_lost_components;
+  body.make_physics = physics_maker(section, parameters);
+  const auto damping = read_if_written<DampingParameters>(section, "Damping");
+  body.loads.gravity = gravity ? gravity->acceleration : Vec3(Vec3::Zero());
+  body.loads.mass_damping = damping.mass;
+  body.loads.stiffness_damping = damping.stiffness;
+  for (const Section* support : section.all("Support")) {
+    body.regions.push_back(compose_support(*support));
+    require_held_nodes(*support, body, body.regions.back());
+  }
+  if (const std::size_t n_cuts = world.blades.size() + world.cut_surfaces.size(); n_cuts > 0) {
+    body.cutting = std::make_unique<Cutting>();
+    body.cutting->n_cut_edges.assign(n_cuts, 0);
+  }
+  start(body, mesh, world.setup_seconds);
+  world.composition.push_back(line("body ", body.name, ": ", mesh.triangles.size(), " mesh triangles in ",
+                                   body.grid.n_cells(), " cells of ", parameters.cube_edge, " m, ",
+                                   body.complex.n_corners(), " corners, ", body.surface.triangles.size(),
+                                   " surface triangles"));
+  world.composition.push_back(line("body ", body.name, ": ",
+                                   read_if_written<material::Elastic>(section, "Material").law, " ", parameters.element,
+                                   " hexahedra, integration over ", parameters.integration, ", ", parameters.integrator,
+                                   ", ", body.regions.size(), " supports"));
+  return body;
+}
+
+} // namespace kerf::scene

@@ -1,0 +1,14 @@
+#pragma once
+
+/// A body from its section: mesh, grid, physics, supports.
+
+#include "scene/composing.h"
+#include "scene/world.h"
+
+namespace kerf::scene {
+
+/// Composes a body that what `world` has to cut with can cut, and says what it is in the world's composition. `gravity`
+/// is null without a field. Throws as compose().
+Body compose_body(const Section& section, const GravityParameters* gravity, World& world);
+
+} // namespace kerf::scene

@@ -1,0 +1,193 @@
+#include "scene/compose_tools.h"
+
+#include "cut/blade_edge.h"
+#include "cut/scissors.h"
+#include "geometry/box_tree.h"
+
+#include <algorithm>
+#include <limits>
+#include <map>
+
+namespace kerf::scene {
+
+namespace {
+
+std::vector<cut::KeyFrame> read_key_frames(const Section& section) {
+  const auto motion = section.read<MotionParameters>();
+  const std::string must_match = line("must be as many as Times [s], which are ", motion.times.size());
+  if (motion.positions.size() != motion.times.size())
+    throw section.complaint("Positions [m]", must_match, "Write one position for each time, separated by semicolons");
+  if (!motion.rotations.empty() && motion.rotations.size() != motion.times.size())
+    throw section.complaint("Rotations [degrees]", must_match + ", or none",
+                            "Write one rotation vector for each time, separated by semicolons");
+  std::vector<cut::KeyFrame> frames;
+  for (std::size_t i = 0; i < motion.times.size(); ++i)
+    frames.push_back(
+      {motion.times[i], motion.positions[i], motion.rotations.empty() ? Vec3(Vec3::Zero()) : motion.rotations[i]});
+  return frames;
+}
+
+Points read_edge(const Section& section, const std::string& key, const Points& points, const std::string& form) {
+  if (form == "polyline")
+    return points;
+  try {
+    return cut::arcs(points);
+  } catch (const ParameterError& error) {
+    throw placed(section, key, error);
+  }
+}
+
+/// The key of a section that a complaint of cut/ is about.
+std::string key_of(const Complaint& complaint) {
+  static const std::map<std::string, std::string> keys = {
+    {"Key frames", "Times [s]"}, {"Angles", "Openings [degrees]"}, {"Angle times", "Opening times [s]"}};
+  const std::string name = complaint.path.substr(complaint.path.find('/') + 1);
+  const auto key = keys.find(name);
+  return key == keys.end() ? name : key->second;
+}
+
+std::array<cut::Blade, 2> make_blades(const Section& section, const cut::Scissors& scissors,
+                                      const grid::CutLabel label) {
+  try {
+    return cut::blades(scissors, label);
+  } catch (const ParameterError& error) {
+    const bool is_about_second = error.complaint().path.find(" second/Edge") != std::string::npos;
+    throw placed(section, is_about_second ? "Second edge [m]" : key_of(error.complaint()), error);
+  }
+}
+
+std::vector<cut::AngleFrame> openings(const Section& section, const ScissorsParameters& parameters) {
+  if (parameters.openings.size() != parameters.opening_times.size())
+    throw section.complaint("Openings [degrees]",
+                            line("must be as many as Opening times [s], which are ", parameters.opening_times.size()),
+                            "Write one angle for each time, separated by commas");
+  std::vector<cut::AngleFrame> frames;
+  for (std::size_t i = 0; i < parameters.openings.size(); ++i)
+    frames.push_back({parameters.opening_times[i], parameters.openings[i]});
+  return frames;
+}
+
+/// From a blade's first key frame to its last, whichever list it is in [s].
+std::pair<double, double> times_of_motion(const cut::Blade& blade) {
+  double first = blade.key_frames.front().time, last = blade.key_frames.back().time;
+  if (blade.hinge) {
+    first = std::min(first, blade.hinge->angles.front().time);
+    last = std::max(last, blade.hinge->angles.back().time);
+  }
+  return {first, last};
+}
+
+/// The box of a body is grown by half its size, for what it may move.
+bool comes_near(const cut::Blade& blade, const Body& body) {
+  const auto [first, last] = times_of_motion(blade);
+  Points path = cut::world_points(blade, first);
+  for (const auto& triangle : cut::sweep(blade, first, last))
+    path.insert(path.end(), triangle.begin(), triangle.end());
+  const Box swept = geometry::box_around(path), box = geometry::box_around(body.positions);
+  const Vec3 slack = Vec3::Constant(0.5 * (box.upper - box.lower).norm());
+  return geometry::overlap(swept, Box{box.lower - slack, box.upper + slack});
+}
+
+std::variant<Box, Ball> read_region(const Section& section, const std::string& name) {
+  RegionParameters parameters, every_region;
+  parameters.region = name;
+  Parameters mine, all;
+  parameters.describe(mine);
+  every_region.describe(all);
+  require_keys_of_choice(section, "the region '" + name + "'", mine, all);
+  section.read(parameters);
+  if (name == "sphere")
+    return Ball{parameters.centre, parameters.radius};
+  if ((parameters.lower.array() > parameters.upper.array()).any())
+    throw section.complaint("Upper [m]", "must not be below Lower [m] in any direction", "Swap the two");
+  return Box{parameters.lower, parameters.upper};
+}
+
+std::size_t n_nodes_in(const std::variant<Box, Ball>& region, const World& world) {
+  std::size_t n = 0;
+  for (const Body& body : world.bodies)
+    for (const auto node : ids<grid::NodeId>(body.grid.n_nodes()))
+      n += contains(region, body.grid.position(node)) ? 1 : 0;
+  return n;
+}
+
+void check_times(const Section& section, const Forceps& forceps, const World& world) {
+  if (forceps.grip_step > world.n_steps)
+    throw section.complaint(
+      "Grip time [s]",
+      line("must be before the last step, which begins at ", (world.n_steps - 1) * world.time_step, " s"),
+      "Grip earlier, or let the run end later");
+  if (forceps.release_step <= forceps.grip_step)
+    throw section.complaint("Release time [s]", "must be at least a step after Grip time [s]",
+                            "Release later, or not at all: leave it out");
+}
+
+} // namespace
+
+void compose_blade(const Section& section, World& world) {
+  const auto parameters = section.read<BladeParameters>();
+  cut::Blade blade{.name = section.name(),
+                   .edge = read_edge(section, "Edge [m]", parameters.edge, parameters.edge_form),
+                   .key_frames = read_key_frames(section),
+                   .label = static_cast<grid::CutLabel>(world.blades.size() + 1),
+                   .spine = parameters.spine};
+  try {
+    cut::check(blade);
+  } catch (const ParameterError& error) {
+    throw placed(section, key_of(error.complaint()), error);
+  }
+  world.blades.push_back(std::move(blade));
+  world.composition.push_back("blade " + section.name());
+}
+
+void compose_scissors(const Section& section, World& world) {
+  const auto parameters = section.read<ScissorsParameters>();
+  const Points& second = parameters.second_edge.empty() ? parameters.edge : parameters.second_edge;
+  const cut::Scissors scissors{.name = section.name(),
+                               .pivot = parameters.pivot,
+                               .axis = parameters.axis.stableNormalized(),
+                               .edges = {read_edge(section, "Edge [m]", parameters.edge, parameters.edge_form),
+                                         read_edge(section, "Second edge [m]", second, parameters.edge_form)},
+                               .spines = {parameters.spine, Vec3(-parameters.spine)},
+                               .openings = openings(section, parameters),
+                               .key_frames = read_key_frames(section)};
+  world.scissors.push_back({world.blades.size(), scissors.pivot, scissors.axis, parameters.handle});
+  for (cut::Blade& blade : make_blades(section, scissors, static_cast<grid::CutLabel>(world.blades.size() + 1)))
+    world.blades.push_back(std::move(blade));
+  world.composition.push_back("scissors " + section.name() + ": two blades on a pivot");
+}
+
+void compose_forceps(const Section& section, World& world) {
+  const auto parameters = section.read<ForcepsParameters>();
+  Forceps forceps{.name = section.name(),
+                  .region = read_region(section, parameters.region),
+                  .key_frames = read_key_frames(section),
+                  .grip_step = first_step_from(parameters.grip_time, world.time_step, world.n_steps),
+                  .release_step = first_step_from(parameters.release_time, world.time_step, world.n_steps),
+                  .jaws = parameters.jaws,
+                  .handle = parameters.handle};
+  check_times(section, forceps, world);
+  try {
+    cut::check_key_frames(forceps.key_frames, section.path());
+  } catch (const ParameterError& error) {
+    throw placed(section, key_of(error.complaint()), error);
+  }
+  const std::size_t n_nodes = n_nodes_in(forceps.region, world);
+  if (n_nodes == 0)
+    throw section.complaint("the region holds no grid node of a body",
+                            "Move or enlarge it: it is meant in the rest configuration, in metres");
+  world.composition.push_back(
+    line("forceps ", forceps.name, ": hold ", n_nodes, " grid nodes from step ", forceps.grip_step));
+  world.forceps.push_back(std::move(forceps));
+}
+
+void require_meeting(const Section& section, const std::span<const cut::Blade> blades, const World& world) {
+  for (const cut::Blade& blade : blades)
+    for (const Body& body : world.bodies)
+      if (comes_near(blade, body))
+        return;
+  throw section.complaint("the blade never comes near a body",
+                          "Check units and key frames: positions are in metres, in the world frame");
+}
+
+} // namespace kerf::scene

@@ -1,0 +1,132 @@
+/// Beams, whole and split, against theory. What bending and volumetric locking cost is tests/fem/locking_test.cc.
+
+#include "tests/verification/beams.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <string>
+
+namespace kerf::verification {
+namespace {
+
+void record(const std::string& name, const double error) {
+  testing::Test::RecordProperty(name, std::to_string(100 * error) + "_percent");
+}
+
+/// Bounds: errors of incompatible modes (CalculiX C3D8I) on the same cubes.
+TEST(Cantilever, UnderItsWeightIsAsGoodAsIncompatibleModes) {
+  for (const auto& [n, bound] : {std::pair{2, 0.0178}, std::pair{4, 0.00785}, std::pair{8, 0.0031}}) {
+    const double error = heavy_cantilever(n, Vec3::Zero(), {}).value / heavy_cantilever_reference - 1;
+    EXPECT_LT(std::abs(error), bound) << n;
+    record("n_" + std::to_string(n), error);
+  }
+}
+
+/// The sides between nodes: no worse. Counted as full cubes, or by volume alone, its skin's cells make it stiff.
+TEST(Cantilever, UnderItsWeightWithSidesBetweenNodes) {
+  const auto error = [](const int n, const fem::Boundary boundary) {
+    return heavy_cantilever(n, Vec3(0, 0.37, 0.61), {.boundary = boundary}).value / heavy_cantilever_reference - 1;
+  };
+  for (const int n : {2, 4, 8}) {
+    const double aligned = std::abs(heavy_cantilever(n, Vec3::Zero(), {}).value / heavy_cantilever_reference - 1);
+    EXPECT_LT(std::abs(error(n, fem::Boundary::octants)), 1.1 * aligned) << n;
+  }
+  EXPECT_LT(error(4, fem::Boundary::volume_fraction), -0.1);
+  EXPECT_LT(error(4, fem::Boundary::full_cube), -0.3);
+}
+
+TEST(Cantilever, UnderAnEndForceIsTimoshenkos) {
+  double before = 1;
+  for (const int n : {2, 4, 6}) {
+    const double error = end_loaded_cantilever(10, n, {}).value - 1;
+    EXPECT_LT(std::abs(error), 0.011 / (n * n)) << n;
+    EXPECT_LT(std::abs(error), before);
+    before = std::abs(error);
+    record("n_" + std::to_string(n), error);
+  }
+}
+
+/// Bisshopp and Drucker 1945. Theirs neither shears nor stretches; ours does, by a part 0.6 / slenderness^2 of the
+/// deflection
+/// for small loads.
+TEST(Cantilever, LargeDeflectionIsTheElasticas) {
+  for (const auto& [alpha, exact] : {std::pair{1.0, 0.30172}, std::pair{2.0, 0.49346}, std::pair{10.0, 0.81061}}) {
+    const double thick = elastica(alpha, 15, 2).value / exact - 1, thin = elastica(alpha, 30, 2).value / exact - 1;
+    EXPECT_LT(std::abs(thin), 2e-3) << alpha;
+    EXPECT_LT(std::abs(thin), 0.4 * std::abs(thick)) << alpha; // what is left is the beam's, not the elements'
+    record("alpha_" + std::to_string(alpha), thin);
+  }
+}
+
+/// Order 2 in h; bending and axial waves within half a percent at 4 cells a thickness. A square of 2 x 2 cells does not
+/// warp at its nodes: then J is t^4 / 6 instead of 0.1406 t^4, and the frequency 9 % too high.
+TEST(Frequencies, OfASquareBeam) {
+  for (const auto mass : {MassMatrix::consistent, MassMatrix::lumped})
+    for (const auto& [kind, bound] : {std::pair{Vibration::bending, 0.002}, std::pair{Vibration::axial, 0.0005},
+                                      std::pair{Vibration::torsion, 0.04}}) {
+      const double coarse = frequency(kind, 10, 2, mass, {}).value - 1,
+                   fine = frequency(kind, 10, 4, mass, {}).value - 1;
+      EXPECT_LT(std::abs(fine), bound) << static_cast<int>(kind);
+      EXPECT_LT(std::abs(fine), 0.45 * std::abs(coarse)) << static_cast<int>(kind);
+      record("kind_" + std::to_string(static_cast<int>(kind)) + (mass == MassMatrix::lumped ? "_lumped" : ""), fine);
+    }
+}
+
+/// Compliance of n layers is n^2 of the whole in bending; the same wherever the cut passes between nodes.
+TEST(SplitBeam, ComplianceIsThatOfItsLayers) {
+  double lowest = 1e300, highest = 0;
+  for (int i = 0; i < 20; ++i) {
+    const double ratio = split_beam({.shift = (i + 0.5) / 20}, {}).value;
+    lowest = std::min(lowest, ratio);
+    highest = std::max(highest, ratio);
+  }
+  EXPECT_LT(highest / lowest - 1, 0.01);
+  EXPECT_NEAR(lowest, 1, 0.005);
+  EXPECT_NEAR(highest, 1, 0.005);
+  record("spread", highest / lowest - 1);
+  for (const int n : {3, 4})
+    EXPECT_NEAR(split_beam({.n_layers = n, .n_over_layer = 4, .shift = 0.3}, {}).value, 1, 0.005) << n;
+}
+
+TEST(SplitBeam, FullCubesAreTooStiffByASliceALayer) {
+  const double full = split_beam({.shift = 0.3}, {.boundary = fem::Boundary::full_cube}).value;
+  EXPECT_NEAR(full, std::pow(8.0 / 9, 3), 0.02); // layers of 8 h count as 9 h
+  const double fraction = split_beam({.shift = 0.5}, {.boundary = fem::Boundary::volume_fraction}).value;
+  EXPECT_LT(fraction, 0.97);
+}
+
+TEST(SplitBeam, MassOfTheLayersIsExactAtEveryOffset) {
+  for (int i = 0; i < 20; ++i) {
+    const double shift = (i + 0.5) / 20, plane = 0.4;
+    Body body = box({Vec3::Zero(), Vec3(1, 0.5, 1)}, 0.125, Vec3(shift, 0.3, 1 - shift));
+    cut(body, {Vec3::UnitZ(), plane}, [](const Vec3&) { return true; });
+    const auto options = hooke(1, 0.3);
+    const fem::Hexahedra model(body.grid, body.cuts, body.complex, options);
+    double below = 0, above = 0; // no copy has nodes on both sides
+    for (const auto c : ids<grid::CopyId>(body.complex.n_copies())) {
+      const grid::Copy& copy = body.complex.copies[c];
+      const auto node = body.grid.nodes(copy.cell)[std::countr_zero(unsigned(copy.nodes))];
+      (body.grid.position(node)[2] < plane ? below : above) += options.material.density * model.element(c.value).volume;
+    }
+    EXPECT_NEAR(below, 1000 * 0.5 * plane, 1e-9 * 1000) << shift;
+    EXPECT_NEAR(above, 1000 * 0.5 * (1 - plane), 1e-9 * 1000) << shift;
+  }
+}
+
+/// The front is one node column fine, and singular: the error is of order 1 in h.
+TEST(DoubleCantilever, EnergyReleaseRateConvergesToFooteAndBuchwalds) {
+  std::vector<double> errors;
+  for (const int n : {2, 4, 8}) {
+    errors.push_back(double_cantilever({.n_over_arm = n}, {}).value - 1);
+    record("n_" + std::to_string(n), errors.back());
+  }
+  EXPECT_LT(std::abs(errors[2]), 0.02);
+  EXPECT_LT(std::abs(errors[1]), 0.6 * std::abs(errors[0]));
+  EXPECT_LT(std::abs(errors[2]), 0.6 * std::abs(errors[1]));
+}
+
+} // namespace
+} // namespace kerf::verification

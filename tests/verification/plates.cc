@@ -1,0 +1,153 @@
+#include "tests/verification/plates.h"
+
+#include <Eigen/Dense>
+
+#include <cmath>
+#include <numbers>
+
+namespace kerf::verification {
+
+namespace {
+
+/// The straight line between two points of the plane, outside on its right.
+support::Plane side(const double x0, const double y0, const double x1, const double y1) {
+  const Vec3 normal = Vec3(y1 - y0, x0 - x1, 0).normalized();
+  return {normal, normal.dot(Vec3(x0, y0, 0))};
+}
+
+} // namespace
+
+fem::HexahedraOptions cook_material(const fem::Strain strain) { return hooke(15.0 / 16, 0.25, strain); }
+
+PlateResult cooks_membrane(const int n_over_length, const double offset, const fem::HexahedraOptions& options) {
+  const double h = 48.0 / n_over_length, thickness = 2 * h;
+  const std::vector<support::Plane> planes = {side(0, 0, 48, 44), side(48, 44, 48, 60),  side(48, 60, 0, 44),
+                                              side(0, 44, 0, 0),  {-Vec3::UnitZ(), 0.0}, {Vec3::UnitZ(), thickness}};
+  const grid::Lattice lattice{Vec3(-h, -h * (1 - offset), -h), h};
+  auto [body, model, cost] = build(
+    [&] {
+      return convex_body(lattice, planes, {Vec3::Zero(), Vec3(48, 60, thickness)});
+    },
+    options);
+  const CpuTimer timer;
+  const Points rest = body.rest();
+  Points f = end_forces(body, 48, Vec3(0, 1.0 / 16, 0));
+  double total = 0; // less than the thickness where a corner of the loaded side is missing
+  for (const Vec3& one : f)
+    total += one[1];
+  for (Vec3& one : f)
+    one *= thickness / total;
+  std::vector<dynamics::Support> supports = {
+    hold(rest, corners_where(rest, [](const Vec3& X) { return X[0] < 1e-9; })),
+    hold(rest, corners_where(rest, [](const Vec3&) { return true; }), dynamics::held_axes("z"))};
+  const Points u = displacements(body, *model, f, std::move(supports), LinearSolver::direct);
+  cost.solution = timer.seconds();
+  const double v = value_at(body, u, Vec3(48 - 1e-9, 52 + 1e-9, h * (1 + 1e-9)))[1];
+  return {v, body.complex.n_copies(), smallest_fraction(*model), cost};
+}
+
+namespace {
+
+/// How far the two sides of a cut edge are apart along its axis [m].
+double jump(const Body& body, const Points& u, const grid::EdgeCut& cut) {
+  double side[2] = {0, 0};
+  const int axis = body.grid.axis(cut.edge);
+  for (const auto cell : body.grid.cells(cut.edge)) {
+    if (!cell.valid())
+      continue;
+    for (int end = 0; end < 2; ++end) {
+      const auto& nodes = body.grid.nodes(cell);
+      int v = 0;
+      while (nodes[v] != body.grid.ends(cut.edge)[end])
+        ++v;
+      const auto& corners = body.complex.copies[body.complex.copy_at(cell, v)].corners;
+      const int lower = v & ~(1 << axis), upper = v | 1 << axis;
+      side[end] = (1 - cut.t) * u[corners[lower].value][axis] + cut.t * u[corners[upper].value][axis];
+    }
+  }
+  return side[1] - side[0];
+}
+
+/// Supports of a cube that shrinks and stretches freely: three corner nodes, away from the disc.
+std::vector<dynamics::Support> hold_corners(const Points& rest, const double R) {
+  const auto nearest = [&](const Vec3& X) {
+    std::uint32_t best = 0;
+    for (std::uint32_t c = 1; c < rest.size(); ++c)
+      if ((rest[c] - X).norm() < (rest[best] - X).norm())
+        best = c;
+    return best;
+  };
+  return {hold(rest, {nearest(Vec3(-R, -R, -R))}), hold(rest, {nearest(Vec3(R, -R, -R))}, dynamics::held_axes("yz")),
+          hold(rest, {nearest(Vec3(-R, R, -R))}, dynamics::held_axes("z"))};
+}
+
+void compare(const Body& body, const Points& u, const Vec3& centre, PennyResult& result) {
+  const double nu = 0.3, h = body.grid.h(), exact_volume = 16 * (1 - nu * nu) / 3;
+  double squares = 0, exact_squares = 0, volume = 0;
+  for (const auto& cut : body.cuts.all()) {
+    if (cut.label == grid::skin_label)
+      continue;
+    const Vec3 X = grid::edge_point(body.grid, body.cuts, cut.edge);
+    const double found = jump(body, u, cut);
+    const double exact =
+      8 * (1 - nu * nu) / std::numbers::pi * std::sqrt(std::max(0.0, 1 - (X - centre).squaredNorm()));
+    squares += std::pow(found - exact, 2);
+    exact_squares += exact * exact;
+    volume += h * h * found;
+  }
+  result.opening_error = std::sqrt(squares / exact_squares);
+  result.volume = volume / exact_volume;
+  result.n_cells = body.complex.n_copies();
+}
+
+} // namespace
+
+PennyResult penny(const Penny& problem, const fem::HexahedraOptions& options) {
+  const double h = 1.0 / problem.n_over_radius, R = problem.half_width;
+  const Vec3 centre = h * problem.offset;
+  auto [body, model, cost] = build(
+    [&] {
+      Body cube = box({Vec3::Constant(-R), Vec3::Constant(R)}, h, Vec3::Zero());
+      cut(cube, {Vec3::UnitZ(), centre[2]}, [&](const Vec3& X) { return (X - centre).norm() < 1; });
+      return cube;
+    },
+    options);
+  const CpuTimer timer;
+  const Points rest = body.rest();
+  const Points f = traction_forces(body, [&](const SurfacePoint& p) -> Vec3 {
+    const bool is_far = std::abs(std::abs(p.position[2]) - R) < 1e-6 && std::abs(p.normal[2]) > 0.99;
+    return is_far ? Vec3(0, 0, p.normal[2]) : Vec3(Vec3::Zero());
+  });
+  const Points u = displacements(body, *model, f, hold_corners(rest, R), LinearSolver::conjugate_gradients);
+  PennyResult result;
+  compare(body, u, centre, result);
+  result.cost = cost;
+  result.cost.solution = timer.seconds();
+  return result;
+}
+
+Condition condition(const double depth, const fem::HexahedraOptions& options) {
+  const Box block{Vec3::Zero(), Vec3(3, 2 + depth, 2 + depth)};
+  const Body body = box(block, 1, Vec3::Zero());
+  const fem::Hexahedra model(body.grid, body.cuts, body.complex, options);
+  const Points rest = body.rest();
+  const Eigen::MatrixXd K = model.stiffness_matrix(rest, dynamics::Tangent::exact);
+  const auto free = corners_where(rest, [](const Vec3& X) { return X[0] > 1e-9; });
+  const auto n = static_cast<Eigen::Index>(free.size());
+  Eigen::MatrixXd A(3 * n, 3 * n), S = Eigen::MatrixXd::Zero(3 * n, 3 * n);
+  for (Eigen::Index i = 0; i < n; ++i)
+    for (Eigen::Index j = 0; j < n; ++j)
+      A.block<3, 3>(3 * i, 3 * j) = K.block<3, 3>(3 * free[i], 3 * free[j]);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const Mat3 L = A.block<3, 3>(3 * i, 3 * i).llt().matrixL();
+    S.block<3, 3>(3 * i, 3 * i) = L.inverse();
+  }
+  const auto ratio = [](const Eigen::MatrixXd& matrix) {
+    const Eigen::VectorXd values =
+      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(matrix, Eigen::EigenvaluesOnly).eigenvalues();
+    return values[values.size() - 1] / values[0];
+  };
+  return {smallest_fraction(model), ratio(A), ratio(S * A * S.transpose())};
+}
+
+} // namespace kerf::verification

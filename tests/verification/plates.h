@@ -1,0 +1,52 @@
+#pragma once
+
+/// Problems whose answers are not those of a beam: Cook's membrane, a cut in the shape of a disc, and the condition of
+/// what slivers do to the stiffness.
+
+#include "tests/verification/statics.h"
+
+namespace kerf::verification {
+
+/// Cook's trapezium (Cook, Malkus and Plesha 1989): corners (0, 0), (48, 44), (48, 60), (0, 44), clamped at x = 0,
+/// a shear load of 1 N/m on x = 48. Plane stress with E = 1 Pa, nu = 1/3 is what is tabulated; plane strain with 15/16
+/// Pa
+/// and nu = 1/4 has the same stiffness in its plane, and is what a slab between two slippery walls can do. Displacement
+/// v of the middle of the loaded side [m], converged: 23.96 (Bergan and Felippa 1985).
+constexpr double cook_reference = 23.96;
+struct PlateResult {
+  double value = 0;
+  std::size_t n_cells = 0;
+  double smallest_fraction = 1; ///< [1]
+  Cost cost;
+};
+PlateResult cooks_membrane(int n_over_length, double offset, const fem::HexahedraOptions& options);
+/// Its material.
+fem::HexahedraOptions cook_material(fem::Strain strain);
+
+/// A disc cut (radius r, centre and plane off the lattice) in the middle of a cube of edge 2 R under a tension sigma on
+/// its two far faces. Sneddon 1946: the faces open by w(s) = 8 (1 - nu^2) sigma sqrt(r^2 - s^2) / (pi E), twice what
+/// one face
+/// moves, in a body without end.
+struct Penny {
+  int n_over_radius = 3;
+  double half_width = 4;                ///< R / r [1]
+  Vec3 offset = Vec3(0.31, 0.43, 0.57); ///< of the centre from a node, in parts of h [1]
+};
+struct PennyResult {
+  double opening_error = 0; ///< root mean square over the cut edges in the disc, over that of the exact opening [1]
+  double volume = 0;        ///< of the gap, over the exact one, 16 (1 - nu^2) sigma r^3 / (3 E) [1]
+  std::size_t n_cells = 0;
+  Cost cost;
+};
+PennyResult penny(const Penny& problem, const fem::HexahedraOptions& options);
+
+/// Condition numbers [1] of the stiffness of a small clamped block whose outer layers of cells, on two sides, are
+/// filled
+/// to `depth` of a cell: as it is, and with the Cholesky factors of its 3 x 3 diagonal blocks on both sides, as the
+/// solvers see it.
+struct Condition {
+  double smallest_fraction = 0, plain = 0, scaled = 0;
+};
+Condition condition(double depth, const fem::HexahedraOptions& options);
+
+} // namespace kerf::verification

@@ -1,0 +1,53 @@
+/// Cook's membrane, a disc-shaped cut, and the condition of the stiffness.
+
+#include "tests/verification/plates.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+namespace kerf::verification {
+namespace {
+
+/// Its inclined sides pass between nodes everywhere.
+TEST(CooksMembrane, ConvergesToTheTabulatedDisplacement) {
+  double before = 1;
+  for (const int n : {12, 24, 48}) {
+    const double error = cooks_membrane(n, 0, cook_material(fem::Strain::enhanced)).value / cook_reference - 1;
+    EXPECT_LT(std::abs(error), before) << n;
+    before = std::abs(error);
+    testing::Test::RecordProperty("n_" + std::to_string(n), std::to_string(100 * error) + "_percent");
+  }
+  EXPECT_LT(before, 0.01);
+}
+
+/// A cell that holds a part of the front does not open: the disc is as large as the cells that are cut through, and the
+/// error of order 1 in h.
+TEST(PennyShapedCut, OpensMoreAndMoreAsItShould) {
+  const PennyResult coarse = penny({.n_over_radius = 2, .half_width = 3}, hooke(1, 0.3));
+  const PennyResult fine = penny({.n_over_radius = 4, .half_width = 3}, hooke(1, 0.3));
+  EXPECT_LT(fine.opening_error, 0.75 * coarse.opening_error);
+  EXPECT_LT(1 - std::cbrt(fine.volume), 0.65 * (1 - std::cbrt(coarse.volume))); // of the radius
+  EXPECT_LT(fine.volume, 1);
+  testing::Test::RecordProperty("volume_fine", std::to_string(fine.volume));
+}
+
+/// Scaled by blocks, as the solvers see it, it does not feel slivers; plain, it does, and the floor bounds it.
+TEST(Condition, OfSliversIsBoundedByScalingOrByTheFloor) {
+  const auto with_floor = [](const double depth, const double floor) {
+    return condition(depth, hooke(1, 0.3, fem::Strain::enhanced, fem::Boundary::octants, floor));
+  };
+  const Condition half = with_floor(0.5, 1e-15);
+  for (const double depth : {1e-1, 1e-2, 1e-3}) {
+    const Condition bare = with_floor(depth, 1e-15), floored = with_floor(depth, 1e-3);
+    EXPECT_LT(bare.scaled, 10 * half.scaled) << depth;
+    EXPECT_LT(floored.scaled, 10 * half.scaled) << depth;
+    EXPECT_LE(floored.plain, 1.01 * bare.plain) << depth;
+  }
+  EXPECT_GT(with_floor(1e-3, 1e-15).plain, 1e5 * half.plain);
+  EXPECT_LT(with_floor(1e-3, 1e-3).plain, 1e5 * half.plain);
+}
+
+} // namespace
+} // namespace kerf::verification
