@@ -48,13 +48,16 @@ Vec3 zero_of(const std::array<int, 4>& corners, const std::array<Vec3, 4>& v) {
   return zero.allFinite() ? Vec3(zero.cwiseMax(0).cwiseMin(1)) : Vec3::Constant(0.5); // flat, but for rounding
 }
 
-Vec3 normal_of_motion(const Segment& before, const Segment& after, const Vec3& at) {
-  return at[1] >= at[2] ? geometry::unit_normal({before[0], before[1], after[1]}) // the halves of add_strip()
-                        : geometry::unit_normal({before[0], after[1], after[0]});
+/// Of what the piece itself sweeps, at this place of it: where it turns, that changes along it.
+Vec3 normal_of_motion(const Encounter& e, const double s, const double f) {
+  const auto& [before, after] = e.piece;
+  const Vec3 along = (1 - f) * (before[1] - before[0]) + f * (after[1] - after[0]);
+  const Vec3 moved = (1 - s) * (after[0] - before[0]) + s * (after[1] - before[1]);
+  return along.cross(moved).stableNormalized();
 }
 
 Vec3 normal_at(const Encounter& e, const Vec3& at) {
-  const Vec3 own = normal_of_motion(e.piece[0], e.piece[1], at);
+  const Vec3 own = normal_of_motion(e, at[1], at[2]);
   if (!own.isZero(0))
     return own;
   const Vec3 moved = (1 - at[0]) * (e.edge[1][0] - e.edge[0][0]) + at[0] * (e.edge[1][1] - e.edge[0][1]);

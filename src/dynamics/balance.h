@@ -5,18 +5,19 @@
 ///     M (a + alpha v) + beta K v = f(x) + M g + sum of loads(time, x, v) + offset,
 ///     a = a_0 + kappa (x - x_0),   v = v_0 + omega (x - x_0),
 ///
-/// for x, with supports eliminated: an integrator is a choice of kappa, omega, x_0, v_0, a_0 (Hughes, The Finite Element
-/// Method, 2000, ch. 9), statics is kappa = omega = 0. K is the model's stiffness at the iterate.
+/// for x, with supports eliminated: an integrator is a choice of kappa, omega, x_0, v_0, a_0 (Hughes, The Finite
+/// Element Method, 2000, ch. 9), statics is kappa = omega = 0. K is the model's stiffness at the iterate.
 ///
-/// Newton's method from x_0. A correction solves A d = r with A = (kappa + alpha omega) M + (1 + beta omega) K + loads,
-/// by conjugate gradients or by a factorisation. Both see L^-1 A L^-T with the Cholesky factors L of A's diagonal 3 x 3
-/// blocks, restricted to the directions that supports leave free: each corner is solved in its own measure, one of hardly
-/// any mass like every other.
+/// Newton's method from x_0. A correction solves A d = r with A = (kappa + alpha omega) M + (1 + beta omega) K +
+/// loads, by conjugate gradients or by a factorisation. Both see L^-1 A L^-T with the Cholesky factors L of A's
+/// diagonal 3 x 3 blocks, restricted to the directions that supports leave free: each corner is solved in its own
+/// measure, one of hardly any mass like every other.
 ///
 /// The line search halves a correction until the incremental potential falls by 1e-4 of what its slope promises
-/// (Armijo), or, where the fall drowns in round-off, until the slope has (Hager and Zhang 2005, A new conjugate gradient
-/// method with guaranteed descent, SIAM J. Optim. 16, sec. 3): elastic energy, gravity, conservative loads, (kappa + alpha omega) M |x - x_0|^2 / 2 and so on, and for loads
-/// without a potential their work along the correction, by the trapezoidal rule.
+/// (Armijo), or, where the fall drowns in round-off, until the slope has (Hager and Zhang 2005, A new conjugate
+/// gradient method with guaranteed descent, SIAM J. Optim. 16, sec. 3): elastic energy, gravity, conservative loads,
+/// (kappa + alpha omega) M |x - x_0|^2 / 2 and so on, and for loads without a potential their work along the
+/// correction, by the trapezoidal rule.
 
 #include "dynamics/constraints.h"
 

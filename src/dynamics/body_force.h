@@ -14,8 +14,8 @@ using Field = std::function<Vec3(const Vec3& X, double time)>;
 
 class BodyForce : public Load {
  public:
-  /// volume [m^3] and rest position [m] of each corner; density [N/m^3], world frame. Throws ParameterError for lists of
-  /// different length.
+  /// volume [m^3] and rest position [m] of each corner; density [N/m^3], world frame. Throws ParameterError for lists
+  /// of different length.
   BodyForce(std::vector<double> volume, Points rest, Field density);
 
   Nature nature() const override { return Nature::conservative; }

@@ -1,9 +1,9 @@
 #pragma once
 
 /// Conjugate gradients (Hestenes and Stiefel 1952) that stop where the matrix is not positive (Steihaug 1983): a
-/// direction p with p.Ap <= 0 ends the iteration at the last iterate, or at p itself when nothing was found yet, so that
-/// what comes back is a descent direction of 1/2 x.Ax - b.x. Sums are taken in blocks of fixed size, so any number of
-/// threads gives the same bits.
+/// direction p with p.Ap <= 0 ends the iteration at the last iterate, or at p itself when nothing was found yet, so
+/// that what comes back is a descent direction of 1/2 x.Ax - b.x. Sums are taken in blocks of fixed size, so any
+/// number of threads gives the same bits.
 
 #include <cstddef>
 #include <functional>

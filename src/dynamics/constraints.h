@@ -2,9 +2,9 @@
 
 /// What supports leave of the corners' motion.
 ///
-/// A support holds each of its corners along the range of a projector H: H (x - place) = 0. A corner in several supports
-/// obeys all of them; if some of them hold it in all directions, the last of these alone. With S the sum of its H and c
-/// the sum of its H place, it is moved by S^+ (c - S x), which is the least motion that obeys.
+/// A support holds each of its corners along the range of a projector H: H (x - place) = 0. A corner in several
+/// supports obeys all of them; if some of them hold it in all directions, the last of these alone. With S the sum of
+/// its H and c the sum of its H place, it is moved by S^+ (c - S x), which is the least motion that obeys.
 
 #include "dynamics/loads.h"
 

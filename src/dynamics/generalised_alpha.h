@@ -5,11 +5,11 @@
 ///
 ///     x_1 = x_0 + dt v_0 + dt^2 ((1/2 - beta) a_0 + beta a_1),   v_1 = v_0 + dt ((1 - gamma) a_0 + gamma a_1)
 ///
-/// the balance of forces holds at x_0 + (1 - alpha_f)(x_1 - x_0), v likewise, and a_0 + (1 - alpha_m)(a_1 - a_0). Forces
-/// are those of the configuration in between, not a mean of forces: the same for linear bodies. The spectral radius at
-/// high frequency, rho_inf, chooses all four numbers (their eqs. 17, 18, 25): second order, stable for every dt, and no
-/// more damping at low frequency than needed. Newmark is alpha_m = alpha_f = 0; average acceleration beta = 1/4, gamma =
-/// 1/2 keeps the energy of linear bodies.
+/// the balance of forces holds at x_0 + (1 - alpha_f)(x_1 - x_0), v likewise, and a_0 + (1 - alpha_m)(a_1 - a_0).
+/// Forces are those of the configuration in between, not a mean of forces: the same for linear bodies. The spectral
+/// radius at high frequency, rho_inf, chooses all four numbers (their eqs. 17, 18, 25): second order, stable for
+/// every dt, and no more damping at low frequency than needed. Newmark is alpha_m = alpha_f = 0; average acceleration
+/// beta = 1/4, gamma = 1/2 keeps the energy of linear bodies.
 ///
 /// State::history "acceleration" [m/s^2] is a_0; without it the balance of forces at the start gives it.
 

@@ -1,7 +1,7 @@
 #pragma once
 
-/// Points that follow corners: the rows of a sparse matrix W, x_point = W x_corners. Forces on them go to the corners by
-/// its transpose, so that power, and with weights that sum to 1 momentum too, are the same on both sides.
+/// Points that follow corners: the rows of a sparse matrix W, x_point = W x_corners. Forces on them go to the corners
+/// by its transpose, so that power, and with weights that sum to 1 momentum too, are the same on both sides.
 
 #include "base/vec.h"
 

@@ -1,6 +1,7 @@
 #pragma once
 
-/// What all implicit integrators share towards a scene: the keys of Newton's method, and what a step makes of its report.
+/// What all implicit integrators share towards a scene: the keys of Newton's method, and what a step makes of its
+/// report.
 
 #include "base/parameters.h"
 #include "dynamics/balance.h"

@@ -2,12 +2,12 @@
 
 /// What can be asked of a moving body: reactions of its supports, power, and how its energy comes and goes.
 ///
-/// The reaction at a held corner is what the balance of forces lacks there: R = M a + alpha M v + beta K v - f(x) - M g -
-/// loads, along its held directions; where several supports hold, each has its share H S^+ R (constraints.h). Then the
-/// momentum changes by gravity, loads, mass damping and reactions, exactly.
+/// The reaction at a held corner is what the balance of forces lacks there: R = M a + alpha M v + beta K v - f(x) - M
+/// g - loads, along its held directions; where several supports hold, each has its share H S^+ R (constraints.h).
+/// Then the momentum changes by gravity, loads, mass damping and reactions, exactly.
 ///
-/// Along a motion, kinetic + elastic + gravity + energy of loads = that at the start + work of supports + work of loads -
-/// dissipated energy, up to the integrator's error.
+/// Along a motion, kinetic + elastic + gravity + energy of loads = that at the start + work of supports + work of
+/// loads - dissipated energy, up to the integrator's error.
 
 #include "dynamics/constraints.h"
 #include "dynamics/state.h"
@@ -39,8 +39,8 @@ struct Power {
 };
 Power power(ElasticModel& model, const Loads& loads, const State& state, const Points& acceleration);
 
-/// Adds what flowed during a step, by the trapezoidal rule, to State::numbers "dissipated energy [J]", "work of supports
-/// [J]" and "work of loads [J]" of `after`. Potentials that change with time do work that is not booked.
+/// Adds what flowed during a step, by the trapezoidal rule, to State::numbers "dissipated energy [J]", "work of
+/// supports [J]" and "work of loads [J]" of `after`. Potentials that change with time do work that is not booked.
 void book(const Power& at_begin, const Power& at_end, double dt, State& after);
 
 Vec3 momentum(const ForceModel& model, const State& state);

@@ -1,7 +1,7 @@
 #pragma once
 
-/// Statics: a step goes to the equilibrium of the loads and supports of its end, whatever inertia and damping would say,
-/// by Newton's method with a line search (balance.h).
+/// Statics: a step goes to the equilibrium of the loads and supports of its end, whatever inertia and damping would
+/// say, by Newton's method with a line search (balance.h).
 ///
 /// When it does not converge, the way is divided: with r_0 the forces out of balance at the start and s from 0 to 1,
 /// supports go the part s of their way and r = (1 - s) r_0 is solved, so that s = 0 is where the body stands. Forces

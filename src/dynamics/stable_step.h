@@ -2,11 +2,11 @@
 
 /// The longest time step that an explicit integrator bears.
 ///
-/// The largest eigenvalue w^2 of M^-1 K, K the tangent of model and loads at a state, and the largest d of M^-1 C, C that
-/// of the loads by velocities, come from Lanczos' method from a fixed start, which is power iteration that forgets
-/// nothing (Golub and Van Loan, Matrix Computations, 10.1). A vibration of frequency w under mass damping alpha and
-/// stiffness damping beta goes through a step by a 2 x 2 matrix that is the integrator's own; the stable step is the
-/// longest for which no frequency up to w grows by more than the integrator's allowance.
+/// The largest eigenvalue w^2 of M^-1 K, K the tangent of model and loads at a state, and the largest d of M^-1 C, C
+/// that of the loads by velocities, come from Lanczos' method from a fixed start, which is power iteration that
+/// forgets nothing (Golub and Van Loan, Matrix Computations, 10.1). A vibration of frequency w under mass damping
+/// alpha and stiffness damping beta goes through a step by a 2 x 2 matrix that is the integrator's own; the stable
+/// step is the longest for which no frequency up to w grows by more than the integrator's allowance.
 
 #include "base/parameters.h"
 #include "dynamics/loads.h"

@@ -2,11 +2,12 @@
 
 /// Loads on a part of a body's surface.
 ///
-/// Traction t(X, time) per rest area is dead: linear in each triangle between its vertices, so a vertex a of a triangle
-/// of rest area A gets A/12 (2 t_a + t_b + t_c). Pressure p(X, time) follows the body: each vertex of a triangle gets
-/// -p c / 6 with c = (x_1 - x_0) x (x_2 - x_0), which is twice the current area times the outward normal, and p the mean
-/// of the three vertices. It has a potential only on a closed surface, so none is used; its stiffness
-/// -df/dx_k = -(p/6) [x_{k+1} - x_{k+2}]x is not symmetric on an open one and is left out of the positive tangent.
+/// Traction t(X, time) per rest area is dead: linear in each triangle between its vertices, so a vertex a of a
+/// triangle of rest area A gets A/12 (2 t_a + t_b + t_c). Pressure p(X, time) follows the body: each vertex of a
+/// triangle gets -p c / 6 with c = (x_1 - x_0) x (x_2 - x_0), which is twice the current area times the outward
+/// normal, and p the mean of the three vertices. It has a potential only on a closed surface, so none is used; its
+/// stiffness -df/dx_k = -(p/6) [x_{k+1} - x_{k+2}]x is not symmetric on an open one and is left out of the positive
+/// tangent.
 
 #include "base/parameters.h"
 #include "dynamics/body_force.h"

@@ -1,7 +1,7 @@
 #pragma once
 
-/// Symplectic Euler (thesis §2.1.3, eqs. 2.15, 2.16): v += dt M^-1 f(x, v), then x += dt v. First order, explicit, stable
-/// for dt below 2 / (largest frequency). Mass damping is taken implicitly, so it never destabilises.
+/// Symplectic Euler (thesis §2.1.3, eqs. 2.15, 2.16): v += dt M^-1 f(x, v), then x += dt v. First order, explicit,
+/// stable for dt below 2 / (largest frequency). Mass damping is taken implicitly, so it never destabilises.
 
 #include "dynamics/stable_step.h"
 #include "dynamics/stepper.h"

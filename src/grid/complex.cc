@@ -13,7 +13,6 @@ namespace kerf::grid {
 
 namespace {
 
-constexpr std::size_t cells_per_chunk = 4096;
 constexpr std::uint32_t none = Id<void>::no_value;
 
 /// Room for some cuts, so that the first ones do not move the whole table.
@@ -37,83 +36,54 @@ struct Components {
   }
 };
 
-/// The cells with cut lines among some of them in a row.
-struct Chunk {
-  struct CutCell {
-    CellId cell;
-    Components components;
-  };
-  std::vector<CutCell> cut_cells;
-  std::size_t first_copy = 0;
+struct CutCell {
+  CellId cell;
+  Components components;
 };
 
-template <class Function>
-void for_each_cell(const Grid& grid, const std::size_t chunk, const Function& f) {
-  const std::size_t end = std::min(grid.n_cells(), (chunk + 1) * cells_per_chunk);
-  for (std::size_t c = chunk * cells_per_chunk; c < end; ++c)
-    f(CellId(c));
+/// The cells with a cut edge, ascending.
+std::vector<CutCell> find_cut_cells(const Grid& grid, const Cuts& cuts) {
+  std::vector<EdgeId> edges;
+  edges.reserve(cuts.all().size());
+  for (const EdgeCut& cut : cuts.all())
+    edges.push_back(cut.edge);
+  std::vector<CutCell> cells;
+  for (const TouchedCell& touched : touched_cells(grid, edges)) // by which lines is its configuration
+    cells.push_back({touched.cell, Components(material_bits(grid, touched.cell), touched.lines)});
+  return cells;
 }
 
-std::vector<Chunk> make_chunks(const Grid& grid, const Cuts& cuts) {
-  std::vector<Chunk> chunks((grid.n_cells() + cells_per_chunk - 1) / cells_per_chunk);
-  parallel_for(chunks.size(), [&](const std::size_t k) {
-    for_each_cell(grid, k, [&](const CellId c) {
-      if (const unsigned cut_lines = cuts.configuration(grid, c); cut_lines != 0)
-        chunks[k].cut_cells.push_back({c, Components(material_bits(grid, c), cut_lines)});
-    });
-  });
-  return chunks;
-}
-
-/// Numbers the chunks' first copies; returns how many copies there are.
-std::size_t count_copies(const Grid& grid, std::vector<Chunk>& chunks) {
-  std::size_t n = 0;
-  for (std::size_t k = 0; k < chunks.size(); ++k) {
-    chunks[k].first_copy = n;
-    n += std::min(grid.n_cells(), (k + 1) * cells_per_chunk) - k * cells_per_chunk - chunks[k].cut_cells.size();
-    for (const auto& cut : chunks[k].cut_cells)
-      n += cut.components.n;
-  }
-  return n;
-}
-
-void make_copies(const Grid& grid, std::vector<Chunk>& chunks, CellComplex& complex) {
-  const std::size_t n_copies = count_copies(grid, chunks);
-  complex.first_copy.resize(grid.n_cells());
+void make_copies(const Grid& grid, const std::vector<CutCell>& cut_cells, CellComplex& complex) {
+  std::size_t n_copies = grid.n_cells();
+  for (const CutCell& cut : cut_cells)
+    n_copies += cut.components.n - 1;
   complex.copies.reserve(with_room(n_copies));
-  complex.copies.resize(n_copies);
-  parallel_for(chunks.size(), [&](const std::size_t k) {
-    std::size_t copy = chunks[k].first_copy;
-    auto cut = chunks[k].cut_cells.begin();
-    for_each_cell(grid, k, [&](const CellId c) {
-      complex.first_copy[c] = CopyId(copy);
-      if (cut == chunks[k].cut_cells.end() || cut->cell != c) {
-        complex.copies[CopyId(copy++)] = {c, 0xff, {}, {}};
-        return;
-      }
-      for (int i = 0; i < cut->components.n; ++i, ++copy)
-        complex.copies[CopyId(copy)] = {
-          c, cut->components.nodes[i], {}, i + 1 < cut->components.n ? CopyId(copy + 1) : CopyId()};
-      ++cut;
-    });
-  });
+  complex.first_copy.reserve(grid.n_cells());
+  auto cut = cut_cells.begin();
+  for (const CellId c : ids<CellId>(grid.n_cells())) {
+    complex.first_copy.push_back(CopyId(complex.n_copies()));
+    if (cut == cut_cells.end() || cut->cell != c) {
+      complex.copies.push_back({c, 0xff, {}, {}});
+      continue;
+    }
+    for (int i = 0; i < cut->components.n; ++i) {
+      const bool is_last = i + 1 == cut->components.n;
+      complex.copies.push_back({c, cut->components.nodes[i], {}, is_last ? CopyId() : CopyId(complex.n_copies() + 1)});
+    }
+    ++cut;
+  }
 }
 
 /// The cut cells around each node, as lists through their slots (cell, vertex).
 class SlotsOfNodes {
  public:
-  SlotsOfNodes(const Grid& grid, const std::vector<Chunk>& chunks) : first_(grid.n_nodes(), none) {
-    std::size_t n_cut_cells = 0;
-    for (const Chunk& chunk : chunks)
-      n_cut_cells += chunk.cut_cells.size();
-    slots_.reserve(8 * n_cut_cells);
-    for (const Chunk& chunk : chunks)
-      for (const auto& cut : chunk.cut_cells)
-        for (int v = 0; v < 8; ++v) {
-          std::uint32_t& first = first_[grid.nodes(cut.cell)[v]];
-          slots_.push_back({cut.cell, first});
-          first = static_cast<std::uint32_t>(slots_.size() - 1);
-        }
+  SlotsOfNodes(const Grid& grid, const std::vector<CutCell>& cut_cells) : first_(grid.n_nodes(), none) {
+    slots_.reserve(8 * cut_cells.size());
+    for (const CutCell& cut : cut_cells)
+      for (const NodeId node : grid.nodes(cut.cell)) {
+        slots_.push_back({cut.cell, first_[node]});
+        first_[node] = static_cast<std::uint32_t>(slots_.size() - 1);
+      }
   }
 
   bool has(const NodeId node) const { return first_[node] != none; }
@@ -121,7 +91,8 @@ class SlotsOfNodes {
     CellsAround cells;
     for (std::uint32_t i = first_[node]; i != none; i = slots_[i].next)
       cells.add(slots_[i].cell, i % 8);
-    cells.complete(grid);
+    if (grid.is_material(node)) // else all of them are cut
+      cells.complete(grid);
     return cells;
   }
 
@@ -158,8 +129,9 @@ Table<NodeId, CornerId> number_corners(const Grid& grid, const SlotsOfNodes& slo
   return lone_corner;
 }
 
-void make_corners(const Grid& grid, const std::vector<Chunk>& chunks, CellComplex& complex) {
-  const auto lone_corner = number_corners(grid, SlotsOfNodes(grid, chunks), complex);
+void make_corners(const Grid& grid, const std::vector<CutCell>& cut_cells, CellComplex& complex) {
+  constexpr std::size_t worth = 4096;
+  const auto lone_corner = number_corners(grid, SlotsOfNodes(grid, cut_cells), complex);
   parallel_for(
     complex.n_copies(),
     [&](const std::size_t c) {
@@ -169,7 +141,7 @@ void make_corners(const Grid& grid, const std::vector<Chunk>& chunks, CellComple
         if (const CornerId corner = lone_corner[nodes[v]]; corner.valid())
           copy.corners[v] = corner;
     },
-    cells_per_chunk);
+    worth);
 }
 
 /// Splits copies and renames corners around new cut edges.
@@ -297,9 +269,9 @@ std::size_t CellComplex::n_bytes() const {
 
 CellComplex build_complex(const Grid& grid, const Cuts& cuts) {
   CellComplex complex;
-  auto chunks = make_chunks(grid, cuts);
-  make_copies(grid, chunks, complex);
-  make_corners(grid, chunks, complex);
+  const auto cut_cells = find_cut_cells(grid, cuts);
+  make_copies(grid, cut_cells, complex);
+  make_corners(grid, cut_cells, complex);
   return complex;
 }
 

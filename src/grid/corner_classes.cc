@@ -13,15 +13,14 @@ constexpr std::array<unsigned, 3> lower_face = {cube::face_mask(0), cube::face_m
 } // namespace
 
 void CellsAround::complete(const Grid& grid) {
-  // From any of the eight, each other one is at most three faces away; a gap may make the way longer.
-  for (bool grows = true; grows;) {
-    grows = false;
-    for (int v = 0; v < 8; ++v)
-      for (int axis = 0; cells_[v].valid() && axis < 3; ++axis)
-        if (const int other = v ^ 1 << axis; !cells_[other].valid()) {
+  // Once along each axis finds all eight, where all are there; else a gap may make the way longer.
+  for (std::size_t n_before = 0, n = 1; n_before < n && n < 8;) {
+    n_before = n;
+    for (int axis = 0; axis < 3; ++axis)
+      for (int v = 0; v < 8; ++v)
+        if (const int other = v ^ 1 << axis; cells_[v].valid() && !cells_[other].valid())
           cells_[other] = grid.neighbour(cells_[v], cube::face_at(v, axis));
-          grows |= cells_[other].valid();
-        }
+    n = std::count_if(cells_.begin(), cells_.end(), [](const CellId c) { return c.valid(); });
   }
 }
 
@@ -35,9 +34,10 @@ CornerClasses::CornerClasses(const CellComplex& complex, const CellsAround& cell
     }
   }
   first_slot_[8] = static_cast<std::uint8_t>(n_slots_);
+  n_classes_ = static_cast<int>(n_slots_);
   for (int v = 0; v < 8; ++v)
     for (int axis = 0; axis < 3; ++axis)
-      if (v >> axis & 1)
+      if ((v >> axis & 1) && n_classes_ > 1)
         join_across(v, axis, complex);
   number();
 }
@@ -51,19 +51,22 @@ void CornerClasses::join_across(const int upper_vertex, const int axis, const Ce
       if ((below >> (1 << axis) & above & lower_face[axis]) == 0)
         continue;
       const std::uint8_t p = slots_[a].class_number, q = slots_[b].class_number;
-      if (p != q)
-        for (std::size_t i = 0; i < n_slots_; ++i)
-          if (slots_[i].class_number == std::max(p, q))
-            slots_[i].class_number = std::min(p, q);
+      if (p == q)
+        continue;
+      --n_classes_;
+      for (std::size_t i = 0; i < n_slots_; ++i)
+        if (slots_[i].class_number == std::max(p, q))
+          slots_[i].class_number = std::min(p, q);
     }
 }
 
 void CornerClasses::number() {
   std::array<std::uint8_t, max_slots> number_of;
+  std::uint8_t n = 0;
   for (std::size_t i = 0; i < n_slots_; ++i) {
     auto& name = slots_[i].class_number; // the first slot of the class
     if (name == i)
-      number_of[i] = static_cast<std::uint8_t>(n_classes_++);
+      number_of[i] = n++;
     name = number_of[name];
   }
 }

@@ -60,8 +60,20 @@ class Writer {
     make_room();
   }
 
-  void write(const CellId cell) {
-    const unsigned cut_lines = cuts_.configuration(grid_, cell);
+  /// All cells with a cut edge.
+  void write_all() {
+    std::vector<EdgeId> edges;
+    edges.reserve(cuts_.all().size());
+    for (const grid::EdgeCut& cut : cuts_.all())
+      edges.push_back(cut.edge);
+    for (const grid::TouchedCell& touched : grid::touched_cells(grid_, edges)) // by which lines is its configuration
+      write(touched.cell, touched.lines);
+  }
+
+  void write(const CellId cell) { write(cell, cuts_.configuration(grid_, cell)); }
+
+ private:
+  void write(const CellId cell, const unsigned cut_lines) {
     if (cut_lines == 0)
       return;
     enter(cell);
@@ -70,7 +82,6 @@ class Writer {
         write(quad);
   }
 
- private:
   /// Triangles for all cuts, and tables for all copies and faces.
   void make_room() {
     const auto cuts = cuts_.all();
@@ -198,6 +209,17 @@ class Writer {
   std::bitset<80> seen_; // 24 edge vertices, 48 face vertices, 8 centres
 };
 
+/// Room for the vertices of closed surfaces with so many triangles: half as many, by Euler; of four, one is on an edge, two
+/// are in faces and one in a cell.
+void reserve_vertices(Surface& surface) {
+  constexpr double entries_per_vertex = (2 + 2 * 4 + 8) / 4.0, spare = 1.05;
+  const auto n = static_cast<std::size_t>(spare * 0.5 * static_cast<double>(surface.triangles.size()));
+  surface.rest.reserve(n);
+  surface.weights.row_start.reserve(n + 1);
+  surface.weights.corners.reserve(static_cast<std::size_t>(entries_per_vertex * static_cast<double>(n)));
+  surface.weights.values.reserve(static_cast<std::size_t>(entries_per_vertex * static_cast<double>(n)));
+}
+
 /// The cells whose part of the surface an update writes.
 std::vector<CellId> cells_to_write(const Grid& grid, const CellComplex& complex,
                                    const std::span<const EdgeId> new_edges, const grid::ComplexChange& change) {
@@ -239,8 +261,8 @@ Surface build_surface(const Grid& grid, const Cuts& cuts, const CellComplex& com
   index.first_face_vertex.resize(grid.n_faces(), unset);
   index.centres.reserve(complex.copies.items().capacity());
   Writer writer(grid, cuts, complex, surface, index, Known::kept);
-  for (const CellId cell : ids<CellId>(grid.n_cells()))
-    writer.write(cell);
+  reserve_vertices(surface);
+  writer.write_all();
   return surface;
 }
 

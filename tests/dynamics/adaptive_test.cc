@@ -43,7 +43,8 @@ Outcome oscillate(const Integrator& integrator, const double tolerance) {
 
 class Adaptive : public testing::TestWithParam<Integrator> {};
 
-/// The error is below tolerance times time, and not absurdly below: substeps go as tolerance^(-1/p), or somewhat faster.
+/// The error is below tolerance times time, and not absurdly below: substeps go as tolerance^(-1/p), or somewhat
+/// faster.
 TEST_P(Adaptive, KeepsItsTolerance) {
   int before = 0;
   for (const double tolerance : {1e-2, 1e-3, 1e-4}) {

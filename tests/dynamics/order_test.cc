@@ -1,5 +1,5 @@
-/// The order of every integrator, against closed forms: a damped oscillator that is driven, a vibrating bar, a nonlinear
-/// oscillator against its own fine solution, and a support that moves.
+/// The order of every integrator, against closed forms: a damped oscillator that is driven, a vibrating bar, a
+/// nonlinear oscillator against its own fine solution, and a support that moves.
 
 #include "dynamics/body_force.h"
 #include "tests/dynamics/chain.h"

@@ -1,7 +1,7 @@
 #pragma once
 
-/// Bars between points: geometrically nonlinear, so that statics has something to do, and with an exact tangent that may
-/// be indefinite. A bar of rest length L and length l has the energy k (l - L)^2 / 2.
+/// Bars between points: geometrically nonlinear, so that statics has something to do, and with an exact tangent that
+/// may be indefinite. A bar of rest length L and length l has the energy k (l - L)^2 / 2.
 
 #include "dynamics/model.h"
 #include "dynamics/state.h"

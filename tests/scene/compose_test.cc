@@ -74,6 +74,23 @@ TEST(Compose, IntegratesOverOctantsOrFullCubes) {
   EXPECT_NEAR(value(full.bodies.at(0), "mass"), 1000 * 0.25 * 0.25 * 0.25, 1e-9); // 5 cells an edge touch material
 }
 
+TEST(Compose, TakesTheLawAndTheElementThatAreNamed) {
+  const auto model_of = [](const std::vector<std::string>& settings) {
+    World world = world_of(cube_scene(), settings);
+    EXPECT_TRUE(
+      says(world, "body cube: " + std::string(settings.empty() ? "corotational trilinear" : "neo-Hookean enhanced")));
+    return std::move(world.bodies.at(0).physics.model);
+  };
+  const auto by_default = model_of({});
+  const auto named = model_of({"Body cube/Material/Law=neo-Hookean", "Body cube/Element=enhanced"});
+  const auto& plain = dynamic_cast<const fem::Hexahedra&>(*by_default);
+  const auto& other = dynamic_cast<const fem::Hexahedra&>(*named);
+  EXPECT_TRUE(std::holds_alternative<material::Corotational>(plain.law()));
+  EXPECT_TRUE(std::holds_alternative<material::NeoHookean>(other.law()));
+  const World fractions = world_of(cube_scene(), {"Body cube/Integration=volume fraction"});
+  EXPECT_NEAR(value(fractions.bodies.at(0), "mass"), 1000 * 0.2 * 0.2 * 0.2, 1e-11);
+}
+
 TEST(Compose, AMeshPathStartsAtTheScene) {
   const std::string file = std::string(KERF_SOURCE_DIR) + "/params/here.prm";
   const World world = compose(scan_scene_text(cube_scene(), file, {"Body cube/Mesh=meshes/cube.off"}));
