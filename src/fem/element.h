@@ -1,7 +1,7 @@
 #pragma once
 
-/// What one hexahedron needs of its material: stiffness, mass, mean gradient. Local unknowns are 3 a + i for vertex a and
-/// direction i. A cube of edge h scales as K ~ h, mass ~ h^3, gradients ~ 1 / h.
+/// What one hexahedron needs of its material: stiffness, mass, mean gradient. Local unknowns are 3 a + i for vertex a
+/// and direction i. A cube of edge h scales as K ~ h, mass ~ h^3, gradients ~ 1 / h.
 
 #include "fem/hourglass.h"
 
@@ -30,14 +30,14 @@ struct Element {
   double stiff_volume = 0;                       ///< of what carries stiffness: at least the sliver floor's [m^3]
 };
 
-/// Hooke's law, small strain. Where the material fills less than `sliver_floor` of the cube, the stiffness (not the mass)
-/// is topped up to that fraction with a full cube's, so that corners held by slivers stay solvable. The mean gradient,
-/// and with it the rotation, is that of the same topped-up material.
+/// Hooke's law, small strain. Where the material fills less than `sliver_floor` of the cube, the stiffness (not the
+/// mass) is topped up to that fraction with a full cube's, so that corners held by slivers stay solvable. The mean
+/// gradient, and with it the rotation, is that of the same topped-up material.
 Element make_element(const Moments& moments, double h, const material::Elastic& material,
                      const ElementOptions& options);
 
-/// Gives each corner the same share of a part `part` [1] of the element's lumped mass, the rest stays where it is. Total
-/// mass stays, and so does momentum across a cut (copies of a cell share velocities there); a full cube does not
+/// Gives each corner the same share of a part `part` [1] of the element's lumped mass, the rest stays where it is.
+/// Total mass stays, and so does momentum across a cut (copies of a cell share velocities there); a full cube does not
 /// change. It bounds the largest frequency of slivers, whose far corners carry hardly any mass: what explicit
 /// integrators need.
 void spread_mass(Element& element, double part);

@@ -2,11 +2,11 @@
 
 /// Strain and stress for output and observables: one tensor a copy, then one a corner.
 ///
-/// A copy's is that of its mean deformation gradient, which is most accurate at the centroid of its material. A corner's
-/// is recovered from the copies around it by a linear least-squares fit with their volumes as weights (the patch
-/// recovery of Zienkiewicz and Zhu 1992): inside a body of full cells that is their mean, and it keeps second order at
-/// the skin too, where a plain mean would be taken on one side. A fit never reaches across a cut. Linear fields are
-/// recovered exactly.
+/// A copy's is that of its mean deformation gradient, which is most accurate at the centroid of its material. A
+/// corner's is recovered from the copies around it by a linear least-squares fit with their volumes as weights (the
+/// patch recovery of Zienkiewicz and Zhu 1992): inside a body of full cells that is their mean, and it keeps second
+/// order at the skin too, where a plain mean would be taken on one side. A fit never reaches across a cut. Linear
+/// fields are recovered exactly.
 
 #include "fem/hexahedra.h"
 

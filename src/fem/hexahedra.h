@@ -3,18 +3,18 @@
 /// Hexahedra on the copies of a cut body, for every constitutive law (thesis §2.1.6).
 ///
 /// The energy of a copy is E = V psi(F) + 1/2 u^T K u: the law at the mean deformation gradient F over the copy's
-/// material, and Hooke's stiffness K against the rest of its motion (hourglass.h), in the frame u = R^T x - X that turns
-/// with F: reduced integration with a physical stabilisation (Puso 2000; Reese and Wriggers 2000). The gradient of an
-/// affine motion is its mean, so the patch test holds on every copy. For the corotational law (Mueller and others 2002;
-/// Hauth and Strasser 2004) and for small strain, psi is Hooke's too, and both parts are one matrix: the fully
-/// integrated element.
+/// material, and Hooke's stiffness K against the rest of its motion (hourglass.h), in the frame u = R^T x - X that
+/// turns with F: reduced integration with a physical stabilisation (Puso 2000; Reese and Wriggers 2000). The gradient
+/// of an affine motion is its mean, so the patch test holds on every copy. For the corotational law (Mueller and
+/// others 2002; Hauth and Strasser 2004) and for small strain, psi is Hooke's too, and both parts are one matrix: the
+/// fully integrated element.
 ///
 /// Forces are the exact -dE/dx: they hold the terms of dR/dx, without which an element would exert a torque on itself.
 /// The linearisation leaves the derivatives of R out and projects the law's tangent, which keeps it positive
 /// semi-definite; stiffness_matrix() has the exact second derivative too.
 ///
-/// Every copy's element is its own, and sums over copies are taken in their order: any number of threads, and any way of
-/// getting to a complex, gives the same bits. Functions that are const may be called from several threads at once.
+/// Every copy's element is its own, and sums over copies are taken in their order: any number of threads, and any way
+/// of getting to a complex, gives the same bits. Functions that are const may be called from several threads at once.
 ///
 /// Limits: strain beside the mean one is taken as small, so thin parts one cell across are good for moderate strain.
 
@@ -40,7 +40,8 @@ class Hexahedra : public dynamics::ElasticModel, public dynamics::StiffnessMatri
   Hexahedra(const grid::Grid& grid, const grid::Cuts& cuts, const grid::CellComplex& complex,
             const HexahedraOptions& options);
 
-  /// Follows a cut. `changed`: what changed_copies() says. All else stays as it is; the outcome is that of building anew, bit by bit. The linearisation is lost.
+  /// Follows a cut. `changed`: what changed_copies() says. All else stays as it is; the outcome is that of building
+  /// anew, bit by bit. The linearisation is lost.
   void update(const grid::Grid& grid, const grid::Cuts& cuts, const grid::CellComplex& complex,
               std::span<const grid::CopyId> changed);
 

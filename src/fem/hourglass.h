@@ -7,12 +7,12 @@
 /// material. Mean and rest do not mix under a constant elasticity D, so K = V B^T D B + H^T (G x D) H with G the 6 x 6
 /// Gram matrix of the monomials: all integrals are exact from the 27 moments.
 ///
-/// trilinear: the strain of the displacement, as it is. It locks in bending and near nu = 0.5.
-/// enhanced: that strain may be changed by 12 modes of the element's own, condensed: the gradients of the three parabolas
-/// in each displacement component (Wilson's incompatible modes; Taylor, Beresford and Wilson 1976) and three
-/// dilatations along y0 y1, y1 y2, y2 y0 (Simo, Armero and Taylor 1993). All have no mean, so the patch test holds for
-/// every shape of the material (Simo and Rifai 1990). In coordinates from the centroid, a copy that a plane across an
-/// axis halves is just a cuboid of half the size.
+/// trilinear: the strain of the displacement, as it is. It locks in bending and near nu = 0.5. enhanced: that strain
+/// may be changed by 12 modes of the element's own, condensed: the gradients of the three parabolas in each
+/// displacement component (Wilson's incompatible modes; Taylor, Beresford and Wilson 1976) and three dilatations along
+/// y0 y1, y1 y2, y2 y0 (Simo, Armero and Taylor 1993). All have no mean, so the patch test holds for every shape of
+/// the material (Simo and Rifai 1990). In coordinates from the centroid, a copy that a plane across an axis halves is
+/// just a cuboid of half the size.
 ///
 /// Condensing minimises |A H u + A M a|^2 over a, with A^T A = G x D: by a rank-revealing QR factorisation of A M, so
 /// slivers and flat material, where modes coincide or vanish, need no special care, and K is positive semi-definite.
@@ -45,7 +45,8 @@ std::array<Vec3, 8> mean_gradients(const Centred& moments);
 /// Stiffness for a cube of edge 1 m, Hooke's law [N/m]. Vanishes on affine displacements.
 Matrix24 hourglass_stiffness(const Centred& moments, const material::Elastic& material, Strain strain);
 
-/// Stiffness V B^T D B of the mean strain for a cube of edge 1 m, Hooke's law [N/m]; `gradient`: means of grad N_a [1/m].
+/// Stiffness V B^T D B of the mean strain for a cube of edge 1 m, Hooke's law [N/m]; `gradient`: means of grad N_a
+/// [1/m].
 Matrix24 mean_stiffness(double volume, const std::array<Vec3, 8>& gradient, const material::Elastic& material);
 
 } // namespace kerf::fem

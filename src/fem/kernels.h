@@ -7,9 +7,9 @@
 
 namespace kerf::fem {
 
-/// A block of elements. Element e has the 8 corner indices at corners + 8 e and the rotation (3 x 3, column by column) at
-/// rotations + 9 e. Its stiffness (24 x 24, column by column) is at stiffness + stride element[e], its 8 mean gradients
-/// at gradients + stride element[e].
+/// A block of elements. Element e has the 8 corner indices at corners + 8 e and the rotation (3 x 3, column by column)
+/// at rotations + 9 e. Its stiffness (24 x 24, column by column) is at stiffness + stride element[e], its 8 mean
+/// gradients at gradients + stride element[e].
 struct ElementBlock {
   std::size_t n;
   const std::uint32_t* corners;

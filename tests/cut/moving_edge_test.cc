@@ -94,10 +94,10 @@ TEST_F(MovingEdge, ALoopIsMetEvenly) {
 TEST_F(MovingEdge, TheNormalIsThatOfThePlaceThatIsMet) {
   const Blade blade = turning_blade();
   std::size_t n_met = 0;
-  for (int n = 0; n < 2000; ++n) {
-    Vec3 p = random_point(0.3);
-    p[2] = 0.03 + 0.05 * p[2];
-    const Vec3 q = p + 0.03 * random_point(1).normalized();
+  for (int n = 0; n < 500; ++n) {
+    const Vec3 place = random_point(1), half = 0.02 * random_point(1);
+    const Vec3 middle = pose(blade, 0.5 + 0.45 * place[0])({0.35 * place[1], 0.02, 0});
+    const Vec3 p = middle - half, q = middle + half;
     const Verdict verdict = meet(path(blade, 0, 1), {p, q}, {p, q});
     if (verdict.n_crossings != 1)
       continue;

@@ -50,9 +50,9 @@ double cantilever(const int n_over_height, const double nu, const Strain strain,
   return -u.at(std::find_if(rest.begin(), rest.end(), is_tip) - rest.begin())[2];
 }
 
-/// Cook's trapezium in plane strain, 48 m long, 44 m high at its held end and 16 m at the other, E = 1 Pa, under 1 N/m^3
-/// upwards: work of the loads over thickness [J/m]. Its sides cut cells at every position. Corners of it that the grid
-/// cannot hold are missing: at n = 32 cells over the height a part 0.0015 of its volume.
+/// Cook's trapezium in plane strain, 48 m long, 44 m high at its held end and 16 m at the other, E = 1 Pa, under 1
+/// N/m^3 upwards: work of the loads over thickness [J/m]. Its sides cut cells at every position. Corners of it that
+/// the grid cannot hold are missing: at n = 32 cells over the height a part 0.0015 of its volume.
 double cooks_trapezium(const int n_over_height, const double nu, const Strain strain, const End end) {
   const double h = 44.0 / n_over_height;
   auto mesh = geometry::box_mesh(Vec3::Zero(), Vec3(48, 44, 2 * h));

@@ -67,8 +67,8 @@ HexahedraOptions block_options(const std::string& law, const double E, const Str
   return {.material = {.density = 1000, .youngs_modulus = E, .poissons_ratio = 0.3, .law = law}, .strain = strain};
 }
 
-/// One Newton iteration is enough for the corotational law, whose stiffness is that of rest, turned. The neo-Hookean one
-/// changes so much on the way that it needs several, and a line search.
+/// One Newton iteration is enough for the corotational law, whose stiffness is that of rest, turned. The neo-Hookean
+/// one changes so much on the way that it needs several, and a line search.
 const dynamics::ImplicitEulerOptions one_iteration{};
 const dynamics::ImplicitEulerOptions with_line_search{.n_newton = 6, .line_search = dynamics::LineSearch::backtracking};
 

@@ -74,6 +74,33 @@ TEST(Update, IsBuildingAnewBitByBit) {
 }
 
 /// What was full and is partial now gets an element of its own, and the table does not grow when one is remade.
+/// Whatever corners the copies get, in whatever order they come: who holds a corner is listed in the same order.
+TEST(Update, IncidenceIsThatOfTheComplexAfterAnyChange) {
+  Draw draw(94);
+  grid::CellComplex complex;
+  complex.node.resize(40);
+  const auto any_corner = [&] { return grid::CornerId(static_cast<std::size_t>(draw(0, 40))); };
+  for (int c = 0; c < 20; ++c) {
+    complex.copies.push_back({});
+    for (auto& corner : complex.copies[grid::CopyId(std::size_t(c))].corners)
+      corner = any_corner();
+  }
+  Incidence incidence(complex);
+  for (int step = 0; step < 50; ++step) {
+    std::vector<grid::CopyId> changed;
+    for (int i = 0; i < 3; ++i)
+      changed.emplace_back(static_cast<std::size_t>(draw(0, 20)));
+    std::sort(changed.begin(), changed.end());
+    changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
+    for (const auto c : changed)
+      complex.copies[c].corners[static_cast<int>(draw(0, 8))] = any_corner();
+    incidence.update(complex, changed);
+    const Incidence anew(complex);
+    for (std::size_t corner = 0; corner < 40; ++corner)
+      ASSERT_TRUE(std::ranges::equal(incidence.users(corner), anew.users(corner))) << step;
+  }
+}
+
 /// A small cut in a large body changes the elements of its cells alone.
 TEST(Update, ChangesFewElements) {
   Draw draw(93);
