@@ -37,7 +37,7 @@ void print_body(const scene::Body& body) {
   std::printf("  volume: mesh %.6e m^3; grid %+.3f %%; cuts changed the rest volume by %+.2e; deformed now %+.3f %%\n",
               body.mesh_volume, 100 * (body.first_volume / body.mesh_volume - 1), rest / body.first_volume - 1,
               100 * (volume / rest - 1));
-  std::printf("  energy: elastic %.4e J, kinetic %.4e J\n", body.physics.model->energy(body.state.x),
+  std::printf("  energy: elastic %.4e J, kinetic %.4e J\n", body.physics->model().energy(body.state.x),
               scene::find_observable("kinetic energy")->value(body));
   if (body.n_lost_shells > 0)
     std::printf("  %zu shells of the mesh hold no grid node and are lost: use a smaller cube edge\n",

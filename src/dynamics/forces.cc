@@ -9,10 +9,13 @@ namespace {
 
 constexpr std::size_t worth = 4096; // corners from which on a second thread pays
 
-void add_stiffness_damping(ElasticModel& model, const double beta, const Moment& moment, Points& forces) {
-  model.linearise(moment.x);
+void add_stiffness_damping(ForceModel& model, const double beta, const Moment& moment, Points& forces) {
+  auto* elastic = dynamic_cast<ElasticModel*>(&model);
+  if (!elastic)
+    return;
+  elastic->linearise(moment.x);
   Points product(moment.v.size());
-  model.apply_stiffness(flat(moment.v), flat(product));
+  elastic->apply_stiffness(flat(moment.v), flat(product));
   for (std::size_t i = 0; i < forces.size(); ++i)
     forces[i] -= beta * product[i];
 }
@@ -38,7 +41,7 @@ LoadTangent load_tangent(const Loads& loads, const Tangent kind, const Moment& m
   return tangent;
 }
 
-void total_force(ElasticModel& model, const Loads& loads, const Moment& moment, const MassDamping mass_damping,
+void total_force(ForceModel& model, const Loads& loads, const Moment& moment, const MassDamping mass_damping,
                  Points& forces) {
   model.force(moment.x, forces);
   if (loads.stiffness_damping > 0)

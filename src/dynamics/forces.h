@@ -16,9 +16,9 @@ LoadTangent load_tangent(const Loads& loads, Tangent kind, const Moment& moment,
 /// What mass damping is not part of: a stepper may take it implicitly.
 enum class MassDamping { left_out, included };
 
-/// Elastic forces, gravity, damping and loads, together [N]. Linearises the model at moment.x if stiffness is damped.
-void total_force(ElasticModel& model, const Loads& loads, const Moment& moment, MassDamping mass_damping,
-                 Points& forces);
+/// Elastic forces, gravity, damping and loads, together [N]. Linearises the model at moment.x if stiffness is damped; a
+/// model that has no stiffness to offer damps it in a way of its own, which is left out.
+void total_force(ForceModel& model, const Loads& loads, const Moment& moment, MassDamping mass_damping, Points& forces);
 
 /// Kinetic energy, of the lumped mass [J].
 double kinetic_energy(const ForceModel& model, const Points& v);

@@ -9,7 +9,7 @@ namespace kerf::dynamics {
 namespace {
 
 /// M a less all forces, at each corner [N]: zero where nothing is held.
-Points missing_force(ElasticModel& model, const Loads& loads, const State& state, const Points& acceleration) {
+Points missing_force(ForceModel& model, const Loads& loads, const State& state, const Points& acceleration) {
   Points missing;
   total_force(model, loads, {state.time, state.x, state.v}, MassDamping::included, missing);
   const auto mass = model.lumped_mass();
@@ -27,12 +27,12 @@ double power_of(const Load& load, const State& state) {
   return sum;
 }
 
-double damping_power(ElasticModel& model, const Loads& loads, const State& state) {
+double damping_power(ForceModel& model, const Loads& loads, const State& state) {
   double sum = 2 * loads.mass_damping * kinetic_energy(model, state.v);
-  if (loads.stiffness_damping > 0) {
-    model.linearise(state.x);
+  if (auto* elastic = dynamic_cast<ElasticModel*>(&model); elastic && loads.stiffness_damping > 0) {
+    elastic->linearise(state.x);
     Points Kv(state.v.size());
-    model.apply_stiffness(flat(state.v), flat(Kv));
+    elastic->apply_stiffness(flat(state.v), flat(Kv));
     for (std::size_t i = 0; i < Kv.size(); ++i)
       sum += loads.stiffness_damping * state.v[i].dot(Kv[i]);
   }
@@ -49,7 +49,7 @@ Points mean_acceleration(const State& before, const State& after) {
   return a;
 }
 
-std::vector<Reaction> reactions(ElasticModel& model, const Loads& loads, const State& state, const Points& acceleration,
+std::vector<Reaction> reactions(ForceModel& model, const Loads& loads, const State& state, const Points& acceleration,
                                 const Vec3& about) {
   const Points missing = missing_force(model, loads, state, acceleration);
   const Constraints constraints(loads, state.x.size());
@@ -83,7 +83,7 @@ Vec3 load_force(const Load& load, const State& state) {
   return sum;
 }
 
-Power power(ElasticModel& model, const Loads& loads, const State& state, const Points& acceleration) {
+Power power(ForceModel& model, const Loads& loads, const State& state, const Points& acceleration) {
   Power power{.dissipated = damping_power(model, loads, state)};
   for (const auto& load : loads.acting) {
     if (load->nature() == Nature::dissipative)

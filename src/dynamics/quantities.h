@@ -23,7 +23,7 @@ struct Reaction {
 };
 
 /// One for each of loads.supports; torques about `about` [m]. acceleration [m/s^2] a corner.
-std::vector<Reaction> reactions(ElasticModel& model, const Loads& loads, const State& state, const Points& acceleration,
+std::vector<Reaction> reactions(ForceModel& model, const Loads& loads, const State& state, const Points& acceleration,
                                 const Vec3& about);
 
 /// Gravity, loads and mass damping together, reactions left out [N].
@@ -37,7 +37,7 @@ struct Power {
   double supports = 0;   ///< work of the reactions
   double loads = 0;      ///< work of driving loads
 };
-Power power(ElasticModel& model, const Loads& loads, const State& state, const Points& acceleration);
+Power power(ForceModel& model, const Loads& loads, const State& state, const Points& acceleration);
 
 /// Adds what flowed during a step, by the trapezoidal rule, to State::numbers "dissipated energy [J]", "work of
 /// supports [J]" and "work of loads [J]" of `after`. Potentials that change with time do work that is not booked.

@@ -78,17 +78,19 @@ std::vector<double> make_supports(const Points& points, const PhyxelOptions& opt
 
 Phyxels fill(const grid::Grid& grid, const grid::Cuts& cuts, const grid::CellComplex& complex,
              const PhyxelOptions& options) {
-  const double spacing = options.sampling.spacing;
+  SamplingOptions sampling = options.sampling;
+  if (sampling.spacing == 0)
+    sampling.spacing = grid.h();
   const auto inside = [&](const Vec3& p) { return copy_around(grid, cuts, complex, p).valid(); };
   Phyxels phyxels;
-  phyxels.rest = sample(bounds(grid, cuts, complex), inside, options.sampling);
+  phyxels.rest = sample(bounds(grid, cuts, complex), inside, sampling);
   constexpr std::size_t fewest = 4; // a gradient in space takes three neighbours
   if (phyxels.size() < fewest)
     throw ParameterError({.path = "Spacing [m]",
-                          .value = to_text(spacing),
+                          .value = to_text(sampling.spacing),
                           .rule = "the body must hold at least 4 phyxels, and holds " + std::to_string(phyxels.size()),
                           .remedy = "Use a smaller spacing"});
-  phyxels.volume = voronoi_volumes(phyxels.rest, crumbs(grid, cuts, complex, 0.5 * spacing));
+  phyxels.volume = voronoi_volumes(phyxels.rest, crumbs(grid, cuts, complex, 0.5 * sampling.spacing));
   phyxels.support = make_supports(phyxels.rest, options);
   return phyxels;
 }

@@ -105,6 +105,8 @@ Points poisson_disk(const Box& box, const Inside& inside, const SamplingOptions&
 } // namespace
 
 Points sample(const Box& box, const std::function<bool(const Vec3&)>& inside, const SamplingOptions& options) {
+  if (!(options.spacing > 0))
+    throw ParameterError({.path = "Spacing [m]", .value = to_text(options.spacing), .rule = "must be > 0"});
   if (options.distribution == "jittered grid")
     return jittered_grid(box, inside, options);
   if (options.distribution == "Poisson disk")

@@ -2,42 +2,43 @@
 
 #include "cut/fit.h"
 #include "cut/recut.h"
+#include "pba/region.h"
 
 namespace kerf::scene {
 
 namespace {
 
-/// Corners whose rest position lies in a region, real or virtual.
+/// Particles whose rest position lies in a region.
 void find_supports(Body& body) {
   body.loads.supports.clear();
+  const Points& rest = body.physics->rest();
   for (const SupportRegion& region : body.regions) {
-    dynamics::Support support{{}, {}, region.displacement};
-    for (const auto corner : ids<grid::CornerId>(body.complex.n_corners())) {
-      const Vec3 X = body.grid.position(body.complex.node[corner]);
-      if (region.box.contains(X)) {
-        support.corners.push_back(corner.value);
-        support.rest.push_back(X);
+    dynamics::Support support{{}, {}, region.displacement, region.rotation, region.held};
+    for (std::uint32_t i = 0; i < rest.size(); ++i)
+      if (contains(region.region, rest[i])) {
+        support.corners.push_back(i);
+        support.rest.push_back(rest[i]);
       }
-    }
     body.loads.supports.push_back(std::move(support));
   }
+  body.grips.clear();
+}
+
+void make_loads(Body& body) {
+  find_supports(body);
+  body.loads.acting.clear();
+  body.first_load = {0};
+  for (const LoadMaker& maker : body.load_makers) {
+    maker.make(body, body.loads.acting);
+    body.first_load.push_back(body.loads.acting.size());
+  }
+  for (Probe& probe : body.probes)
+    probe.copy = pba::copy_around(body.grid, body.cuts, body.complex, probe.rest);
 }
 
 void build_surface(Body& body) {
   body.surface = body.cutting ? surface::build_surface(body.grid, body.cuts, body.complex, body.cutting->surface_index)
                               : surface::build_surface(body.grid, body.cuts, body.complex);
-}
-
-void build_physics(Body& body, Timings& timings) {
-  const ScopedTimer timer(timings, "assemble");
-  find_supports(body);
-  body.physics = body.make_physics(body);
-}
-
-void inherit_state(Body& body, const grid::ComplexChange& change) {
-  grid::inherit(change, body.state.x);
-  grid::inherit(change, body.state.v);
-  grid::inherit(change, body.cutting->x_before);
 }
 
 /// Adds cuts to the body; returns the edges.
@@ -59,7 +60,7 @@ grid::ComplexChange update_topology(Body& body, const std::vector<grid::EdgeId>&
   body.placed.n_placed += placed.n_placed;
   body.placed.n_clamped += placed.n_clamped;
   grid::ComplexChange change = grid::update_complex(body.grid, body.cuts, edges, body.complex);
-  inherit_state(body, change);
+  grid::inherit(change, body.cutting->x_before);
   surface::update_surface(body.grid, body.cuts, body.complex, edges, change, body.surface, body.cutting->surface_index);
   ++body.n_recuts;
   return change;
@@ -69,23 +70,26 @@ grid::ComplexChange update_topology(Body& body, const std::vector<grid::EdgeId>&
 void meet(Body& body, const cut::Blade& blade, const double t0, const double t1) {
   Cutting& cutting = *body.cutting;
   const auto found = cut::cut_edges(cut::path(blade, t0, t1), body.grid, body.cuts, body.complex, cutting.x_before,
-                                    body.state.x, blade.label, &*cutting.boxes);
+                                    corners(body), blade.label, &*cutting.boxes);
   cutting.pending.push(found.cuts);
   cutting.n_double_crossings += found.n_double_crossings;
   cutting.passed[blade.label - 1].pass(cut::sweep(blade, t0, t1), found.cuts, body.grid, body.cuts, body.complex,
-                                       body.state.x, *cutting.boxes, blade.label);
+                                       corners(body), *cutting.boxes, blade.label);
 }
 
 void make_cuts(Body& body, const std::vector<grid::EdgeCut>& cuts, Timings& timings) {
   if (cuts.empty())
     return;
-  update_topology(body, add_cuts(body, cuts), timings);
-  build_physics(body, timings);
+  const std::vector<grid::EdgeId> edges = add_cuts(body, cuts);
+  const grid::ComplexChange change = update_topology(body, edges, timings);
+  const ScopedTimer timer(timings, "assemble");
+  body.physics->follow_cut(seen(body), {edges, change}, body.state);
+  make_loads(body);
 }
 
 } // namespace
 
-void start(Body& body, const geometry::TriangleMesh& mesh, Timings& timings) {
+void start(Body& body, const geometry::TriangleMesh& mesh, const PhysicsMaker& make_physics, Timings& timings) {
   {
     const ScopedTimer timer(timings, "topology");
     std::vector<grid::EdgeId> skin;
@@ -97,14 +101,15 @@ void start(Body& body, const geometry::TriangleMesh& mesh, Timings& timings) {
     build_surface(body);
   }
   body.first_volume = surface::enclosed_volume(body.surface.rest, body.surface.triangles);
-  body.state.x = grid::rest_positions(body.grid, body.complex);
-  body.state.v.reserve(body.state.x.capacity());
-  body.state.v.assign(body.complex.n_corners(), Vec3::Zero());
-  build_physics(body, timings);
+  {
+    const ScopedTimer timer(timings, "assemble");
+    body.physics = make_physics(seen(body));
+    body.state = physics::state_at_rest(*body.physics);
+    make_loads(body);
+  }
   follow(body);
   if (body.cutting) {
-    body.cutting->x_before.reserve(body.state.x.capacity());
-    body.cutting->x_before = body.state.x;
+    body.cutting->x_before = corners(body);
     body.cutting->boxes.emplace(body.grid, body.complex);
     body.cutting->passed.resize(body.cutting->n_cut_edges.size());
   }
@@ -116,26 +121,29 @@ void recut(Body& body, const std::span<const cut::Blade> blades, const double t0
     const ScopedTimer timer(timings, "cut");
     Cutting& cutting = *body.cutting;
     if (!blades.empty())
-      cutting.boxes->fit(cutting.x_before, body.state.x);
+      cutting.boxes->fit(cutting.x_before, corners(body));
     for (const cut::Blade& blade : blades)
       meet(body, blade, t0, t1);
     released = cutting.pending.release(body.grid, body.cuts);
   }
   make_cuts(body, released, timings);
-  body.cutting->x_before = body.state.x;
+  body.cutting->x_before = corners(body);
 }
 
 void cut_at_once(Body& body, const cut::CutSurface& surface, Timings& timings) {
   cut::SweepCuts found;
   {
     const ScopedTimer timer(timings, "cut");
-    body.cutting->boxes->fit(body.state.x);
-    found = cut::cut_edges(surface, body.grid, body.cuts, body.complex, body.state.x, &*body.cutting->boxes);
+    body.cutting->boxes->fit(corners(body));
+    found = cut::cut_edges(surface, body.grid, body.cuts, body.complex, corners(body), &*body.cutting->boxes);
   }
   body.cutting->n_double_crossings += found.n_double_crossings;
   make_cuts(body, found.cuts, timings);
 }
 
-void follow(Body& body) { surface::follow(body.surface, body.state.x, body.positions); }
+void follow(Body& body) {
+  body.physics->follow(body.state);
+  surface::follow(body.surface, corners(body), body.positions);
+}
 
 } // namespace kerf::scene

@@ -8,12 +8,12 @@
 #include "cut/edge_boxes.h"
 #include "cut/passed.h"
 #include "cut/pending.h"
-#include "dynamics/model.h"
-#include "dynamics/stepper.h"
 #include "geometry/triangle_mesh.h"
 #include "grid/complex.h"
+#include "physics/physics.h"
+#include "scene/accounts.h"
+#include "scene/region.h"
 #include "surface/placement.h"
-#include "surface/surface.h"
 
 #include <functional>
 #include <memory>
@@ -23,15 +23,36 @@
 
 namespace kerf::scene {
 
-struct Physics {
-  std::unique_ptr<dynamics::ElasticModel> model;
-  std::unique_ptr<dynamics::Stepper> stepper;
-};
-
 /// A part of the rest configuration that is held or moved.
 struct SupportRegion {
-  Box box;                                       ///< rest configuration, world frame [m]
-  std::function<Vec3(double time)> displacement; ///< [m]
+  std::string name;
+  Region region;
+  std::function<Vec3(double time)> displacement;  ///< [m]
+  std::function<Mat3(double time)> rotation = {}; ///< about the origin; empty: never turned
+  Mat3 held = Mat3::Identity();                   ///< dynamics::Support::held
+};
+
+struct Body;
+/// Makes loads of what the body is now; asked again after every cut.
+struct LoadMaker {
+  std::string name;
+  std::function<void(const Body&, std::vector<std::unique_ptr<dynamics::Load>>&)> make;
+};
+using PhysicsMaker = std::function<std::unique_ptr<physics::Physics>(const physics::CutBody&)>;
+
+/// A point of the body whose motion is reported.
+struct Probe {
+  std::string name;
+  Vec3 rest = Vec3::Zero(); ///< [m]
+  grid::CopyId copy = {};   ///< whose material it lies in now
+};
+
+/// One series of a run.
+struct Observable {
+  std::string name;   ///< "kinetic energy", "reaction wall x"
+  std::string unit;   ///< "J"
+  std::string source; ///< formula
+  std::function<double(const Body&)> value;
 };
 
 /// What only a body in a scene that cuts needs.
@@ -55,12 +76,19 @@ struct Body {
   surface::Surface surface = {};
   Points positions = {}; ///< of the surface's vertices, now [m]
 
-  std::function<Physics(const Body&)> make_physics = {};
-  Physics physics = {};
-  dynamics::State state = {};
+  std::unique_ptr<physics::Physics> physics = nullptr;
+  double density = 0;         ///< of its material [kg/m^3]
+  dynamics::State state = {}; ///< of the particles of its physics
   dynamics::Loads loads = {};
   dynamics::StepReport report = {}; ///< of the last step
   std::vector<SupportRegion> regions = {};
+  std::vector<LoadMaker> load_makers = {};
+  std::vector<std::size_t> first_load = {}; ///< of each maker in loads.acting, and their end
+  std::vector<std::string> grips = {}; ///< the forceps that hold it now; their supports come after those of its regions
+
+  std::vector<Probe> probes = {};
+  std::vector<Observable> observables = {};
+  std::unique_ptr<Accounts> accounts = nullptr; ///< null when no observable needs them
 
   std::unique_ptr<Cutting> cutting = nullptr; ///< null in a scene that cuts nothing
   int n_recuts = 0;                           ///< how often the complex has changed
@@ -72,18 +100,24 @@ struct Body {
   std::size_t n_triple_crossings = 0;         ///< grid edges of the skin that the input mesh crosses 3, 5, ... times
 };
 
-/// Builds complex, surface, state at rest, supports and physics of a body whose grid and skin are there, cut from
-/// `mesh`.
-void start(Body& body, const geometry::TriangleMesh& mesh, Timings& timings);
+/// What the physics sees of a body.
+inline physics::CutBody seen(const Body& body) { return {body.grid, body.cuts, body.complex, body.surface}; }
+
+/// Where the corners are now [m].
+inline const Points& corners(const Body& body) { return body.physics->corners(body.state); }
+
+/// Builds complex, surface, physics, state at rest, supports and loads of a body whose grid and skin are there, cut
+/// from `mesh`.
+void start(Body& body, const geometry::TriangleMesh& mesh, const PhysicsMaker& make_physics, Timings& timings);
 
 /// Cuts the body with what the blades sweep between two times, as it stands now, and carries the state
-/// over: new corners take position and velocity from the copy they came from.
+/// over as its physics does: new corners take position and velocity from the copy they came from.
 void recut(Body& body, std::span<const cut::Blade> blades, double t0, double t1, Timings& timings);
 
 /// Cuts the body with a surface, all of it at once, as it stands now; else like recut().
 void cut_at_once(Body& body, const cut::CutSurface& surface, Timings& timings);
 
-/// Moves the surface to the corners.
+/// Moves corners and surface to where the state is.
 void follow(Body& body);
 
 } // namespace kerf::scene

@@ -2,6 +2,7 @@
 
 #include "scene/compose_body.h"
 #include "scene/compose_cut_surface.h"
+#include "scene/compose_loads.h"
 #include "scene/compose_output.h"
 #include "scene/compose_tools.h"
 
@@ -31,12 +32,13 @@ void say_what_there_is(const Section& root, World& world) {
       world.composition.push_back("left out: " + kind + " (" + absent + ")");
   };
   say("Gravity", "gravity", "no field");
+  say("Floor", "a floor", "no contact");
   const bool cuts_otherwise = root.find("Cut surface") || root.find("Scissors");
   say("Blade", "", cuts_otherwise ? "no blade by itself" : "no cut machinery in memory");
   say("Scissors", "", "no blades on a pivot");
   say("Forceps", "", "nothing is gripped");
   say("Cut surface", "", "nothing is cut at once");
-  say("Observables", line(world.observables.size(), " observables a body"), "no series but time");
+  say("Observables", line(world.bodies.front().observables.size(), " series of the first body"), "no series but time");
   say("Surface file", "surface files for ParaView", "no file for ParaView");
   say("Images", "images: off-screen OpenGL", "no GL context");
 }
@@ -49,6 +51,15 @@ void require_meeting_of_all(const Section& root, const World& world) {
     for (const Section* section : root.all(kind)) {
       require_meeting(*section, blades.subspan(first, n), world);
       first += n;
+    }
+}
+
+void require_static_answers(const Section& root, World& world) {
+  const auto sections = root.all("Body");
+  for (std::size_t i = 0; i < sections.size(); ++i)
+    if (sections[i]->read<BodyParameters>().integrator == "quasi-static") {
+      hold(world.bodies[i], world.forceps, 1, 0);
+      require_static_answer(*sections[i], world.bodies[i]);
     }
 }
 
@@ -73,16 +84,17 @@ World compose(const SceneText& text) {
       line("cut surface ", timed.surface.name, ": cuts at ", (timed.step - 1) * world.time_step, " s"));
   }
   for (const Section* body : root.all("Body"))
-    world.bodies.push_back(compose_body(*body, gravity_section ? &gravity : nullptr, world));
+    world.bodies.push_back(compose_body(*body, gravity_section ? &gravity : nullptr, root.all("Floor"), world));
   require_meeting_of_all(root, world);
   for (const Section* section : root.all("Forceps"))
     compose_forceps(*section, world);
+  require_static_answers(root, world);
 
   world.output = read_if_written<OutputParameters>(root, "Output");
   if (const Section* section = root.find("Surface file"))
     world.surface_file = section->read<SurfaceFileParameters>();
   if (const Section* section = root.find("Observables"))
-    world.observables = compose_observables(*section);
+    compose_observables(*section, world);
   if (const Section* section = root.find("Images")) {
     world.images = compose_images(*section);
   }

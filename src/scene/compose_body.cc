@@ -3,8 +3,8 @@
 #include "cut/embed.h"
 #include "geometry/solid.h"
 #include "material/elastic.h"
+#include "scene/compose_loads.h"
 #include "scene/compose_physics.h"
-#include "scene/expression.h"
 
 #include <cmath>
 
@@ -39,24 +39,25 @@ cut::Embedding embed_mesh(const Section& section, const BodyParameters& paramete
   }
 }
 
-SupportRegion compose_support(const Section& section) {
-  const auto parameters = section.read<SupportParameters>();
-  if ((parameters.lower.array() > parameters.upper.array()).any())
-    throw section.complaint("Upper [m]", "must not be below Lower [m] in any direction", "Swap the two");
-  return {{parameters.lower, parameters.upper}, displacement_of_time(section, parameters.displacement)};
-}
-
-void require_held_nodes(const Section& section, const Body& body, const SupportRegion& region) {
-  for (const auto n : ids<grid::NodeId>(body.grid.n_nodes()))
-    if (region.box.contains(body.grid.position(n)))
-      return;
-  throw section.complaint("the box holds no grid node of the body",
-                          "Move or enlarge the box: it is meant in the rest configuration, in metres");
+std::string describe_physics(const Section& section, const BodyParameters& parameters, const Body& body) {
+  const auto material = read_if_written<material::Elastic>(section, "Material");
+  if (parameters.backend == "pba")
+    return line("point-based animation, ", body.physics->rest().size(), " phyxels, ", parameters.integrator,
+                "; left out: Element, Integration, Law");
+  if (parameters.backend == "lattice")
+    return "lattice shape matching, its own integrator; left out: Element, Integration, Integrator, Law, Poisson's "
+           "ratio (it is 0)";
+  if (parameters.backend == "mass-spring")
+    return line("masses and springs, ", parameters.integrator,
+                "; left out: Element, Integration, Law, Poisson's ratio (it is 1/4)");
+  return line(material.law, " ", parameters.element, " hexahedra, integration over ", parameters.integration, ", ",
+              parameters.integrator);
 }
 
 } // namespace
 
-Body compose_body(const Section& section, const GravityParameters* gravity, World& world) {
+Body compose_body(const Section& section, const GravityParameters* gravity, const std::vector<const Section*>& floors,
+                  World& world) {
   const auto parameters = section.read<BodyParameters>();
   const geometry::TriangleMesh mesh = read_body_mesh(section, parameters);
   cut::Embedding embedding = [&] {
@@ -70,28 +71,24 @@ Body compose_body(const Section& section, const GravityParameters* gravity, Worl
   body.n_thin_gaps = embedding.n_thin_gaps;
   body.n_triple_crossings = embedding.n_triple_crossings;
   body.n_lost_shells = embedding.n_lost_components;
-  body.make_physics = physics_maker(section, parameters);
+  body.density = read_if_written<material::Elastic>(section, "Material").density;
   const auto damping = read_if_written<DampingParameters>(section, "Damping");
   body.loads.gravity = gravity ? gravity->acceleration : Vec3(Vec3::Zero());
   body.loads.mass_damping = damping.mass;
   body.loads.stiffness_damping = damping.stiffness;
-  for (const Section* support : section.all("Support")) {
-    body.regions.push_back(compose_support(*support));
-    require_held_nodes(*support, body, body.regions.back());
-  }
+  compose_loads(section, floors, body);
   if (const std::size_t n_cuts = world.blades.size() + world.cut_surfaces.size(); n_cuts > 0) {
     body.cutting = std::make_unique<Cutting>();
     body.cutting->n_cut_edges.assign(n_cuts, 0);
   }
-  start(body, mesh, world.setup_seconds);
+  start(body, mesh, physics_maker(section, parameters, world.time_step), world.setup_seconds);
+  require_sound_loads(section, world.n_steps * world.time_step, body);
   world.composition.push_back(line("body ", body.name, ": ", mesh.triangles.size(), " mesh triangles in ",
                                    body.grid.n_cells(), " cells of ", parameters.cube_edge, " m, ",
                                    body.complex.n_corners(), " corners, ", body.surface.triangles.size(),
                                    " surface triangles"));
-  world.composition.push_back(line("body ", body.name, ": ",
-                                   read_if_written<material::Elastic>(section, "Material").law, " ", parameters.element,
-                                   " hexahedra, integration over ", parameters.integration, ", ", parameters.integrator,
-                                   ", ", body.regions.size(), " supports"));
+  world.composition.push_back(line("body ", body.name, ": ", describe_physics(section, parameters, body), ", ",
+                                   body.regions.size(), " supports, ", body.load_makers.size(), " loads"));
   return body;
 }
 

@@ -9,6 +9,7 @@ namespace kerf::scene {
 
 /// Composes a body that what `world` has to cut with can cut, and says what it is in the world's composition. `gravity`
 /// is null without a field. Throws as compose().
-Body compose_body(const Section& section, const GravityParameters* gravity, World& world);
+Body compose_body(const Section& section, const GravityParameters* gravity, const std::vector<const Section*>& floors,
+                  World& world);
 
 } // namespace kerf::scene

@@ -17,22 +17,57 @@ Images compose_images(const Section& section) {
   return {parameters.every, std::make_unique<render::Renderer>(camera, render::Look())};
 }
 
-std::vector<const BodyObservable*> compose_observables(const Section& section) {
-  const auto parameters = section.read<ObservableParameters>();
-  std::vector<const BodyObservable*> chosen;
-  std::istringstream names(parameters.names);
-  for (std::string name; std::getline(names, name, ',');) {
-    const auto first = name.find_first_not_of(" \t"), last = name.find_last_not_of(" \t");
-    const std::string word = first == std::string::npos ? "" : name.substr(first, last - first + 1);
-    const BodyObservable* observable = find_observable(word);
-    if (!observable)
-      throw section.complaint("Names", "'" + word + "' is not an observable",
-                              "The observables and their units are listed by: kerf params");
-    if (std::find(chosen.begin(), chosen.end(), observable) != chosen.end())
-      throw section.complaint("Names", "'" + word + "' is named twice", "Name it once");
-    chosen.push_back(observable);
+namespace {
+
+/// The words of a list separated by commas.
+std::vector<std::string> words_of(const std::string& list) {
+  std::vector<std::string> words;
+  std::istringstream text(list);
+  for (std::string word; std::getline(text, word, ',');) {
+    const auto first = word.find_first_not_of(" \t"), last = word.find_last_not_of(" \t");
+    words.push_back(first == std::string::npos ? "" : word.substr(first, last - first + 1));
   }
-  return chosen;
+  return words;
+}
+
+void require_known(const Section& section, const std::vector<std::string>& names) {
+  const auto is_group = [](const std::string& name) {
+    return std::any_of(observable_groups().begin(), observable_groups().end(),
+                       [&](const ObservableGroup& group) { return group.name == name; });
+  };
+  for (auto it = names.begin(); it != names.end(); ++it) {
+    if (!find_observable(*it) && !is_group(*it))
+      throw section.complaint("Names", "'" + *it + "' is not an observable",
+                              "The observables and their units are listed by: kerf params");
+    if (std::find(names.begin(), it, *it) != it)
+      throw section.complaint("Names", "'" + *it + "' is named twice", "Name it once");
+  }
+}
+
+} // namespace
+
+void compose_observables(const Section& section, World& world) {
+  const auto names = words_of(section.read<ObservableParameters>().names);
+  require_known(section, names);
+  std::vector<std::string> forceps;
+  for (const Forceps& one : world.forceps)
+    forceps.push_back(one.name);
+  for (const std::string& name : names) {
+    std::size_t n = 0;
+    for (Body& body : world.bodies) {
+      for (Observable& series : observables_named(name, body, forceps)) {
+        body.observables.push_back(std::move(series));
+        ++n;
+      }
+      if (needs_accounts(name) && !body.accounts) {
+        body.accounts = std::make_unique<Accounts>();
+        body.accounts->open(*body.physics, body.loads, body.state);
+      }
+    }
+    if (n == 0)
+      throw section.complaint("Names", "'" + name + "' has nothing to report: the scene has none of what it is about",
+                              "Remove it, or add the support, forceps, load or probe");
+  }
 }
 
 } // namespace kerf::scene

@@ -10,7 +10,8 @@ namespace kerf::scene {
 /// Starts the graphics. Throws ParameterError for a camera that cannot see.
 Images compose_images(const Section& section);
 
-/// Throws ParameterError for what is no observable or named twice.
-std::vector<const BodyObservable*> compose_observables(const Section& section);
+/// Gives every body the series that the section names, and opens accounts where they need them; the world has its
+/// tools. Throws ParameterError for what is no observable, named twice, or about nothing in the scene.
+void compose_observables(const Section& section, World& world);
 
 } // namespace kerf::scene

@@ -1,12 +1,16 @@
 #include "scene/compose_physics.h"
 
-#include "dynamics/implicit_euler.h"
-#include "dynamics/symplectic_euler.h"
-#include "fem/hexahedra.h"
+#include "lattice/calibration.h"
+#include "physics/on_corners.h"
+#include "physics/phyxels.h"
+#include "scene/compose_integrator.h"
+#include "scene/grammar_physics.h"
 
 namespace kerf::scene {
 
 namespace {
+
+using physics::CutBody;
 
 fem::Boundary boundary_named(const std::string& name) {
   return name == "full cube"         ? fem::Boundary::full_cube
@@ -14,33 +18,106 @@ fem::Boundary boundary_named(const std::string& name) {
                                      : fem::Boundary::octants;
 }
 
-fem::Strain strain_named(const std::string& name) {
-  return name == "enhanced" ? fem::Strain::enhanced : fem::Strain::trilinear;
+PhysicsMaker make_elements(const Section& section, const BodyParameters& parameters) {
+  const Integrator integrator = compose_integrator(section, parameters.integrator);
+  const fem::HexahedraOptions options{
+    .material = read_if_written<material::Elastic>(section, "Material"),
+    .boundary = boundary_named(parameters.integration),
+    .strain = parameters.element == "enhanced" ? fem::Strain::enhanced : fem::Strain::trilinear,
+    .sliver_floor = integrator.sliver_floor,
+    .mass_spread = integrator.mass_spread};
+  return [=](const CutBody& body) {
+    return std::make_unique<physics::Elements>(
+      body, [=](const CutBody& b) { return std::make_unique<fem::Hexahedra>(b.grid, b.cuts, b.complex, options); },
+      integrator.make);
+  };
+}
+
+PhysicsMaker make_springs(const Section& section, const BodyParameters& parameters) {
+  const auto material = read_if_written<material::Elastic>(section, "Material");
+  const Integrator integrator = compose_integrator(section, parameters.integrator);
+  return [=](const CutBody& body) {
+    return std::make_unique<physics::Springs>(
+      body,
+      [=](const CutBody& b) {
+        return std::make_unique<spring::MassSpring>(
+          b.grid, b.cuts, b.complex, spring::MassSpringOptions{material.density, material.youngs_modulus});
+      },
+      integrator.make);
+  };
+}
+
+PhysicsMaker make_phyxels(const Section& section, const BodyParameters& parameters) {
+  physics::PhyxelsOptions options;
+  options.material = read_if_written<material::Elastic>(section, "Material");
+  if (const Section* phyxels = section.find("Phyxels")) {
+    phyxels->read(options.phyxels);
+    phyxels->read(options.model);
+  }
+  options.visibility = read_if_written<physics::VisibilityOptions>(section, "Visibility");
+  const Integrator integrator = compose_integrator(section, parameters.integrator);
+  const Section* const written = section.find("Phyxels");
+  const Section& place = written ? *written : section; // outlives the making
+  return [=, &place](const CutBody& body) {
+    try {
+      return std::make_unique<physics::Phyxels>(body, options, integrator.make);
+    } catch (const ParameterError& error) {
+      const std::string key = error.complaint().path;
+      if (place.writes(key))
+        throw placed(place, key, error);
+      throw place.complaint(error.complaint().rule, clause(error.complaint().remedy));
+    }
+  };
+}
+
+/// k of shape matching: as alpha says, or by Young's modulus.
+lattice::MatchingOptions matching_options(const Section& section, const LatticeParameters& lattice, const double h,
+                                          const double dt) {
+  const auto material = read_if_written<material::Elastic>(section, "Material");
+  const int w = lattice.half_width;
+  if (lattice.alpha > 0)
+    return {material.density, w, lattice.alpha / (dt * dt)};
+  const double k = lattice::stiffness_for(material.youngs_modulus, material.density, h, w);
+  if (!(k * dt * dt <= 1)) {
+    const Section* written = section.find("Lattice");
+    const int least = lattice::least_half_width(material.youngs_modulus, material.density, h, dt);
+    const double longest = 1 / std::sqrt(k);
+    throw(written ? *written : section)
+      .complaint(
+        line("shape matching with a half width of ", w, " cells reaches a Young's modulus of ",
+             lattice::youngs_modulus(1 / (dt * dt), material.density, h, w), " Pa at this time step; the material has ",
+             material.youngs_modulus, " Pa"),
+        line("Write 'set Half width [cells] = ", least, "', a time step of ", longest, " s at most, or Alpha [1]"));
+  }
+  return {material.density, w, k};
+}
+
+PhysicsMaker make_lattice(const Section& section, const BodyParameters& parameters, const double dt) {
+  if (parameters.integrator == "quasi-static")
+    throw section.complaint(
+      "Integrator", "the backend 'lattice' moves in time only",
+      "Take another integrator (any: shape matching is its own) and let damping bring it to rest");
+  const auto lattice = read_if_written<LatticeParameters>(section, "Lattice");
+  const lattice::MatchingOptions options = matching_options(section, lattice, parameters.cube_edge, dt);
+  return [=](const CutBody& body) {
+    return std::make_unique<physics::ShapeMatching>(
+      body, [=](const CutBody& b) { return std::make_unique<lattice::Matching>(b.grid, b.cuts, b.complex, options); },
+      [=](lattice::Matching& model, const physics::PiecesOfParticles&) {
+        return std::make_unique<lattice::ShapeMatching>(model, lattice.region_damping);
+      });
+  };
 }
 
 } // namespace
 
-std::function<Physics(const Body&)> physics_maker(const Section& section, const BodyParameters& parameters) {
-  fem::HexahedraOptions fem_options{.material = read_if_written<material::Elastic>(section, "Material"),
-                                    .boundary = boundary_named(parameters.integration),
-                                    .strain = strain_named(parameters.element)};
-  if (parameters.integrator == "symplectic Euler") {
-    fem_options.sliver_floor = 0; // nothing is solved
-    fem_options.mass_spread = read_if_written<SymplecticEulerParameters>(section, "Symplectic Euler").mass_spread;
-    return [fem_options](const Body& body) {
-      Physics physics{std::make_unique<fem::Hexahedra>(body.grid, body.cuts, body.complex, fem_options), nullptr};
-      physics.stepper = std::make_unique<dynamics::SymplecticEuler>(*physics.model);
-      return physics;
-    };
-  }
-  const auto settings = read_if_written<ImplicitEulerParameters>(section, "Implicit Euler");
-  fem_options.sliver_floor = settings.sliver_floor;
-  const dynamics::ImplicitEulerOptions options{settings.n_newton, settings.cg_tolerance, settings.max_cg_iterations};
-  return [fem_options, options](const Body& body) {
-    Physics physics{std::make_unique<fem::Hexahedra>(body.grid, body.cuts, body.complex, fem_options), nullptr};
-    physics.stepper = std::make_unique<dynamics::ImplicitEuler>(*physics.model, options);
-    return physics;
-  };
+PhysicsMaker physics_maker(const Section& section, const BodyParameters& parameters, const double time_step) {
+  if (parameters.backend == "pba")
+    return make_phyxels(section, parameters);
+  if (parameters.backend == "lattice")
+    return make_lattice(section, parameters, time_step);
+  if (parameters.backend == "mass-spring")
+    return make_springs(section, parameters);
+  return make_elements(section, parameters);
 }
 
 } // namespace kerf::scene

@@ -1,6 +1,7 @@
 #pragma once
 
-/// Physics by name: material, elements, integrator. A new one is a branch here and a section in grammar_body.
+/// Physics by name: backend, material, elements, integrator. A new backend is a branch here, a section in
+/// grammar_physics, and a class in physics/.
 
 #include "scene/body.h"
 #include "scene/composing.h"
@@ -8,7 +9,7 @@
 
 namespace kerf::scene {
 
-/// What makes the physics of a body, again after every cut, as the section of the body says.
-std::function<Physics(const Body&)> physics_maker(const Section& section, const BodyParameters& parameters);
+/// What makes the physics of a body, as its section says. Throws ParameterError for a pairing that makes no sense.
+PhysicsMaker physics_maker(const Section& section, const BodyParameters& parameters, double time_step);
 
 } // namespace kerf::scene

@@ -88,26 +88,11 @@ bool comes_near(const cut::Blade& blade, const Body& body) {
   return geometry::overlap(swept, Box{box.lower - slack, box.upper + slack});
 }
 
-std::variant<Box, Ball> read_region(const Section& section, const std::string& name) {
-  RegionParameters parameters, every_region;
-  parameters.region = name;
-  Parameters mine, all;
-  parameters.describe(mine);
-  every_region.describe(all);
-  require_keys_of_choice(section, "the region '" + name + "'", mine, all);
-  section.read(parameters);
-  if (name == "sphere")
-    return Ball{parameters.centre, parameters.radius};
-  if ((parameters.lower.array() > parameters.upper.array()).any())
-    throw section.complaint("Upper [m]", "must not be below Lower [m] in any direction", "Swap the two");
-  return Box{parameters.lower, parameters.upper};
-}
-
-std::size_t n_nodes_in(const std::variant<Box, Ball>& region, const World& world) {
+std::size_t n_particles_in(const Region& region, const World& world) {
   std::size_t n = 0;
   for (const Body& body : world.bodies)
-    for (const auto node : ids<grid::NodeId>(body.grid.n_nodes()))
-      n += contains(region, body.grid.position(node)) ? 1 : 0;
+    for (const Vec3& X : body.physics->rest())
+      n += contains(region, X) ? 1 : 0;
   return n;
 }
 
@@ -172,12 +157,12 @@ void compose_forceps(const Section& section, World& world) {
   } catch (const ParameterError& error) {
     throw placed(section, key_of(error.complaint()), error);
   }
-  const std::size_t n_nodes = n_nodes_in(forceps.region, world);
-  if (n_nodes == 0)
-    throw section.complaint("the region holds no grid node of a body",
+  const std::size_t n_held = n_particles_in(forceps.region, world);
+  if (n_held == 0)
+    throw section.complaint("the region holds no corner or phyxel of a body",
                             "Move or enlarge it: it is meant in the rest configuration, in metres");
   world.composition.push_back(
-    line("forceps ", forceps.name, ": hold ", n_nodes, " grid nodes from step ", forceps.grip_step));
+    line("forceps ", forceps.name, ": hold ", n_held, " corners or phyxels from step ", forceps.grip_step));
   world.forceps.push_back(std::move(forceps));
 }
 

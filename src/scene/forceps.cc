@@ -11,26 +11,26 @@ dynamics::Support grip(const Body& body, const Forceps& forceps, const double t0
                             {},
                             [frames](const double t) { return cut::pose(frames, t).position; },
                             [frames](const double t) { return cut::pose(frames, t).rotation; }};
-  for (const auto corner : ids<grid::CornerId>(body.complex.n_corners()))
-    if (contains(forceps.region, body.grid.position(body.complex.node[corner]))) {
-      support.corners.push_back(corner.value);
-      support.rest.push_back(before.rotation.transpose() * (body.state.x[corner.value] - before.position));
+  const Points& rest = body.physics->rest();
+  for (std::uint32_t i = 0; i < rest.size(); ++i)
+    if (contains(forceps.region, rest[i])) {
+      support.corners.push_back(i);
+      support.rest.push_back(before.rotation.transpose() * (body.state.x[i] - before.position));
     }
   return support;
 }
 
 } // namespace
 
-bool contains(const std::variant<Box, Ball>& region, const Vec3& p) {
-  return std::visit([&](const auto& shape) { return shape.contains(p); }, region);
-}
-
 void hold(Body& body, const std::span<const Forceps> forceps, const int step, const double t0) {
   auto& supports = body.loads.supports;
   supports.resize(body.regions.size());
+  body.grips.clear();
   for (const Forceps& one : forceps)
-    if (holds(one, step))
+    if (holds(one, step)) {
       supports.push_back(grip(body, one, t0));
+      body.grips.push_back(one.name);
+    }
 }
 
 } // namespace kerf::scene

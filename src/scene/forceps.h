@@ -2,7 +2,7 @@
 
 /// Forceps: a tool that holds a part of a body for a time and carries it with its own rigid motion.
 ///
-/// Method: while it holds, the corners whose rest position lies in its region are a support. A step from t0 to t1 takes
+/// Method: while it holds, the particles of its physics whose rest position lies in its region are a support. A step from t0 to t1 takes
 /// them from where they are to pose(t1) pose(t0)^-1 of that, so all history is in the state: the first step takes them
 /// from wherever they were gripped, new corners after a cut are held as their parents were, and a step made again gives
 /// the same bits. Released, they keep the velocity of their last step.
@@ -13,28 +13,18 @@
 
 #include <span>
 #include <string>
-#include <variant>
 #include <vector>
 
 namespace kerf::scene {
 
-struct Ball {
-  Vec3 centre = Vec3::Zero(); ///< [m]
-  double radius = 0.01;       ///< [m]
-
-  bool contains(const Vec3& p) const { return (p - centre).squaredNorm() <= radius * radius; }
-};
-
 struct Forceps {
   std::string name;
-  std::variant<Box, Ball> region; ///< rest configuration, world frame
+  Region region;
   std::vector<cut::KeyFrame> key_frames;
   int grip_step = 1, release_step = 2; ///< the first step that holds, the first that does no more
   Vec3 jaws = Vec3::Zero();            ///< from the middle between the jaws to one that holds, tool frame [m]; drawn
   Vec3 handle = Vec3::Zero();          ///< from there to the joint of the arms, tool frame [m]; drawn
 };
-
-bool contains(const std::variant<Box, Ball>& region, const Vec3& p);
 
 inline bool holds(const Forceps& forceps, const int step) {
   return forceps.grip_step <= step && step < forceps.release_step;

@@ -1,14 +1,15 @@
 #include "scene/grammar_body.h"
 
+#include "dynamics/body_force.h"
+#include "dynamics/floor.h"
+#include "dynamics/handle.h"
+#include "dynamics/loads.h"
+#include "dynamics/surface_load.h"
 #include "material/elastic.h"
+#include "scene/grammar_physics.h"
+#include "scene/region.h"
 
 namespace kerf::scene {
-
-namespace {
-
-constexpr Range at_least_one{1, 1e9};
-
-} // namespace
 
 void BodyParameters::describe(Parameters& p) {
   p.text("Mesh", mesh, "Closed triangle mesh (OFF, OBJ, STL, PLY); a relative path starts at the scene file.");
@@ -22,14 +23,18 @@ void BodyParameters::describe(Parameters& p) {
     "a cube's edge. A half keeps the plane sides of a box away from grid nodes.");
   p.number("Sharp angle [degrees]", sharp_angle, {.min = 0, .max = 90, .min_excluded = true, .max_excluded = true},
            "Two cut planes that turn by more than this inside a face meet at a sharp edge (thesis §2.4.3).");
+  p.choice("Backend", backend, backend_names(),
+           "The physics: hexahedral finite elements, point-based animation, lattice shape matching, or springs.");
   p.choice("Integration", integration, {"octants", "volume fraction", "full cube"},
-           "How a partly filled cell counts: with its own material; as a cube of less density and stiffness, by its "
+           "Backend fem: how a partly filled cell counts: with its own material; as a cube of less density and "
+           "stiffness, by its "
            "volume; or as a full cube.");
-  p.choice(
-    "Element", element, {"trilinear", "enhanced"},
-    "Strain inside a cell: that of the trilinear displacement, too stiff in bending and near a Poisson's ratio of "
-    "0.5, or enhanced by 12 modes of the cell's own, which cure both.");
-  p.choice("Integrator", integrator, {"implicit Euler", "symplectic Euler"}, "How time advances.");
+  p.choice("Element", element, {"trilinear", "enhanced"},
+           "Backend fem: strain inside a cell: that of the trilinear displacement, too stiff in bending and near a "
+           "Poisson's ratio of "
+           "0.5, or enhanced by 12 modes of the cell's own, which cure both.");
+  p.choice("Integrator", integrator, integrator_names(),
+           "How time advances; lattice shape matching is an integrator by itself.");
 }
 
 void DampingParameters::describe(Parameters& p) {
@@ -37,45 +42,67 @@ void DampingParameters::describe(Parameters& p) {
   p.number("Stiffness damping [s]", stiffness, non_negative, "Rayleigh's beta: a force -beta K v.");
 }
 
-void ImplicitEulerParameters::describe(Parameters& p) {
-  p.integer("Newton iterations [1]", n_newton, at_least_one, "Corrections a step; 1 is the linearly implicit method.");
-  p.number("CG tolerance [1]", cg_tolerance, {.min = 0, .max = 1, .min_excluded = true, .max_excluded = true},
-           "Residual over the forces that balance in it, at which conjugate gradients stop.");
-  p.integer("CG iterations [1]", max_cg_iterations, at_least_one, "Most iterations; more is a failure of the run.");
-  p.number("Sliver floor [1]", sliver_floor, {.min = 0, .max = 1},
-           "A copy that holds less than this part of its cube gets the stiffness of this part.");
-}
-
-void SymplecticEulerParameters::describe(Parameters& p) {
-  p.number("Mass spread [1]", mass_spread, {.min = 0, .max = 1},
-           "Part of each cell's mass that its corners share evenly: bounds the frequency of slivers, and with it the "
-           "stable time step.");
-}
-
 void SupportParameters::describe(Parameters& p) {
-  p.vector("Lower [m]", lower, "Lower corner of the box, rest configuration: every grid node in the box is held.");
-  p.require_last();
-  p.vector("Upper [m]", upper, "Upper corner of the box.");
-  p.require_last();
+  p.choice("Region", region, region_names(),
+           "What is held: the corners (or phyxels) that lie here in the rest configuration. Of the keys below, those "
+           "of the region must be set, and no others.");
+  p.choice("Hold", hold, dynamics::hold_words(),
+           "In all directions, or along these axes only: it slides along the others.");
+  p.vector("Held direction [1]", direction,
+           "Held along this direction only, of any length, and slides across it. Zero: what Hold says.");
   p.text("Displacement [m]", displacement,
-         "How far the box has moved from rest: three expressions of the time t, separated by semicolons.");
+         "How far the region has moved from rest: three expressions of the time t, separated by semicolons.");
+  p.text("Rotation [degrees]", rotation,
+         "How the region is turned about the pivot, before it is moved: a rotation vector, three expressions of t.");
+  p.vector("Pivot [m]", pivot, "What the region turns about, rest configuration.");
 }
 
 std::vector<SectionKind> body_kinds() {
-  return {
-    {"Body",
+  std::vector<SectionKind> inside = {
+    {"Material", Occurrence::once, "Elastic law and density.", keys_of<material::Elastic>(), {}},
+    {"Damping",
+     Occurrence::once,
+     "Rayleigh damping. Without this section there is none.",
+     keys_of<DampingParameters>(),
+     {}},
+    {"Support",
      Occurrence::named,
-     "A deformable solid.",
-     keys_of<BodyParameters>(),
-     {{"Material", Occurrence::once, "Elastic law and density.", keys_of<material::Elastic>(), {}},
-      {"Damping",
-       Occurrence::once,
-       "Rayleigh damping. Without this section there is none.",
-       keys_of<DampingParameters>(),
-       {}},
-      {"Implicit Euler", Occurrence::once, "Settings of that integrator.", keys_of<ImplicitEulerParameters>(), {}},
-      {"Symplectic Euler", Occurrence::once, "Settings of that integrator.", keys_of<SymplecticEulerParameters>(), {}},
-      {"Support", Occurrence::named, "A box whose grid nodes are held or moved.", keys_of<SupportParameters>(), {}}}}};
+     "A region that is held, slides or is moved.",
+     keys_of<SupportParameters, RegionParameters>(),
+     {}},
+    {"Body force",
+     Occurrence::named,
+     "A force per volume beside gravity.",
+     keys_of<dynamics::BodyForceParameters>(),
+     {}},
+    {"Traction",
+     Occurrence::named,
+     "A force per rest area on a part of the surface; it keeps its direction.",
+     keys_of<dynamics::TractionParameters>(),
+     {}},
+    {"Pressure",
+     Occurrence::named,
+     "A pressure on a part of the surface; it follows the surface.",
+     keys_of<dynamics::PressureParameters>(),
+     {}},
+    {"Handle",
+     Occurrence::named,
+     "A point drawn towards a moving target by a spring and a damper.",
+     keys_of<dynamics::HandleParameters>(),
+     {}},
+    {"Probe",
+     Occurrence::named,
+     "A point whose motion is reported; see the observables probes and probe strains.",
+     keys_of<ProbeParameters>(),
+     {}}};
+  const auto physics = physics_kinds();
+  inside.insert(inside.begin() + 2, physics.begin(), physics.end());
+  return {{"Body", Occurrence::named, "A deformable solid.", keys_of<BodyParameters>(), inside},
+          {"Floor",
+           Occurrence::named,
+           "A plane that every body lands on, with friction.",
+           keys_of<dynamics::FloorParameters>(),
+           {}}};
 }
 
 } // namespace kerf::scene

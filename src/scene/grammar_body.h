@@ -1,6 +1,6 @@
 #pragma once
 
-/// What a scene may say of a body: its mesh, grid, material, damping, integrator, supports.
+/// What a scene may say of a body: its mesh, grid, material, damping, supports, loads, probes.
 
 #include "scene/text_grammar.h"
 
@@ -15,6 +15,7 @@ struct BodyParameters {
   double cube_edge = 0.01;                   ///< [m]
   Vec3 lattice_offset = Vec3::Constant(0.5); ///< parts of a cube edge [1]
   double sharp_angle = 45;                   ///< [degrees]
+  std::string backend = "fem";
   std::string integration = "octants";
   std::string element = "trilinear";
   std::string integrator = "implicit Euler";
@@ -27,23 +28,23 @@ struct DampingParameters {
   void describe(Parameters& p);
 };
 
-struct ImplicitEulerParameters {
-  int n_newton = 1;
-  double cg_tolerance = 1e-6;
-  int max_cg_iterations = 2000;
-  double sliver_floor = 1e-3; ///< [1]
-  void describe(Parameters& p);
-};
-
-struct SymplecticEulerParameters {
-  double mass_spread = 0.2; ///< [1]
-  void describe(Parameters& p);
-};
-
+/// What is held of a region, and how it is moved.
 struct SupportParameters {
-  Vec3 lower = Vec3::Zero(), upper = Vec3::Zero(); ///< [m]
+  std::string region = "box";
+  std::string hold = "all";
+  Vec3 direction = Vec3::Zero(); ///< [1]; zero: what `hold` says
   std::string displacement = "0; 0; 0";
+  std::string rotation = "0; 0; 0"; ///< [degrees]
+  Vec3 pivot = Vec3::Zero();        ///< [m]
   void describe(Parameters& p);
+};
+
+struct ProbeParameters {
+  Vec3 point = Vec3::Zero(); ///< rest configuration [m]
+  void describe(Parameters& p) {
+    p.vector("Point [m]", point, "A point of the body's material, rest configuration.");
+    p.require_last();
+  }
 };
 
 /// The section `Body` with all that stands in it.

@@ -8,13 +8,6 @@ namespace {
 
 constexpr Range at_least_one{1, 1e9};
 
-std::string observable_names() {
-  std::string names;
-  for (const BodyObservable& observable : body_observables())
-    names += (names.empty() ? "" : ", ") + observable.name;
-  return names;
-}
-
 } // namespace
 
 void OutputParameters::describe(Parameters& p) {

@@ -1,5 +1,7 @@
 #include "scene/grammar_tools.h"
 
+#include "scene/region.h"
+
 #include <algorithm>
 
 namespace kerf::scene {
@@ -52,9 +54,10 @@ void ScissorsParameters::describe(Parameters& p) {
 }
 
 void ForcepsParameters::describe(Parameters& p) {
-  p.choice("Region", region, {"box", "sphere"},
-           "What is held: the grid nodes of every body that lie here in the rest configuration. Of the keys below, "
-           "those of the region must be set, and no others.");
+  p.choice(
+    "Region", region, region_names(),
+    "What is held: the corners (or phyxels) of every body that lie here in the rest configuration. Of the keys below, "
+    "those of the region must be set, and no others.");
   p.require_last();
   p.number("Grip time [s]", grip_time, non_negative,
            "Held from where it is then, before the first step that begins then or later.");
@@ -64,25 +67,6 @@ void ForcepsParameters::describe(Parameters& p) {
            "From the middle between the jaws to one of them while they hold, tool frame; only drawn.");
   p.vector("Handle [m]", handle,
            "From the middle between the jaws to the joint of the arms; only drawn. Zero: not drawn.");
-}
-
-void RegionParameters::describe(Parameters& p) {
-  const auto require_of_a_region = [&] {
-    if (!region.empty())
-      p.require_last();
-  };
-  if (region.empty() || region == "box") {
-    p.vector("Lower [m]", lower, "Box: its lower corner, rest configuration.");
-    require_of_a_region();
-    p.vector("Upper [m]", upper, "Box: its upper corner.");
-    require_of_a_region();
-  }
-  if (region.empty() || region == "sphere") {
-    p.vector("Centre [m]", centre, "Sphere: its centre, rest configuration.");
-    require_of_a_region();
-    p.number("Radius [m]", radius, positive, "Sphere: its radius.");
-    require_of_a_region();
-  }
 }
 
 void CutSurfaceParameters::describe(Parameters& p) {

@@ -45,16 +45,6 @@ struct ForcepsParameters {
   void describe(Parameters& p);
 };
 
-/// A part of the rest configuration. Describes the keys of `region`, all of which must be set; those of all regions
-/// while it is empty.
-struct RegionParameters {
-  std::string region;
-  Vec3 lower = Vec3::Zero(), upper = Vec3::Zero(); ///< [m]
-  Vec3 centre = Vec3::Zero();                      ///< [m]
-  double radius = 0.01;                            ///< [m]
-  void describe(Parameters& p);
-};
-
 struct CutSurfaceParameters {
   double time = 0; ///< [s]
   std::string shape;

@@ -1,38 +1,37 @@
 #include "scene/observables.h"
 
+#include "dynamics/forces.h"
+#include "grid/shape.h"
+#include "physics/phyxels.h"
+
+#include <algorithm>
+#include <array>
+
 namespace kerf::scene {
 
 namespace {
 
-double kinetic_energy(const Body& body) {
-  const auto mass = body.physics.model->lumped_mass();
-  double sum = 0;
-  for (std::size_t i = 0; i < mass.size(); ++i)
-    sum += 0.5 * mass[i] * body.state.v[i].squaredNorm();
-  return sum;
-}
-
-double gravity_energy(const Body& body) {
-  const auto mass = body.physics.model->lumped_mass();
-  double sum = 0;
-  for (std::size_t i = 0; i < mass.size(); ++i)
-    sum -= mass[i] * body.loads.gravity.dot(body.state.x[i]);
-  return sum;
-}
+const dynamics::ForceModel& model(const Body& body) { return body.physics->model(); }
 
 double mass(const Body& body) {
   double sum = 0;
-  for (const double m : body.physics.model->lumped_mass())
+  for (const double m : model(body).lumped_mass())
     sum += m;
   return sum;
 }
 
-double momentum(const Body& body, const int axis) {
-  const auto mass = body.physics.model->lumped_mass();
-  double sum = 0;
-  for (std::size_t i = 0; i < mass.size(); ++i)
-    sum += mass[i] * body.state.v[i][axis];
-  return sum;
+/// A number that accounts book in the state; 0 before the first step.
+double booked(const Body& body, const std::string& name) {
+  const auto it = body.state.numbers.find(name);
+  return it == body.state.numbers.end() ? 0 : it->second;
+}
+
+double energy_missing(const Body& body) {
+  if (!body.accounts)
+    return 0;
+  return body.accounts->start_energy() + body.accounts->work_of_cut() + booked(body, "work of supports [J]") +
+         booked(body, "work of loads [J]") - booked(body, "dissipated energy [J]") -
+         total_energy(*body.physics, body.loads, body.state);
 }
 
 double largest_displacement(const Body& body) {
@@ -46,17 +45,135 @@ double rest_volume(const Body& body) { return surface::enclosed_volume(body.surf
 
 double count(const std::size_t n) { return static_cast<double>(n); }
 
+constexpr std::array axes = {"x", "y", "z"};
+
+/// Three series of one vector.
+template <class Value>
+void add_vector(std::vector<Observable>& series, const std::string& name, const std::string& unit,
+                const std::string& source, const Value& value) {
+  for (int axis = 0; axis < 3; ++axis)
+    series.push_back(
+      {name + " " + axes[axis], unit, source, [value, axis](const Body& body) { return Vec3(value(body))[axis]; }});
+}
+
+Vec3 reaction(const Body& body, const std::size_t support) {
+  if (!body.accounts || support >= body.accounts->reactions().size())
+    return Vec3::Zero();
+  return body.accounts->reactions()[support].force;
+}
+
+std::vector<Observable> reactions(const Body& body, const std::vector<std::string>&) {
+  std::vector<Observable> series;
+  for (std::size_t i = 0; i < body.regions.size(); ++i)
+    add_vector(series, "reaction " + body.regions[i].name, "N", "force of the support on the body (quantities.h)",
+               [i](const Body& b) { return reaction(b, i); });
+  return series;
+}
+
+std::vector<Observable> tool_forces(const Body&, const std::vector<std::string>& forceps) {
+  std::vector<Observable> series;
+  for (const std::string& name : forceps)
+    add_vector(series, "tool force " + name, "N", "force of the forceps on the body, 0 while they hold nothing of it",
+               [name](const Body& b) {
+                 const auto it = std::find(b.grips.begin(), b.grips.end(), name);
+                 const auto i = static_cast<std::size_t>(it - b.grips.begin());
+                 return it == b.grips.end() ? Vec3(Vec3::Zero()) : reaction(b, b.regions.size() + i);
+               });
+  return series;
+}
+
+std::vector<Observable> load_forces(const Body& body, const std::vector<std::string>&) {
+  std::vector<Observable> series;
+  for (std::size_t i = 0; i < body.load_makers.size(); ++i)
+    add_vector(series, "force of " + body.load_makers[i].name, "N", "sum of the load's forces on the body",
+               [i](const Body& b) {
+                 Vec3 sum = Vec3::Zero();
+                 for (std::size_t k = b.first_load[i]; k < b.first_load[i + 1]; ++k)
+                   sum += dynamics::load_force(*b.loads.acting[k], b.state);
+                 return sum;
+               });
+  return series;
+}
+
+Vec3 cube_coordinates(const Body& body, const Probe& probe) {
+  const grid::CellId cell = body.complex.copies[probe.copy].cell;
+  return (probe.rest - body.grid.position(body.grid.nodes(cell)[0])) / body.grid.h();
+}
+
+Vec3 displacement(const Body& body, const Probe& probe) {
+  const Vec3 xi = cube_coordinates(body, probe);
+  Vec3 x = Vec3::Zero();
+  for (int v = 0; v < 8; ++v)
+    x += grid::shape(v, xi) * corners(body)[body.complex.copies[probe.copy].corners[v].value];
+  return x - probe.rest;
+}
+
+/// Green's strain of the trilinear motion of the probe's copy.
+Mat3 strain(const Body& body, const Probe& probe) {
+  const Vec3 xi = cube_coordinates(body, probe);
+  Mat3 F = Mat3::Zero();
+  for (int v = 0; v < 8; ++v)
+    F += corners(body)[body.complex.copies[probe.copy].corners[v].value] *
+         (grid::shape_gradient(v, xi) / body.grid.h()).transpose();
+  return 0.5 * (F.transpose() * F - Mat3::Identity());
+}
+
+std::vector<Observable> probes(const Body& body, const std::vector<std::string>&) {
+  std::vector<Observable> series;
+  for (std::size_t i = 0; i < body.probes.size(); ++i)
+    add_vector(series, "probe " + body.probes[i].name, "m", "displacement of the rest point, by its copy's corners",
+               [i](const Body& b) { return displacement(b, b.probes[i]); });
+  return series;
+}
+
+std::vector<Observable> probe_strains(const Body& body, const std::vector<std::string>&) {
+  constexpr std::array<std::array<int, 2>, 6> components = {{{0, 0}, {1, 1}, {2, 2}, {0, 1}, {1, 2}, {2, 0}}};
+  std::vector<Observable> series;
+  for (std::size_t i = 0; i < body.probes.size(); ++i)
+    for (const auto& [row, column] : components)
+      series.push_back(
+        {"strain " + body.probes[i].name + " " + axes[row] + axes[column], "1",
+         "Green's strain at the rest point, by its copy's corners",
+         [i, row = row, column = column](const Body& b) { return strain(b, b.probes[i])(row, column); }});
+  return series;
+}
+
+Vec3 momentum(const Body& body) { return dynamics::momentum(model(body), body.state); }
+Vec3 angular_momentum(const Body& body) { return dynamics::angular_momentum(model(body), body.state, Vec3::Zero()); }
+
 } // namespace
 
-const std::vector<BodyObservable>& body_observables() {
-  static const std::vector<BodyObservable> all = {
-    {"kinetic energy", "J", "sum of m v.v / 2 over the corners, lumped mass", kinetic_energy},
+const std::vector<Observable>& body_observables() {
+  static const std::vector<Observable> all = {
+    {"kinetic energy", "J", "sum of m v.v / 2 over the particles, lumped mass",
+     [](const Body& b) { return dynamics::kinetic_energy(model(b), b.state.v); }},
     {"elastic energy", "J", "of the force model at the current positions",
-     [](const Body& b) { return b.physics.model->energy(b.state.x); }},
-    {"gravity energy", "J", "-sum of m g.x over the corners", gravity_energy},
-    {"momentum x", "kg m/s", "sum of m v over the corners", [](const Body& b) { return momentum(b, 0); }},
-    {"momentum y", "kg m/s", "sum of m v over the corners", [](const Body& b) { return momentum(b, 1); }},
-    {"momentum z", "kg m/s", "sum of m v over the corners", [](const Body& b) { return momentum(b, 2); }},
+     [](const Body& b) { return model(b).energy(b.state.x); }},
+    {"gravity energy", "J", "-sum of m g.x over the particles",
+     [](const Body& b) { return dynamics::gravity_energy(model(b), b.loads, b.state.x); }},
+    {"energy of loads", "J", "of the loads that have a potential",
+     [](const Body& b) { return dynamics::load_energy(b.loads, b.state.time, b.state.x); }},
+    {"dissipated energy", "J", "by damping and friction, so far",
+     [](const Body& b) { return booked(b, "dissipated energy [J]"); }},
+    {"work of supports", "J", "of the reactions, those of forceps too, so far",
+     [](const Body& b) { return booked(b, "work of supports [J]"); }},
+    {"work of loads", "J", "of loads without a potential, so far",
+     [](const Body& b) { return booked(b, "work of loads [J]"); }},
+    {"work of the cut", "J", "what the energies changed by at the instants of cutting, so far",
+     [](const Body& b) { return b.accounts ? b.accounts->work_of_cut() : 0.0; }},
+    {"missing energy", "J",
+     "energy at the start and all work since, less what was dissipated and what is there: what the integrator lost; in "
+     "statics what a growing cut released (accounts.h)",
+     energy_missing},
+    {"momentum x", "kg m/s", "sum of m v over the particles", [](const Body& b) { return momentum(b)[0]; }},
+    {"momentum y", "kg m/s", "sum of m v over the particles", [](const Body& b) { return momentum(b)[1]; }},
+    {"momentum z", "kg m/s", "sum of m v over the particles", [](const Body& b) { return momentum(b)[2]; }},
+    {"angular momentum x", "kg m^2/s", "sum of x x m v over the particles, about the origin",
+     [](const Body& b) { return angular_momentum(b)[0]; }},
+    {"angular momentum y", "kg m^2/s", "sum of x x m v over the particles, about the origin",
+     [](const Body& b) { return angular_momentum(b)[1]; }},
+    {"angular momentum z", "kg m^2/s", "sum of x x m v over the particles, about the origin",
+     [](const Body& b) { return angular_momentum(b)[2]; }},
     {"mass", "kg", "sum of the lumped mass", mass},
     {"volume", "m^3", "enclosed by the surface now, divergence theorem over its triangles",
      [](const Body& b) { return surface::enclosed_volume(b.positions, b.surface.triangles); }},
@@ -94,17 +211,63 @@ const std::vector<BodyObservable>& body_observables() {
      }},
     {"solver iterations", "1", "of the linear solver in the step",
      [](const Body& b) { return count(b.report.n_iterations); }},
+    {"Newton iterations", "1", "in the step", [](const Body& b) { return count(b.report.n_newton); }},
+    {"substeps", "1", "kept, of an adaptive or quasi-static step",
+     [](const Body& b) { return count(b.report.n_substeps); }},
+    {"residual", "1", "forces out of balance over those that balance at the end of the step, where it was measured",
+     [](const Body& b) { return b.report.residual; }},
+    {"waiting pairs", "1", "of phyxels or corners that wait for a look at a new cut (backend pba)",
+     [](const Body& b) {
+       const auto* phyxels = dynamic_cast<const physics::Phyxels*>(b.physics.get());
+       return phyxels ? count(phyxels->n_waiting()) : 0.0;
+     }},
     {"clamped vertices", "1", "placements that were held at the side of their face or cell",
      [](const Body& b) { return count(b.placed.n_clamped); }},
   };
   return all;
 }
 
-const BodyObservable* find_observable(const std::string& name) {
-  for (const BodyObservable& observable : body_observables())
+const Observable* find_observable(const std::string& name) {
+  for (const Observable& observable : body_observables())
     if (observable.name == name)
       return &observable;
   return nullptr;
+}
+
+const std::vector<ObservableGroup>& observable_groups() {
+  static const std::vector<ObservableGroup> all = {
+    {"reactions", "force of each support on the body [N]", reactions},
+    {"tool forces", "force of each forceps on the body [N]", tool_forces},
+    {"load forces", "force of each load and floor on the body [N]", load_forces},
+    {"probes", "displacement of each probe [m]", probes},
+    {"probe strains", "Green's strain at each probe [1]", probe_strains},
+  };
+  return all;
+}
+
+std::string observable_names() {
+  std::string names;
+  for (const Observable& observable : body_observables())
+    names += (names.empty() ? "" : ", ") + observable.name;
+  for (const ObservableGroup& group : observable_groups())
+    names += ", " + group.name;
+  return names;
+}
+
+std::vector<Observable> observables_named(const std::string& name, const Body& body,
+                                          const std::vector<std::string>& forceps) {
+  if (const Observable* one = find_observable(name))
+    return {*one};
+  for (const ObservableGroup& group : observable_groups())
+    if (group.name == name)
+      return group.of(body, forceps);
+  return {};
+}
+
+bool needs_accounts(const std::string& name) {
+  static const std::array names = {"dissipated energy", "work of supports", "work of loads", "work of the cut",
+                                   "missing energy",    "reactions",        "tool forces"};
+  return std::find(names.begin(), names.end(), name) != names.end();
 }
 
 } // namespace kerf::scene

@@ -1,6 +1,6 @@
 #pragma once
 
-/// What a run can report of a body over time: one row a quantity, each a pure function.
+/// What a run can report of a body over time: one row a quantity, each a pure function of the body.
 
 #include "scene/body.h"
 
@@ -9,17 +9,29 @@
 
 namespace kerf::scene {
 
-struct BodyObservable {
-  std::string name;   ///< "kinetic energy"
-  std::string unit;   ///< "J"
-  std::string source; ///< formula
-  std::function<double(const Body&)> value;
-};
-
-/// All that can be asked for.
-const std::vector<BodyObservable>& body_observables();
+/// Quantities of one number.
+const std::vector<Observable>& body_observables();
 
 /// Null when there is none of that name.
-const BodyObservable* find_observable(const std::string& name);
+const Observable* find_observable(const std::string& name);
+
+/// A name that stands for several series: one for each support, tool, load or probe that a scene has, and component.
+struct ObservableGroup {
+  std::string name; ///< "reactions"
+  std::string text;
+  std::vector<Observable> (*of)(const Body& body, const std::vector<std::string>& forceps);
+};
+const std::vector<ObservableGroup>& observable_groups();
+
+/// Names of both, for people: "kinetic energy, ...".
+std::string observable_names();
+
+/// The series that a name stands for; `forceps` of the scene. Empty when there is none of that name, or nothing that it
+/// is about.
+std::vector<Observable> observables_named(const std::string& name, const Body& body,
+                                          const std::vector<std::string>& forceps);
+
+/// Whether a name needs Body::accounts.
+bool needs_accounts(const std::string& name);
 
 } // namespace kerf::scene

@@ -51,8 +51,8 @@ std::filesystem::path make_folder(const std::filesystem::path& folder, const Wor
 output::Schema make_schema(const World& world) {
   output::Schema schema{stages(), {}};
   for (const Body& body : world.bodies)
-    for (const BodyObservable* o : world.observables)
-      schema.observables.push_back({body.name + " " + o->name, o->unit, o->source});
+    for (const Observable& o : body.observables)
+      schema.observables.push_back({body.name + " " + o.name, o.unit, o.source});
   return schema;
 }
 
@@ -80,12 +80,20 @@ output::Surface to_record(const surface::Surface& surface) {
   return record;
 }
 
+/// Of the corners, where they are the particles of the body's physics.
+std::span<const Vec3> velocities(const Body& body) {
+  return body.state.v.size() == body.complex.n_corners() && &corners(body) == &body.state.x
+           ? std::span<const Vec3>(body.state.v)
+           : std::span<const Vec3>();
+}
+
 bool is_due(const int step, const int every, const World& world) { return step % every == 0 || step == world.n_steps; }
 
 } // namespace
 
 const std::vector<std::string>& stages() {
-  static const std::vector<std::string> names = {"cut", "topology", "assemble", "solve", "surface", "output", "images"};
+  static const std::vector<std::string> names = {"cut",   "topology", "assemble", "visibility",
+                                                 "solve", "surface",  "output",   "images"};
   return names;
 }
 
@@ -125,15 +133,15 @@ void Recorder::record(const World& world, const int step, Timings& seconds) {
 void Recorder::append_step(const World& world, const int step, const Timings& seconds, const bool with_frames) {
   std::vector<double> values;
   for (const Body& body : world.bodies)
-    for (const BodyObservable* o : world.observables)
-      values.push_back(o->value(body));
+    for (const Observable& o : body.observables)
+      values.push_back(o.value(body));
   output::StepRecord record{step * world.time_step, step, seconds, values, {}};
   std::vector<output::Complex> complexes(world.bodies.size());
   std::vector<output::Surface> surfaces(world.bodies.size());
   if (with_frames)
     for (std::size_t b = 0; b < world.bodies.size(); ++b) {
       const Body& body = world.bodies[b];
-      output::BodyStep body_step{body.name, body.state.x, body.state.v, {}};
+      output::BodyStep body_step{body.name, corners(body), velocities(body), {}};
       if (bodies_[b].complex_written != body.n_recuts) {
         complexes[b] = to_record(body);
         surfaces[b] = to_record(body.surface);

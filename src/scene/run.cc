@@ -26,11 +26,17 @@ void require_sound(const Body& body, const double dt) {
 /// Runs `action` on a body; an error says which body, step and time.
 template <class Action>
 void on(const Body& body, const int step, const double time, const Action& action) {
+  const auto place = [&] {
+    return "body " + body.name + ", step " + std::to_string(step) + ", time " + to_text(time) + " s: ";
+  };
   try {
     action();
   } catch (const NumericalError& error) {
-    throw NumericalError("body " + body.name + ", step " + std::to_string(step) + ", time " + to_text(time) +
-                         " s: " + error.what());
+    throw NumericalError(place() + error.what());
+  } catch (const ParameterError& error) {
+    Complaint complaint = error.complaint();
+    complaint.rule = place() + complaint.rule;
+    throw ParameterError(complaint);
   }
 }
 
@@ -40,10 +46,14 @@ void cut(World& world, const int step, Timings& seconds) {
     if (!body.cutting)
       continue;
     on(body, step, t1, [&] {
+      const int n_recuts = body.n_recuts;
+      const double before = body.accounts ? total_energy(*body.physics, body.loads, body.state) : 0;
       for (const TimedSurface& timed : world.cut_surfaces)
         if (timed.step == step)
           cut_at_once(body, timed.surface, seconds);
       recut(body, world.blades, t0, t1, seconds);
+      if (body.accounts && body.n_recuts != n_recuts)
+        body.accounts->add_work_of_cut(total_energy(*body.physics, body.loads, body.state) - before);
     });
   }
 }
@@ -52,11 +62,19 @@ void advance(World& world, const int step, Timings& seconds) {
   const double dt = world.time_step, t1 = step * dt;
   cut(world, step, seconds);
   for (Body& body : world.bodies) {
+    {
+      const ScopedTimer timer(seconds, "visibility");
+      body.physics->catch_up(seen(body));
+    }
     const ScopedTimer timer(seconds, "solve");
     hold(body, world.forceps, step, (step - 1) * dt);
     on(body, step, t1, [&] {
-      body.report = body.physics.stepper->step(body.state, body.loads, dt);
+      if (body.accounts)
+        body.accounts->before_step(body.state);
+      body.report = body.physics->step(body.state, body.loads, dt);
       require_sound(body, dt);
+      if (body.accounts)
+        body.accounts->after_step(*body.physics, body.loads, body.state);
     });
   }
   for (Body& body : world.bodies) {

@@ -46,7 +46,6 @@ struct World {
   OutputParameters output;
   std::optional<SurfaceFileParameters> surface_file;
   std::optional<Images> images; ///< empty in a scene without images: no GL context exists
-  std::vector<const BodyObservable*> observables;
 
   std::vector<std::string> composition; ///< what was composed and what was left out, a line each
   Timings setup_seconds;                ///< of composing, per stage [s]

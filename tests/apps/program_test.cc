@@ -8,6 +8,8 @@
 namespace kerf::apps {
 namespace {
 
+const std::string go_on = "  subsection Symplectic Euler\n    set Beyond the stable step = go on\n  end\n";
+
 using ProgramTest = Program;
 
 TEST_F(ProgramTest, HelpsWithItsArguments) {
@@ -61,7 +63,7 @@ TEST_F(ProgramTest, SumsUpTheRun) {
     {R"(step 5/5  t = 0\.050/0\.050 s)", R"(body cube: 125 cells, 150 copies, 2 pieces, \d+ surface triangles)",
      R"(volume: mesh 8\.000000e-03 m\^3; grid [+-]0\.000 %; cuts changed the rest volume by [+-]\d\.\d\de-1\d)",
      R"(energy: elastic \S+ J, kinetic \S+ J)", R"(blade knife: cut 16 grid edges\n)",
-     R"(time per stage \[s\]:  cut \S+  topology \S+  assemble \S+  solve \S+  surface \S+  output \S+  images \S+\n)",
+     R"(time per stage \[s\]:  cut \S+  topology \S+  assemble \S+  visibility \S+  solve \S+  surface \S+  output \S+  images \S+\n)",
      R"([\d.]+ steps/s without images and files, [\d.]+ with\n)", R"(results in out\n$)"})
     EXPECT_TRUE(std::regex_search(result.out, std::regex(pattern))) << pattern << " in:\n" << result.out;
   EXPECT_EQ(result.out.find("waiting"), std::string::npos);
@@ -118,8 +120,9 @@ TEST_F(ProgramTest, AsksForNoOpenGlWithoutImages) {
 TEST_F(ProgramTest, TellsHowAComputationFailed) {
   const std::string scene =
     replaced(cube_scene(), "  subsection Material",
-             "  set Integrator = symplectic Euler\n  subsection Support top\n"
-             "    set Lower [m] = -1, -1, 0.05\n    set Upper [m] = 1, 1, 1\n  end\n  subsection Material") +
+             "  set Integrator = symplectic Euler\n" + go_on +
+               "  subsection Support top\n"
+               "    set Lower [m] = -1, -1, 0.05\n    set Upper [m] = 1, 1, 1\n  end\n  subsection Material") +
     "subsection Gravity\nend\nsubsection Output\n  set Frames every [1] = 1\nend\n";
   const Result result = run(scene, {"--set", "Time/Time step [s]=0.5", "--set", "Time/End time [s]=500"});
   expect_error(result, 3,
@@ -139,8 +142,8 @@ TEST_F(ProgramTest, TellsHowAComputationFailed) {
 }
 
 TEST_F(ProgramTest, ShortTimesAreNotRoundedToNothing) {
-  const std::string scene =
-    replaced(cube_scene(), "  subsection Material", "  set Integrator = symplectic Euler\n  subsection Material");
+  const std::string scene = replaced(cube_scene(), "  subsection Material",
+                                     "  set Integrator = symplectic Euler\n" + go_on + "  subsection Material");
   const Result result =
     run(scene + "subsection Gravity\nend\n",
         {"--set", "Time/Time step [s]=1e-7", "--set", "Time/End time [s]=1e-4", "--set",

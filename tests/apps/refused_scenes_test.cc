@@ -111,7 +111,7 @@ TEST_F(RefusedScene, SupportThatHoldsNothing) {
     "  subsection Support floor\n    set Lower [m] = 1, 1, 1\n    set Upper [m] = 2, 2, 2\n  end\n";
   std::string scene = replaced(cube_scene(), "  subsection Material", support + "  subsection Material");
   expect_refused(scene,
-                 {at(scene, "Support"), "Body cube/Support floor", "holds no grid node", "Move or enlarge the box"});
+                 {at(scene, "Support"), "Body cube/Support floor", "holds no corner or phyxel", "Move or enlarge it"});
   scene = replaced(scene, "Upper [m] = 2, 2, 2", "Upper [m] = 2, 0, 2");
   expect_refused(scene, {at(scene, "Upper"), "Support floor/Upper [m] = '2, 0, 2'", "must not be below Lower", "Swap"});
 }

@@ -1,8 +1,11 @@
 // A scene names what exists; what it does not name is not built.
 
+#include "dynamics/bdf2.h"
+#include "dynamics/explicit_steppers.h"
+#include "dynamics/generalised_alpha.h"
 #include "dynamics/implicit_euler.h"
 #include "dynamics/symplectic_euler.h"
-#include "fem/hexahedra.h"
+#include "physics/on_corners.h"
 #include "tests/scene/worlds.h"
 
 #include <gtest/gtest.h>
@@ -23,7 +26,8 @@ TEST(Compose, BuildsNothingThatTheSceneDoesNotWrite) {
   const World world = world_of(cube_scene());
   EXPECT_FALSE(world.images);
   EXPECT_FALSE(world.surface_file);
-  EXPECT_TRUE(world.observables.empty());
+  EXPECT_TRUE(world.bodies.at(0).observables.empty());
+  EXPECT_EQ(world.bodies[0].accounts, nullptr);
   EXPECT_TRUE(world.blades.empty());
   ASSERT_EQ(world.bodies.size(), 1u);
   EXPECT_EQ(world.bodies[0].cutting, nullptr);
@@ -37,7 +41,7 @@ TEST(Compose, BuildsWhatTheSceneWrites) {
   const World world = world_of(cube_scene() + falling_blade() + all_outputs());
   EXPECT_TRUE(world.images && world.images->renderer);
   EXPECT_TRUE(world.surface_file);
-  EXPECT_EQ(world.observables.size(), 7u);
+  EXPECT_EQ(world.bodies.at(0).observables.size(), 7u);
   EXPECT_EQ(world.n_steps, 5);
   ASSERT_EQ(world.blades.size(), 1u);
   ASSERT_NE(world.bodies.at(0).cutting, nullptr);
@@ -61,10 +65,22 @@ TEST(Compose, EveryBodyOfASceneWithABladeCanBeCut) {
 }
 
 TEST(Compose, TakesTheIntegratorThatIsNamed) {
-  const World by_default = world_of(cube_scene());
-  EXPECT_TRUE(dynamic_cast<dynamics::ImplicitEuler*>(by_default.bodies.at(0).physics.stepper.get()));
-  const World explicit_one = world_of(cube_scene(), {"Body cube/Integrator=symplectic Euler"});
-  EXPECT_TRUE(dynamic_cast<dynamics::SymplecticEuler*>(explicit_one.bodies.at(0).physics.stepper.get()));
+  const auto is = [](const std::string& name, const auto& made) {
+    const World world = world_of(cube_scene(), {"Body cube/Integrator=" + name});
+    const auto& elements = dynamic_cast<const physics::Elements&>(*world.bodies.at(0).physics);
+    return made(elements.stepper());
+  };
+  const auto kind = []<class Kind>(const Kind*) {
+    return [](const dynamics::Stepper& stepper) { return dynamic_cast<const Kind*>(&stepper) != nullptr; };
+  };
+  EXPECT_TRUE(is("implicit Euler", kind(static_cast<dynamics::ImplicitEuler*>(nullptr))));
+  EXPECT_TRUE(is("BDF2", kind(static_cast<dynamics::Bdf2*>(nullptr))));
+  EXPECT_TRUE(is("Newmark", kind(static_cast<dynamics::GeneralisedAlpha*>(nullptr))));
+  EXPECT_TRUE(is("generalised alpha", kind(static_cast<dynamics::GeneralisedAlpha*>(nullptr))));
+  EXPECT_TRUE(is("symplectic Euler", kind(static_cast<dynamics::SymplecticEuler*>(nullptr))));
+  EXPECT_TRUE(is("velocity Verlet", kind(static_cast<dynamics::VelocityVerlet*>(nullptr))));
+  EXPECT_TRUE(is("explicit Euler", kind(static_cast<dynamics::ExplicitEuler*>(nullptr))));
+  EXPECT_TRUE(is("midpoint Runge-Kutta", kind(static_cast<dynamics::MidpointRungeKutta*>(nullptr))));
 }
 
 TEST(Compose, IntegratesOverOctantsOrFullCubes) {
@@ -79,12 +95,12 @@ TEST(Compose, TakesTheLawAndTheElementThatAreNamed) {
     World world = world_of(cube_scene(), settings);
     EXPECT_TRUE(
       says(world, "body cube: " + std::string(settings.empty() ? "corotational trilinear" : "neo-Hookean enhanced")));
-    return std::move(world.bodies.at(0).physics.model);
+    return std::move(world.bodies.at(0).physics);
   };
   const auto by_default = model_of({});
   const auto named = model_of({"Body cube/Material/Law=neo-Hookean", "Body cube/Element=enhanced"});
-  const auto& plain = dynamic_cast<const fem::Hexahedra&>(*by_default);
-  const auto& other = dynamic_cast<const fem::Hexahedra&>(*named);
+  const auto& plain = dynamic_cast<const fem::Hexahedra&>(by_default->model());
+  const auto& other = dynamic_cast<const fem::Hexahedra&>(named->model());
   EXPECT_TRUE(std::holds_alternative<material::Corotational>(plain.law()));
   EXPECT_TRUE(std::holds_alternative<material::NeoHookean>(other.law()));
   const World fractions = world_of(cube_scene(), {"Body cube/Integration=volume fraction"});
@@ -111,15 +127,15 @@ TEST(Compose, SupportsHoldTheirNodesAndMoveThem) {
 
 TEST(Compose, EveryObservableHasUnitAndSourceAndIsFinite) {
   std::string names;
-  for (const BodyObservable& o : body_observables()) {
+  for (const Observable& o : body_observables()) {
     names += (names.empty() ? "" : ", ") + o.name;
     EXPECT_FALSE(o.unit.empty()) << o.name;
     EXPECT_FALSE(o.source.empty()) << o.name;
   }
   const World world = world_of(cube_scene(), {"Observables/Names=" + names});
-  ASSERT_EQ(world.observables.size(), body_observables().size());
-  for (const BodyObservable* o : world.observables)
-    EXPECT_TRUE(std::isfinite(o->value(world.bodies.at(0)))) << o->name;
+  ASSERT_EQ(world.bodies.at(0).observables.size(), body_observables().size());
+  for (const Observable& o : world.bodies[0].observables)
+    EXPECT_TRUE(std::isfinite(o.value(world.bodies[0]))) << o.name;
   EXPECT_EQ(find_observable("no such thing"), nullptr);
 }
 

@@ -55,8 +55,8 @@ void expect_outputs(const World& world, const fs::path& folder) {
     EXPECT_EQ(last.positions, body.state.x);
     EXPECT_EQ(last.velocities, body.state.v);
     EXPECT_EQ(reader.complex(body.name, last.complex).corners.size(), body.complex.n_copies());
-    for (const BodyObservable* o : world.observables)
-      EXPECT_EQ(reader.observable(body.name + " " + o->name).size(), world.n_steps + 1u) << o->name;
+    for (const Observable& o : body.observables)
+      EXPECT_EQ(reader.observable(body.name + " " + o.name).size(), world.n_steps + 1u) << o.name;
     EXPECT_EQ(fs::exists(folder / ("surface_" + body.name + ".vtkhdf")), world.surface_file.has_value());
   }
   EXPECT_EQ(fs::exists(folder / "frames"), world.images.has_value());

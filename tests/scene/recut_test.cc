@@ -56,7 +56,7 @@ struct Balance {
 
 Balance balance(const Body& body) {
   Balance sum{.rest_volume = value(body, "rest volume")};
-  const auto mass = body.physics.model->lumped_mass();
+  const auto mass = body.physics->model().lumped_mass();
   for (std::size_t i = 0; i < mass.size(); ++i) {
     const Vec3 p = mass[i] * body.state.v[i];
     sum.mass += mass[i];
@@ -149,12 +149,12 @@ TEST(Recut, PiecesLetGoOfEachOther) {
   const auto piece = piece_of_corners(body.complex);
 
   Points x = body.state.x, before, after;
-  body.physics.model->force(x, before);
+  body.physics->model().force(x, before);
   const Eigen::AngleAxisd turn(0.7, Vec3(1, 2, 3).normalized());
   for (std::size_t i = 0; i < x.size(); ++i)
     if (piece[i] == 0)
       x[i] = turn * (1.1 * x[i]) + Vec3(0.3, -0.2, 0.1);
-  body.physics.model->force(x, after);
+  body.physics->model().force(x, after);
   for (std::size_t i = 0; i < x.size(); ++i)
     if (piece[i] == 1) {
       EXPECT_EQ(before[i], after[i]);
@@ -171,10 +171,10 @@ TEST(Recut, APieceMovedRigidlyIsWithoutForce) {
     if (piece[i] == 0)
       body.state.x[i] += Vec3(0.05, 0, 0.02);
   Points force;
-  body.physics.model->force(body.state.x, force);
+  body.physics->model().force(body.state.x, force);
   for (const Vec3& f : force)
     EXPECT_LE(f.norm(), 1e-10); // against E h^2 = 6 N
-  EXPECT_LE(body.physics.model->energy(body.state.x), 1e-12);
+  EXPECT_LE(body.physics->model().energy(body.state.x), 1e-12);
 }
 
 /// Cutting while the run goes on: nothing in the steps between cuts may break what cuts keep.

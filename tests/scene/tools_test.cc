@@ -160,7 +160,7 @@ void step_once(World& world, const int step) {
     if (body.cutting)
       recut(body, world.blades, (step - 1) * dt, step * dt, timings);
     hold(body, world.forceps, step, (step - 1) * dt);
-    body.report = body.physics.stepper->step(body.state, body.loads, dt);
+    body.report = body.physics->step(body.state, body.loads, dt);
   }
 }
 
@@ -281,11 +281,11 @@ TEST(Forceps, SayWhatIsWrong) {
     expect_refused(section("Forceps tweezers", with(tweezers, key, value)), words);
   };
   refuse("Region", "", {"Forceps tweezers", "Region"});
-  refuse("Region", "cone", {"'cone'", "one of box, sphere"});
+  refuse("Region", "cone", {"'cone'", "one of box, half space, sphere, mesh"});
   refuse("Region", "sphere", {"the region 'sphere' must have the key 'Centre [m]'"});
   refuse("Radius [m]", "1", {"Radius [m]", "the region 'box' does not read this key", "Lower [m], Upper [m]"});
   refuse("Upper [m]", "1, 1, -2", {"Upper [m] = '1, 1, -2'", "must not be below Lower", "Swap"});
-  refuse("Upper [m]", "1, 1, 0.061", {"Forceps tweezers", "holds no grid node", "rest configuration"});
+  refuse("Upper [m]", "1, 1, 0.061", {"Forceps tweezers", "holds no corner or phyxel", "rest configuration"});
   refuse("Grip time [s]", "0.05", {"Grip time [s] = '0.05'", "before the last step, which begins at 0.04 s"});
   refuse("Grip time [s]", "-1", {"Grip time [s] = '-1'", "must be >= 0"});
   refuse("Release time [s]", "0.01", {"Release time [s] = '0.01'", "at least a step after Grip time [s]"});

@@ -37,9 +37,13 @@ const std::vector<Room> rooms = {
   {"pba", {"base", "grid", "material", "dynamics"}},
   {"gl", {"base"}},
   {"visibility", {"base", "geometry", "gl", "pba"}},
+  {"physics",
+   {"base", "grid", "surface", "material", "dynamics", "fem", "lattice", "spring", "pba", "visibility"}},
   {"render", {"base", "gl"}},
   {"output", {"base"}},
-  {"scene", {"base", "geometry", "grid", "cut", "surface", "material", "dynamics", "fem", "gl", "render", "output"}},
+  {"scene",
+   {"base", "geometry", "grid", "cut", "surface", "material", "dynamics", "fem", "lattice", "spring", "pba", "visibility",
+    "physics", "gl", "render", "output"}},
 };
 
 /// Headers that only some rooms may see.

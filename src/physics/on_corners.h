@@ -1,0 +1,77 @@
+#pragma once
+
+/// Backends whose particles are the corners of the copies: elements, springs, lattice shape matching. New corners take
+/// position, velocity and history from the corner they come from.
+
+#include "fem/hexahedra.h"
+#include "lattice/shape_matching.h"
+#include "physics/physics.h"
+#include "spring/mass_spring.h"
+
+namespace kerf::physics {
+
+/// One model on the corners, with an integrator of it.
+template <class Model>
+class OnCorners : public Physics {
+ public:
+  using ModelMaker = std::function<std::unique_ptr<Model>(const CutBody&)>;
+  using IntegratorMaker = std::function<std::unique_ptr<dynamics::Stepper>(Model&, const PiecesOfParticles&)>;
+
+  OnCorners(const CutBody& body, ModelMaker make_model, IntegratorMaker make_integrator)
+    : make_model_(std::move(make_model)),
+      make_integrator_(std::move(make_integrator)),
+      rest_(grid::rest_positions(body.grid, body.complex)),
+      model_(make_model_(body)) {
+    make_stepper(body);
+  }
+
+  Model& model() override { return *model_; }
+  const Points& rest() const override { return rest_; }
+
+  dynamics::StepReport step(dynamics::State& state, const dynamics::Loads& loads, const double dt) override {
+    return stepper_->step(state, loads, dt);
+  }
+
+  void follow_cut(const CutBody& body, const NewCut& cut, dynamics::State& state) override {
+    for (Points* of_corners : {&rest_, &state.x, &state.v})
+      grid::inherit(cut.change, *of_corners);
+    for (auto& [name, values] : state.history)
+      if (values.size() == cut.change.n_corners_before)
+        grid::inherit(cut.change, values);
+    dynamics::forget_forces(state);
+    follow_cut_with_model(body, cut);
+    make_stepper(body);
+  }
+
+  const Points& corners(const dynamics::State& state) const override { return state.x; }
+  dynamics::Interpolation carry(const dynamics::Interpolation& of_corners) const override { return of_corners; }
+
+  const dynamics::Stepper& stepper() const { return *stepper_; }
+
+ private:
+  void follow_cut_with_model(const CutBody& body, const NewCut&) { model_ = make_model_(body); }
+  /// Both are made again from what the body is now.
+  void make_stepper(const CutBody& body) {
+    // The complex outlives the call, as the stepper asks at once.
+    stepper_ = make_integrator_(*model_, [&body] { return corner_pieces(body.complex); });
+  }
+
+  ModelMaker make_model_;
+  IntegratorMaker make_integrator_;
+  Points rest_;
+  std::unique_ptr<Model> model_;
+  std::unique_ptr<dynamics::Stepper> stepper_;
+};
+
+/// Elements are brought up to date where the cut is, and stay elsewhere.
+template <>
+inline void OnCorners<fem::Hexahedra>::follow_cut_with_model(const CutBody& body, const NewCut& cut) {
+  const auto changed = fem::changed_copies(body.grid, body.complex, cut.change, cut.edges);
+  model_->update(body.grid, body.cuts, body.complex, changed);
+}
+
+using Elements = OnCorners<fem::Hexahedra>;
+using Springs = OnCorners<spring::MassSpring>;
+using ShapeMatching = OnCorners<lattice::Matching>;
+
+} // namespace kerf::physics

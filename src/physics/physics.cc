@@ -1,0 +1,48 @@
+#include "physics/physics.h"
+
+#include "grid/shape.h"
+#include "pba/region.h"
+
+namespace kerf::physics {
+
+dynamics::State state_at_rest(const Physics& physics) {
+  return {physics.rest(), Points(physics.rest().size(), Vec3::Zero()), 0};
+}
+
+std::vector<std::uint32_t> corner_pieces(const grid::CellComplex& complex) {
+  const grid::Pieces all = grid::pieces(complex);
+  std::vector<std::uint32_t> pieces(complex.n_corners());
+  for (const auto c : ids<grid::CopyId>(complex.n_copies()))
+    for (const grid::CornerId corner : complex.copies[c].corners)
+      pieces[corner.value] = all.piece[c];
+  return pieces;
+}
+
+dynamics::Interpolation surface_points(const surface::Surface& surface) {
+  dynamics::Interpolation points;
+  points.start = surface.weights.row_start;
+  points.weights = surface.weights.values;
+  points.corners.reserve(surface.weights.corners.size());
+  for (const grid::CornerId corner : surface.weights.corners)
+    points.corners.push_back(corner.value);
+  return points;
+}
+
+dynamics::Interpolation body_point(const CutBody& body, const Vec3& rest) {
+  dynamics::Interpolation point;
+  const grid::CopyId c = pba::copy_around(body.grid, body.cuts, body.complex, rest);
+  if (!c.valid())
+    return point;
+  const grid::Copy& copy = body.complex.copies[c];
+  const Vec3 origin = body.grid.position(body.grid.nodes(copy.cell)[0]);
+  std::array<std::uint32_t, 8> corners;
+  std::array<double, 8> weights;
+  for (int v = 0; v < 8; ++v) {
+    corners[v] = copy.corners[v].value;
+    weights[v] = grid::shape(v, (rest - origin) / body.grid.h());
+  }
+  point.add_point(corners, weights);
+  return point;
+}
+
+} // namespace kerf::physics

@@ -1,0 +1,180 @@
+#include "physics/phyxels.h"
+
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
+#include <limits>
+
+namespace kerf::physics {
+
+namespace {
+
+bool comes_before(const Vec3& a, const Vec3& b) {
+  return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);
+}
+
+bool looks_for_ways_around(const std::string& criterion) {
+  return criterion == "diffraction" || criterion == "transparency";
+}
+
+/// Pseudo-inverse of a symmetric matrix whose small eigenvalues say nothing.
+Mat3 inverse_where_known(const Mat3& A) {
+  constexpr double smallest = 1e-6;
+  const Eigen::SelfAdjointEigenSolver<Mat3> eigen(A);
+  Vec3 inverse = Vec3::Zero();
+  for (int k = 0; k < 3; ++k)
+    if (eigen.eigenvalues()[k] > smallest * eigen.eigenvalues()[2])
+      inverse[k] = 1 / eigen.eigenvalues()[k];
+  return eigen.eigenvectors() * inverse.asDiagonal() * eigen.eigenvectors().transpose();
+}
+
+/// The sights of pairs first, first + 1, ... as a criterion sees them now.
+void copy(const visibility::Sights& from, const std::size_t first, std::vector<pba::Sight>& to) {
+  for (std::size_t p = 0; p < to.size(); ++p)
+    to[p] = from[visibility::PairId(static_cast<std::uint32_t>(first + p))];
+}
+
+std::vector<visibility::Pair> pairs_of(const Points& from, const Points& to, const std::vector<pba::Pair>& pairs,
+                                       const std::vector<double>& support) {
+  std::vector<visibility::Pair> all;
+  for (std::size_t p = 0; p < pairs.size(); ++p)
+    all.push_back({from[pairs[p][0]], to[pairs[p][1]], support[p]});
+  return all;
+}
+
+} // namespace
+
+bool Phyxels::ByCoordinates::operator()(const Face& a, const Face& b) const {
+  for (int k = 0; k < 3; ++k)
+    if (a[k] != b[k])
+      return comes_before(a[k], b[k]);
+  return false;
+}
+
+Phyxels::Phyxels(const CutBody& body, const PhyxelsOptions& options, StepperMaker make_stepper)
+  : options_(options),
+    make_stepper_(std::move(make_stepper)),
+    model_(pba::fill(body.grid, body.cuts, body.complex, options.phyxels), options.material, options.model),
+    node_pairs_(pba::find_node_pairs(body.grid, model_.phyxels())) {
+  const auto& neighbours = model_.neighbours();
+  sights_of_phyxels_ = pba::clear_sights(rest(), rest(), neighbours.pairs);
+  sights_of_nodes_ = pba::clear_sights(node_pairs_.rest, rest(), node_pairs_.pairs);
+  build_map(body);
+  stepper_ = make_stepper_(model_, [this] { return phyxel_pieces_; });
+  follow(state_at_rest(*this));
+}
+
+dynamics::StepReport Phyxels::step(dynamics::State& state, const dynamics::Loads& loads, const double dt) {
+  return stepper_->step(state, loads, dt);
+}
+
+void Phyxels::begin_to_look(const surface::Surface& surface) {
+  sights_.emplace(visibility::make_criterion(options_.visibility.choice));
+  const auto& neighbours = model_.neighbours();
+  sights_->watch(visibility::PairId(0), pairs_of(rest(), rest(), neighbours.pairs, neighbours.support));
+  sights_->watch(visibility::PairId(static_cast<std::uint32_t>(neighbours.pairs.size())),
+                 pairs_of(node_pairs_.rest, rest(), node_pairs_.pairs, node_pairs_.support));
+  if (looks_for_ways_around(options_.visibility.choice.criterion))
+    add_faces(surface, true);
+}
+
+void Phyxels::add_faces(const surface::Surface& surface, const bool of_skin) {
+  std::vector<Face> fresh;
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+    if ((surface.labels[t] == 0) != of_skin)
+      continue;
+    Face face;
+    for (int k = 0; k < 3; ++k)
+      face[k] = surface.rest[surface.triangles[t][k]];
+    std::sort(face.begin(), face.end(), comes_before); // both sides of a cut are one face
+    if (faces_.insert(face).second)
+      fresh.push_back(face);
+  }
+  sights_->add_faces(fresh);
+}
+
+void Phyxels::find_pieces(const CutBody& body) {
+  copies_ = pba::copies_around(body.grid, body.cuts, body.complex, rest());
+  phyxel_pieces_ = pba::phyxel_pieces(body.complex, copies_);
+  node_pieces_ = pba::node_pieces(body.complex, node_pairs_);
+}
+
+void Phyxels::build_map(const CutBody& body) {
+  if (copies_.empty())
+    find_pieces(body);
+  std::vector<pba::Sight> parted = sights_of_nodes_;
+  pba::part(node_pairs_.pairs, node_pieces_, phyxel_pieces_, parted);
+  map_ = pba::build_corner_map(body.grid, body.complex, model_.phyxels(), copies_, node_pairs_, parted);
+  parted = sights_of_phyxels_;
+  pba::part(model_.neighbours().pairs, phyxel_pieces_, phyxel_pieces_, parted);
+  model_.update(parted);
+  is_stale_ = false;
+}
+
+void Phyxels::follow_cut(const CutBody& body, const NewCut&, dynamics::State& state) {
+  if (!sights_)
+    begin_to_look(body.surface);
+  add_faces(body.surface, false);
+  find_pieces(body);
+  is_stale_ = true;
+  catch_up(body);
+  dynamics::forget_forces(state);
+  stepper_ = make_stepper_(model_, [this] { return phyxel_pieces_; });
+  follow(state);
+}
+
+void Phyxels::catch_up(const CutBody& body) {
+  if (!sights_)
+    return;
+  const int budget = options_.visibility.budget;
+  const auto progress =
+    sights_->update(budget > 0 ? static_cast<std::size_t>(budget) : std::numeric_limits<std::size_t>::max());
+  if (progress.changed.empty() && !is_stale_)
+    return;
+  copy(sights_->sights(), 0, sights_of_phyxels_);
+  copy(sights_->sights(), sights_of_phyxels_.size(), sights_of_nodes_);
+  build_map(body);
+}
+
+void Phyxels::follow(const dynamics::State& state) {
+  model_.deformation(state.x, F_);
+  pba::follow(map_, state.x, F_, corners_);
+}
+
+void Phyxels::add_row(const std::uint32_t row, const Vec3& point, const double factor,
+                      std::vector<std::uint32_t>& phyxels, std::vector<double>& weights) const {
+  const auto begin = map_.start[row], end = map_.start[row + 1];
+  Vec3 middle = Vec3::Zero();
+  for (auto k = begin; k < end; ++k)
+    middle += map_.weight[k] * map_.rest[map_.phyxel[k]];
+  Mat3 A = Mat3::Zero();
+  for (auto k = begin; k < end; ++k) {
+    const Vec3 d = map_.rest[map_.phyxel[k]] - middle;
+    A += map_.weight[k] * d * d.transpose();
+  }
+  const Vec3 slope = inverse_where_known(A) * (point - middle);
+  for (auto k = begin; k < end; ++k) {
+    phyxels.push_back(map_.phyxel[k]);
+    weights.push_back(factor * map_.weight[k] * (1 + slope.dot(map_.rest[map_.phyxel[k]] - middle)));
+  }
+}
+
+dynamics::Interpolation Phyxels::carry(const dynamics::Interpolation& of_corners) const {
+  dynamics::Interpolation of_phyxels;
+  std::vector<std::uint32_t> phyxels;
+  std::vector<double> weights;
+  for (std::size_t i = 0; i < of_corners.n_points(); ++i) {
+    phyxels.clear();
+    weights.clear();
+    for (auto k = of_corners.start[i]; k < of_corners.start[i + 1]; ++k) {
+      const auto corner = of_corners.corners[k];
+      const auto first = map_.source_start[corner], last = map_.source_start[corner + 1];
+      for (auto s = first; s < last; ++s)
+        add_row(map_.source[s], map_.corners[corner], of_corners.weights[k] / (last - first), phyxels, weights);
+    }
+    of_phyxels.add_point(phyxels, weights);
+  }
+  return of_phyxels;
+}
+
+} // namespace kerf::physics

@@ -1,0 +1,97 @@
+#pragma once
+
+/// Point-based animation as a backend: the particles are phyxels, the corners follow those that they see (thesis §2.6.1),
+/// and a criterion says what the cut leaves to see (§2.3.1, §2.6.2).
+///
+/// After a cut, its faces come between pairs of phyxels, and between corners and phyxels, under a budget of pairs a
+/// step: catch_up(). What lies in different pieces is parted at once, whatever the criterion has seen. Nothing of all
+/// that exists before the first cut.
+///
+/// The faces are those of the surface that cuts have revealed, in the rest configuration, each once; where a later cut
+/// moves a vertex, the moved faces come beside the earlier ones. Criteria that look for ways around a cut see the skin
+/// too.
+
+#include "pba/corners.h"
+#include "pba/model.h"
+#include "physics/physics.h"
+#include "visibility/pair_sights.h"
+
+#include <array>
+#include <optional>
+#include <set>
+
+namespace kerf::physics {
+
+struct VisibilityOptions {
+  visibility::CriterionChoice choice;
+  int budget = 0; ///< pairs looked at in a step, at most; 0: all
+
+  void describe(Parameters& p) {
+    choice.describe(p);
+    p.integer("Budget [1]", budget, non_negative,
+              "Pairs that are looked at in a step, at most; the rest waits, first come first served. 0: all at once.");
+  }
+};
+
+struct PhyxelsOptions {
+  pba::PhyxelOptions phyxels;
+  pba::ModelOptions model;
+  material::Elastic material;
+  VisibilityOptions visibility;
+};
+
+class Phyxels : public Physics {
+ public:
+  /// Fills the body. Throws as pba::fill().
+  Phyxels(const CutBody& body, const PhyxelsOptions& options, StepperMaker make_stepper);
+
+  pba::PhyxelModel& model() override { return model_; }
+  const Points& rest() const override { return model_.phyxels().rest; }
+  dynamics::StepReport step(dynamics::State& state, const dynamics::Loads& loads, double dt) override;
+  void follow_cut(const CutBody& body, const NewCut& cut, dynamics::State& state) override;
+  void catch_up(const CutBody& body) override;
+  void follow(const dynamics::State& state) override;
+  const Points& corners(const dynamics::State&) const override { return corners_; }
+  /// Point by point the weights of (2.33), corrected to first order: so forces keep their torque where three phyxels
+  /// and more are in sight that are not in a row.
+  dynamics::Interpolation carry(const dynamics::Interpolation& of_corners) const override;
+
+  const dynamics::Stepper& stepper() const { return *stepper_; }
+  const pba::CornerMap& map() const { return map_; }
+  /// Pairs that wait to be looked at.
+  std::size_t n_waiting() const { return sights_ ? sights_->n_waiting() : 0; }
+
+ private:
+  void begin_to_look(const surface::Surface& surface);
+  void add_faces(const surface::Surface& surface, bool of_skin);
+  void find_pieces(const CutBody& body);
+  void build_map(const CutBody& body);
+  /// Weights of phyxels for a point [m] that moves with a row of the map, times `factor`.
+  void add_row(std::uint32_t row, const Vec3& point, double factor, std::vector<std::uint32_t>& phyxels,
+               std::vector<double>& weights) const;
+
+  using Face = visibility::Face;
+  struct ByCoordinates {
+    bool operator()(const Face& a, const Face& b) const;
+  };
+
+  PhyxelsOptions options_;
+  StepperMaker make_stepper_;
+  pba::PhyxelModel model_;
+  std::unique_ptr<dynamics::Stepper> stepper_;
+
+  pba::NodePairs node_pairs_;
+  std::vector<pba::Sight> sights_of_phyxels_, sights_of_nodes_; ///< of each pair, as the criterion sees it
+  std::vector<std::uint32_t> phyxel_pieces_, node_pieces_;      ///< none before the first cut
+  std::vector<grid::CopyId> copies_;                            ///< of each phyxel
+  pba::CornerMap map_;
+  bool is_stale_ = false; ///< sights or pieces are newer than model and map
+
+  std::optional<visibility::PairSights> sights_;
+  std::set<Face, ByCoordinates> faces_;
+
+  std::vector<Mat3> F_;
+  Points corners_;
+};
+
+} // namespace kerf::physics

@@ -1,0 +1,46 @@
+#pragma once
+
+/// Where a body's energy goes, and what holds it: kept only when an observable asks.
+///
+/// Work is force times displacement by the trapezoidal rule over a step, so statics has work too; reactions are those
+/// at the end of the step. Everything that happens to the energy at an instant of cutting is the work of the cut.
+/// energy + dissipated - works of supports, loads and cut stays what it was at the start, up to the integrator's error;
+/// in statics what is missing is what the body gave away on its way from one equilibrium to the next: for a cut that
+/// grows under load, the energy released.
+
+#include "dynamics/quantities.h"
+
+namespace kerf::physics {
+class Physics;
+}
+
+namespace kerf::scene {
+
+/// Kinetic, elastic and potential energies together [J].
+double total_energy(physics::Physics& physics, const dynamics::Loads& loads, const dynamics::State& state);
+
+class Accounts {
+ public:
+  /// Opens the books at a state.
+  void open(physics::Physics& physics, const dynamics::Loads& loads, const dynamics::State& state);
+
+  /// Around each step.
+  void before_step(const dynamics::State& state) { before_ = state; }
+  void after_step(physics::Physics& physics, const dynamics::Loads& loads, dynamics::State& state);
+
+  /// What a cut did to the energy [J].
+  void add_work_of_cut(const double work) { work_of_cut_ += work; }
+
+  double start_energy() const { return start_energy_; }
+  double work_of_cut() const { return work_of_cut_; }
+  /// Of each support, in the order of the loads; torques about the origin.
+  const std::vector<dynamics::Reaction>& reactions() const { return reactions_; }
+
+ private:
+  double start_energy_ = 0, work_of_cut_ = 0; // [J]
+  dynamics::State before_;
+  Points acceleration_; // of the last step [m/s^2]
+  std::vector<dynamics::Reaction> reactions_;
+};
+
+} // namespace kerf::scene

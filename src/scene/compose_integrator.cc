@@ -1,0 +1,103 @@
+#include "scene/compose_integrator.h"
+
+#include "dynamics/bdf2.h"
+#include "dynamics/explicit_steppers.h"
+#include "dynamics/implicit_euler.h"
+#include "dynamics/symplectic_euler.h"
+#include "scene/grammar_physics.h"
+
+namespace kerf::scene {
+
+namespace {
+
+using dynamics::ElasticModel;
+using physics::PiecesOfParticles;
+using Stepper = std::unique_ptr<dynamics::Stepper>;
+
+struct Implicit {
+  Integrator integrator;
+  int order; ///< of its error
+};
+
+/// `make` gets the model, and the integrator's own settings.
+template <class Fields, class Make>
+Implicit implicit(const Section& body, const std::string& section, const int order, const Make& make) {
+  const auto parameters = read_if_written<ImplicitParameters<Fields>>(body, section);
+  return {{[=](ElasticModel& model, const PiecesOfParticles&) -> Stepper { return make(model, parameters.integrator); },
+           parameters.sliver_floor, 0},
+          order};
+}
+
+template <class Explicit>
+Integrator explicit_integrator(const Section& body, const std::string& section) {
+  const auto parameters = read_if_written<ExplicitIntegratorParameters>(body, section);
+  const auto options = parameters.integrator.options();
+  return {[=](ElasticModel& model, const PiecesOfParticles&) { return std::make_unique<Explicit>(model, options); }, 0,
+          parameters.mass_spread};
+}
+
+Integrator quasi_static(const Section& body) {
+  const auto parameters = read_if_written<ImplicitParameters<QuasiStaticSceneParameters>>(body, "Quasi-static");
+  auto options = parameters.integrator.statics.options();
+  options.free_modes =
+    parameters.integrator.free_modes == "allow" ? dynamics::FreeModes::allow : dynamics::FreeModes::refuse;
+  return {[=](ElasticModel& model, const PiecesOfParticles& pieces) {
+            auto with_pieces = options;
+            with_pieces.piece = pieces();
+            return std::make_unique<dynamics::QuasiStatic>(model, with_pieces);
+          },
+          parameters.sliver_floor, 0};
+}
+
+Implicit implicit_integrator(const Section& body, const std::string& name) {
+  using dynamics::GeneralisedAlpha;
+  if (name == "BDF2")
+    return implicit<dynamics::NewtonParameters>(body, "BDF2", 2,
+                                                [](ElasticModel& model, const dynamics::NewtonParameters& p) {
+                                                  return std::make_unique<dynamics::Bdf2>(model, p.options());
+                                                });
+  if (name == "Newmark")
+    return implicit<dynamics::NewmarkParameters>(
+      body, "Newmark", 2, [](ElasticModel& model, const dynamics::NewmarkParameters& p) {
+        return std::make_unique<GeneralisedAlpha>(model, dynamics::newmark(p.beta, p.gamma), p.newton.options());
+      });
+  if (name == "generalised alpha")
+    return implicit<dynamics::GeneralisedAlphaParameters>(
+      body, "Generalised alpha", 2, [](ElasticModel& model, const dynamics::GeneralisedAlphaParameters& p) {
+        return std::make_unique<GeneralisedAlpha>(model, dynamics::generalised_alpha(p.rho_inf), p.newton.options());
+      });
+  return implicit<dynamics::NewtonParameters>(
+    body, "Implicit Euler", 1, [](ElasticModel& model, const dynamics::NewtonParameters& p) {
+      return std::make_unique<dynamics::ImplicitEuler>(model, dynamics::implicit_euler_options(p));
+    });
+}
+
+Integrator with_adaptive_step(const Section& body, const Implicit& implicit) {
+  if (!body.find("Adaptive step"))
+    return implicit.integrator;
+  const auto parameters = read_if_written<dynamics::AdaptiveParameters>(body, "Adaptive step");
+  Integrator adaptive = implicit.integrator;
+  adaptive.make = [=](ElasticModel& model, const PiecesOfParticles& pieces) {
+    return std::make_unique<dynamics::AdaptiveStepper>(implicit.integrator.make(model, pieces), implicit.order,
+                                                       parameters);
+  };
+  return adaptive;
+}
+
+} // namespace
+
+Integrator compose_integrator(const Section& body, const std::string& name) {
+  if (name == "quasi-static")
+    return quasi_static(body);
+  if (name == "symplectic Euler")
+    return explicit_integrator<dynamics::SymplecticEuler>(body, "Symplectic Euler");
+  if (name == "velocity Verlet")
+    return explicit_integrator<dynamics::VelocityVerlet>(body, "Velocity Verlet");
+  if (name == "explicit Euler")
+    return explicit_integrator<dynamics::ExplicitEuler>(body, "Explicit Euler");
+  if (name == "midpoint Runge-Kutta")
+    return explicit_integrator<dynamics::MidpointRungeKutta>(body, "Midpoint Runge-Kutta");
+  return with_adaptive_step(body, implicit_integrator(body, name));
+}
+
+} // namespace kerf::scene

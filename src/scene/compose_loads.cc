@@ -1,0 +1,223 @@
+#include "scene/compose_loads.h"
+
+#include "dynamics/floor.h"
+#include "dynamics/handle.h"
+#include "dynamics/rigid_modes.h"
+#include "dynamics/surface_load.h"
+#include "geometry/box_tree.h"
+#include "scene/expression.h"
+#include "scene/grammar_body.h"
+#include "scene/grammar_physics.h"
+
+#include <Eigen/Geometry>
+
+#include <cmath>
+
+namespace kerf::scene {
+
+namespace {
+
+using LoadList = std::vector<std::unique_ptr<dynamics::Load>>;
+
+/// Rotation vectors [degrees] as matrices.
+std::function<Mat3(double)> rotation_of_time(const Section& section, const std::string& expressions) {
+  const auto vector = vector_of_time(section, "Rotation [degrees]", expressions);
+  return [vector](const double t) -> Mat3 {
+    const Vec3 w = vector(t) * (std::acos(-1.0) / 180);
+    const double angle = w.norm();
+    return angle == 0 ? Mat3(Mat3::Identity()) : Eigen::AngleAxisd(angle, w / angle).toRotationMatrix();
+  };
+}
+
+SupportRegion compose_support(const Section& section) {
+  const auto parameters = section.read<SupportParameters>();
+  SupportRegion support{.name = section.name(), .region = read_region(section, parameters.region), .displacement = {}};
+  const auto displacement = vector_of_time(section, "Displacement [m]", parameters.displacement);
+  support.displacement = displacement;
+  if (section.writes("Rotation [degrees]")) {
+    const auto rotation = rotation_of_time(section, parameters.rotation);
+    const Vec3 pivot = parameters.pivot;
+    support.rotation = rotation;
+    support.displacement = [=](const double t) { return Vec3(displacement(t) + pivot - rotation(t) * pivot); };
+  }
+  const bool has_direction = !parameters.direction.isZero(0);
+  if (has_direction && section.writes("Hold"))
+    throw section.complaint("Held direction [1]", "cannot stand beside the key Hold", "Remove one of the two");
+  support.held = has_direction ? dynamics::held_along(parameters.direction) : dynamics::held_axes(parameters.hold);
+  return support;
+}
+
+std::vector<double> volumes(const Body& body) {
+  std::vector<double> volumes;
+  for (const double m : body.physics->model().lumped_mass())
+    volumes.push_back(m / body.density);
+  return volumes;
+}
+
+/// The triangles of the faces and box that a section names.
+dynamics::SurfacePatch patch_of(const Body& body, const dynamics::PatchParameters& parameters) {
+  const surface::Surface& surface = body.surface;
+  dynamics::SurfacePatch patch{body.physics->carry(physics::surface_points(surface)), surface.rest, {}};
+  const Box box{parameters.lower, parameters.upper};
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+    const bool is_skin = surface.labels[t] == 0;
+    if ((parameters.faces == "skin" && !is_skin) || (parameters.faces == "revealed" && is_skin))
+      continue;
+    const auto& [a, b, c] = surface.triangles[t];
+    if (box.contains((surface.rest[a] + surface.rest[b] + surface.rest[c]) / 3))
+      patch.triangles.push_back(surface.triangles[t]);
+  }
+  return patch;
+}
+
+/// Vertices of the surface, each with a third of the rest area of its triangles.
+dynamics::ContactPoints contact_points(const Body& body) {
+  const surface::Surface& surface = body.surface;
+  dynamics::ContactPoints contact{body.physics->carry(physics::surface_points(surface)),
+                                  std::vector<double>(surface.rest.size(), 0.0)};
+  for (const auto& triangle : surface.triangles) {
+    const auto& [a, b, c] = triangle;
+    const double area = 0.5 * (surface.rest[b] - surface.rest[a]).cross(surface.rest[c] - surface.rest[a]).norm();
+    for (const auto vertex : triangle)
+      contact.areas[vertex] += area / 3;
+  }
+  return contact;
+}
+
+void compose_body_force(const Section& section, Body& body) {
+  const auto parameters = section.read<dynamics::BodyForceParameters>();
+  const auto density = vector_of_place(section, "Force density [N/m^3]", parameters.density);
+  body.load_makers.push_back({section.name(), [=](const Body& b, LoadList& loads) {
+                                loads.push_back(
+                                  std::make_unique<dynamics::BodyForce>(volumes(b), b.physics->rest(), density));
+                              }});
+}
+
+void compose_traction(const Section& section, Body& body) {
+  const auto parameters = section.read<dynamics::TractionParameters>();
+  const auto traction = vector_of_place(section, "Traction [N/m^2]", parameters.traction);
+  body.load_makers.push_back({section.name(), [=](const Body& b, LoadList& loads) {
+                                loads.push_back(
+                                  std::make_unique<dynamics::Traction>(patch_of(b, parameters.patch), traction));
+                              }});
+}
+
+void compose_pressure(const Section& section, Body& body) {
+  const auto parameters = section.read<dynamics::PressureParameters>();
+  const auto pressure = number_of_place(section, "Pressure [Pa]", parameters.pressure);
+  body.load_makers.push_back({section.name(), [=](const Body& b, LoadList& loads) {
+                                loads.push_back(
+                                  std::make_unique<dynamics::Pressure>(patch_of(b, parameters.patch), pressure));
+                              }});
+}
+
+ParameterError no_material(const Section& section) {
+  return section.complaint("Point [m]", "the body has no material there at rest",
+                           "Choose a point inside the body: rest configuration, in metres");
+}
+
+void compose_handle(const Section& section, Body& body) {
+  const auto parameters = section.read<dynamics::HandleParameters>();
+  const auto displacement = vector_of_time(section, "Displacement [m]", parameters.displacement);
+  const auto path = [=](const double t) { return Vec3(parameters.point + displacement(t)); };
+  const ParameterError missing = no_material(section);
+  body.load_makers.push_back(
+    {section.name(), [=](const Body& b, LoadList& loads) {
+       const auto point = physics::body_point(seen(b), parameters.point);
+       if (point.n_points() == 0)
+         throw missing;
+       const auto carried = b.physics->carry(point);
+       loads.push_back(std::make_unique<dynamics::HandleSpring>(carried, parameters.stiffness, path));
+       if (parameters.damping > 0)
+         loads.push_back(std::make_unique<dynamics::HandleDamper>(carried, parameters.damping, path));
+     }});
+}
+
+void compose_floor(const Section& section, Body& body) {
+  const auto parameters = section.read<dynamics::FloorParameters>();
+  if (parameters.normal.isZero(0))
+    throw section.complaint("Normal [1]", "must not be zero", "Write the direction away from the floor");
+  body.load_makers.push_back({section.name(), [=](const Body& b, LoadList& loads) {
+                                auto floor = std::make_unique<dynamics::Floor>(contact_points(b), parameters);
+                                const dynamics::Floor& touched = *floor;
+                                loads.push_back(std::move(floor));
+                                if (parameters.friction > 0)
+                                  loads.push_back(std::make_unique<dynamics::FloorFriction>(touched));
+                              }});
+}
+
+/// Skin must be there from the start; what cuts will reveal may not be there yet.
+void require_loaded_triangles(const Section& section, const dynamics::PatchParameters& parameters, const Body& body) {
+  if (parameters.faces == "revealed")
+    return;
+  try {
+    dynamics::require_triangles(patch_of(body, parameters));
+  } catch (const ParameterError& error) {
+    throw section.complaint(error.complaint().rule, clause(error.complaint().remedy));
+  }
+}
+
+void require_no_contradiction(const Section& section, const double time, const Body& body) {
+  const double tolerance = 1e-6 * body.grid.h();
+  const auto found = dynamics::find_contradiction(body.loads, time, tolerance);
+  if (!found)
+    return;
+  const auto supports = section.all("Support");
+  const Vec3 X = body.physics->rest()[found->corner];
+  throw supports[found->second]->complaint(
+    line("at ", time, " s it wants a point (at rest at ", X[0], ", ", X[1], ", ", X[2], ") ", found->distance,
+         " m away from where 'Support ", supports[found->first]->name(), "' wants it"),
+    "Let the regions not overlap, or move alike where they do");
+}
+
+} // namespace
+
+void compose_loads(const Section& section, const std::vector<const Section*>& floors, Body& body) {
+  for (const Section* support : section.all("Support"))
+    body.regions.push_back(compose_support(*support));
+  for (const Section* load : section.all("Body force"))
+    compose_body_force(*load, body);
+  for (const Section* load : section.all("Traction"))
+    compose_traction(*load, body);
+  for (const Section* load : section.all("Pressure"))
+    compose_pressure(*load, body);
+  for (const Section* load : section.all("Handle"))
+    compose_handle(*load, body);
+  for (const Section* floor : floors)
+    compose_floor(*floor, body);
+  for (const Section* probe : section.all("Probe"))
+    body.probes.push_back({probe->name(), probe->read<ProbeParameters>().point});
+}
+
+void require_sound_loads(const Section& section, const double end_time, const Body& body) {
+  const auto supports = section.all("Support");
+  for (std::size_t i = 0; i < supports.size(); ++i)
+    if (body.loads.supports[i].corners.empty())
+      throw supports[i]->complaint("the region holds no corner or phyxel of the body",
+                                   "Move or enlarge it: it is meant in the rest configuration, in metres");
+  for (const Section* load : section.all("Traction"))
+    require_loaded_triangles(*load, load->read<dynamics::TractionParameters>().patch, body);
+  for (const Section* load : section.all("Pressure"))
+    require_loaded_triangles(*load, load->read<dynamics::PressureParameters>().patch, body);
+  const auto probes = section.all("Probe");
+  for (std::size_t i = 0; i < probes.size(); ++i)
+    if (!body.probes[i].copy.valid())
+      throw no_material(*probes[i]);
+  for (const double time : {0.0, 0.5 * end_time, end_time})
+    require_no_contradiction(section, time, body);
+}
+
+void require_static_answer(const Section& section, const Body& body) {
+  const auto parameters = read_if_written<ImplicitParameters<QuasiStaticSceneParameters>>(section, "Quasi-static");
+  if (parameters.integrator.free_modes == "allow")
+    return;
+  const bool are_corners = body.physics->rest().size() == body.complex.n_corners();
+  const auto pieces = are_corners ? physics::corner_pieces(body.complex) : std::vector<std::uint32_t>();
+  try {
+    dynamics::require_supported(dynamics::free_rigid_modes(body.physics->model(), body.loads, 0, body.state.x, pieces));
+  } catch (const ParameterError& error) {
+    throw section.complaint("Integrator", error.complaint().rule, clause(error.complaint().remedy));
+  }
+}
+
+} // namespace kerf::scene

@@ -1,0 +1,64 @@
+#include "scene/grammar_physics.h"
+
+#include "physics/phyxels.h"
+
+namespace kerf::scene {
+
+const std::vector<std::string>& backend_names() {
+  static const std::vector<std::string> names = {"fem", "pba", "lattice", "mass-spring"};
+  return names;
+}
+
+const std::vector<std::string>& integrator_names() {
+  static const std::vector<std::string> names = {"implicit Euler",    "BDF2",           "Newmark",
+                                                 "generalised alpha", "quasi-static",   "symplectic Euler",
+                                                 "velocity Verlet",   "explicit Euler", "midpoint Runge-Kutta"};
+  return names;
+}
+
+void LatticeParameters::describe(Parameters& p) {
+  p.integer("Half width [cells]", half_width, {.min = 1, .max = 1e6},
+            "Of the regions that are matched; wider ones are stiffer and cost the same.");
+  p.number("Alpha [1]", alpha, {.min = 0, .max = 1},
+           "Part of the way to its goal that a corner is sent in a step. 0: by Young's modulus of the material.");
+  p.number("Region damping [1/s]", region_damping, non_negative,
+           "Rate at which velocities turn to the regions' rigid motions.");
+}
+
+std::vector<SectionKind> physics_kinds() {
+  const std::string settings = "Settings of that integrator.";
+  using Implicit = ImplicitParameters<dynamics::NewtonParameters>;
+  return {
+    {"Implicit Euler", Occurrence::once, settings, keys_of<Implicit>(), {}},
+    {"BDF2", Occurrence::once, settings, keys_of<Implicit>(), {}},
+    {"Newmark", Occurrence::once, settings, keys_of<ImplicitParameters<dynamics::NewmarkParameters>>(), {}},
+    {"Generalised alpha",
+     Occurrence::once,
+     settings,
+     keys_of<ImplicitParameters<dynamics::GeneralisedAlphaParameters>>(),
+     {}},
+    {"Quasi-static", Occurrence::once, settings, keys_of<ImplicitParameters<QuasiStaticSceneParameters>>(), {}},
+    {"Symplectic Euler", Occurrence::once, settings, keys_of<ExplicitIntegratorParameters>(), {}},
+    {"Velocity Verlet", Occurrence::once, settings, keys_of<ExplicitIntegratorParameters>(), {}},
+    {"Explicit Euler", Occurrence::once, settings, keys_of<ExplicitIntegratorParameters>(), {}},
+    {"Midpoint Runge-Kutta", Occurrence::once, settings, keys_of<ExplicitIntegratorParameters>(), {}},
+    {"Adaptive step",
+     Occurrence::once,
+     "Divides the steps of an implicit integrator until their error is small. Without this section steps are whole.",
+     keys_of<dynamics::AdaptiveParameters>(),
+     {}},
+    {"Phyxels",
+     Occurrence::once,
+     "Backend pba: samples of the body and their model.",
+     keys_of<pba::PhyxelOptions, pba::ModelOptions>(),
+     {}},
+    {"Visibility",
+     Occurrence::once,
+     "Backend pba: what a cut leaves of the weight of two points.",
+     keys_of<physics::VisibilityOptions>(),
+     {}},
+    {"Lattice", Occurrence::once, "Backend lattice: shape matching.", keys_of<LatticeParameters>(), {}},
+  };
+}
+
+} // namespace kerf::scene

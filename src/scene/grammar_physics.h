@@ -1,0 +1,65 @@
+#pragma once
+
+/// What a scene may say of a body's physics: backends, integrators, and their settings.
+
+#include "dynamics/adaptive.h"
+#include "dynamics/generalised_alpha.h"
+#include "dynamics/quasi_static.h"
+#include "dynamics/stable_step.h"
+#include "scene/text_grammar.h"
+
+namespace kerf::scene {
+
+const std::vector<std::string>& backend_names();
+const std::vector<std::string>& integrator_names();
+
+/// Settings of an integrator, and what elements must be for it. One struct for each group of integrators that have the
+/// same keys; each integrator has a section of its name.
+template <class Fields>
+struct ImplicitParameters {
+  Fields integrator;
+  double sliver_floor = 1e-3; ///< [1]
+
+  void describe(Parameters& p) {
+    integrator.describe(p);
+    p.number("Sliver floor [1]", sliver_floor, {.min = 0, .max = 1},
+             "Elements: a copy that holds less than this part of its cube gets the stiffness of this part.");
+  }
+};
+
+struct ExplicitIntegratorParameters {
+  dynamics::ExplicitParameters integrator;
+  double mass_spread = 0.2; ///< [1]
+
+  void describe(Parameters& p) {
+    integrator.describe(p);
+    p.number("Mass spread [1]", mass_spread, {.min = 0, .max = 1},
+             "Elements: part of each cell's mass that its corners share evenly; bounds the frequency of slivers, and "
+             "with it the stable time step.");
+  }
+};
+
+struct QuasiStaticSceneParameters {
+  dynamics::QuasiStaticParameters statics;
+  std::string free_modes = "refuse";
+
+  void describe(Parameters& p) {
+    statics.describe(p);
+    p.choice("Free modes", free_modes, {"refuse", "allow"},
+             "What to do about rigid motions of a piece that no support and no load resists: name them and stop, or "
+             "leave it to the solver.");
+  }
+};
+
+/// Lattice shape matching. Its stiffness is that of the material unless alpha is written.
+struct LatticeParameters {
+  int half_width = 2;
+  double alpha = 0;          ///< [1]; 0: from Young's modulus
+  double region_damping = 0; ///< [1/s]
+  void describe(Parameters& p);
+};
+
+/// The sections of integrators and backends, which stand in a body.
+std::vector<SectionKind> physics_kinds();
+
+} // namespace kerf::scene
