@@ -61,8 +61,11 @@ class Rows {
 
 Index3 cell_of(const grid::Lattice& lattice, const Vec3& p) {
   Index3 i;
-  for (int axis = 0; axis < 3; ++axis)
-    i[axis] = static_cast<int>(std::floor((p[axis] - lattice.origin[axis]) / lattice.h));
+  for (int axis = 0; axis < 3; ++axis) {
+    const double x = (p[axis] - lattice.origin[axis]) / lattice.h;
+    i[axis] = static_cast<int>(x);
+    i[axis] -= x < i[axis]; // down, not towards 0
+  }
   return i;
 }
 
@@ -92,7 +95,7 @@ CellTriangles::CellTriangles(const geometry::TriangleMesh& mesh, const grid::Gri
   flat_.reserve(mesh.triangles.size());
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
     const auto corners = geometry::corners(mesh, t);
-    flat_.push_back({corners, (corners[1] - corners[0]).cross(corners[2] - corners[0])});
+    flat_.push_back({(corners[1] - corners[0]).cross(corners[2] - corners[0]), corners});
   }
   std::vector<std::array<std::uint32_t, 2>> pairs;
   pairs.reserve(8 * cells.size());

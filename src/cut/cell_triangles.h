@@ -11,8 +11,8 @@ namespace kerf::cut {
 
 /// A triangle and its plane.
 struct FlatTriangle {
-  std::array<Vec3, 3> corners; ///< [m]
   Vec3 normal;                 ///< (b - a) x (c - a) [m^2]
+  std::array<Vec3, 3> corners; ///< [m]
 
   /// Distance of p from the plane, times the normal's length [m^3].
   double height(const Vec3& p) const { return normal.dot(p - corners[0]); }

@@ -18,6 +18,12 @@ namespace {
 constexpr int index_bits = 20; // the grid's limit
 constexpr std::size_t triangles_per_chunk = 2048;
 
+/// The largest integer that is not above x: std::floor without the call.
+int round_down(const double x) {
+  const int i = static_cast<int>(x);
+  return i - (x < i);
+}
+
 /// An edge of the lattice, stored or not; keys are ordered by axis, then as the grid orders lower nodes: by z, y, x. So
 /// crossings of a line along x follow each other, and sorted cut edges are sorted by their ids.
 struct LatticeEdge {
@@ -81,13 +87,13 @@ class LineCrosser {
     const Vec3 upper = ((va.cwiseMax(vb).cwiseMax(vc) - lattice_.origin) / lattice_.h).array() + margin;
     Index3 first, last; // lattice planes that may meet the triangle, along each axis
     for (int d = 0; d < 3; ++d) {
-      first[d] = static_cast<int>(std::ceil(lower[d]));
-      last[d] = static_cast<int>(std::floor(upper[d]));
+      first[d] = -round_down(-lower[d]);
+      last[d] = round_down(upper[d]);
     }
     for (int axis = 0; axis < 3; ++axis) {
       const int i = (axis + 1) % 3, j = (axis + 2) % 3;
       Index3 node;
-      node[axis] = static_cast<int>(std::floor(lower[axis]));
+      node[axis] = round_down(lower[axis]);
       for (node[i] = first[i]; node[i] <= last[i]; ++node[i])
         for (node[j] = first[j]; node[j] <= last[j]; ++node[j])
           add_crossing(triangle, {axis, node}, last[axis] + 1, crossings);
@@ -111,7 +117,7 @@ class LineCrosser {
     const double estimate = from.lower[from.axis] + t * (end - from.lower[from.axis]);
 
     int& i = from.lower[from.axis];
-    i = static_cast<int>(std::floor(estimate));
+    i = round_down(estimate);
     while (side_of(from.lower, corners) == side_above)
       --i;
     upper[from.axis] = i + 1;
@@ -145,17 +151,17 @@ std::vector<Crossing> sorted_crossings(const geometry::TriangleMesh& mesh, const
 }
 
 /// Nodes of x lines between odd and even crossings.
-std::vector<Index3> material_nodes(const std::vector<Crossing>& crossings) {
-  std::vector<Index3> nodes;
+std::vector<grid::NodeRun> material_runs(const std::vector<Crossing>& crossings) {
+  std::vector<grid::NodeRun> runs;
   for (std::size_t k = 0; k < crossings.size() && edge_of(crossings[k].edge).axis == 0; k += 2) {
     if (k + 1 == crossings.size() || line_of(crossings[k].edge) != line_of(crossings[k + 1].edge))
       throw std::logic_error("embed: a line crosses the mesh an odd number of times; the mesh is not closed");
-    Index3 node = edge_of(crossings[k].edge).lower;
+    const auto [before_first, y, z] = edge_of(crossings[k].edge).lower;
     const int last = edge_of(crossings[k + 1].edge).lower[0];
-    while (++node[0] <= last)
-      nodes.push_back(node);
+    if (before_first < last)
+      runs.push_back({before_first + 1, last, y, z});
   }
-  return nodes;
+  return runs;
 }
 
 /// Turns the crossings of each edge into a cut, or into a count.
@@ -167,16 +173,13 @@ class Skin {
       shell_(geometry::shells(mesh)),
       is_lost_(shell_.empty() ? 0 : *std::max_element(shell_.begin(), shell_.end()) + 1, 1) {}
 
-  /// Walks through the stored edges and the crossings, both sorted: every edge between a material and an empty node is
+  /// Walks through the edges between a material and an empty node and the crossings, both sorted: every such edge is
   /// crossed an odd number of times, and no other.
   void add(const std::vector<Crossing>& crossings) {
     const grid::Grid& grid = result_.grid;
     auto next = crossings.begin();
-    for (const grid::EdgeId e : ids<grid::EdgeId>(grid.n_edges())) {
-      const auto& [lower, upper] = grid.ends(e);
-      if (grid.is_material(lower) == grid.is_material(upper))
-        continue;
-      const std::uint64_t key = LatticeEdge{grid.axis(e), grid.index(lower)}.key();
+    for (const grid::EdgeId e : grid.skin_edges()) {
+      const std::uint64_t key = LatticeEdge{grid.axis(e), grid.index(grid.ends(e)[0])}.key();
       next = count_even(next, crossings.end(), key);
       const auto last = end_of_edge(next, crossings.end());
       if (next == last || next->edge != key || (last - next) % 2 == 0)
@@ -189,6 +192,7 @@ class Skin {
 
   void finish() {
     find_normals();
+    result_.cuts.reserve(cuts_.size() + cuts_.size() / 8); // some room for blades
     for (const grid::EdgeCut& cut : cuts_)
       result_.cuts.add(cut);
     result_.n_lost_components = std::count(is_lost_.begin(), is_lost_.end(), 1);
@@ -227,14 +231,17 @@ class Skin {
   void find_normals() {
     const grid::Grid& grid = result_.grid;
     const geometry::LocalNormals normals(mesh_);
-    parallel_for(cuts_.size(), [&](const std::size_t i) {
+    parallel_ranges(cuts_.size(), 2, [&](const std::size_t begin, const std::size_t end) {
       constexpr double smoothing = 0.4; // of a cube edge: what is finer than the grid is noise to it
-      grid::EdgeCut& cut = cuts_[i];
-      Vec3 point = grid.position(grid.ends(cut.edge)[0]);
-      point[grid.axis(cut.edge)] += cut.t * grid.h();
-      cut.normal = normals.at(triangles_[i], point, smoothing * grid.h());
-      if (cut.normal.isZero(0)) // rounded away, of a sliver
-        cut.normal = Vec3::Unit(grid.axis(cut.edge));
+      geometry::LocalNormals::Marks marks(normals);
+      for (std::size_t i = begin; i < end; ++i) {
+        grid::EdgeCut& cut = cuts_[i];
+        Vec3 point = grid.position(grid.ends(cut.edge)[0]);
+        point[grid.axis(cut.edge)] += cut.t * grid.h();
+        cut.normal = normals.at(triangles_[i], point, smoothing * grid.h(), marks);
+        if (cut.normal.isZero(0)) // rounded away, of a sliver
+          cut.normal = Vec3::Unit(grid.axis(cut.edge));
+      }
     });
   }
 
@@ -251,14 +258,14 @@ class Skin {
 Embedding embed(const geometry::TriangleMesh& mesh, const double h, const Vec3& offset) {
   const grid::Lattice lattice = lattice_around(mesh, h, offset);
   const std::vector<Crossing> crossings = sorted_crossings(mesh, lattice);
-  std::vector<Index3> nodes = material_nodes(crossings);
-  if (nodes.empty())
+  const std::vector<grid::NodeRun> material = material_runs(crossings);
+  if (material.empty())
     throw DataError(Complaint{.path = "Cube edge [m]",
                               .value = std::to_string(h),
                               .rule = "no lattice node is inside the mesh, it is smaller than a cube",
                               .remedy = "Use smaller cubes, or check the unit of the mesh"});
 
-  grid::Grid grid(lattice, std::move(nodes));
+  grid::Grid grid = grid::Grid::from_runs(lattice, material);
   grid::Cuts cuts(grid);
   Embedding result{std::move(grid), std::move(cuts)};
   Skin skin(mesh, result);

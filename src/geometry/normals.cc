@@ -24,24 +24,25 @@ LocalNormals::LocalNormals(const TriangleMesh& mesh) : mesh_(mesh), start_(mesh.
       users_[next[v]++] = i;
 }
 
-Vec3 LocalNormals::at(const std::uint32_t triangle, const Vec3& point, const double radius) const {
+Vec3 LocalNormals::at(const std::uint32_t triangle, const Vec3& point, const double radius, Marks& marks) const {
   const double crease = std::sqrt(0.5);
   const Vec3 own = area_normals_[triangle];
   if (own.isZero(0))
     return own;
-  std::vector<std::uint32_t> found = {triangle};
+  marks.clear();
+  marks.mark_triangle(triangle);
+  marks.found_.push_back(triangle);
   Vec3 sum = own;
-  for (std::size_t k = 0; k < found.size(); ++k)
-    for (const auto v : mesh_.triangles[found[k]]) {
-      if ((mesh_.vertices[v] - point).squaredNorm() > radius * radius)
+  for (std::size_t k = 0; k < marks.found_.size(); ++k)
+    for (const auto v : mesh_.triangles[marks.found_[k]]) {
+      if (!marks.mark_vertex(v) || (mesh_.vertices[v] - point).squaredNorm() > radius * radius)
         continue;
       for (auto u = start_[v]; u < start_[v + 1]; ++u) {
         const Vec3& other = area_normals_[users_[u]];
-        const bool smooth = other.dot(own) > crease * other.norm() * own.norm();
-        if (smooth && std::find(found.begin(), found.end(), users_[u]) == found.end()) {
-          found.push_back(users_[u]);
-          sum += other;
-        }
+        if (!marks.mark_triangle(users_[u]) || !(other.dot(own) > crease * other.norm() * own.norm()))
+          continue;
+        marks.found_.push_back(users_[u]);
+        sum += other;
       }
     }
   return sum.normalized();

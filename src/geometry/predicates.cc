@@ -18,6 +18,12 @@ constexpr int next(const int axis) { return (axis + 1) % 3; }
 
 int sign(const double x) { return (x > 0) - (x < 0); }
 
+/// Is left - right, of two rounded products of rounded differences, large enough to have the sign of the exact one?
+bool is_certain(const double left, const double right) {
+  constexpr double safety = 8 * std::numeric_limits<double>::epsilon();
+  return std::abs(left - right) > safety * (std::abs(left) + std::abs(right));
+}
+
 int orientation(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p) {
   const auto point = [](const Vec3& v) { return Kernel::Point_3(v[0], v[1], v[2]); };
   return CGAL::orientation(point(a), point(b), point(c), point(p));
@@ -26,6 +32,9 @@ int orientation(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p) {
 /// Sign of component `axis` of (b-a) x (c-a): the orientation of the three points seen along the axis.
 int normal_sign(const int axis, const Vec3& a, const Vec3& b, const Vec3& c) {
   const int i = next(axis), j = next(i);
+  const double left = (b[i] - a[i]) * (c[j] - a[j]), right = (b[j] - a[j]) * (c[i] - a[i]);
+  if (is_certain(left, right))
+    return sign(left - right);
   const auto point = [i, j](const Vec3& v) { return Kernel::Point_2(v[i], v[j]); };
   return CGAL::orientation(point(a), point(b), point(c));
 }
@@ -40,10 +49,8 @@ int cross_sign(const int axis, const Vec3& p, const Vec3& q, const Vec3& a, cons
     return first > second ? 1 : -1;
   if (first == 0)
     return 0;
-  const double difference = ui * vj - uj * vi;
-  constexpr double safety = 8 * std::numeric_limits<double>::epsilon();
-  if (std::abs(difference) > safety * (std::abs(ui * vj) + std::abs(uj * vi)))
-    return sign(difference);
+  if (is_certain(ui * vj, uj * vi))
+    return sign(ui * vj - uj * vi);
 
   using Exact = CGAL::Exact_rational;
   // Named results: the number type may be one of expression templates.

@@ -50,11 +50,13 @@ std::optional<double> line_meets(const Vec3& p, const Vec3& d, const std::array<
   if (determinant == 0)
     return std::nullopt;
   const Vec3 ap = p - a;
-  const double u = ap.dot(df) / determinant, v = d.dot(ap.cross(e)) / determinant;
+  const Vec3 across = ap.cross(e);
+  const double u = ap.dot(df) / determinant, v = d.dot(across) / determinant;
   constexpr double slack = 1e-12; // a hit on the seam of two triangles is a hit
-  if (u < -slack || v < -slack || u + v > 1 + slack)
+  const int n_outside = int(u < -slack) + int(v < -slack) + int(u + v > 1 + slack); // one branch instead of three
+  if (n_outside != 0)
     return std::nullopt;
-  return f.dot(ap.cross(e)) / determinant;
+  return f.dot(across) / determinant;
 }
 
 } // namespace kerf::geometry

@@ -19,9 +19,10 @@ constexpr std::uint32_t none = Id<void>::no_value;
 std::size_t with_room(const std::size_t n) { return n + n / 8; }
 
 std::uint8_t material_bits(const Grid& grid, const CellId c) {
+  const auto nodes = grid.nodes(c);
   unsigned bits = 0;
   for (int v = 0; v < 8; ++v)
-    bits |= unsigned(grid.is_material(grid.nodes(c)[v])) << v;
+    bits |= unsigned(grid.is_material(nodes[v])) << v;
   return static_cast<std::uint8_t>(bits);
 }
 
@@ -74,24 +75,29 @@ void make_copies(const Grid& grid, const std::vector<CutCell>& cut_cells, CellCo
   }
 }
 
-/// The cut cells around each node, as lists through their slots (cell, vertex).
+/// The nodes that may have another corner than their real one, and cut cells around them, as lists through slots (cell,
+/// vertex): empty nodes with all their cells, and material nodes with those cells that have several copies. Around any
+/// other node every copy holds it, and all are glued.
 class SlotsOfNodes {
  public:
   SlotsOfNodes(const Grid& grid, const std::vector<CutCell>& cut_cells) : first_(grid.n_nodes(), none) {
-    slots_.reserve(8 * cut_cells.size());
-    for (const CutCell& cut : cut_cells)
-      for (const NodeId node : grid.nodes(cut.cell)) {
-        slots_.push_back({cut.cell, first_[node]});
-        first_[node] = static_cast<std::uint32_t>(slots_.size() - 1);
-      }
+    slots_.reserve(4 * cut_cells.size());
+    for (const CutCell& cut : cut_cells) {
+      const auto nodes = grid.nodes(cut.cell);
+      for (std::uint8_t v = 0; v < 8; ++v)
+        if (cut.components.n > 1 || !grid.is_material(nodes[v])) {
+          slots_.push_back({cut.cell, v, first_[nodes[v]]});
+          first_[nodes[v]] = static_cast<std::uint32_t>(slots_.size() - 1);
+        }
+    }
   }
 
   bool has(const NodeId node) const { return first_[node] != none; }
   CellsAround cells_around(const Grid& grid, const NodeId node) const {
     CellsAround cells;
     for (std::uint32_t i = first_[node]; i != none; i = slots_[i].next)
-      cells.add(slots_[i].cell, i % 8);
-    if (grid.is_material(node)) // else all of them are cut
+      cells.add(slots_[i].cell, slots_[i].vertex);
+    if (grid.is_material(node))
       cells.complete(grid);
     return cells;
   }
@@ -99,20 +105,20 @@ class SlotsOfNodes {
  private:
   struct Slot {
     CellId cell;
+    std::uint8_t vertex;
     std::uint32_t next;
   };
   Table<NodeId, std::uint32_t> first_;
   std::vector<Slot> slots_;
 };
 
-/// Numbers the corners by node. A node that no cut cell touches has one, which its cells find by `lone_corner`.
-Table<NodeId, CornerId> number_corners(const Grid& grid, const SlotsOfNodes& slots, CellComplex& complex) {
-  Table<NodeId, CornerId> lone_corner(grid.n_nodes());
+/// Numbers the corners by node, and enters them in the copies around nodes that have slots.
+void number_corners(const Grid& grid, const SlotsOfNodes& slots, CellComplex& complex) {
   complex.node.reserve(with_room(grid.n_nodes()));
   complex.real_corner.resize(grid.n_nodes());
   for (const NodeId node : ids<NodeId>(grid.n_nodes())) {
     if (!slots.has(node)) {
-      lone_corner[node] = complex.real_corner[node] = complex.node.push_back(node);
+      complex.real_corner[node] = complex.node.push_back(node);
       continue;
     }
     const CornerClasses classes(complex, slots.cells_around(grid, node));
@@ -126,20 +132,19 @@ Table<NodeId, CornerId> number_corners(const Grid& grid, const SlotsOfNodes& slo
         complex.real_corner[node] = corner;
     }
   }
-  return lone_corner;
 }
 
 void make_corners(const Grid& grid, const std::vector<CutCell>& cut_cells, CellComplex& complex) {
   constexpr std::size_t worth = 4096;
-  const auto lone_corner = number_corners(grid, SlotsOfNodes(grid, cut_cells), complex);
+  number_corners(grid, SlotsOfNodes(grid, cut_cells), complex);
   parallel_for(
     complex.n_copies(),
     [&](const std::size_t c) {
       Copy& copy = complex.copies[CopyId(c)];
-      const auto& nodes = grid.nodes(copy.cell);
+      const auto nodes = grid.nodes(copy.cell);
       for (int v = 0; v < 8; ++v)
-        if (const CornerId corner = lone_corner[nodes[v]]; corner.valid())
-          copy.corners[v] = corner;
+        if (copy.nodes >> v & 1)
+          copy.corners[v] = complex.real_corner[nodes[v]];
     },
     worth);
 }
@@ -188,8 +193,9 @@ class Update {
     }
     if (splits) {
       sort_copies(cell);
+      const auto nodes = grid_.nodes(cell);
       for (int v = 0; v < 8; ++v)
-        slots_.push_back({grid_.nodes(cell)[v], v, cell});
+        slots_.push_back({nodes[v], v, cell});
     }
   }
 
@@ -223,12 +229,9 @@ class Update {
     std::array<CornerId, CornerClasses::max_slots> corner_of;
     for (int k = 0; k < classes.n_classes(); ++k)
       corner_of[k] = CornerId();
-    for (const auto& slot : classes.slots()) { // the class with the node's own material keeps its corner ...
-      const Copy& copy = complex_.copies[slot.copy];
-      if (copy.nodes >> slot.vertex & 1)
-        corner_of[slot.class_number] = copy.corners[slot.vertex];
-    }
-    for (const auto& slot : classes.slots()) // ... else the first of those that come from one corner
+    // The first of the classes that come from one corner keeps it. The node's own material is in the first of all: a
+    // slot of the cell whose lowest node this is.
+    for (const auto& slot : classes.slots())
       if (CornerId& corner = corner_of[slot.class_number]; !corner.valid()) {
         const CornerId old = complex_.copies[slot.copy].corners[slot.vertex];
         const auto end = corner_of.begin() + classes.n_classes();

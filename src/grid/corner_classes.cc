@@ -30,7 +30,7 @@ CornerClasses::CornerClasses(const CellComplex& complex, const CellsAround& cell
     for (CopyId c = cells.at(v).valid() ? complex.first_copy[cells.at(v)] : CopyId(); c.valid();
          c = complex.copies[c].next) {
       slots_[n_slots_] = {c, static_cast<std::uint8_t>(v), static_cast<std::uint8_t>(n_slots_)};
-      ++n_slots_;
+      nodes_[n_slots_++] = complex.copies[c].nodes;
     }
   }
   first_slot_[8] = static_cast<std::uint8_t>(n_slots_);
@@ -38,16 +38,16 @@ CornerClasses::CornerClasses(const CellComplex& complex, const CellsAround& cell
   for (int v = 0; v < 8; ++v)
     for (int axis = 0; axis < 3; ++axis)
       if ((v >> axis & 1) && n_classes_ > 1)
-        join_across(v, axis, complex);
+        join_across(v, axis);
   number();
 }
 
 /// The cell in which the node is the upper vertex along the axis lies below the other one.
-void CornerClasses::join_across(const int upper_vertex, const int axis, const CellComplex& complex) {
+void CornerClasses::join_across(const int upper_vertex, const int axis) {
   const int lower_vertex = upper_vertex ^ 1 << axis;
   for (int a = first_slot_[upper_vertex]; a < first_slot_[upper_vertex + 1]; ++a)
     for (int b = first_slot_[lower_vertex]; b < first_slot_[lower_vertex + 1]; ++b) {
-      const unsigned below = complex.copies[slots_[a].copy].nodes, above = complex.copies[slots_[b].copy].nodes;
+      const unsigned below = nodes_[a], above = nodes_[b];
       if ((below >> (1 << axis) & above & lower_face[axis]) == 0)
         continue;
       const std::uint8_t p = slots_[a].class_number, q = slots_[b].class_number;

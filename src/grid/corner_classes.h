@@ -37,11 +37,12 @@ class CornerClasses {
   std::span<const Slot> slots() const { return {slots_.data(), n_slots_}; }
 
  private:
-  void join_across(int upper_vertex, int axis, const CellComplex& complex);
+  void join_across(int upper_vertex, int axis);
   void number();
 
   std::array<Slot, max_slots> slots_;
-  std::array<std::uint8_t, 9> first_slot_; // by vertex
+  std::array<std::uint8_t, max_slots> nodes_; // of the slots' copies
+  std::array<std::uint8_t, 9> first_slot_;    // by vertex
   std::size_t n_slots_ = 0;
   int n_classes_ = 0;
 };

@@ -8,29 +8,29 @@
 
 namespace kerf::grid {
 
-Cuts::Cuts(const Grid& grid)
-  : edge_cut_(grid.n_edges(), none), face_point_(grid.n_faces(), none), cell_point_(grid.n_cells(), none) {}
+Cuts::Cuts(const Grid& grid) : edge_cut_(grid.n_edges()), face_point_(grid.n_faces()), cell_point_(grid.n_cells()) {}
 
 void Cuts::add(EdgeCut cut) {
-  if (is_cut(cut.edge))
+  std::uint32_t& index = edge_cut_.at(cut.edge);
+  if (index != none)
     throw std::logic_error("an edge is cut once");
   cut.t = std::clamp(cut.t, min_edge_parameter, 1 - min_edge_parameter);
-  edge_cut_[cut.edge] = static_cast<std::uint32_t>(cuts_.size());
+  index = static_cast<std::uint32_t>(cuts_.size());
   cuts_.push_back(cut);
 }
 
 unsigned Cuts::configuration(const Grid& grid, const CellId c) const {
+  const auto edges = grid.edges(c);
   unsigned lines = 0;
   for (int line = 0; line < cube::n_lines; ++line)
-    if (is_cut(grid.edges(c)[line]))
+    if (is_cut(edges[line]))
       lines |= 1u << line;
   return lines;
 }
 
 std::size_t Cuts::n_bytes() const {
-  const std::size_t n_indices =
-    edge_cut_.items().capacity() + face_point_.items().capacity() + cell_point_.items().capacity();
-  return n_indices * sizeof(std::uint32_t) + cuts_.capacity() * sizeof(EdgeCut) + points_.capacity() * sizeof(Vec3);
+  return edge_cut_.n_bytes() + face_point_.n_bytes() + cell_point_.n_bytes() + cuts_.capacity() * sizeof(EdgeCut) +
+         points_.capacity() * sizeof(Vec3);
 }
 
 void Cuts::set(std::uint32_t& index, const Vec3& p) {
@@ -72,14 +72,16 @@ Vec3 cell_point(const Grid& grid, const Cuts& cuts, const CellId c) {
 
 std::array<Tetrahedron, 6> octant(const Grid& grid, const Cuts& cuts, const CellId c, const int vertex) {
   const Vec3 origin = grid.origin(c);
+  const auto edges = grid.edges(c);
+  const auto faces = grid.faces(c);
   const auto local = [&](const Vec3& p) -> Vec3 { return (p - origin) / grid.h(); };
   const Vec3 node(vertex & 1, vertex >> 1 & 1, vertex >> 2 & 1);
   const Vec3 middle = local(cell_point(grid, cuts, c));
   std::array<Vec3, 3> on_edge, in_face;  // by the edge's direction, by the face's normal
   for (int axis = 0; axis < 3; ++axis) { // right on the edge and in the face: round-off may not turn a thin octant over
     on_edge[axis] = node;
-    on_edge[axis][axis] = local(edge_point(grid, cuts, grid.edges(c)[cube::line_at(vertex, axis)]))[axis];
-    in_face[axis] = local(face_point(grid, cuts, grid.faces(c)[cube::face_at(vertex, axis)]));
+    on_edge[axis][axis] = local(edge_point(grid, cuts, edges[cube::line_at(vertex, axis)]))[axis];
+    in_face[axis] = local(face_point(grid, cuts, faces[cube::face_at(vertex, axis)]));
     in_face[axis][axis] = node[axis];
   }
   std::array<Tetrahedron, 6> tetrahedra;

@@ -4,6 +4,7 @@
 /// Everything here is in the rest configuration.
 
 #include "grid/grid.h"
+#include "grid/sparse_index.h"
 
 #include <optional>
 #include <span>
@@ -32,20 +33,25 @@ class Cuts {
 
   bool is_cut(EdgeId e) const { return edge_cut_[e] != none; }
   /// Null when the edge is not cut.
-  const EdgeCut* find(EdgeId e) const { return edge_cut_[e] == none ? nullptr : &cuts_[edge_cut_[e]]; }
+  const EdgeCut* find(EdgeId e) const {
+    const std::uint32_t i = edge_cut_[e];
+    return i == none ? nullptr : &cuts_[i];
+  }
   std::span<const EdgeCut> all() const { return cuts_; }
 
   /// Cuts an uncut edge; t is clamped. An edge is cut once.
   void add(EdgeCut cut);
+  /// Makes room for so many cuts in all.
+  void reserve(std::size_t n) { cuts_.reserve(n); }
 
   /// The 12 line bits of a cell, 0..4095.
   unsigned configuration(const Grid& grid, CellId c) const;
 
   /// The vertex in a face or a cell, where a cut has placed one; the middle otherwise is the caller's to know.
-  const Vec3* point(FaceId f) const { return face_point_[f] == none ? nullptr : &points_[face_point_[f]]; }
-  const Vec3* point(CellId c) const { return cell_point_[c] == none ? nullptr : &points_[cell_point_[c]]; }
-  void set_point(FaceId f, const Vec3& p) { set(face_point_[f], p); }
-  void set_point(CellId c, const Vec3& p) { set(cell_point_[c], p); }
+  const Vec3* point(FaceId f) const { return point_at(face_point_[f]); }
+  const Vec3* point(CellId c) const { return point_at(cell_point_[c]); }
+  void set_point(FaceId f, const Vec3& p) { set(face_point_.at(f), p); }
+  void set_point(CellId c, const Vec3& p) { set(cell_point_.at(c), p); }
 
   /// The place of a cut edge in all().
   std::uint32_t index(EdgeId e) const { return edge_cut_[e]; }
@@ -55,11 +61,12 @@ class Cuts {
  private:
   static constexpr std::uint32_t none = Id<void>::no_value;
 
+  const Vec3* point_at(const std::uint32_t i) const { return i == none ? nullptr : &points_[i]; }
   void set(std::uint32_t& index, const Vec3& p);
 
-  Table<EdgeId, std::uint32_t> edge_cut_;
-  Table<FaceId, std::uint32_t> face_point_;
-  Table<CellId, std::uint32_t> cell_point_;
+  SparseIndex<EdgeId> edge_cut_;
+  SparseIndex<FaceId> face_point_;
+  SparseIndex<CellId> cell_point_;
   std::vector<EdgeCut> cuts_;
   Points points_;
 };

@@ -9,6 +9,7 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
+#include <bit>
 #include <bitset>
 
 namespace kerf::surface {
@@ -76,8 +77,8 @@ class Writer {
   void write(const CellId cell, const unsigned cut_lines) {
     if (cut_lines == 0)
       return;
-    enter(cell);
-    for (const Quad& quad : splitting_table().row(cut_lines))
+    enter(cell, cut_lines);
+    for (const Quad& quad : table_.row(cut_lines))
       if (copy_at_[quad.end].valid()) // else the empty side of the skin
         write(quad);
   }
@@ -98,9 +99,14 @@ class Writer {
     index_.centres.resize(complex_.n_copies(), unset);
   }
 
-  void enter(const CellId cell) {
+  void enter(const CellId cell, const unsigned cut_lines) {
     cell_ = cell;
+    faces_ = grid_.faces(cell);
+    lower_ = grid_.index(grid_.nodes(cell)[0]);
     seen_.reset();
+    const auto edges = grid_.edges(cell);
+    for (unsigned left = cut_lines; left != 0; left &= left - 1)
+      cut_[std::countr_zero(left)] = cuts_.index(edges[std::countr_zero(left)]);
     copy_at_.fill(CopyId());
     for (const CopyId c : complex_.copies_of(cell))
       for (int v = 0; v < cube::n_vertices; ++v)
@@ -110,72 +116,70 @@ class Writer {
 
   void write(const Quad& quad) {
     const CopyId copy = copy_at_[quad.end];
-    std::array<std::uint32_t, 4> v;
-    for (int i = 0; i < 4; ++i)
-      v[i] = vertex(copy, quad.vertices[i]);
-    const EdgeId edge = grid_.edges(cell_)[quad.line];
-    const bool is_second = quad.end == cube::line_vertices[quad.line][1] && grid_.is_material(grid_.ends(edge)[0]);
-    const std::size_t t = index_.first_triangle[cuts_.index(edge)] + (is_second ? triangles_per_end : 0) +
+    const auto& vertices = quad.vertices;
+    const std::uint32_t edge = edge_vertex(copy, vertices[0]), first = face_vertex(copy, vertices[1]),
+                        middle = centre(copy, vertices[2]), second = face_vertex(copy, vertices[3]);
+    const auto& [lower, upper] = cube::line_vertices[quad.line];
+    const bool is_second = quad.end == upper && copy_at_[lower].valid();
+    const std::size_t t = index_.first_triangle[cut_[quad.line]] + (is_second ? triangles_per_end : 0) +
                           2 * static_cast<std::size_t>(place_around_line[quad.line]);
-    surface_.triangles[t] = {v[0], v[1], v[2]};
-    surface_.triangles[t + 1] = {v[0], v[2], v[3]};
+    surface_.triangles[t] = {edge, first, middle};
+    surface_.triangles[t + 1] = {edge, middle, second};
     surface_.copies[t] = surface_.copies[t + 1] = copy;
   }
 
-  std::uint32_t vertex(const CopyId copy, const TableVertex& v) {
-    switch (v.kind) {
-      case VertexKind::edge:
-        return edge_vertex(copy, v);
-      case VertexKind::face:
-        return face_vertex(copy, v);
-      default:
-        return centre(copy, v);
-    }
+  /// Of a vertex of the cell.
+  Vec3 node_position(const int vertex) const {
+    return grid_.lattice().position(
+      {lower_[0] + (vertex & 1), lower_[1] + (vertex >> 1 & 1), lower_[2] + (vertex >> 2 & 1)});
   }
 
   std::uint32_t edge_vertex(const CopyId copy, const TableVertex& v) {
-    const EdgeId edge = grid_.edges(cell_)[v.index];
     const auto& [lower, upper] = cube::line_vertices[v.index];
-    std::uint32_t& id = index_.edge_vertices[2 * cuts_.index(edge) + (v.side == upper)];
-    if (is_wanted(id, 2 * v.index + (v.side == upper))) {
-      Vec3 xi = Vec3::Zero();
-      xi[grid_.axis(edge)] = cuts_.find(edge)->t;
-      set(id, grid::edge_point(grid_, cuts_, edge), xi, copy, (1u << lower) | (1u << upper));
+    const bool is_upper = v.side == upper;
+    std::uint32_t& id = index_.edge_vertices[2 * cut_[v.index] + is_upper];
+    if (is_wanted(id, 2 * v.index + is_upper)) {
+      const int axis = cube::line_axis(v.index);
+      const double t = cuts_.all()[cut_[v.index]].t;
+      Vec3 p = node_position(lower), xi = Vec3::Zero();
+      p[axis] += grid_.h() * t;
+      xi[axis] = t;
+      set(id, p, xi, copy, (1u << lower) | (1u << upper));
     }
     return id;
   }
 
   std::uint32_t face_vertex(const CopyId copy, const TableVertex& v) {
-    const FaceId face = grid_.faces(cell_)[v.index];
-    std::uint32_t& first = index_.first_face_vertex[face];
+    const int place = 24 + 8 * v.index + v.side;
+    if (seen_[place])
+      return in_cell_[place];
+    std::uint32_t& first = index_.first_face_vertex.at(faces_[v.index]);
     if (first == unset) {
       first = static_cast<std::uint32_t>(index_.face_vertices.size());
       index_.face_vertices.resize(index_.face_vertices.size() + 4, unset);
     }
     std::uint32_t& id = index_.face_vertices[first + place_in_face(v.index, v.side)];
-    if (is_wanted(id, 24 + 8 * v.index + v.side)) {
-      const Vec3 p = grid::face_point(grid_, cuts_, face);
-      const NodeId lowest = grid_.nodes(cell_)[cube::face_vertices[v.index][0]];
-      set(id, p, (p - grid_.position(lowest)) / grid_.h(), copy, cube::face_mask(v.index));
+    if (is_wanted(id, place)) {
+      const Vec3 p = grid::face_point(grid_, cuts_, faces_[v.index]);
+      set(id, p, (p - node_position(cube::face_vertices[v.index][0])) / grid_.h(), copy, cube::face_mask(v.index));
     }
-    return id;
+    return in_cell_[place] = id;
   }
 
   std::uint32_t centre(const CopyId copy, const TableVertex& v) {
     std::uint32_t& id = index_.centres[copy];
     if (is_wanted(id, 72 + v.side)) {
       const Vec3 p = grid::cell_point(grid_, cuts_, cell_);
-      set(id, p, (p - grid_.origin(cell_)) / grid_.h(), copy, 0xff);
+      set(id, p, (p - node_position(0)) / grid_.h(), copy, 0xff);
     }
     return id;
   }
 
   /// True for a vertex that is to be made, or to be renewed for the first time in this cell.
   bool is_wanted(const std::uint32_t id, const int vertex_of_cell) {
-    if (id != unset && (known_ == Known::kept || seen_[vertex_of_cell]))
-      return false;
+    const bool was_seen = seen_[vertex_of_cell];
     seen_[vertex_of_cell] = true;
-    return true;
+    return id == unset || (known_ == Known::renewed && !was_seen);
   }
 
   /// Writes a vertex at rest position p whose weights go to the corners in `support` (bits) of the copy.
@@ -183,34 +187,51 @@ class Writer {
     Weights& w = surface_.weights;
     if (id == unset) {
       id = static_cast<std::uint32_t>(surface_.rest.size());
-      surface_.rest.emplace_back();
-      w.row_start.push_back(w.row_start.back() + static_cast<std::uint32_t>(std::popcount(support)));
+      surface_.rest.push_back(p);
+      w.row_start.push_back(w.row_start.back() + static_cast<std::uint32_t>(std::bitset<8>(support).count()));
       w.corners.resize(w.row_start.back());
       w.values.resize(w.row_start.back());
-    }
-    surface_.rest[id] = p;
+    } else
+      surface_.rest[id] = p;
+    const auto factors = shape_factors(xi, support);
+    const auto& corners = complex_.copies[copy].corners;
     std::uint32_t entry = w.row_start[id];
-    for (int v = 0; v < cube::n_vertices; ++v)
-      if (support >> v & 1) {
-        w.corners[entry] = complex_.copies[copy].corners[v];
-        w.values[entry++] = grid::shape(v, xi, support);
-      }
+    for (unsigned left = support; left != 0; left &= left - 1, ++entry) {
+      const int v = std::countr_zero(left);
+      w.corners[entry] = corners[v];
+      w.values[entry] = factors[0][v & 1] * factors[1][v >> 1 & 1] * factors[2][v >> 2 & 1];
+    }
+  }
+
+  /// The factors of the shape functions along each axis, of vertices at 0 and at 1 there (grid/shape.h).
+  static std::array<std::array<double, 2>, 3> shape_factors(const Vec3& xi, const unsigned support) {
+    std::array<std::array<double, 2>, 3> factors;
+    for (int d = 0; d < 3; ++d) {
+      const bool reaches = (support & grid::upper_vertices[d]) != 0 && (support & ~grid::upper_vertices[d]) != 0;
+      factors[d] = reaches ? std::array{1 - xi[d], xi[d]} : std::array{1.0, 1.0};
+    }
+    return factors;
   }
 
   const Grid& grid_;
   const Cuts& cuts_;
   const CellComplex& complex_;
+  const SplittingTable& table_ = splitting_table();
   Surface& surface_;
   SurfaceIndex& index_;
   Known known_;
 
   CellId cell_;
+  std::array<FaceId, 6> faces_;
+  Index3 lower_{};
+  std::array<std::uint32_t, 12> cut_; // by line: place in cuts_.all()
   std::array<CopyId, 8> copy_at_;
-  std::bitset<80> seen_; // 24 edge vertices, 48 face vertices, 8 centres
+  std::bitset<80> seen_;                  // 24 edge vertices, 48 face vertices, 8 centres
+  std::array<std::uint32_t, 80> in_cell_; // ids of seen ones, face vertices only
 };
 
-/// Room for the vertices of closed surfaces with so many triangles: half as many, by Euler; of four, one is on an edge, two
-/// are in faces and one in a cell.
+/// Room for the vertices of closed surfaces with so many triangles: half as many, by Euler; of four, one is on an edge,
+/// two are in faces and one in a cell.
 void reserve_vertices(Surface& surface) {
   constexpr double entries_per_vertex = (2 + 2 * 4 + 8) / 4.0, spare = 1.05;
   const auto n = static_cast<std::size_t>(spare * 0.5 * static_cast<double>(surface.triangles.size()));
@@ -246,7 +267,7 @@ std::size_t Surface::n_bytes() const {
 }
 
 std::size_t SurfaceIndex::n_bytes() const {
-  return bytes(first_face_vertex.items()) + bytes(face_vertices) + bytes(edge_vertices) + bytes(first_triangle) +
+  return first_face_vertex.n_bytes() + bytes(face_vertices) + bytes(edge_vertices) + bytes(first_triangle) +
          bytes(centres.items());
 }
 
@@ -258,7 +279,7 @@ Surface build_surface(const Grid& grid, const Cuts& cuts, const CellComplex& com
 Surface build_surface(const Grid& grid, const Cuts& cuts, const CellComplex& complex, SurfaceIndex& index) {
   Surface surface;
   index = {};
-  index.first_face_vertex.resize(grid.n_faces(), unset);
+  index.first_face_vertex = grid::SparseIndex<FaceId>(grid.n_faces());
   index.centres.reserve(complex.copies.items().capacity());
   Writer writer(grid, cuts, complex, surface, index, Known::kept);
   reserve_vertices(surface);

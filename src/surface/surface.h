@@ -38,10 +38,10 @@ struct Surface {
 
 /// Which vertex is where: what an update needs to know of the surface beside the surface.
 struct SurfaceIndex {
-  Table<grid::FaceId, std::uint32_t> first_face_vertex; ///< into face_vertices, where a face has some
-  std::vector<std::uint32_t> face_vertices;             ///< four a face: by the component's smallest vertex
-  std::vector<std::uint32_t> edge_vertices;             ///< two a cut edge: of its lower and its upper end
-  std::vector<std::uint32_t> first_triangle;            ///< of each cut edge
+  grid::SparseIndex<grid::FaceId> first_face_vertex; ///< into face_vertices, where a face has some
+  std::vector<std::uint32_t> face_vertices;          ///< four a face: by the component's smallest vertex
+  std::vector<std::uint32_t> edge_vertices;          ///< two a cut edge: of its lower and its upper end
+  std::vector<std::uint32_t> first_triangle;         ///< of each cut edge
   Table<grid::CopyId, std::uint32_t> centres;
 
   std::size_t n_bytes() const;

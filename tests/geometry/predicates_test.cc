@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
+#include <cmath>
 #include <random>
 #include <set>
 
@@ -237,6 +238,30 @@ TEST_P(Voxels, LoopsOfFourEdgesCrossEvenly) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Random, Voxels, testing::Range(0u, 6u));
+
+/// Points closer to an edge than doubles can tell when they subtract (the picture of Kettner, Mehlhorn, Pion, Schirra,
+/// Yap, Classroom examples of robustness problems in geometric computations, 2008): the exact sign decides.
+TEST(Predicates, DecideBelowRoundOff) {
+  const double u = std::ldexp(1.0, -53); // half an ulp of the differences that are formed, and less
+  const Corners below_diagonal = {Vec3(-12, -12, 0), Vec3(24, -12, 0), Vec3(24, 24, 0)};
+  for (int x = 0; x < 64; ++x)
+    for (int y = 0; y < 64; ++y) {
+      if (x == y)
+        continue;
+      for (int axis = 0; axis < 3; ++axis) { // the same picture seen along each axis
+        const auto turned = [axis](const Vec3& p) -> Vec3 {
+          Vec3 q;
+          for (int d = 0; d < 3; ++d)
+            q[(axis + 1 + d) % 3] = p[d];
+          return q;
+        };
+        const Corners triangle = {turned(below_diagonal[0]), turned(below_diagonal[1]), turned(below_diagonal[2])};
+        const Vec3 p(0.5 + x * u, 0.5 + y * u, -1), q(0.5 + x * u, 0.5 + y * u, 1);
+        ASSERT_EQ(line_crosses(turned(p), axis, triangle) != 0, y < x) << x << " " << y << " axis " << axis;
+        ASSERT_EQ(crosses(turned(p), turned(q), triangle), y < x) << x << " " << y << " axis " << axis;
+      }
+    }
+}
 
 } // namespace
 } // namespace kerf::geometry

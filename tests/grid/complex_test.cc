@@ -255,6 +255,7 @@ void expect_change(const CellComplex& before, const CellComplex& after, const Co
     ASSERT_EQ(before.node[parent(corner)], after.node[corner]);
   }
   ASSERT_TRUE(std::is_sorted(change.copies.begin(), change.copies.end()));
+  ASSERT_EQ(std::adjacent_find(change.copies.begin(), change.copies.end()), change.copies.end()) << "named twice";
   const Pieces pieces_before = pieces(before), pieces_after = pieces(after);
   std::map<std::uint32_t, std::uint32_t> piece_before;
   for (const auto c : ids<CopyId>(after.n_copies())) {
