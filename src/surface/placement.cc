@@ -100,8 +100,9 @@ class Joint {
 
 unsigned skin_lines(const Grid& grid, const Cuts& cuts, const CellId c) {
   unsigned lines = 0;
+  const auto edges = grid.edges(c);
   for (int line = 0; line < cube::n_lines; ++line) {
-    const grid::EdgeCut* cut = cuts.find(grid.edges(c)[line]);
+    const grid::EdgeCut* cut = cuts.find(edges[line]);
     lines |= unsigned(cut && cut->label == grid::skin_label) << line;
   }
   return lines;
@@ -112,12 +113,15 @@ unsigned skin_lines(const Grid& grid, const Cuts& cuts, const CellId c) {
 template <class Function>
 void for_each_skin_quad(const Grid& grid, const Cuts& cuts, const CellId c, const Function& f) {
   const Vec3 origin = grid::cell_point(grid, cuts, c);
+  const auto nodes = grid.nodes(c);
+  const auto edges = grid.edges(c);
+  const auto faces = grid.faces(c);
   for (const Quad& quad : splitting_table().row(skin_lines(grid, cuts, c))) {
-    if (!grid.is_material(grid.nodes(c)[quad.end]))
+    if (!grid.is_material(nodes[quad.end]))
       continue;
     const int first = quad.vertices[1].index, second = quad.vertices[3].index;
-    const auto face = [&](const int i) -> Vec3 { return grid::face_point(grid, cuts, grid.faces(c)[i]) - origin; };
-    f(grid::edge_point(grid, cuts, grid.edges(c)[quad.line]) - origin, first, face(first), second, face(second));
+    const auto face = [&](const int i) -> Vec3 { return grid::face_point(grid, cuts, faces[i]) - origin; };
+    f(grid::edge_point(grid, cuts, edges[quad.line]) - origin, first, face(first), second, face(second));
   }
 }
 
@@ -135,7 +139,7 @@ Vec3 volume_by_face(const Grid& grid, const Cuts& cuts, const FaceId f) {
   for (const CellId c : grid.cells(f)) {
     if (!c.valid())
       continue;
-    const auto& faces = grid.faces(c);
+    const auto faces = grid.faces(c);
     const auto face = std::find(faces.begin(), faces.end(), f) - faces.begin();
     Vec3 sum = Vec3::Zero();
     // The triangles (e, p, centre) and (e, centre, q), each seen from a face point's own place.
@@ -162,8 +166,9 @@ class Placer {
   PlacementCounts run(const std::span<const EdgeId> new_edges) {
     for (const auto& [c, new_lines] : grid::touched_cells(grid_, new_edges)) {
       const View view = look_at(c, new_lines);
+      const auto faces = grid_.faces(c);
       for (int face = 0; face < cube::n_faces; ++face) {
-        const FaceId f = grid_.faces(c)[face];
+        const FaceId f = faces[face];
         const bool first_seen = (face & 1) == 1 || !grid_.cells(f)[0].valid(); // else done from the cell below
         if ((new_lines & lines_of_face[face]) != 0 && first_seen)
           cuts_.set_point(f, place_face(view, face));
@@ -177,15 +182,17 @@ class Placer {
   View look_at(const CellId c, const unsigned new_lines) const {
     View view;
     view.cell = c;
-    Index3 index = grid_.index(grid_.nodes(c)[0]);
+    const auto nodes = grid_.nodes(c);
+    const auto edges = grid_.edges(c);
+    Index3 index = grid_.index(nodes[0]);
     view.lower = grid_.lattice().position(index);
     for (int& i : index)
       ++i;
     view.upper = grid_.lattice().position(index);
     for (int v = 0; v < cube::n_vertices; ++v)
-      view.material |= unsigned(grid_.is_material(grid_.nodes(c)[v])) << v;
+      view.material |= unsigned(grid_.is_material(nodes[v])) << v;
     for (int line = 0; line < cube::n_lines; ++line)
-      if (const grid::EdgeCut* cut = cuts_.find(grid_.edges(c)[line])) {
+      if (const grid::EdgeCut* cut = cuts_.find(edges[line])) {
         view.cut |= 1u << line;
         view.planes[line] = {point_on(view, line, cut->t), cut->normal};
         view.labels[line] = cut->label;
