@@ -4,7 +4,7 @@ namespace kerf::dynamics {
 
 ImplicitEulerOptions implicit_euler_options(const NewtonParameters& parameters) {
   const NewtonOptions o = parameters.options();
-  return {o.max_iterations, o.cg_tolerance, o.max_cg_iterations, o.tolerance, o.line_search, o.solver};
+  return {o.max_iterations, o.cg_tolerance, o.max_cg_iterations, o.tolerance, o.line_search, o.solver, o.tangent};
 }
 
 ImplicitEuler::ImplicitEuler(ElasticModel& model, const ImplicitEulerOptions& o)
@@ -12,6 +12,7 @@ ImplicitEuler::ImplicitEuler(ElasticModel& model, const ImplicitEulerOptions& o)
                                  .tolerance = o.newton_tolerance,
                                  .line_search = o.line_search,
                                  .solver = o.solver,
+                                 .tangent = o.tangent,
                                  .cg_tolerance = o.cg_tolerance,
                                  .max_cg_iterations = o.max_cg_iterations}) {}
 

@@ -20,6 +20,7 @@ struct ImplicitEulerOptions {
   double newton_tolerance = 0; ///< NewtonOptions::tolerance: a step that misses it is refused
   LineSearch line_search = LineSearch::none;
   LinearSolver solver = LinearSolver::conjugate_gradients;
+  Tangent tangent = Tangent::positive; ///< what the direct solver factorises
 };
 ImplicitEulerOptions implicit_euler_options(const NewtonParameters& parameters);
 

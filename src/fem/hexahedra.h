@@ -10,7 +10,7 @@
 /// fully integrated element.
 ///
 /// Forces are the exact -dE/dx: they hold the terms of dR/dx, without which an element would exert a torque on itself.
-/// The linearisation leaves the derivatives of R out and projects the law's tangent, which keeps it positive
+/// The linearisation leaves the derivatives of R out and takes the law's positive tangent, which keeps it positive
 /// semi-definite; stiffness_matrix() has the exact second derivative too.
 ///
 /// Every copy's element is its own, and sums over copies are taken in their order: any number of threads, and any way

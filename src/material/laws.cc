@@ -20,9 +20,9 @@ Tangent exact_tangent(const Law& law, const Mat3& F) {
 }
 
 template <class Law>
-Tangent projected_tangent(const Law& law, const Mat3& F) {
+Tangent absolute_tangent(const Law& law, const Mat3& F) {
   const Stretches stretches = stretches_of(F);
-  return tangent_of(stretches, positive_part(law.curvature(stretches.s)));
+  return tangent_of(stretches, absolute_value(law.curvature(stretches.s)));
 }
 
 /// dJ/dF.
@@ -73,7 +73,7 @@ Curvature Corotational::curvature(const Vec3& s) const {
 }
 
 Tangent Corotational::tangent(const Mat3& F) const { return exact_tangent(*this, F); }
-Tangent Corotational::positive_tangent(const Mat3& F) const { return projected_tangent(*this, F); }
+Tangent Corotational::positive_tangent(const Mat3& F) const { return absolute_tangent(*this, F); }
 
 double StVenantKirchhoff::energy(const Mat3& F) const { return hooke_energy(lambda, mu, green_strain(F)); }
 Mat3 StVenantKirchhoff::stress(const Mat3& F) const { return F * hooke_stress(lambda, mu, green_strain(F)); }
@@ -92,7 +92,7 @@ Curvature StVenantKirchhoff::curvature(const Vec3& s) const {
 }
 
 Tangent StVenantKirchhoff::tangent(const Mat3& F) const { return exact_tangent(*this, F); }
-Tangent StVenantKirchhoff::positive_tangent(const Mat3& F) const { return projected_tangent(*this, F); }
+Tangent StVenantKirchhoff::positive_tangent(const Mat3& F) const { return absolute_tangent(*this, F); }
 
 double NeoHookean::energy(const Mat3& F) const {
   const double I = F.squaredNorm(), J = F.determinant();
@@ -122,7 +122,7 @@ Curvature NeoHookean::curvature(const Vec3& s) const {
 }
 
 Tangent NeoHookean::tangent(const Mat3& F) const { return exact_tangent(*this, F); }
-Tangent NeoHookean::positive_tangent(const Mat3& F) const { return projected_tangent(*this, F); }
+Tangent NeoHookean::positive_tangent(const Mat3& F) const { return absolute_tangent(*this, F); }
 
 AnyLaw law_of(const Elastic& material) {
   const double lambda = material.lambda(), mu = material.mu();

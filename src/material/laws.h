@@ -3,9 +3,10 @@
 /// Constitutive laws of isotropic elastic solids, as pure functions of the deformation gradient F = dx/dX [1].
 ///
 /// Each law has: energy density psi [Pa] per rest volume, zero at rest; first Piola-Kirchhoff stress P = dpsi/dF [Pa];
-/// tangent dP/dF [Pa]; positive_tangent, its nearest positive semi-definite one, as Newton's method wants it. All are
-/// finite for every finite F, inverted and collapsed ones too. All agree with Hooke's law of Lame's lambda and mu
-/// [Pa] for small strain. S = R^T F is the symmetric factor of the polar decomposition, E = (F^T F - I) / 2.
+/// tangent dP/dF [Pa]; positive_tangent, which has the absolute values of its eigenvalues, as Newton's method wants it
+/// (stretch.h). All are finite for every finite F, inverted and collapsed ones too. All agree with Hooke's law of
+/// Lame's lambda and mu [Pa] for small strain. S = R^T F is the symmetric factor of the polar decomposition, E =
+/// (F^T F - I) / 2.
 
 #include "material/elastic.h"
 #include "material/stretch.h"

@@ -21,11 +21,10 @@ Stretches stretches_of(const Mat3& F) {
   return result;
 }
 
-Curvature positive_part(const Curvature& curvature) {
+Curvature absolute_value(const Curvature& curvature) {
   const Eigen::SelfAdjointEigenSolver<Mat3> solver(curvature.stretch);
-  const Vec3 kept = solver.eigenvalues().cwiseMax(0.0);
-  return {solver.eigenvectors() * kept.asDiagonal() * solver.eigenvectors().transpose(), curvature.flip.cwiseMax(0.0),
-          curvature.twist.cwiseMax(0.0)};
+  return {solver.eigenvectors() * solver.eigenvalues().cwiseAbs().asDiagonal() * solver.eigenvectors().transpose(),
+          curvature.flip.cwiseAbs(), curvature.twist.cwiseAbs()};
 }
 
 Tangent tangent_of(const Stretches& stretches, const Curvature& curvature) {

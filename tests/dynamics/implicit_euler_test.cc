@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "tests/dynamics/chain.h"
+#include "tests/dynamics/truss.h"
 
 #include <gtest/gtest.h>
 
@@ -123,6 +124,22 @@ TEST(ImplicitEuler, SaysThatConjugateGradientsDidNotConverge) {
   EXPECT_EQ(state.x, before.x);
   EXPECT_EQ(state.v, before.v);
   EXPECT_EQ(state.time, before.time);
+}
+
+/// A bar under compression turns: the exact tangent knows, the positive one does not.
+TEST(ImplicitEuler, FactorisesTheTangentItsParametersName) {
+  const auto n_newton = [](const std::string& tangent) {
+    Truss truss({Vec3::Zero(), Vec3(1, 0, 0)}, {{0, 1}}, 1000);
+    ImplicitEuler stepper(
+      truss,
+      implicit_euler_options(
+        {.n_newton = 100, .newton_tolerance = 1e-12, .line_search = true, .solver = "direct", .tangent = tangent}));
+    State state = truss.state();
+    state.x[1] = Vec3(0.6, 0, 0);
+    state.v[1] = Vec3(0, 5, 0);
+    return stepper.step(state, {}, 0.05).n_newton;
+  };
+  EXPECT_LT(2 * n_newton("exact"), n_newton("positive"));
 }
 
 TEST(ImplicitEuler, CountsItsIterations) {

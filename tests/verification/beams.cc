@@ -56,8 +56,8 @@ struct Strip {
 
 BeamResult heavy_cantilever(const int n_over_height, const Vec3& offset, const BeamModel& model) {
   const Box beam{Vec3(0, -0.1, -0.1), Vec3(1, 0.1, 0.1)};
-  Built built =
-    build([&] { return box(beam, 0.2 / n_over_height, Vec3(0, offset[1], offset[2])); }, options_of(model, 1e6, 0.3));
+  Built built = build([&] { return box(beam, 0.2 / n_over_height, Vec3(0, offset[1], offset[2])); },
+                      options_of(model, 1e6, model.poissons_ratio));
   const CpuTimer timer;
   const Points rest = built.body.rest();
   Points f(rest.size(), Vec3::Zero());

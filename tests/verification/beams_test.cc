@@ -53,9 +53,13 @@ TEST(Cantilever, UnderAnEndForceIsTimoshenkos) {
 /// deflection
 /// for small loads.
 TEST(Cantilever, LargeDeflectionIsTheElasticas) {
-  for (const auto& [alpha, exact] : {std::pair{1.0, 0.30172}, std::pair{2.0, 0.49346}, std::pair{10.0, 0.81061}}) {
+  struct Row {
+    double alpha, exact, bound; // 0.054, 0.063, 0.151 % were measured
+  };
+  for (const auto& [alpha, exact, bound] :
+       {Row{1, 0.30172, 0.7e-3}, Row{2, 0.49346, 0.82e-3}, Row{10, 0.81061, 1.97e-3}}) {
     const double thick = elastica(alpha, 15, 2).value / exact - 1, thin = elastica(alpha, 30, 2).value / exact - 1;
-    EXPECT_LT(std::abs(thin), 2e-3) << alpha;
+    EXPECT_LT(std::abs(thin), bound) << alpha;
     EXPECT_LT(std::abs(thin), 0.4 * std::abs(thick)) << alpha; // what is left is the beam's, not the elements'
     record("alpha_" + std::to_string(alpha), thin);
   }

@@ -15,38 +15,58 @@ struct Wave {
   double phase;
 };
 
+using Waves = std::array<Wave, 3>;
+
 /// Nothing about them is aligned with anything.
-const std::array<Wave, 3> waves = {{{{0.7, -0.2, 0.4}, {1.9, 0.8, -1.1}, 0.3},
-                                    {{-0.3, 0.9, 0.1}, {-0.7, 1.3, 1.6}, 1.1},
-                                    {{0.2, 0.3, -0.8}, {1.2, -1.7, 0.6}, 2.0}}};
+const Waves oblique = {{{{0.7, -0.2, 0.4}, {1.9, 0.8, -1.1}, 0.3},
+                        {{-0.3, 0.9, 0.1}, {-0.7, 1.3, 1.6}, 1.1},
+                        {{0.2, 0.3, -0.8}, {1.2, -1.7, 0.6}, 2.0}}};
 
-Vec3 solution(const Vec3& X) {
-  Vec3 u = Vec3::Zero();
-  for (const Wave& w : waves)
-    u += std::sin(w.number.dot(X) + w.phase) * w.amplitude;
-  return u;
+/// What of them is transverse.
+Waves transverse() {
+  Waves waves = oblique;
+  for (Wave& w : waves)
+    w.amplitude -= w.amplitude.dot(w.number) / w.number.squaredNorm() * w.number;
+  return waves;
 }
 
-Mat3 gradient(const Vec3& X) {
-  Mat3 G = Mat3::Zero();
-  for (const Wave& w : waves)
-    G += std::cos(w.number.dot(X) + w.phase) * w.amplitude * w.number.transpose();
-  return G;
-}
+/// u, its gradient, and what it needs to be the solution.
+struct Solution {
+  Waves waves;
+  double lambda, mu; // [Pa]
 
-Mat3 stress(const Vec3& X, const material::Elastic& material) {
-  const Mat3 G = gradient(X);
-  return material.lambda() * G.trace() * Mat3::Identity() + material.mu() * (G + G.transpose());
-}
+  Vec3 displacement(const Vec3& X) const {
+    Vec3 u = Vec3::Zero();
+    for (const Wave& w : waves)
+      u += std::sin(w.number.dot(X) + w.phase) * w.amplitude;
+    return u;
+  }
 
-/// -div sigma [N/m^3].
-Vec3 body_force(const Vec3& X, const material::Elastic& material) {
-  Vec3 b = Vec3::Zero();
-  for (const Wave& w : waves)
-    b += std::sin(w.number.dot(X) + w.phase) *
-         ((material.lambda() + material.mu()) * w.amplitude.dot(w.number) * w.number +
-          material.mu() * w.number.squaredNorm() * w.amplitude);
-  return b;
+  Mat3 gradient(const Vec3& X) const {
+    Mat3 G = Mat3::Zero();
+    for (const Wave& w : waves)
+      G += std::cos(w.number.dot(X) + w.phase) * w.amplitude * w.number.transpose();
+    return G;
+  }
+
+  Mat3 stress(const Vec3& X) const {
+    const Mat3 G = gradient(X);
+    return lambda * G.trace() * Mat3::Identity() + mu * (G + G.transpose());
+  }
+
+  /// -div sigma [N/m^3].
+  Vec3 body_force(const Vec3& X) const {
+    Vec3 b = Vec3::Zero();
+    for (const Wave& w : waves)
+      b += std::sin(w.number.dot(X) + w.phase) *
+           ((lambda + mu) * w.amplitude.dot(w.number) * w.number + mu * w.number.squaredNorm() * w.amplitude);
+    return b;
+  }
+};
+
+Solution solution_of(const ManufacturedOptions& options) {
+  const auto& material = options.model.material;
+  return {options.dilatation == Dilatation::some ? oblique : transverse(), material.lambda(), material.mu()};
 }
 
 /// Calls f(copy, local, weight [m^3]) for points of the material.
@@ -75,12 +95,11 @@ Body make(const ManufacturedOptions& options) {
                      {Vec3::Constant(-0.9), Vec3::Constant(0.9)});
 }
 
-Points forces(const Body& body, const fem::Hexahedra& model, const ManufacturedOptions& options) {
-  const auto& material = options.model.material;
+Points forces(const Body& body, const fem::Hexahedra& model, const Solution& solution) {
   Points f =
-    traction_forces(body, [&](const SurfacePoint& p) -> Vec3 { return stress(p.position, material) * p.normal; });
+    traction_forces(body, [&](const SurfacePoint& p) -> Vec3 { return solution.stress(p.position) * p.normal; });
   for_each_point(body, model, [&](const grid::Copy& copy, const Vec3& x, const double weight) {
-    const Vec3 b = weight * body_force(body.grid.origin(copy.cell) + body.grid.h() * x, material);
+    const Vec3 b = weight * solution.body_force(body.grid.origin(copy.cell) + body.grid.h() * x);
     for (int v = 0; v < 8; ++v)
       f[copy.corners[v].value] += fem::shape(v, x) * b;
   });
@@ -100,14 +119,19 @@ Eigen::MatrixXd rigid_motions(const Points& rest) {
 
 Eigen::Map<Eigen::VectorXd> as_vector(Points& p) { return {p[0].data(), static_cast<Eigen::Index>(3 * p.size())}; }
 
-/// Takes away resultant and torque: round-off, or what the shape's error leaves of them.
-void balance(const Points& rest, Points& f) {
+/// Takes away resultant and torque, which are errors of quadrature, by forces in proportion to the masses. Equal ones
+/// would tear off corners that only slivers hold.
+void balance(const Points& rest, const fem::Hexahedra& model, Points& f) {
   const Eigen::MatrixXd R = rigid_motions(rest);
-  as_vector(f) -= R * (R.transpose() * R).ldlt().solve(R.transpose() * as_vector(f)).eval();
+  Eigen::MatrixXd MR = R;
+  for (std::size_t i = 0; i < rest.size(); ++i)
+    MR.middleRows<3>(3 * i) *= model.lumped_mass()[i];
+  as_vector(f) -= MR * (R.transpose() * MR).ldlt().solve(R.transpose() * as_vector(f)).eval();
 }
 
 /// Adds the rigid motion that brings u nearest to the solution, in L2 over the material.
-void fit_rigid_motion(const Body& body, const fem::Hexahedra& model, const Points& rest, Points& u) {
+void fit_rigid_motion(const Body& body, const fem::Hexahedra& model, const Solution& solution, const Points& rest,
+                      Points& u) {
   Eigen::Matrix<double, 6, 6> A = Eigen::Matrix<double, 6, 6>::Zero();
   Eigen::Matrix<double, 6, 1> b = Eigen::Matrix<double, 6, 1>::Zero();
   for_each_point(body, model, [&](const grid::Copy& copy, const Vec3& x, const double weight) {
@@ -118,12 +142,13 @@ void fit_rigid_motion(const Body& body, const fem::Hexahedra& model, const Point
     Eigen::Matrix<double, 3, 6> R;
     R << Mat3::Identity(), Vec3::UnitX().cross(X), Vec3::UnitY().cross(X), Vec3::UnitZ().cross(X);
     A += weight * R.transpose() * R;
-    b += weight * R.transpose() * (solution(X) - found);
+    b += weight * R.transpose() * (solution.displacement(X) - found);
   });
   as_vector(u) += rigid_motions(rest) * A.ldlt().solve(b);
 }
 
-void measure(const Body& body, const fem::Hexahedra& model, const Points& u, FieldErrors& errors) {
+void measure(const Body& body, const fem::Hexahedra& model, const Solution& solution, const Points& u,
+             FieldErrors& errors) {
   double l2 = 0, h1 = 0, of_l2 = 0, of_h1 = 0;
   for_each_point(body, model, [&](const grid::Copy& copy, const Vec3& x, const double weight) {
     Vec3 found = Vec3::Zero();
@@ -133,22 +158,22 @@ void measure(const Body& body, const fem::Hexahedra& model, const Points& u, Fie
       G += u[copy.corners[v].value] * fem::shape_gradient(v, x).transpose() / body.grid.h();
     }
     const Vec3 X = body.grid.origin(copy.cell) + body.grid.h() * x;
-    l2 += weight * (found - solution(X)).squaredNorm();
-    h1 += weight * (G - gradient(X)).squaredNorm();
-    of_l2 += weight * solution(X).squaredNorm();
-    of_h1 += weight * gradient(X).squaredNorm();
+    l2 += weight * (found - solution.displacement(X)).squaredNorm();
+    h1 += weight * (G - solution.gradient(X)).squaredNorm();
+    of_l2 += weight * solution.displacement(X).squaredNorm();
+    of_h1 += weight * solution.gradient(X).squaredNorm();
   });
   errors.l2 = std::sqrt(l2 / of_l2);
   errors.h1 = std::sqrt(h1 / of_h1);
 }
 
 /// The face x = 0 of the fitted cube goes where the solution has it.
-dynamics::Support hold_face(const Points& rest) {
+dynamics::Support hold_face(const Solution& solution, const Points& rest) {
   const auto corners = corners_where(rest, [](const Vec3& X) { return X[0] < 1e-9; });
   dynamics::Support support = hold(rest, corners);
   support.rest.clear();
   for (const auto c : corners)
-    support.rest.push_back(rest[c] + solution(rest[c]));
+    support.rest.push_back(rest[c] + solution.displacement(rest[c]));
   return support;
 }
 
@@ -160,17 +185,18 @@ FieldErrors manufactured(const ManufacturedOptions& options) {
   fem::Hexahedra& model = *built.model;
   FieldErrors errors{.cost = built.cost};
   const Points rest = body.rest();
-  Points f = forces(body, model, options), u;
+  const Solution solution = solution_of(options);
+  Points f = forces(body, model, solution), u;
   const CpuTimer solving;
   if (options.shape == Shape::fitted_cube) {
-    u = displacements(body, model, f, {hold_face(rest)}, options.solver);
+    u = displacements(body, model, f, {hold_face(solution, rest)}, options.solver);
   } else {
-    balance(rest, f);
+    balance(rest, model, f);
     u = displacements(body, model, f, hold_rigid_motion(rest), options.solver);
-    fit_rigid_motion(body, model, rest, u);
+    fit_rigid_motion(body, model, solution, rest, u);
   }
   errors.cost.solution = solving.seconds();
-  measure(body, model, u, errors);
+  measure(body, model, solution, u, errors);
   errors.n_cells = body.complex.n_copies();
   errors.smallest_fraction = smallest_fraction(model);
   return errors;

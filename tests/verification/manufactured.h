@@ -16,11 +16,18 @@ enum class Shape {
   ball          ///< the same
 };
 
+/// Whether the solution changes volume. The stress of one that does grows with 1 / (1 - 2 nu), and with it the error of
+/// any displacement: near nu = 0.5 only one that does not, as every solution under given loads tends to be, shows
+/// whether elements lock (|u|_2 + lambda |div u|_1 is what bounds the error of those that do not: Brenner and Sung
+/// 1992, Linear finite element methods for planar linear elasticity, Math. Comp. 59).
+enum class Dilatation { some, none };
+
 struct ManufacturedOptions {
   Shape shape = Shape::ball;
   double h = 0.1; ///< of a body of size 1 [m]
   Vec3 offset = Vec3(0.37, 0.21, 0.83);
   fem::HexahedraOptions model;
+  Dilatation dilatation = Dilatation::some;
   LinearSolver solver = LinearSolver::conjugate_gradients;
 };
 

@@ -19,7 +19,22 @@ TEST(CooksMembrane, ConvergesToTheTabulatedDisplacement) {
     before = std::abs(error);
     testing::Test::RecordProperty("n_" + std::to_string(n), std::to_string(100 * error) + "_percent");
   }
-  EXPECT_LT(before, 0.01);
+  EXPECT_LT(before, 0.0082); // 0.63 % was measured
+}
+
+/// No more than twice the error at nu = 0.3; trilinear strain locks. The ratio (1.19, 1.27) grows with n: nearer 0.5
+/// the held corners are more singular, see tests/fem/locking_test.cc.
+TEST(CooksMembrane, IsAsGoodNearIncompressible) {
+  for (const int n : {12, 24}) {
+    const auto error = [&](const double nu, const fem::Strain strain) {
+      const double reference = nu < 0.4 ? cook_reference_at_03 : cook_reference_at_0499;
+      return std::abs(cooks_membrane(n, 0, hooke(1, nu, strain)).value / reference - 1);
+    };
+    const double ratio = error(0.499, fem::Strain::enhanced) / error(0.3, fem::Strain::enhanced);
+    EXPECT_LT(ratio, 1.5) << n;
+    EXPECT_GT(error(0.499, fem::Strain::trilinear), 5 * error(0.499, fem::Strain::enhanced)) << n;
+    testing::Test::RecordProperty("ratio_n_" + std::to_string(n), std::to_string(ratio));
+  }
 }
 
 /// A cell that holds a part of the front does not open: the disc is as large as the cells that are cut through, and the
