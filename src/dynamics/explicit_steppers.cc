@@ -78,7 +78,7 @@ StepReport ExplicitEuler::step(State& state, const Loads& loads, const double dt
   }
   obey(constraints, state.time + dt, dt, x, v);
   take_over(state, x, v, dt, "explicit Euler");
-  return {};
+  return {.stable_step = limit_.last()};
 }
 
 StepReport MidpointRungeKutta::step(State& state, const Loads& loads, const double dt) {
@@ -100,7 +100,7 @@ StepReport MidpointRungeKutta::step(State& state, const Loads& loads, const doub
   }
   obey(constraints, state.time + dt, dt, x, v);
   take_over(state, x, v, dt, "midpoint Runge-Kutta");
-  return {};
+  return {.stable_step = limit_.last()};
 }
 
 StepReport VelocityVerlet::step(State& state, const Loads& loads, const double dt) {
@@ -122,7 +122,7 @@ StepReport VelocityVerlet::step(State& state, const Loads& loads, const double d
     v[i] = (v[i] + half / mass[i] * force_[i]) / (1 + half * alpha);
   obey(constraints, state.time + dt, dt, x, v);
   take_over(state, x, v, dt, "velocity Verlet");
-  return {};
+  return {.stable_step = limit_.last()};
 }
 
 } // namespace kerf::dynamics

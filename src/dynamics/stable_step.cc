@@ -155,11 +155,11 @@ double StepLimit::at(const State& state, const Loads& loads) const {
 void StepLimit::require(const State& state, const Loads& loads, const double dt) {
   if (options_.beyond == BeyondStable::go_on || dt <= longest_checked_)
     return;
-  const double stable = at(state, loads);
-  if (dt > stable)
+  last_ = at(state, loads);
+  if (dt > last_)
     throw ParameterError(Complaint{.path = "Time step [s]",
                                    .value = to_text(dt),
-                                   .rule = scheme_.name + " is stable here up to " + to_text(stable) + " s",
+                                   .rule = scheme_.name + " is stable here up to " + to_text(last_) + " s",
                                    .remedy = "Use a smaller time step or an implicit integrator, or set Beyond the "
                                              "stable step = go on"});
   longest_checked_ = dt;

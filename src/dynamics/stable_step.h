@@ -68,6 +68,8 @@ class StepLimit {
 
   /// Throws ParameterError with the stable step if dt is beyond it and beyond is refused.
   void require(const State& state, const Loads& loads, double dt);
+  /// The stable step when it was computed last [s]; 0: never.
+  double last() const { return last_; }
   /// At a state [s].
   double at(const State& state, const Loads& loads) const;
 
@@ -75,7 +77,7 @@ class StepLimit {
   ElasticModel& model_;
   ExplicitScheme scheme_;
   ExplicitOptions options_;
-  double longest_checked_ = 0; // [s]
+  double longest_checked_ = 0, last_ = 0; // [s]
 };
 
 } // namespace kerf::dynamics

@@ -7,11 +7,12 @@ namespace kerf::dynamics {
 
 /// What a step took; 0 where a stepper has no such thing.
 struct StepReport {
-  int n_iterations = 0; ///< of the linear solver, summed over the step
-  int n_newton = 0;     ///< iterations of Newton's method, summed over the step
-  int n_substeps = 0;   ///< time steps or load steps inside this one, if it was divided
-  int n_rejected = 0;   ///< of them tried and thrown away
-  double residual = 0;  ///< forces out of balance at the end over the forces that balance, if it was measured [1]
+  int n_iterations = 0;   ///< of the linear solver, summed over the step
+  int n_newton = 0;       ///< iterations of Newton's method, summed over the step
+  int n_substeps = 0;     ///< time steps or load steps inside this one, if it was divided
+  int n_rejected = 0;     ///< of them tried and thrown away
+  double stable_step = 0; ///< of an explicit integrator when it was computed last [s]
+  double residual = 0;    ///< forces out of balance at the end over the forces that balance, if it was measured [1]
 };
 
 /// All that the main loop knows of a physics.

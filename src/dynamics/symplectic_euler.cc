@@ -37,7 +37,7 @@ StepReport SymplecticEuler::step(State& state, const Loads& loads, const double 
   state.x.swap(x);
   state.v.swap(v);
   state.time += dt;
-  return {};
+  return {.stable_step = limit_.last()};
 }
 
 } // namespace kerf::dynamics
