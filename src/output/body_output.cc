@@ -63,7 +63,7 @@ void write_frame(const h5::Object& frame, const BodyStep& step) {
     const h5::Layout layout = {h5::Number::float64, field.n_components};
     const auto rows = field.values.size() / field.n_components;
     const auto dataset = h5::write_rows(frame, "fields/" + field.name, layout, field.values.data(), rows);
-    describe(dataset, {field.unit, "per corner"});
+    describe(dataset, {field.unit, field.n_components == 6 ? "per corner: xx, yy, zz, xy, yz, xz" : "per corner"});
   }
 }
 

@@ -21,6 +21,8 @@ constexpr h5::Layout kinds_layout = {h5::Number::int64, 4};
 
 constexpr std::size_t short_chunk = 512, long_chunk = 4096; // rows: one per step; one per vertex or triangle
 
+std::vector<float> single_precision(const std::span<const double> values) { return {values.begin(), values.end()}; }
+
 std::vector<float> single_precision(const std::span<const Vec3> points) {
   std::vector<float> numbers;
   numbers.reserve(3 * points.size());
@@ -52,10 +54,27 @@ void check_indices(const std::string& file, const SurfaceStep& step) {
                      .remedy = "Nothing was written; hand over arrays that fit each other"});
 }
 
+/// The fields that were announced, in their order, with a row a vertex.
+void check_fields(const std::string& file, const SurfaceStep& step, const std::vector<Field>& announced) {
+  check_equal(file, "fields", step.fields.size(), announced.size());
+  for (std::size_t i = 0; i < announced.size(); ++i) {
+    const Field& field = step.fields[i];
+    if (field.name != announced[i].name || field.n_components != announced[i].n_components)
+      throw DataError(
+        {.file = file,
+         .path = "fields",
+         .value = field.name,
+         .rule = "must be " + announced[i].name + ", with " + std::to_string(announced[i].n_components) + " components",
+         .remedy = "Nothing was written; bring the fields that the file was made for"});
+    check_equal(file, field.name, field.values.size(), field.n_components * step.positions.size());
+  }
+}
+
 } // namespace
 
 struct SurfaceFile::Contents {
   h5::WritableFile file;
+  std::vector<Field> fields = {}; ///< what each step must bring, without values
   h5::Object steps = {};
   std::map<std::string, h5::Object> series = {};
   std::int64_t n_steps = 0;
@@ -77,6 +96,7 @@ struct SurfaceFile::Contents {
     row[polygons] = n_polygons;
     h5::append_rows(series.at(path), kinds_layout, row.data(), 1);
   }
+  void create_field(const Field& field);
   void append_topology(const SurfaceStep& step);
   void append_step(const SurfaceStep& step);
 };
@@ -106,8 +126,16 @@ void SurfaceFile::Contents::create() {
   for (const auto* name :
        {"PartOffsets", "NumberOfParts", "PointOffsets", "PointDataOffsets/rest_position", "CellDataOffsets/label"})
     create_series(std::string("Steps/") + name, count_layout, short_chunk);
+  for (const Field& field : fields)
+    create_field(field);
   create_series("Steps/CellOffsets", kinds_layout, short_chunk);
   create_series("Steps/ConnectivityIdOffsets", kinds_layout, short_chunk);
+}
+
+void SurfaceFile::Contents::create_field(const Field& field) {
+  create_series("PointData/" + field.name, {h5::Number::float32, field.n_components}, long_chunk);
+  h5::set_attribute(series.at("PointData/" + field.name), "unit", field.unit);
+  create_series("Steps/PointDataOffsets/" + field.name, count_layout, short_chunk);
 }
 
 void SurfaceFile::Contents::append_topology(const SurfaceStep& step) {
@@ -149,6 +177,12 @@ void SurfaceFile::Contents::append_step(const SurfaceStep& step) {
   append_count("Steps/PartOffsets", n_topologies - 1); // counts and cells of a topology are one part, used again
   append_count("Steps/PointOffsets", n_points);
   append_count("Steps/PointDataOffsets/rest_position", first_rest);
+  for (const Field& field : step.fields) {
+    const auto values = single_precision(std::span<const double>(field.values));
+    h5::append_rows(series.at("PointData/" + field.name), {h5::Number::float32, field.n_components}, values.data(),
+                    step.positions.size());
+    append_count("Steps/PointDataOffsets/" + field.name, n_points);
+  }
   append_count("Steps/CellDataOffsets/label", first_triangle);
   append_kinds("Steps/CellOffsets", first_triangle);
   append_kinds("Steps/ConnectivityIdOffsets", 3 * first_triangle);
@@ -156,8 +190,10 @@ void SurfaceFile::Contents::append_step(const SurfaceStep& step) {
   h5::set_attribute(steps, "NSteps", ++n_steps);
 }
 
-SurfaceFile::SurfaceFile(const std::filesystem::path& path)
+SurfaceFile::SurfaceFile(const std::filesystem::path& path, const std::span<const Field> fields)
   : contents_(new Contents{.file = {path, JournaledFile::Mode::create}}) {
+  for (const Field& field : fields)
+    contents_->fields.push_back({field.name, field.unit, field.n_components, {}});
   contents_->file.transaction([&] { contents_->create(); });
 }
 
@@ -180,6 +216,7 @@ void SurfaceFile::append(const SurfaceStep& step) {
                        .remedy = "Nothing was written; hand over the triangles"});
     check_equal(file, "positions (topology unchanged)", step.positions.size(), contents_->n_topology_points);
   }
+  check_fields(file, step, contents_->fields);
   contents_->file.transaction([&] { contents_->append_step(step); });
 }
 

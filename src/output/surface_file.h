@@ -3,11 +3,12 @@
 /// The moving surface as one file that ParaView opens: VTKHDF 2.0, PolyData with Steps.
 ///
 /// Each step appends its points [m] as 32-bit floats. Triangles, rest positions and labels are appended only when the
-/// topology changed; other steps point back at the last ones. Each append is one transaction, as in run_file.h.
+/// topology changed; other steps point back at the last ones. Fields at the vertices come with
+/// each step. Each append is one transaction, as in run_file.h.
 /// Source: VTKHDF format specification, docs.vtk.org (vtk_file_formats/vtkhdf_file_format).
 /// Limit: one partition, one body a file.
 
-#include "base/vec.h"
+#include "output/records.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -26,12 +27,14 @@ struct SurfaceStep {
   std::span<const Triangle> triangles;
   std::span<const std::uint16_t> labels; ///< per triangle: which cut revealed it
   Topology topology = Topology::changed;
+  std::span<const Field> fields = {}; ///< per vertex: those that the file was made for
 };
 
 class SurfaceFile {
  public:
-  /// Creates the file, or empties it. Throws DataError when it cannot be written.
-  explicit SurfaceFile(const std::filesystem::path& path);
+  /// Creates the file, or empties it. `fields` are the names, units and components of what every step brings. Throws
+  /// DataError when it cannot be written.
+  explicit SurfaceFile(const std::filesystem::path& path, std::span<const Field> fields = {});
   SurfaceFile(SurfaceFile&&) noexcept;
   SurfaceFile& operator=(SurfaceFile&&) noexcept;
   ~SurfaceFile();

@@ -117,7 +117,10 @@ void Phyxels::follow_cut(const CutBody& body, const NewCut&, dynamics::State& st
   add_faces(body.surface, false);
   find_pieces(body);
   is_stale_ = true;
-  catch_up(body);
+  if (options_.visibility.budget == 0)
+    catch_up(body);
+  else
+    build_map(body); // pieces part at once; what the step may look at, it looks at in its own catch_up()
   dynamics::forget_forces(state);
   stepper_ = make_stepper_(model_, [this] { return phyxel_pieces_; });
   follow(state);

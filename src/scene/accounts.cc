@@ -5,6 +5,23 @@
 
 namespace kerf::scene {
 
+namespace {
+
+/// What supports spend on the kinetic energy of what they hold, exactly [W].
+double power_of_inertia(const dynamics::ForceModel& model, const dynamics::Loads& loads, const dynamics::State& before,
+                        const dynamics::State& after, const Points& acceleration) {
+  const auto mass = model.lumped_mass();
+  const dynamics::Constraints constraints(loads, after.x.size());
+  double sum = 0;
+  for (const auto& held : constraints.held()) {
+    const Vec3 v = 0.5 * (before.v[held.corner] + after.v[held.corner]);
+    sum += mass[held.corner] * acceleration[held.corner].dot(v - constraints.freedom(held.corner).project * v);
+  }
+  return sum;
+}
+
+} // namespace
+
 double total_energy(physics::Physics& physics, const dynamics::Loads& loads, const dynamics::State& state) {
   const dynamics::ForceModel& model = physics.model();
   return model.energy(state.x) + dynamics::kinetic_energy(model, state.v) +
@@ -18,17 +35,18 @@ void Accounts::open(physics::Physics& physics, const dynamics::Loads& loads, con
 
 void Accounts::after_step(physics::Physics& physics, const dynamics::Loads& loads, dynamics::State& state) {
   const double dt = state.time - before_.time;
-  const Points acceleration = dynamics::mean_acceleration(before_, state);
+  const Points acceleration = dynamics::mean_acceleration(before_, state), none(state.x.size(), Vec3::Zero());
   reactions_ = dynamics::reactions(physics.model(), loads, state, acceleration, Vec3::Zero());
   dynamics::State from = before_, to{state.x, {}, state.time};
   for (std::size_t i = 0; i < state.x.size(); ++i)
     from.v[i] = (state.x[i] - before_.x[i]) / dt;
   to.v = from.v;
-  const bool is_known = acceleration_.size() == acceleration.size(); // not in the first step, nor after a cut
-  const auto at_begin = dynamics::power(physics.model(), loads, from, is_known ? acceleration_ : acceleration);
-  const auto at_end = dynamics::power(physics.model(), loads, to, acceleration);
+  auto at_begin = dynamics::power(physics.model(), loads, from, none);
+  auto at_end = dynamics::power(physics.model(), loads, to, none);
+  const double inertia = power_of_inertia(physics.model(), loads, before_, state, acceleration);
+  at_begin.supports += inertia;
+  at_end.supports += inertia;
   dynamics::book(at_begin, at_end, dt, state);
-  acceleration_ = acceleration;
 }
 
 } // namespace kerf::scene

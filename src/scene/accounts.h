@@ -2,8 +2,10 @@
 
 /// Where a body's energy goes, and what holds it: kept only when an observable asks.
 ///
-/// Work is force times displacement by the trapezoidal rule over a step, so statics has work too; reactions are those
-/// at the end of the step. Everything that happens to the energy at an instant of cutting is the work of the cut.
+/// Work is force times displacement by the trapezoidal rule over a step, so statics has work too; but what supports
+/// spend on inertia is mass times mean acceleration times mean velocity, which is the kinetic energy's growth: a held
+/// corner's velocity is that of the step that led there, and lags. Reactions are those at the end of the step.
+/// Everything that happens to the energy at an instant of cutting is the work of the cut.
 /// energy + dissipated - works of supports, loads and cut stays what it was at the start, up to the integrator's error;
 /// in statics what is missing is what the body gave away on its way from one equilibrium to the next: for a cut that
 /// grows under load, the energy released.
@@ -39,7 +41,6 @@ class Accounts {
  private:
   double start_energy_ = 0, work_of_cut_ = 0; // [J]
   dynamics::State before_;
-  Points acceleration_; // of the last step [m/s^2]
   std::vector<dynamics::Reaction> reactions_;
 };
 

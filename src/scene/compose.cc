@@ -20,6 +20,9 @@ void compose_time(const Section& section, World& world) {
   if (steps > 1e9)
     throw section.complaint("Time step [s]", "must lead to the end within 1e9 steps", "Use a larger time step");
   world.time_step = parameters.time_step;
+  const std::string key = "Time step [s]";
+  const Complaint place = section.complaint(key, "", "").complaint();
+  world.time_step_place = {key, place.file, place.path, place.line};
   world.n_steps = static_cast<int>(steps);
 }
 
@@ -90,7 +93,8 @@ World compose(const SceneText& text) {
     compose_forceps(*section, world);
   require_static_answers(root, world);
 
-  world.output = read_if_written<OutputParameters>(root, "Output");
+  if (const Section* section = root.find("Output"))
+    compose_output(*section, world);
   if (const Section* section = root.find("Surface file"))
     world.surface_file = section->read<SurfaceFileParameters>();
   if (const Section* section = root.find("Observables"))

@@ -11,6 +11,8 @@
 
 #include <Eigen/Geometry>
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
 
 namespace kerf::scene {
@@ -146,6 +148,29 @@ void compose_floor(const Section& section, Body& body) {
                               }});
 }
 
+/// One linearisation a step starts at rest, where friction is a stiff brake: what should slide would stick.
+void require_resolved_friction(const Section& section, const std::vector<const Section*>& floors) {
+  constexpr int enough = 3;
+  const auto parameters = section.read<BodyParameters>();
+  const auto& names = implicit_integrator_names();
+  const bool rubs = std::any_of(floors.begin(), floors.end(), [](const Section* floor) {
+    return floor->read<dynamics::FloorParameters>().friction > 0;
+  });
+  if (!rubs || parameters.backend == "lattice" ||
+      std::find(names.begin(), names.end(), parameters.integrator) == names.end())
+    return;
+  std::string kind = parameters.integrator;
+  kind[0] = static_cast<char>(std::toupper(kind[0]));
+  if (read_if_written<dynamics::NewtonParameters>(section, kind).n_newton >= enough)
+    return;
+  const std::string key = "Newton iterations [1]", rule = line("friction of a floor needs ", enough, " or more"),
+                    set = line("set ", key, " = 6");
+  if (const Section* written = section.find(kind))
+    throw written->complaint(key, rule, "Write '" + set + "', or 'set Friction [1] = 0' in the Floor");
+  throw section.complaint(key + " of '" + kind + "': " + rule,
+                          "Write 'subsection " + kind + "' with '" + set + "', or 'set Friction [1] = 0' in the Floor");
+}
+
 /// Skin must be there from the start; what cuts will reveal may not be there yet.
 void require_loaded_triangles(const Section& section, const dynamics::PatchParameters& parameters, const Body& body) {
   if (parameters.faces == "revealed")
@@ -173,6 +198,7 @@ void require_no_contradiction(const Section& section, const double time, const B
 } // namespace
 
 void compose_loads(const Section& section, const std::vector<const Section*>& floors, Body& body) {
+  require_resolved_friction(section, floors);
   for (const Section* support : section.all("Support"))
     body.regions.push_back(compose_support(*support));
   for (const Section* load : section.all("Body force"))

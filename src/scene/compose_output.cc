@@ -1,5 +1,7 @@
 #include "scene/compose_output.h"
 
+#include "scene/fields.h"
+
 #include <algorithm>
 #include <sstream>
 
@@ -44,7 +46,31 @@ void require_known(const Section& section, const std::vector<std::string>& names
   }
 }
 
+void require_fields(const Section& section, const World& world) {
+  const auto& names = world.fields;
+  for (auto it = names.begin(); it != names.end(); ++it) {
+    if (!is_field(*it))
+      throw section.complaint("Fields", "'" + *it + "' is not a field", "The fields are: " + field_names());
+    if (std::find(names.begin(), it, *it) != it)
+      throw section.complaint("Fields", "'" + *it + "' is named twice", "Name it once");
+    for (const Body& body : world.bodies)
+      if (!has_field(body, *it))
+        throw section.complaint("Fields",
+                                "'" + *it + "' is known of finite elements only, and 'Body " + body.name + "' has none",
+                                "Remove it, or write 'set Backend = fem' there");
+  }
+}
+
 } // namespace
+
+void compose_output(const Section& section, World& world) {
+  world.output = section.read<OutputParameters>();
+  if (world.output.fields == "none")
+    return;
+  world.fields = words_of(world.output.fields);
+  require_fields(section, world);
+  world.composition.push_back("fields in the files: " + world.output.fields);
+}
 
 void compose_observables(const Section& section, World& world) {
   const auto names = words_of(section.read<ObservableParameters>().names);

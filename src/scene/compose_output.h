@@ -1,11 +1,14 @@
 #pragma once
 
-/// Images and observables from their sections.
+/// Output, images and observables from their sections.
 
 #include "scene/composing.h"
 #include "scene/world.h"
 
 namespace kerf::scene {
+
+/// What files hold. Throws ParameterError for what is no field, named twice, or not there for the physics of a body.
+void compose_output(const Section& section, World& world);
 
 /// Starts the graphics. Throws ParameterError for a camera that cannot see.
 Images compose_images(const Section& section);

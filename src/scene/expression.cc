@@ -30,7 +30,10 @@ class Expressions {
  public:
   Expressions(const Section& section, const std::string& key, const std::string& text, const int n,
               const std::string& variables)
-    : n_(n), has_place_(variables != "t"), parser_(std::make_shared<dealii::FunctionParser<3>>(n)) {
+    : n_(n),
+      has_place_(variables != "t"),
+      place_(section.complaint(key, "", "Choose an expression that is finite in the whole body").complaint()),
+      parser_(std::make_shared<dealii::FunctionParser<3>>(n)) {
     const std::string of = (n == 1 ? "one expression of " : "three expressions of ") + variables;
     const std::string remedy = n == 1 ? "For example: 100*sin(2*pi*t)" : "For example: 0; 0; 0.01*sin(2*pi*t)";
     const std::string separated = n == 1 ? "" : ", separated by semicolons";
@@ -52,9 +55,12 @@ class Expressions {
   double operator()(const int i, const Vec3& X, const double time) const {
     parser_->set_time(time);
     const double value = parser_->value(dealii::Point<3>(X[0], X[1], X[2]), static_cast<unsigned>(i));
-    if (has_place_ && !std::isfinite(value))
-      throw NumericalError("an expression of the scene is not finite at x, y, z, t = " + to_text(X[0]) + ", " +
-                           to_text(X[1]) + ", " + to_text(X[2]) + ", " + to_text(time));
+    if (has_place_ && !std::isfinite(value)) {
+      Complaint complaint = place_;
+      complaint.rule = "must be finite, and is not at x, y, z, t = " + to_text(X[0]) + ", " + to_text(X[1]) + ", " +
+                       to_text(X[2]) + ", " + to_text(time);
+      throw ParameterError(complaint);
+    }
     return value;
   }
 
@@ -73,6 +79,7 @@ class Expressions {
 
   int n_;
   bool has_place_;
+  Complaint place_; ///< of what is not finite only somewhere
   std::shared_ptr<dealii::FunctionParser<3>> parser_;
 };
 

@@ -13,7 +13,8 @@ namespace kerf::scene {
 std::function<Vec3(double time)> vector_of_time(const Section& section, const std::string& key,
                                                 const std::string& expressions);
 
-/// Three expressions of the rest position x, y, z [m] and the time t [s]; else as above.
+/// Three expressions of the rest position x, y, z [m] and the time t [s]; else as above, but what is not finite is told
+/// where it is met.
 std::function<Vec3(const Vec3& X, double time)> vector_of_place(const Section& section, const std::string& key,
                                                                 const std::string& expressions);
 

@@ -1,5 +1,6 @@
 #include "scene/grammar_output.h"
 
+#include "scene/fields.h"
 #include "scene/observables.h"
 
 namespace kerf::scene {
@@ -13,6 +14,10 @@ constexpr Range at_least_one{1, 1e9};
 void OutputParameters::describe(Parameters& p) {
   p.integer("Frames every [1]", frames_every, at_least_one,
             "Steps between frames of corner positions and velocities in run.h5; its series have every step.");
+  p.text("Fields", fields,
+         "Fields over the body, separated by commas, for each corner in the frames of run.h5 and each vertex in the "
+         "surface file: " +
+           field_names() + ". All but displacement are of the backend fem. Or none.");
 }
 
 void SurfaceFileParameters::describe(Parameters& p) {
@@ -39,7 +44,7 @@ void ImageParameters::describe(Parameters& p) {
 
 std::vector<SectionKind> output_kinds() {
   return {
-    {"Output", Occurrence::once, "What run.h5 holds.", keys_of<OutputParameters>(), {}},
+    {"Output", Occurrence::once, "What run.h5 and the surface file hold.", keys_of<OutputParameters>(), {}},
     {"Observables",
      Occurrence::once,
      "Quantities over time in run.h5. Without this section there are none.",

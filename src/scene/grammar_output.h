@@ -11,6 +11,7 @@ namespace kerf::scene {
 
 struct OutputParameters {
   int frames_every = 10; ///< steps
+  std::string fields = "none";
   void describe(Parameters& p);
 };
 

@@ -16,6 +16,11 @@ const std::vector<std::string>& integrator_names() {
   return names;
 }
 
+const std::vector<std::string>& implicit_integrator_names() {
+  static const std::vector<std::string> names = {"implicit Euler", "BDF2", "Newmark", "generalised alpha"};
+  return names;
+}
+
 void LatticeParameters::describe(Parameters& p) {
   p.integer("Half width [cells]", half_width, {.min = 1, .max = 1e6},
             "Of the regions that are matched; wider ones are stiffer and cost the same.");

@@ -12,6 +12,8 @@ namespace kerf::scene {
 
 const std::vector<std::string>& backend_names();
 const std::vector<std::string>& integrator_names();
+/// Those of them that solve equations for the end of each step, and have dynamics::NewtonParameters.
+const std::vector<std::string>& implicit_integrator_names();
 
 /// Settings of an integrator, and what elements must be for it. One struct for each group of integrators that have the
 /// same keys; each integrator has a section of its name.

@@ -216,6 +216,10 @@ const std::vector<Observable>& body_observables() {
      [](const Body& b) { return count(b.report.n_substeps); }},
     {"residual", "1", "forces out of balance over those that balance at the end of the step, where it was measured",
      [](const Body& b) { return b.report.residual; }},
+    {"stable step", "s",
+     "longest time step that the explicit integrator bears, as of the first step after the start or a cut; 0 where it "
+     "was not computed",
+     [](const Body& b) { return b.report.stable_step; }},
     {"waiting pairs", "1", "of phyxels or corners that wait for a look at a new cut (backend pba)",
      [](const Body& b) {
        const auto* phyxels = dynamic_cast<const physics::Phyxels*>(b.physics.get());

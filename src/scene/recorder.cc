@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "scene/drawing.h"
+#include "scene/fields.h"
 
 #include <cerrno>
 #include <cstdio>
@@ -115,7 +116,8 @@ Recorder::Recorder(const std::filesystem::path& folder, const World& world, cons
   run_file_.write_composition(world.composition);
   if (world.surface_file)
     for (std::size_t b = 0; b < bodies_.size(); ++b)
-      bodies_[b].surface_file.emplace(folder_ / ("surface_" + world.bodies[b].name + ".vtkhdf"));
+      bodies_[b].surface_file.emplace(folder_ / ("surface_" + world.bodies[b].name + ".vtkhdf"),
+                                      announced(world.fields));
 }
 
 void Recorder::record(const World& world, const int step, Timings& seconds) {
@@ -125,8 +127,13 @@ void Recorder::record(const World& world, const int step, Timings& seconds) {
     write_image(world, step);
   }
   const ScopedTimer timer(seconds, "output");
-  append_step(world, step, stepping, is_due(step, world.output.frames_every, world));
-  if (world.surface_file && is_due(step, world.surface_file->every, world))
+  const bool with_frames = is_due(step, world.output.frames_every, world);
+  const bool with_surfaces = world.surface_file && is_due(step, world.surface_file->every, world);
+  for (std::size_t b = 0; b < bodies_.size(); ++b)
+    if (with_frames || with_surfaces)
+      bodies_[b].fields = fields_at_corners(world.bodies[b], world.fields);
+  append_step(world, step, stepping, with_frames);
+  if (with_surfaces)
     append_surfaces(world, step);
 }
 
@@ -141,7 +148,7 @@ void Recorder::append_step(const World& world, const int step, const Timings& se
   if (with_frames)
     for (std::size_t b = 0; b < world.bodies.size(); ++b) {
       const Body& body = world.bodies[b];
-      output::BodyStep body_step{body.name, corners(body), velocities(body), {}};
+      output::BodyStep body_step{body.name, corners(body), velocities(body), bodies_[b].fields};
       if (bodies_[b].complex_written != body.n_recuts) {
         complexes[b] = to_record(body);
         surfaces[b] = to_record(body.surface);
@@ -158,9 +165,10 @@ void Recorder::append_surfaces(const World& world, const int step) {
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     const Body& body = world.bodies[b];
     const bool changed = bodies_[b].surface_written != body.n_recuts;
+    const auto fields = at_vertices(body.surface, bodies_[b].fields);
     bodies_[b].surface_file->append({step * world.time_step, body.positions, body.surface.rest, body.surface.triangles,
                                      body.surface.labels,
-                                     changed ? output::Topology::changed : output::Topology::unchanged});
+                                     changed ? output::Topology::changed : output::Topology::unchanged, fields});
     bodies_[b].surface_written = body.n_recuts;
   }
 }

@@ -32,6 +32,7 @@ class Recorder {
   struct BodyFiles {
     int complex_written = -1, surface_written = -1; ///< Body::n_recuts of what the files hold last
     std::optional<output::SurfaceFile> surface_file;
+    std::vector<output::Field> fields; ///< of the corners, at the step that is recorded
   };
 
   void append_step(const World& world, int step, const Timings& seconds, bool with_frames);

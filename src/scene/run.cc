@@ -23,9 +23,10 @@ void require_sound(const Body& body, const double dt) {
                          " m/s. Use a smaller time step");
 }
 
-/// Runs `action` on a body; an error says which body, step and time.
+/// Runs `action` on a body; an error says which body, step and time, and where the scene sets a time step that is
+/// refused.
 template <class Action>
-void on(const Body& body, const int step, const double time, const Action& action) {
+void on(const World& world, const Body& body, const int step, const double time, const Action& action) {
   const auto place = [&] {
     return "body " + body.name + ", step " + std::to_string(step) + ", time " + to_text(time) + " s: ";
   };
@@ -36,6 +37,11 @@ void on(const Body& body, const int step, const double time, const Action& actio
   } catch (const ParameterError& error) {
     Complaint complaint = error.complaint();
     complaint.rule = place() + complaint.rule;
+    if (complaint.path == world.time_step_place.key) {
+      complaint.file = world.time_step_place.file;
+      complaint.line = world.time_step_place.line;
+      complaint.path = world.time_step_place.path;
+    }
     throw ParameterError(complaint);
   }
 }
@@ -45,7 +51,7 @@ void cut(World& world, const int step, Timings& seconds) {
   for (Body& body : world.bodies) {
     if (!body.cutting)
       continue;
-    on(body, step, t1, [&] {
+    on(world, body, step, t1, [&] {
       const int n_recuts = body.n_recuts;
       const double before = body.accounts ? total_energy(*body.physics, body.loads, body.state) : 0;
       for (const TimedSurface& timed : world.cut_surfaces)
@@ -68,7 +74,7 @@ void advance(World& world, const int step, Timings& seconds) {
     }
     const ScopedTimer timer(seconds, "solve");
     hold(body, world.forceps, step, (step - 1) * dt);
-    on(body, step, t1, [&] {
+    on(world, body, step, t1, [&] {
       if (body.accounts)
         body.accounts->before_step(body.state);
       body.report = body.physics->step(body.state, body.loads, dt);

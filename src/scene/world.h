@@ -35,8 +35,15 @@ struct ScissorsHandles {
   double length = 0;           ///< beyond the pivot [m]; 0: no handles
 };
 
+/// Where the scene sets a key: for what can only be refused while running.
+struct Place {
+  std::string key, file, path;
+  int line = 0;
+};
+
 struct World {
   double time_step = 0; ///< [s]
+  Place time_step_place = {};
   int n_steps = 0;
   std::vector<Body> bodies;
   std::vector<cut::Blade> blades; ///< those of scissors come last, in pairs
@@ -44,6 +51,7 @@ struct World {
   std::vector<Forceps> forceps;
   std::vector<TimedSurface> cut_surfaces;
   OutputParameters output;
+  std::vector<std::string> fields; ///< that files hold: names of fields.h
   std::optional<SurfaceFileParameters> surface_file;
   std::optional<Images> images; ///< empty in a scene without images: no GL context exists
 

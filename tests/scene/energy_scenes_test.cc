@@ -1,0 +1,125 @@
+// Scenes whose energy is booked: a cut that grows under load, motion that is driven and damped.
+
+#include "tests/scene/trials.h"
+
+namespace kerf::scene {
+namespace {
+
+constexpr double E = 1e5, dead_load = 10; // [Pa]
+
+/// A rectangle in the plane z = 0.1 m from x = -1 to `end`, across the whole bar, as a mesh file.
+std::string write_front(const std::filesystem::path& path, const double end) {
+  std::ofstream(path) << "OFF\n4 2 0\n-1 -1 0.1\n"
+                      << end << " -1 0.1\n-1 1 0.1\n"
+                      << end << " 1 0.1\n3 0 1 3\n3 0 3 2\n";
+  return path.string();
+}
+
+std::string cut_at(const double time, const std::string& mesh, const std::string& name) {
+  return section("Cut surface " + name, {key("Time [s]", time), "Shape = mesh", "Mesh = " + mesh});
+}
+
+/// A bar of two arms of 0.1 m, 3 cells each, opened by dead loads at its end; the cut grows by one cell. The front
+/// stays at a column of nodes, from 14.5 to 15.5 cells. G = 12 P^2 a^2 / (E b^2 h^3) (1 + 0.64 h/a)^2 (Foote and
+/// Buchwald 1985) times b da is released: what is missing in the books, and the growth of the elastic energy.
+TEST(EnergyScene, DoubleCantileverGivesAwayItsEnergyRelease) {
+  const output::TemporaryFolder folder;
+  const double cell = 0.1 / 3, b = 0.2, h = 0.1, P = dead_load * b * h;
+  const std::string mouth = "0.001, 1, 0.0999";
+  const std::string inside =
+    material(E, 0.3, "small strain") + section("Support wall", box("0.97, -1, -1", "2, 1, 1")) +
+    section("Traction up", box("-1, -1, 0.1", "0.001, 1, 1") + Keys{"Traction [N/m^2] = 0; 0; 10"}) +
+    section("Traction down", box("-1, -1, -1", mouth) + Keys{"Traction [N/m^2] = 0; 0; -10"});
+  const Trial bar(
+    steps(1, 3) +
+    section("Body bar",
+            Keys{"Mesh = " + mesh_path("bar.off"), key("Cube edge [m]", cell), "Element = enhanced"} + statics(),
+            inside) +
+    cut_at(1, write_front(folder / "a.off", 15 * cell), "start") +
+    cut_at(2, write_front(folder / "b.off", 16 * cell), "growth") +
+    observe("missing energy, elastic energy, energy of loads, work of the cut, load forces, pieces"));
+  EXPECT_NEAR(bar.last("force of up z"), P, 1e-9);
+  const auto missing = bar.series("missing energy"), elastic = bar.series("elastic energy");
+  const double released = missing[3] - missing[2];
+  const auto at_once = bar.series("work of the cut");
+  EXPECT_NEAR(released, elastic[3] - elastic[2], 5e-3 * released) << "Clapeyron";
+  EXPECT_NEAR(released - (at_once[3] - at_once[2]), elastic[3] - elastic[2], 1e-5 * released);
+  EXPECT_NEAR(at_once[3], 0, 5e-3 * released) << "enhanced strain of new copies differs a little";
+  const double a = 15 * cell, G = 12 * P * P * a * a / (E * b * b * h * h * h) * std::pow(1 + 0.64 * h / a, 2);
+  std::printf("double cantilever: released %.4g J, %.2f %% off the closed form\n", released,
+              100 * (released / (G * b * cell) - 1));
+  EXPECT_NEAR(released, G * b * cell, 0.08 * G * b * cell);
+}
+
+/// Between grips that stay: released is half the way of the grips times what their force falls by.
+TEST(EnergyScene, CutBetweenGripsGivesAwayWhatTheirForceFallsBy) {
+  const std::string inside =
+    material(E, 0.3, "small strain") + clamped_end() +
+    section("Support hand", box("0.93, -1, -1", "2, 1, 1") + Keys{"Displacement [m] = 0.001*min(t, 1); 0; 0"});
+  const Trial bar(steps(1, 2) + section("Body bar", bar_keys(5) + statics(), inside) +
+                  section("Cut surface notch", {"Time [s] = 1", "Shape = disc", "Point [m] = 0.5, 0.1, 0.2",
+                                                "Normal [1] = 1, 0, 0", "Radius [m] = 0.1"}) +
+                  observe("missing energy, elastic energy, work of supports, work of the cut, reactions, cut edges"));
+  EXPECT_GT(bar.last("cut edges"), 3);
+  const auto force = bar.series("reaction hand x"), elastic = bar.series("elastic energy"),
+             missing = bar.series("missing energy"), work = bar.series("work of supports");
+  EXPECT_NEAR(work[1], 0.5 * force[1] * 0.001, 1e-9 * work[1]);
+  EXPECT_NEAR(work[1], elastic[1], 1e-5 * elastic[1]);
+  EXPECT_NEAR(missing[1], 0, 1e-5 * elastic[1]);
+  EXPECT_NEAR(work[2], work[1], 1e-9 * work[1]);
+  EXPECT_LT(force[2], 0.98 * force[1]);
+  const double released = 0.5 * 0.001 * (force[1] - force[2]);
+  EXPECT_NEAR(missing[2], released, 2e-4 * released);
+  EXPECT_NEAR(bar.last("work of the cut"), 0, 1e-6 * released) << "at the instant of cutting nothing moves";
+}
+
+/// All that books know: a support that moves, a pressure, a handle with a damper, gravity, both dampings.
+std::string driven_cube(const double dt, const int n) {
+  const std::string inside =
+    material(1e4, 0.3) + section("Damping", {"Mass damping [1/s] = 2", "Stiffness damping [s] = 1e-3"}) +
+    section("Newmark", {"Newton iterations [1] = 20", "Newton tolerance [1] = 1e-10", "CG tolerance [1] = 1e-10"}) +
+    section("Support bottom",
+            box("-1, -1, -1", "1, 1, -0.06") + Keys{"Displacement [m] = 0.01*(1 - cos(15*t)); 0; 0"}) +
+    section("Pressure push", box("-1, -1, 0.09", "1, 1, 1") + Keys{"Pressure [Pa] = 100*(1 - cos(30*t))"}) +
+    section("Handle hand", {"Point [m] = 0, 0, 0.08", "Stiffness [N/m] = 20", "Damping [N s/m] = 2"});
+  return steps(dt, n) + section("Gravity", {"Acceleration [m/s^2] = 0, 0, -1"}) +
+         section("Body cube", cube_keys() + Keys{"Integrator = Newmark"}, inside) +
+         observe("missing energy, kinetic energy, elastic energy, dissipated energy, work of supports, work of loads");
+}
+
+TEST(EnergyScene, BooksOfADrivenBodyCloseWithTheSquareOfTheStep) {
+  const Trial coarse(driven_cube(0.01, 20)), fine(driven_cube(0.005, 40));
+  const double a = coarse.last("missing energy"), b = fine.last("missing energy");
+  const double moved = fine.last("kinetic energy") + fine.last("elastic energy");
+  std::printf("driven cube: missing %.2e, %.2e of the energy there is\n", a / moved, b / moved);
+  for (const std::string share : {"dissipated energy", "work of supports", "work of loads"})
+    EXPECT_GT(std::abs(fine.last(share)), 10 * std::abs(b)) << share;
+  EXPECT_LT(std::abs(b), 0.005 * moved);
+  EXPECT_NEAR(b / a, 0.25, 0.1);
+}
+
+/// A free cube that quivers: implicit Euler loses what Newmark keeps, and the books say how much.
+TEST(EnergyScene, MissingEnergyIsWhatAnIntegratorLoses) {
+  const auto missing_share = [](const std::string& integrator) {
+    World world = world_of(steps(0.005, 20) +
+                           section("Body cube", cube_keys() + Keys{"Integrator = " + integrator}, material(1e4, 0.3)) +
+                           observe("missing energy, kinetic energy, elastic energy"));
+    set_in_motion(world.bodies[0], Vec3::Zero(), 0.05);
+    Body& body = world.bodies[0];
+    body.accounts->open(*body.physics, body.loads, body.state);
+    const double start = body.accounts->start_energy();
+    const output::TemporaryFolder folder;
+    run_silently(world, folder / "out");
+    const output::Reader reader(folder / "out/run.h5");
+    const double missing = reader.observable("cube missing energy").back();
+    const double there =
+      reader.observable("cube kinetic energy").back() + reader.observable("cube elastic energy").back();
+    EXPECT_NEAR(missing, start - there, 1e-12 * start);
+    return missing / start;
+  };
+  EXPECT_GT(missing_share("implicit Euler"), 0.3);
+  EXPECT_NEAR(missing_share("Newmark"), 0, 0.02);
+}
+
+} // namespace
+} // namespace kerf::scene
