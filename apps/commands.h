@@ -11,6 +11,8 @@ using Arguments = std::vector<std::string>;
 
 int run(const Arguments& arguments);
 int check(const Arguments& arguments);
+int study(const Arguments& arguments);
+int weights(const Arguments& arguments);
 int params(const Arguments& arguments);
 int table(const Arguments& arguments);
 

@@ -13,16 +13,18 @@ namespace {
 constexpr const char* usage = R"(usage:
   kerf run SCENE.prm [--set "Section/Key=value"]... [--output DIR] [--threads N]
   kerf check SCENE.prm [--set "Section/Key=value"]...     parse and compose, run nothing
-  kerf params                                             every section and key of a scene
+  kerf study STUDY.prm [--set ...] [--output DIR] [--threads N]
+                                                          a scene in variants: error against run time, as a table
+  kerf weights WEIGHTS.prm [--set ...] [--output DIR]     weights of points near cuts, as images and a table
+  kerf params [study]                                     every section and key of a scene, or of a study
   kerf table --output FILE.h5                             the Splitting Cubes table as a file
 )";
 
 int dispatch(const kerf::apps::Arguments& arguments) {
   using Command = int (*)(const kerf::apps::Arguments&);
-  const std::map<std::string, Command> commands = {{"run", kerf::apps::run},
-                                                   {"check", kerf::apps::check},
-                                                   {"params", kerf::apps::params},
-                                                   {"table", kerf::apps::table}};
+  const std::map<std::string, Command> commands = {{"run", kerf::apps::run},       {"check", kerf::apps::check},
+                                                   {"study", kerf::apps::study},   {"weights", kerf::apps::weights},
+                                                   {"params", kerf::apps::params}, {"table", kerf::apps::table}};
   if (arguments.empty() || arguments[0] == "help" || arguments[0] == "--help") {
     std::printf("%s", usage);
     return arguments.empty() ? 1 : 0;

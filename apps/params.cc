@@ -3,15 +3,17 @@
 #include "base/error.h"
 #include "scene/grammar.h"
 #include "scene/text_print.h"
+#include "study/grammar.h"
 
 #include <cstdio>
 
 namespace kerf::apps {
 
 int params(const Arguments& arguments) {
-  if (!arguments.empty())
-    throw ParameterError(Complaint{.value = arguments[0], .rule = "params takes no arguments"});
-  std::printf("%s", scene::print_parameters(scene::grammar()).c_str());
+  const bool of_studies = arguments == Arguments{"study"};
+  if (!arguments.empty() && !of_studies)
+    throw ParameterError(Complaint{.value = arguments[0], .rule = "params takes no arguments but 'study'"});
+  std::printf("%s", scene::print_parameters(of_studies ? study::grammar() : scene::grammar()).c_str());
   return 0;
 }
 

@@ -3,9 +3,8 @@
 #include "base/error.h"
 #include "output/h5_array.h"
 #include "output/names.h"
+#include "output/run_info.h"
 #include "output/schema.h"
-
-#include <string_view>
 
 namespace kerf::output {
 namespace {
@@ -37,36 +36,9 @@ Reader::Reader(Reader&&) noexcept = default;
 Reader& Reader::operator=(Reader&&) noexcept = default;
 Reader::~Reader() = default;
 
-RunInfo Reader::info() const {
-  const auto& root = contents_->root;
-  const auto text = [&](const char* name) { return h5::text_attribute(root, name); };
-  RunInfo info = {text("version"),
-                  text("git_commit"),
-                  text("command_line"),
-                  text("host"),
-                  text("compiler"),
-                  {},
-                  static_cast<int>(h5::integer_attribute(root, "n_threads")),
-                  static_cast<std::uint64_t>(h5::integer_attribute(root, "seed")),
-                  text("started")};
-  const std::string prefix = library_prefix;
-  for (const auto& name : h5::attribute_names(root))
-    if (name.starts_with(prefix))
-      info.libraries.push_back({name.substr(prefix.size()), h5::text_attribute(root, name)});
-  return info;
-}
+RunInfo Reader::info() const { return read_info(contents_->root); }
 
-Outcome Reader::outcome() const {
-  const auto text = h5::text_attribute(contents_->root, "outcome");
-  for (const auto outcome : {Outcome::running, Outcome::completed, Outcome::failed})
-    if (text == to_string(outcome))
-      return outcome;
-  throw DataError({.file = contents_->root.file,
-                   .path = "/outcome",
-                   .value = text,
-                   .rule = "must be running, completed or failed",
-                   .remedy = "Read a file that Kerf wrote"});
-}
+Outcome Reader::outcome() const { return read_outcome(contents_->root); }
 
 std::optional<Failure> Reader::failure() const {
   if (!h5::exists(contents_->root, "/failure"))

@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "output/body_output.h"
 #include "output/names.h"
+#include "output/run_info.h"
 #include "output/schema.h"
 
 #include <algorithm>
@@ -16,19 +17,6 @@ constexpr std::size_t series_chunk = 512; // rows; one page for doubles
 template <class T>
 void append_one(const h5::Object& series, const T value) {
   h5::append_rows(series, {h5::number_of<T>, 1}, &value, 1);
-}
-
-void write_info(const h5::Object& root, const RunInfo& info) {
-  h5::set_attribute(root, "version", info.version);
-  h5::set_attribute(root, "git_commit", info.git_commit);
-  h5::set_attribute(root, "command_line", info.command_line);
-  h5::set_attribute(root, "host", info.host);
-  h5::set_attribute(root, "compiler", info.compiler);
-  h5::set_attribute(root, "n_threads", static_cast<std::int64_t>(info.n_threads));
-  h5::set_attribute(root, "seed", static_cast<std::int64_t>(info.seed));
-  h5::set_attribute(root, "started", info.started);
-  for (const auto& library : info.libraries)
-    h5::set_attribute(root, library_prefix + library.name, library.version);
 }
 
 /// Creates a growing dataset of one number per output step.

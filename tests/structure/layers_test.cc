@@ -44,6 +44,7 @@ const std::vector<Room> rooms = {
   {"scene",
    {"base", "geometry", "grid", "cut", "surface", "material", "dynamics", "fem", "lattice", "spring", "pba", "visibility",
     "physics", "gl", "render", "output"}},
+  {"study", {"base", "output", "scene"}},
 };
 
 /// Headers that only some rooms may see.

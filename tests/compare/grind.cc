@@ -1,0 +1,185 @@
+#include "tests/compare/grind.h"
+
+#include "grid/complex.h"
+#include "pba/region.h"
+
+#include <Eigen/Geometry>
+
+#include <cmath>
+
+namespace kerf::scene {
+
+namespace {
+
+constexpr double dt = 0.002;   // [s]
+constexpr double speed = 0.05; // of the corners at first, one deviation an axis [m/s]
+
+World free_cube(const std::string& backend) {
+  return world_of(cube_scene() + falling_blade(),
+                  {"Body cube/Cube edge [m]=0.04", "Body cube/Backend=" + backend, "Time/Time step [s]=0.002"});
+}
+
+std::vector<grid::EdgeId> edges_that_hold(const Body& body) {
+  std::vector<grid::EdgeId> edges;
+  for (const grid::CellId c : ids<grid::CellId>(body.grid.n_cells()))
+    for (const grid::EdgeId e : body.grid.edges(c))
+      if (const auto [a, b] = body.grid.ends(e);
+          !body.cuts.is_cut(e) && body.grid.is_material(a) && body.grid.is_material(b))
+        edges.push_back(e);
+  return edges;
+}
+
+struct Sums {
+  double mass = 0, energy = 0;
+  Vec3 momentum = Vec3::Zero();
+};
+
+Sums sums(const Body& body) {
+  Sums all{.energy = total_energy(*body.physics, body.loads, body.state)};
+  const auto mass = body.physics->model().lumped_mass();
+  for (std::size_t i = 0; i < mass.size(); ++i) {
+    all.mass += mass[i];
+    all.momentum += mass[i] * body.state.v[i];
+  }
+  return all;
+}
+
+bool is_finite(const Body& body) {
+  double sum = 0;
+  for (const Points* points : {&body.state.x, &body.state.v, &corners(body), &body.positions})
+    for (const Vec3& p : *points)
+      sum += p.sum();
+  return std::isfinite(sum);
+}
+
+class Grinder {
+ public:
+  Grinder(const std::string& backend, const unsigned seed) : random_(seed), world_(free_cube(backend)) {
+    set_in_motion(body(), Vec3(0.02, 0.01, -0.03), speed);
+    at_first_ = sums(body());
+  }
+
+  Body& body() { return world_.bodies.at(0); }
+
+  /// A short stroke that crosses a random edge that still holds; false when there is none.
+  bool aim() {
+    const auto edges = edges_that_hold(body());
+    if (edges.empty())
+      return false;
+    const auto [a, b] = body().grid.ends(edges[random_() % edges.size()]);
+    const Vec3 from = corners(body())[body().complex.real_corner[a].value],
+               to = corners(body())[body().complex.real_corner[b].value];
+    const Vec3 along = (to - from).normalized();
+    Vec3 blade, way;
+    do {
+      blade = direction();
+      way = direction();
+    } while (std::abs(blade.cross(way).dot(along)) < 0.3);
+    const Vec3 middle = from + uniform(0.2, 0.8) * (to - from);
+    constexpr double reach = 0.02; // half a cube [m]
+    cut::Blade& knife = world_.blades.at(0);
+    knife.edge = {-reach * blade, reach * blade};
+    knife.key_frames = {{time_, middle - reach * way}, {time_ + dt, middle + reach * way}};
+    return true;
+  }
+
+  void step(Ground& ground) {
+    Timings timings;
+    const Sums before = sums(body());
+    recut(body(), world_.blades, time_, time_ + dt, timings);
+    const Sums cut = sums(body());
+    ground.most_work_of_cut = std::max(ground.most_work_of_cut, (cut.energy - before.energy) / at_first_.energy);
+    body().physics->catch_up(seen(body()));
+    body().report = body().physics->step(body().state, body().loads, dt);
+    follow(body());
+    time_ += dt;
+    watch(cut, ground);
+    watch(sums(body()), ground);
+    ground.is_finite = ground.is_finite && is_finite(body());
+  }
+
+  /// How far the particles of dust stray from where their velocities would take them.
+  void fly(Ground& ground) {
+    world_.blades.at(0).key_frames = {{0, Vec3(9, 9, 9)}};
+    const auto piece = pieces();
+    const auto [start, velocity] = centres(piece);
+    const double begin = time_;
+    for (int i = 0; i < 20; ++i)
+      step(ground);
+    const auto [end, unused] = centres(piece);
+    for (std::size_t p = 0; p < start.size(); ++p) {
+      const Vec3 way = (time_ - begin) * velocity[p];
+      ground.most_drift = std::max(ground.most_drift, (end[p] - start[p] - way).norm() / (speed * (time_ - begin)));
+    }
+  }
+
+ private:
+  double uniform(const double low, const double high) {
+    return std::uniform_real_distribution<double>(low, high)(random_);
+  }
+  Vec3 direction() {
+    std::normal_distribution<double> normal;
+    Vec3 d;
+    for (int axis = 0; axis < 3; ++axis)
+      d[axis] = normal(random_);
+    return d.normalized();
+  }
+
+  void watch(const Sums& now, Ground& ground) const {
+    ground.most_energy = std::max(ground.most_energy, now.energy / at_first_.energy);
+    ground.most_mass = std::max(ground.most_mass, std::abs(now.mass / at_first_.mass - 1));
+    ground.most_momentum =
+      std::max(ground.most_momentum, (now.momentum - at_first_.momentum).norm() / (at_first_.mass * speed));
+  }
+
+  /// The piece of each particle: of a phyxel, that of the material around it.
+  std::vector<std::uint32_t> pieces() {
+    if (body().state.x.size() == body().complex.n_corners())
+      return physics::corner_pieces(body().complex);
+    const grid::Pieces all = grid::pieces(body().complex);
+    std::vector<std::uint32_t> piece;
+    for (const Vec3& rest : body().physics->rest())
+      piece.push_back(all.piece[pba::copy_around(body().grid, body().cuts, body().complex, rest)]);
+    return piece;
+  }
+
+  /// Centre of mass and velocity of each piece.
+  std::pair<Points, Points> centres(const std::vector<std::uint32_t>& piece) {
+    const auto mass = body().physics->model().lumped_mass();
+    const std::size_t n = 1 + *std::max_element(piece.begin(), piece.end());
+    std::vector<double> sum(n, 1e-300); // a piece may be too small for a phyxel
+    Points x(n, Vec3::Zero()), v(n, Vec3::Zero());
+    for (std::size_t i = 0; i < piece.size(); ++i) {
+      sum[piece[i]] += mass[i];
+      x[piece[i]] += mass[i] * body().state.x[i];
+      v[piece[i]] += mass[i] * body().state.v[i];
+    }
+    for (std::size_t p = 0; p < n; ++p) {
+      x[p] /= sum[p];
+      v[p] /= sum[p];
+    }
+    return {x, v};
+  }
+
+  std::mt19937 random_;
+  World world_;
+  double time_ = 0;
+  Sums at_first_;
+};
+
+} // namespace
+
+Ground grind(const std::string& backend, const unsigned seed, const int most_strokes) {
+  Grinder grinder(backend, seed);
+  Ground ground;
+  for (; ground.n_strokes < most_strokes && grinder.aim(); ++ground.n_strokes)
+    grinder.step(ground);
+  grinder.fly(ground);
+  const Body& body = grinder.body();
+  ground.n_pieces = grid::n_pieces(body.complex);
+  for (const grid::NodeId n : ids<grid::NodeId>(body.grid.n_nodes()))
+    ground.n_nodes += body.grid.is_material(n) ? 1 : 0;
+  return ground;
+}
+
+} // namespace kerf::scene

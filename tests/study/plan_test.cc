@@ -1,0 +1,143 @@
+// What a study may say, and what it is told when it says something else.
+
+#include "tests/study/study_text.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace kerf::study {
+namespace {
+
+const std::string fem = CubeStudy::variant("fem", "");
+
+/// The study is refused at the first line that holds `line`, and the message holds all the words.
+void expect_refused(const std::string& text, const std::string& line, const std::vector<std::string>& words) {
+  SCOPED_TRACE(text);
+  const CubeStudy study;
+  try {
+    study.plan(text);
+    ADD_FAILURE() << "was accepted";
+  } catch (const ParameterError& error) {
+    const std::string message = error.what();
+    EXPECT_EQ(error.complaint().line, scene::line_of(text, line)) << message;
+    EXPECT_TRUE(error.complaint().file.ends_with("study.prm")) << message;
+    EXPECT_FALSE(error.complaint().remedy.empty()) << message;
+    for (const std::string& word : words)
+      EXPECT_NE(message.find(word), std::string::npos) << "no '" << word << "' in: " << message;
+  }
+}
+
+std::vector<std::string> names(const Plan& plan) {
+  std::vector<std::string> all;
+  for (const PlannedRow& row : plan.rows)
+    all.push_back(row.name);
+  return all;
+}
+
+TEST(Plan, EveryVariantInEveryCaseOfEveryChange) {
+  const CubeStudy study;
+  const Plan plan = study.plan(CubeStudy::head("  set Order over = grid\n") + fem +
+                               CubeStudy::variant("springs", "Body cube/Backend=mass-spring") +
+                               "subsection Change grid\n"
+                               "  subsection Case coarse\n  end\n"
+                               "  subsection Case fine\n    set Set = Body cube/Cube edge [m]=0.025\n  end\nend\n"
+                               "subsection Change step\n"
+                               "  subsection Case long\n  end\n"
+                               "  subsection Case short\n"
+                               "    set Set = Time/Time step [s]=0.005 | Time/End time [s]=0.1\n"
+                               "    set Reference = -7.848\n    set Reference source = twice as long\n  end\nend\n");
+  EXPECT_EQ(names(plan),
+            (std::vector<std::string>{"fem, coarse, long", "fem, coarse, short", "fem, fine, long", "fem, fine, short",
+                                      "springs, coarse, long", "springs, coarse, short", "springs, fine, long",
+                                      "springs, fine, short"}));
+  const PlannedRow& last = plan.rows.back();
+  EXPECT_EQ(last.family, "springs, short");
+  EXPECT_EQ(last.overrides, (std::vector<std::string>{"Body cube/Backend=mass-spring", "Body cube/Cube edge [m]=0.025",
+                                                      "Time/Time step [s]=0.005", "Time/End time [s]=0.1"}));
+  EXPECT_EQ(last.reference.value, -7.848);
+  EXPECT_EQ(last.reference.source, "twice as long");
+  EXPECT_EQ(plan.rows[0].reference.value, -3.924);
+  scene::SceneText text = last.scene;
+  EXPECT_EQ(text.root.find_section("Time")->find_key("Time step [s]")->value, "0.005");
+}
+
+TEST(Plan, LeavesImagesAndSurfaceFilesOut) {
+  const CubeStudy study;
+  std::ofstream(study / "scene.prm", std::ios::app) << "subsection Surface file\nend\n"
+                                                       "subsection Images\n  set Eye [m] = 1, 1, 1\n"
+                                                       "  set Target [m] = 0, 0, 0\nend\n";
+  Plan plan = study.plan(CubeStudy::head() + fem);
+  EXPECT_EQ(plan.rows[0].scene.root.find_section("Images"), nullptr);
+  EXPECT_EQ(plan.rows[0].scene.root.find_section("Surface file"), nullptr);
+  EXPECT_NE(plan.rows[0].scene.root.find_section("Observables"), nullptr);
+}
+
+TEST(Plan, RefusesAMisspeltStudy) {
+  expect_refused("subsection Studdy\nend\n", "Studdy", {"Did you mean 'Study'"});
+  expect_refused(CubeStudy::head("  set Tak = end\n") + fem, "Tak", {"Study/Tak", "Did you mean 'Take'"});
+  expect_refused(CubeStudy::head("  set Take = median\n") + fem, "median", {"'median'"});
+  expect_refused(CubeStudy::head("  set Last part [1] = 0\n") + fem, "Last part", {"must be > 0"});
+  expect_refused("subsection Study\n  set Scene = scene.prm\nend\n" + fem, "Study", {"Study/Answer"});
+}
+
+TEST(Plan, RefusesAStudyOfNothing) {
+  const CubeStudy study;
+  EXPECT_THROW(study.plan(CubeStudy::head()), ParameterError);
+  EXPECT_THROW(study.plan(fem), ParameterError);
+  expect_refused(CubeStudy::head() + fem + "subsection Change grid\nend\n", "Change", {"Change grid/Case"});
+  std::filesystem::remove(study / "scene.prm");
+  EXPECT_THROW(study.plan(CubeStudy::head() + fem), DataError);
+}
+
+TEST(Plan, RefusesReferencesWithoutSourceAndTheOtherWayRound) {
+  const std::string variant = "subsection Variant one\n";
+  expect_refused(CubeStudy::head() + variant + "  set Reference = 4\nend\n", "Reference = 4", {"source"});
+  expect_refused(CubeStudy::head() + variant + "  set Reference source = a book\nend\n", "a book", {"no reference"});
+}
+
+TEST(Plan, RefusesAnOrderOverNoChange) {
+  expect_refused(CubeStudy::head("  set Order over = grid\n") + fem, "Order over", {"Change grid"});
+}
+
+TEST(Plan, TellsAWrongChangeOfTheSceneAtItsLine) {
+  const auto refuse = [](const std::string& set, const std::vector<std::string>& words) {
+    expect_refused(CubeStudy::head() + fem + CubeStudy::variant("bad", set), "Set = " + set, words);
+  };
+  refuse("Body cube/Backand=pba", {"Variant bad/Set", "Body cube/Backand", "Did you mean 'Backend'"});
+  refuse("Body cube/Backend=pbx", {"Body cube/Backend=pbx", "must be one of fem"});
+  refuse("Body cube/Backend", {"Section/Key=value"});
+  refuse("Time/End time [s]=1 | Boddy cube/Backend=pba", {"in 'Boddy cube/Backend=pba'", "there is no such section"});
+  refuse("Time/End time [s]=1 | | Body cube/Backend=pba", {"between two '|'"});
+  refuse("Time/End time [s]=1 |", {"before or after"});
+  expect_refused(
+    CubeStudy::head() + fem + "subsection Change grid\n  subsection Case a\n    set Set = A/B=1\n  end\nend\n", "A/B=1",
+    {"Change grid/Case a/Set", "in 'A/B=1'"});
+}
+
+/// A mistake of the scene itself is told at the scene's own line.
+TEST(Plan, TellsAWrongSceneAtItsLine) {
+  const CubeStudy study;
+  std::ofstream(study / "scene.prm") << "subsection Tyme\nend\n";
+  try {
+    study.plan(CubeStudy::head() + fem);
+    ADD_FAILURE() << "was accepted";
+  } catch (const ParameterError& error) {
+    EXPECT_TRUE(error.complaint().file.ends_with("scene.prm")) << error.what();
+    EXPECT_EQ(error.complaint().line, 1);
+  }
+}
+
+TEST(Plan, OfEveryStudyInParams) {
+  std::size_t n = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(std::string(KERF_SOURCE_DIR) + "/params/studies")) {
+    SCOPED_TRACE(entry.path().string());
+    const Plan plan = make_plan(scene::read_scene_text(entry.path().string(), {}));
+    EXPECT_GE(plan.rows.size(), 4u);
+    ++n;
+  }
+  EXPECT_GE(n, 5u);
+}
+
+} // namespace
+} // namespace kerf::study
