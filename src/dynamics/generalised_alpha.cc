@@ -3,10 +3,14 @@
 #include "base/error.h"
 #include "dynamics/forces.h"
 
+#include <algorithm>
+
 namespace kerf::dynamics {
 
 namespace {
 
+/// A corner with less than this part of the largest mass has none but for round-off: it takes no acceleration at first.
+constexpr double massless = 1e-12;
 constexpr double part_of_step = 1e-2; // for velocities of supports, by central differences
 
 void require(const bool holds, const std::string& path, const double value, const std::string& rule) {
@@ -37,8 +41,9 @@ Points GeneralisedAlpha::first_acceleration(const State& state, const Loads& loa
   constraints.place_velocity(state.time, part_of_step * dt, v);
   total_force(model_, loads, {state.time, state.x, v}, MassDamping::included, a);
   const auto mass = model_.lumped_mass();
+  const double least = massless * *std::max_element(mass.begin(), mass.end());
   for (std::size_t i = 0; i < a.size(); ++i)
-    a[i] /= mass[i];
+    a[i] = mass[i] > least ? Vec3(a[i] / mass[i]) : Vec3(Vec3::Zero());
   constraints.project(a);
   return a;
 }

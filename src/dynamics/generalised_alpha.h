@@ -45,7 +45,7 @@ class GeneralisedAlpha : public Stepper {
 
 struct GeneralisedAlphaParameters {
   double rho_inf = 0.8; ///< [1]
-  NewtonParameters newton;
+  NewtonParameters newton = converged_newton();
 
   void describe(Parameters& p) {
     p.number("Spectral radius [1]", rho_inf, {.min = 0, .max = 1},
@@ -56,7 +56,7 @@ struct GeneralisedAlphaParameters {
 
 struct NewmarkParameters {
   double beta = 0.25, gamma = 0.5; ///< [1]
-  NewtonParameters newton;
+  NewtonParameters newton = converged_newton();
 
   void describe(Parameters& p) {
     p.number("Beta [1]", beta, positive, "1/4: average acceleration.");

@@ -22,6 +22,12 @@ struct NewtonParameters {
   NewtonOptions options() const;
 };
 
+/// For methods of second order: one iteration would leave them first order in nonlinear bodies.
+inline NewtonParameters converged_newton() {
+  return {
+    .n_newton = 20, .newton_tolerance = 1e-6, .line_search = true, .cg_tolerance = 1e-8, .max_cg_iterations = 20000};
+}
+
 /// What a step reports of a solution; throws NumericalError when that has not converged.
 StepReport accepted(const NewtonReport& report);
 

@@ -18,20 +18,20 @@ enum class FreeModes {
 };
 
 struct QuasiStaticOptions {
-  NewtonOptions newton{.max_iterations = 50,
-                       .tolerance = 1e-8,
+  NewtonOptions newton{.max_iterations = 200,
+                       .tolerance = 1e-7,
                        .line_search = LineSearch::backtracking,
-                       .cg_tolerance = 1e-8,
+                       .cg_tolerance = 1e-9,
                        .max_cg_iterations = 20000};
   FreeModes free_modes = FreeModes::refuse;
   std::vector<std::uint32_t> piece = {}; ///< of each corner, 0, 1, ...; empty: one piece
 };
 
 struct QuasiStaticParameters {
-  int n_newton = 50;
-  double newton_tolerance = 1e-8; ///< [1]
+  int n_newton = 200;
+  double newton_tolerance = 1e-7; ///< [1]
   std::string solver = "conjugate gradients", tangent = "positive";
-  double cg_tolerance = 1e-8; ///< [1]
+  double cg_tolerance = 1e-9; ///< [1]
   int max_cg_iterations = 20000;
 
   void describe(Parameters& p);

@@ -28,9 +28,18 @@ dynamics::Interpolation surface_points(const surface::Surface& surface) {
   return points;
 }
 
+grid::CopyId copy_at(const CutBody& body, const Vec3& rest) {
+  const double reach = 1e-6 * body.grid.h(); // what lies on the skin belongs to the body
+  const auto copy_around = [&](const Vec3& p) { return pba::copy_around(body.grid, body.cuts, body.complex, p); };
+  grid::CopyId copy = copy_around(rest);
+  for (int corner = 0; corner < 8 && !copy.valid(); ++corner)
+    copy = copy_around(rest + reach * Vec3(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1));
+  return copy;
+}
+
 dynamics::Interpolation body_point(const CutBody& body, const Vec3& rest) {
   dynamics::Interpolation point;
-  const grid::CopyId c = pba::copy_around(body.grid, body.cuts, body.complex, rest);
+  const grid::CopyId c = copy_at(body, rest);
   if (!c.valid())
     return point;
   const grid::Copy& copy = body.complex.copies[c];

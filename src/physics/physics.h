@@ -70,6 +70,9 @@ std::vector<std::uint32_t> corner_pieces(const grid::CellComplex& complex);
 /// The vertices of a surface as points that follow corners.
 dynamics::Interpolation surface_points(const surface::Surface& surface);
 
+/// The copy whose material holds a rest point [m], or has it on its skin; invalid elsewhere.
+grid::CopyId copy_at(const CutBody& body, const Vec3& rest);
+
 /// A rest point [m] as a point that follows corners; no point where the body has no material.
 dynamics::Interpolation body_point(const CutBody& body, const Vec3& rest);
 

@@ -1,5 +1,7 @@
 #include "physics/phyxels.h"
 
+#include "base/union_find.h"
+
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
@@ -99,6 +101,33 @@ void Phyxels::find_pieces(const CutBody& body) {
   node_pieces_ = pba::node_pieces(body.complex, node_pairs_);
 }
 
+bool Phyxels::hold_together(std::vector<pba::Sight>& sights) const {
+  constexpr double counts = 0.3; // part of the direction along a bond that one of its ends knows
+  const auto& pairs = model_.neighbours().pairs;
+  UnionFind parts(rest().size());
+  std::vector<std::pair<double, std::size_t>> idle; // distance at rest, pair
+  for (std::size_t p = 0; p < pairs.size(); ++p) {
+    const auto [i, j] = pairs[p];
+    const Vec3 X = (rest()[j] - rest()[i]).normalized();
+    const double known = std::max(X.dot(model_.fits()[i].used * X), X.dot(model_.fits()[j].used * X));
+    if (model_.weights()[p] > 0 && known > counts)
+      parts.unite(i, j);
+    else if (phyxel_pieces_[i] == phyxel_pieces_[j])
+      idle.emplace_back((rest()[i] - rest()[j]).norm(), p);
+  }
+  std::sort(idle.begin(), idle.end());
+  bool has_changed = false;
+  for (const auto& [distance, p] : idle) {
+    const auto [i, j] = pairs[p];
+    if (parts.root(i) == parts.root(j))
+      continue;
+    parts.unite(i, j);
+    sights[p] = {std::min(distance, 0.5 * model_.neighbours().support[p]), 1}; // a weight that both ends count
+    has_changed = true;
+  }
+  return has_changed;
+}
+
 void Phyxels::build_map(const CutBody& body) {
   if (copies_.empty())
     find_pieces(body);
@@ -108,6 +137,8 @@ void Phyxels::build_map(const CutBody& body) {
   parted = sights_of_phyxels_;
   pba::part(model_.neighbours().pairs, phyxel_pieces_, phyxel_pieces_, parted);
   model_.update(parted);
+  if (sights_ && hold_together(parted))
+    model_.update(parted);
   is_stale_ = false;
 }
 

@@ -3,6 +3,10 @@
 /// Point-based animation as a backend: the particles are phyxels, the corners follow those that they see (thesis §2.6.1),
 /// and a criterion says what the cut leaves to see (§2.3.1, §2.6.2).
 ///
+/// A piece that the cut has left whole may have lost all bonds between parts of it, or be of so few phyxels that they
+/// know no direction (fit.h). Then the shortest pairs that join its parts see each other again, well inside their support:
+/// what the copies hold together does not drift apart.
+///
 /// After a cut, its faces come between pairs of phyxels, and between corners and phyxels, under a budget of pairs a
 /// step: catch_up(). What lies in different pieces is parted at once, whatever the criterion has seen. Nothing of all
 /// that exists before the first cut.
@@ -65,6 +69,9 @@ class Phyxels : public Physics {
   void begin_to_look(const surface::Surface& surface);
   void add_faces(const surface::Surface& surface, bool of_skin);
   void find_pieces(const CutBody& body);
+  /// Gives back the shortest bonds that join parts of a piece which no bond joins whose direction the model knows; says
+  /// whether there were any.
+  bool hold_together(std::vector<pba::Sight>& sights) const;
   void build_map(const CutBody& body);
   /// Weights of phyxels for a point [m] that moves with a row of the map, times `factor`.
   void add_row(std::uint32_t row, const Vec3& point, double factor, std::vector<std::uint32_t>& phyxels,

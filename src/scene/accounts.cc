@@ -47,6 +47,10 @@ void Accounts::after_step(physics::Physics& physics, const dynamics::Loads& load
   at_begin.supports += inertia;
   at_end.supports += inertia;
   dynamics::book(at_begin, at_end, dt, state);
+  const auto by_time = [&](const Points& x) { // what potentials that change with time add, with the body held still
+    return dynamics::load_energy(loads, state.time, x) - dynamics::load_energy(loads, before_.time, x);
+  };
+  state.numbers["work of loads [J]"] += 0.5 * (by_time(before_.x) + by_time(state.x));
 }
 
 } // namespace kerf::scene

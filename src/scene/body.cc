@@ -2,7 +2,6 @@
 
 #include "cut/fit.h"
 #include "cut/recut.h"
-#include "pba/region.h"
 
 namespace kerf::scene {
 
@@ -33,7 +32,7 @@ void make_loads(Body& body) {
     body.first_load.push_back(body.loads.acting.size());
   }
   for (Probe& probe : body.probes)
-    probe.copy = pba::copy_around(body.grid, body.cuts, body.complex, probe.rest);
+    probe.copy = physics::copy_at(seen(body), probe.rest);
 }
 
 void build_surface(Body& body) {
@@ -125,9 +124,9 @@ void recut(Body& body, const std::span<const cut::Blade> blades, const double t0
     for (const cut::Blade& blade : blades)
       meet(body, blade, t0, t1);
     released = cutting.pending.release(body.grid, body.cuts);
+    cutting.x_before = corners(body); // not after the cut: where corners jump then, the blade meets them on their way
   }
   make_cuts(body, released, timings);
-  body.cutting->x_before = corners(body);
 }
 
 void cut_at_once(Body& body, const cut::CutSurface& surface, Timings& timings) {

@@ -3,6 +3,7 @@
 #include "cut/embed.h"
 #include "geometry/solid.h"
 #include "material/elastic.h"
+#include "physics/phyxels.h"
 #include "scene/compose_loads.h"
 #include "scene/compose_physics.h"
 
@@ -41,9 +42,14 @@ cut::Embedding embed_mesh(const Section& section, const BodyParameters& paramete
 
 std::string describe_physics(const Section& section, const BodyParameters& parameters, const Body& body) {
   const auto material = read_if_written<material::Elastic>(section, "Material");
-  if (parameters.backend == "pba")
-    return line("point-based animation, ", body.physics->rest().size(), " phyxels, ", parameters.integrator,
-                "; left out: Element, Integration, Law");
+  if (parameters.backend == "pba") {
+    const auto visibility = read_if_written<physics::VisibilityOptions>(section, "Visibility");
+    const std::string masks =
+      visibility.choice.criterion == "extended visibility" ? ", masks by " + visibility.choice.masks_by : "";
+    const std::string sight = body.cutting ? visibility.choice.criterion + masks : "no visibility: nothing cuts";
+    return line("point-based animation, ", body.physics->rest().size(), " phyxels, ", sight, ", ",
+                parameters.integrator, "; left out: Element, Integration, Law");
+  }
   if (parameters.backend == "lattice")
     return "lattice shape matching, its own integrator; left out: Element, Integration, Integrator, Law, Poisson's "
            "ratio (it is 0)";

@@ -52,10 +52,10 @@ Integrator quasi_static(const Section& body) {
 Implicit implicit_integrator(const Section& body, const std::string& name) {
   using dynamics::GeneralisedAlpha;
   if (name == "BDF2")
-    return implicit<dynamics::NewtonParameters>(body, "BDF2", 2,
-                                                [](ElasticModel& model, const dynamics::NewtonParameters& p) {
-                                                  return std::make_unique<dynamics::Bdf2>(model, p.options());
-                                                });
+    return implicit<ConvergedNewtonParameters>(body, "BDF2", 2,
+                                               [](ElasticModel& model, const ConvergedNewtonParameters& p) {
+                                                 return std::make_unique<dynamics::Bdf2>(model, p.newton.options());
+                                               });
   if (name == "Newmark")
     return implicit<dynamics::NewmarkParameters>(
       body, "Newmark", 2, [](ElasticModel& model, const dynamics::NewmarkParameters& p) {

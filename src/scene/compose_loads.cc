@@ -3,8 +3,10 @@
 #include "dynamics/floor.h"
 #include "dynamics/handle.h"
 #include "dynamics/rigid_modes.h"
+#include "dynamics/skin_support.h"
 #include "dynamics/surface_load.h"
 #include "geometry/box_tree.h"
+#include "material/elastic.h"
 #include "scene/expression.h"
 #include "scene/grammar_body.h"
 #include "scene/grammar_physics.h"
@@ -56,20 +58,50 @@ std::vector<double> volumes(const Body& body) {
   return volumes;
 }
 
-/// The triangles of the faces and box that a section names.
-dynamics::SurfacePatch patch_of(const Body& body, const dynamics::PatchParameters& parameters) {
+/// The triangles of the faces ("skin", "revealed", "all") whose rest centres are in a region.
+dynamics::SurfacePatch patch_of(const Body& body, const std::string& faces, const Region& region) {
   const surface::Surface& surface = body.surface;
   dynamics::SurfacePatch patch{body.physics->carry(physics::surface_points(surface)), surface.rest, {}};
-  const Box box{parameters.lower, parameters.upper};
   for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
     const bool is_skin = surface.labels[t] == 0;
-    if ((parameters.faces == "skin" && !is_skin) || (parameters.faces == "revealed" && is_skin))
+    if ((faces == "skin" && !is_skin) || (faces == "revealed" && is_skin))
       continue;
     const auto& [a, b, c] = surface.triangles[t];
-    if (box.contains((surface.rest[a] + surface.rest[b] + surface.rest[c]) / 3))
+    if (contains(region, (surface.rest[a] + surface.rest[b] + surface.rest[c]) / 3))
       patch.triangles.push_back(surface.triangles[t]);
   }
   return patch;
+}
+
+/// The triangles of the faces and box that a section names.
+dynamics::SurfacePatch patch_of(const Body& body, const dynamics::PatchParameters& parameters) {
+  return patch_of(body, parameters.faces, Box{parameters.lower, parameters.upper});
+}
+
+bool holds_skin(const Section& support) { return support.read<SupportParameters>().hold_at == "skin"; }
+
+/// A support that holds the skin: a load, as stiff as the key and the material say, [N/m^3].
+void compose_skin_support(const Section& section, const Section& body_section, Body& body) {
+  if (body_section.read<BodyParameters>().backend == "lattice")
+    throw section.complaint("Hold at", "lattice shape matching takes loads explicitly, and the skin's are too stiff",
+                            "Write 'set Hold at = corners', or choose another backend");
+  const double stiffness = section.read<SupportParameters>().skin_stiffness *
+                           read_if_written<material::Elastic>(body_section, "Material").youngs_modulus / body.grid.h();
+  const SupportRegion support = compose_support(section);
+  body.load_makers.push_back({support.name, [=](const Body& b, LoadList& loads) {
+                                loads.push_back(std::make_unique<dynamics::SkinSupport>(
+                                  patch_of(b, "skin", support.region), stiffness,
+                                  dynamics::Support{{}, {}, support.displacement, support.rotation, support.held}));
+                              }});
+}
+
+void compose_support(const Section& section, const Section& body_section, Body& body) {
+  if (holds_skin(section))
+    return compose_skin_support(section, body_section, body);
+  if (section.writes("Skin stiffness [1]"))
+    throw section.complaint("Skin stiffness [1]", "is of supports that hold at the skin, this one holds corners",
+                            "Write 'set Hold at = skin', or remove the key");
+  body.regions.push_back(compose_support(section));
 }
 
 /// Vertices of the surface, each with a third of the rest area of its triangles.
@@ -173,8 +205,12 @@ void require_resolved_friction(const Section& section, const std::vector<const S
 
 /// Skin must be there from the start; what cuts will reveal may not be there yet.
 void require_loaded_triangles(const Section& section, const dynamics::PatchParameters& parameters, const Body& body) {
-  if (parameters.faces == "revealed")
+  if (parameters.faces == "revealed") {
+    if (!body.cutting)
+      throw section.complaint("Faces", "nothing in the scene cuts, so no face is ever revealed",
+                              "Add a blade, scissors or a cut surface, or load the skin");
     return;
+  }
   try {
     dynamics::require_triangles(patch_of(body, parameters));
   } catch (const ParameterError& error) {
@@ -182,12 +218,28 @@ void require_loaded_triangles(const Section& section, const dynamics::PatchParam
   }
 }
 
+void require_held_triangles(const Section& section, const Body& body) {
+  const auto region = read_region(section, section.read<SupportParameters>().region);
+  if (patch_of(body, "skin", region).triangles.empty())
+    throw section.complaint("the region holds no triangle of the body's skin by its centre",
+                            "Move or enlarge it: it is meant in the rest configuration, in metres");
+}
+
+/// Those behind body.regions, in their order.
+std::vector<const Section*> corner_supports(const Section& section) {
+  std::vector<const Section*> supports;
+  for (const Section* support : section.all("Support"))
+    if (!holds_skin(*support))
+      supports.push_back(support);
+  return supports;
+}
+
 void require_no_contradiction(const Section& section, const double time, const Body& body) {
   const double tolerance = 1e-6 * body.grid.h();
   const auto found = dynamics::find_contradiction(body.loads, time, tolerance);
   if (!found)
     return;
-  const auto supports = section.all("Support");
+  const auto supports = corner_supports(section);
   const Vec3 X = body.physics->rest()[found->corner];
   throw supports[found->second]->complaint(
     line("at ", time, " s it wants a point (at rest at ", X[0], ", ", X[1], ", ", X[2], ") ", found->distance,
@@ -200,7 +252,7 @@ void require_no_contradiction(const Section& section, const double time, const B
 void compose_loads(const Section& section, const std::vector<const Section*>& floors, Body& body) {
   require_resolved_friction(section, floors);
   for (const Section* support : section.all("Support"))
-    body.regions.push_back(compose_support(*support));
+    compose_support(*support, section, body);
   for (const Section* load : section.all("Body force"))
     compose_body_force(*load, body);
   for (const Section* load : section.all("Traction"))
@@ -216,7 +268,10 @@ void compose_loads(const Section& section, const std::vector<const Section*>& fl
 }
 
 void require_sound_loads(const Section& section, const double end_time, const Body& body) {
-  const auto supports = section.all("Support");
+  for (const Section* support : section.all("Support"))
+    if (holds_skin(*support))
+      (void)body;
+  const auto supports = corner_supports(section);
   for (std::size_t i = 0; i < supports.size(); ++i)
     if (body.loads.supports[i].corners.empty())
       throw supports[i]->complaint("the region holds no corner or phyxel of the body",

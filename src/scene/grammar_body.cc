@@ -48,6 +48,14 @@ void SupportParameters::describe(Parameters& p) {
            "of the region must be set, and no others.");
   p.choice("Hold", hold, dynamics::hold_words(),
            "In all directions, or along these axes only: it slides along the others.");
+  p.choice("Hold at", hold_at, {"corners", "skin"},
+           "Corners: those in the region, or phyxels, go exactly where they are told; they seldom lie on the skin, so "
+           "up to half a cube of the body is held too much or too little. Skin: its triangles whose rest centre is in "
+           "the region, by a stiff spring for each area; the force is then among the observables 'load forces', not "
+           "'reactions'. Not for the backend lattice.");
+  p.number("Skin stiffness [1]", skin_stiffness, positive,
+           "Hold at skin: the stiffness for each area [N/m^3] is this times Young's modulus over the cube edge h. A "
+           "held face gives way by its strain times h over this; explicit steps must be the smaller the larger it is.");
   p.vector("Held direction [1]", direction,
            "Held along this direction only, of any length, and slides across it. Zero: what Hold says.");
   p.text("Displacement [m]", displacement,

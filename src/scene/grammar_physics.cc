@@ -35,7 +35,7 @@ std::vector<SectionKind> physics_kinds() {
   using Implicit = ImplicitParameters<dynamics::NewtonParameters>;
   return {
     {"Implicit Euler", Occurrence::once, settings, keys_of<Implicit>(), {}},
-    {"BDF2", Occurrence::once, settings, keys_of<Implicit>(), {}},
+    {"BDF2", Occurrence::once, settings, keys_of<ImplicitParameters<ConvergedNewtonParameters>>(), {}},
     {"Newmark", Occurrence::once, settings, keys_of<ImplicitParameters<dynamics::NewmarkParameters>>(), {}},
     {"Generalised alpha",
      Occurrence::once,

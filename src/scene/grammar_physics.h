@@ -15,6 +15,12 @@ const std::vector<std::string>& integrator_names();
 /// Those of them that solve equations for the end of each step, and have dynamics::NewtonParameters.
 const std::vector<std::string>& implicit_integrator_names();
 
+/// Newton's method for BDF2.
+struct ConvergedNewtonParameters {
+  dynamics::NewtonParameters newton = dynamics::converged_newton();
+  void describe(Parameters& p) { newton.describe(p); }
+};
+
 /// Settings of an integrator, and what elements must be for it. One struct for each group of integrators that have the
 /// same keys; each integrator has a section of its name.
 template <class Fields>

@@ -157,7 +157,7 @@ const std::vector<Observable>& body_observables() {
      [](const Body& b) { return booked(b, "dissipated energy [J]"); }},
     {"work of supports", "J", "of the reactions, those of forceps too, so far",
      [](const Body& b) { return booked(b, "work of supports [J]"); }},
-    {"work of loads", "J", "of loads without a potential, so far",
+    {"work of loads", "J", "of loads without a potential, and of potentials that change with time, so far",
      [](const Body& b) { return booked(b, "work of loads [J]"); }},
     {"work of the cut", "J", "what the energies changed by at the instants of cutting, so far",
      [](const Body& b) { return b.accounts ? b.accounts->work_of_cut() : 0.0; }},

@@ -247,7 +247,7 @@ TEST(Phyxels, OptionsSayWhatTheyTake) {
   Parameters parameters;
   options.describe(parameters);
   for (const auto& [name, bad] : std::vector<std::pair<std::string, std::string>>{{"Distribution", "random"},
-                                                                                  {"Spacing [m]", "0"},
+                                                                                  {"Spacing [m]", "-1"},
                                                                                   {"Jitter [1]", "1.1"},
                                                                                   {"Neighbours [1]", "2"},
                                                                                   {"Support [m]", "-1"}}) {
