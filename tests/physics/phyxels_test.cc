@@ -2,6 +2,8 @@
 
 #include "physics/phyxels.h"
 
+#include "base/union_find.h"
+#include "pba/region.h"
 #include "tests/physics/cut_bodies.h"
 
 #include <gtest/gtest.h>
@@ -88,6 +90,38 @@ TEST(Phyxels, CarryForcesWithTheirSumAfterAnyCuts) {
     }
   }
   EXPECT_GT(grid::n_pieces(block.complex), 3u);
+}
+
+/// Phyxels of one piece are joined by bonds whose direction the model knows, wherever pairs reach: what the copies hold
+/// together does not drift apart.
+TEST(Phyxels, PiecesThatStayWholeKeepABond) {
+  support::Random random(7);
+  GrowingCut block(whole_block());
+  Phyxels physics(block.seen(), options(), verlet);
+  dynamics::State state = state_at_rest(physics);
+  for (int batch = 0; batch < 5; ++batch)
+    block.cut(support::random_cuts(random, block.body, 0.15), physics, state);
+  const auto copies = pba::copies_around(block.body.grid, block.body.cuts, block.complex, physics.rest());
+  const auto pieces = pba::phyxel_pieces(block.complex, copies);
+  const pba::PhyxelModel& model = physics.model();
+  const auto& pairs = model.neighbours().pairs;
+  UnionFind parts(physics.rest().size());
+  std::size_t n_bonds = 0;
+  for (std::size_t p = 0; p < pairs.size(); ++p) {
+    const auto [i, j] = pairs[p];
+    const Vec3 X = (physics.rest()[j] - physics.rest()[i]).normalized();
+    const bool is_known = X.dot(model.fits()[i].used * X) > 0.3 || X.dot(model.fits()[j].used * X) > 0.3;
+    if (model.weights()[p] > 0 && is_known) {
+      EXPECT_EQ(pieces[i], pieces[j]);
+      parts.unite(i, j);
+      ++n_bonds;
+    }
+  }
+  EXPECT_LT(n_bonds, pairs.size());
+  for (const auto& [i, j] : pairs)
+    if (pieces[i] == pieces[j]) {
+      EXPECT_EQ(parts.root(i), parts.root(j)) << i << ", " << j;
+    }
 }
 
 /// Whether all phyxels that a corner follows know their gradient in all directions; a cut may have left some too few

@@ -176,5 +176,20 @@ TEST(BackendScene, ForcepsCarryWhatHangs) {
   }
 }
 
+/// Corners that follow phyxels jump when a cut takes phyxels out of their sight: none may jump past the blade uncut. The
+/// blade's plane is a layer of nodes, where it has most edges along it.
+TEST(BackendScene, ABladePartsABarOfPhyxelsBetweenItsHeldEnds) {
+  const Trial bar(
+    steps(0.002, 400) + section("Gravity", {}) +
+    section("Body bar", Keys{"Mesh = " + mesh_path("bar.off"), "Cube edge [m] = 0.04", "Backend = pba"},
+            material(3e5, 0.3) + section("Damping", {"Mass damping [1/s] = 3"}) +
+              section("Support left", {"Region = sphere", "Centre [m] = 0, 0.1, 0.1", "Radius [m] = 0.15"}) +
+              section("Support right", box("0.9, -1, -1", "2, 1, 1"))) +
+    section("Blade knife", {"Edge [m] = 0, -0.2, 0; 0, 0.5, 0", "Times [s] = 0.2, 0.8",
+                            "Positions [m] = 0.5, 0, 0.25; 0.5, 0, -0.3"}) +
+    observe("pieces"));
+  EXPECT_EQ(bar.last("pieces"), 2);
+}
+
 } // namespace
 } // namespace kerf::scene
