@@ -270,7 +270,7 @@ void compose_loads(const Section& section, const std::vector<const Section*>& fl
 void require_sound_loads(const Section& section, const double end_time, const Body& body) {
   for (const Section* support : section.all("Support"))
     if (holds_skin(*support))
-      (void)body;
+      require_held_triangles(*support, body);
   const auto supports = corner_supports(section);
   for (std::size_t i = 0; i < supports.size(); ++i)
     if (body.loads.supports[i].corners.empty())

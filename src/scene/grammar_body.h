@@ -33,7 +33,7 @@ struct SupportParameters {
   std::string region = "box";
   std::string hold = "all";
   std::string hold_at = "corners";
-  double skin_stiffness = 100; ///< over Young's modulus and a cube's edge [1]
+  double skin_stiffness = 100;   ///< over Young's modulus and a cube's edge [1]
   Vec3 direction = Vec3::Zero(); ///< [1]; zero: what `hold` says
   std::string displacement = "0; 0; 0";
   std::string rotation = "0; 0; 0"; ///< [degrees]

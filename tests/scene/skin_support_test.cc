@@ -182,8 +182,8 @@ TEST(SkinSupportScene, RefusesWhatCannotHold) {
   for (const Keys& region : {outside, within})
     expect_refused(cube(section("Support base", below) + section("Support air", region + at_skin)),
                    {"Body cube/Support air", "holds no triangle", "Move or enlarge it"});
-  expect_refused(cube(section("Support base", below + at_skin) + section("Support air", outside)),
-                 {"Body cube/Support air", "holds no corner or phyxel"});
+  expect_refused(cube(section("Support base", below + at_skin) + section("Support void", outside)),
+                 {"Body cube/Support void", "holds no corner or phyxel"});
   expect_refused(cube(section("Support base", below + Keys{"Skin stiffness [1] = 50"})),
                  {"Support base/Skin stiffness [1]", "holds corners", "set Hold at = skin"});
   const Keys lattice = {"Mesh = " + mesh_path("cube.off"), "Cube edge [m] = 0.04", "Backend = lattice"};
