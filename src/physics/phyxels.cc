@@ -103,6 +103,7 @@ void Phyxels::find_pieces(const CutBody& body) {
 
 bool Phyxels::hold_together(std::vector<pba::Sight>& sights) const {
   constexpr double counts = 0.3; // part of the direction along a bond that one of its ends knows
+  constexpr double weak = 0.3;   // enough to be known; a bond that comes back stretched brings energy, so no more
   const auto& pairs = model_.neighbours().pairs;
   UnionFind parts(rest().size());
   std::vector<std::pair<double, std::size_t>> idle; // distance at rest, pair
@@ -122,7 +123,7 @@ bool Phyxels::hold_together(std::vector<pba::Sight>& sights) const {
     if (parts.root(i) == parts.root(j))
       continue;
     parts.unite(i, j);
-    sights[p] = {std::min(distance, 0.5 * model_.neighbours().support[p]), 1}; // a weight that both ends count
+    sights[p] = {distance, weak};
     has_changed = true;
   }
   return has_changed;

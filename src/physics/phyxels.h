@@ -4,7 +4,7 @@
 /// and a criterion says what the cut leaves to see (§2.3.1, §2.6.2).
 ///
 /// A piece that the cut has left whole may have lost all bonds between parts of it, or be of so few phyxels that they
-/// know no direction (fit.h). Then the shortest pairs that join its parts see each other again, well inside their support:
+/// know no direction (fit.h). Then the shortest pairs that join its parts see each other again, weakly:
 /// what the copies hold together does not drift apart.
 ///
 /// After a cut, its faces come between pairs of phyxels, and between corners and phyxels, under a budget of pairs a
