@@ -121,5 +121,33 @@ TEST(EnergyScene, MissingEnergyIsWhatAnIntegratorLoses) {
   EXPECT_NEAR(missing_share("Newmark"), 0, 0.02);
 }
 
+/// A load that grows with time works through its potential's own change too: nothing is missing.
+TEST(EnergyScene, BooksOfALoadThatGrowsClose) {
+  for (const std::string integrator : {"quasi-static", "Newmark"}) {
+    SCOPED_TRACE(integrator);
+    const Trial bar(steps(0.02, 40) +
+                    section("Body bar", bar_keys() + Keys{"Integrator = " + integrator},
+                            material(1e5, 0.3) + sliding_end() +
+                              section("Traction end", box("0.99, -1, -1", "2, 1, 1") +
+                                                        Keys{"Traction [N/m^2] = 500*(1 - cos(4*t)); 0; 0"})) +
+                    observe("elastic energy, work of loads, missing energy"));
+    EXPECT_GT(bar.last("elastic energy"), 0.01);
+    EXPECT_GT(std::abs(bar.last("work of loads")), 0.01);
+    EXPECT_LT(std::abs(bar.last("missing energy")), 2e-3 * bar.last("elastic energy"));
+  }
+}
+
+/// Where the skin lies in a layer of nodes, cells outside of it have corners without mass: they take no acceleration.
+TEST(EnergyScene, CornersWithoutMassDoNotFlyAway) {
+  const Trial bar(steps(0.01, 10) + section("Gravity", {}) +
+                  section("Body bar",
+                          Keys{"Mesh = " + mesh_path("bar.off"), "Cube edge [m] = 0.1", "Lattice offset [1] = 0, 0, 0",
+                               "Integrator = generalised alpha"},
+                          material(1e5, 0.3) + section("Support wall", box("-1, -1, -1", "0.001, 1, 1"))) +
+                  observe("largest displacement, missing energy"));
+  EXPECT_GT(bar.last("largest displacement"), 0.01);
+  EXPECT_LT(bar.last("largest displacement"), 0.1);
+}
+
 } // namespace
 } // namespace kerf::scene
