@@ -1,32 +1,15 @@
+#include "run_info.h"
 #include "scene_arguments.h"
 
 #include "base/parallel.h"
-#include "scene/build_info.h"
 #include "scene/compose.h"
 #include "scene/run.h"
 
-#include <ctime>
-
-#include <unistd.h>
+#include <cstdio>
 
 namespace kerf::apps {
 
 namespace {
-
-output::RunInfo run_info(const Arguments& arguments) {
-  output::RunInfo info = scene::build_info();
-  info.command_line = "kerf run";
-  for (const std::string& argument : arguments)
-    info.command_line += argument.find(' ') == std::string::npos ? " " + argument : " \"" + argument + "\"";
-  std::array<char, 256> text{};
-  gethostname(text.data(), text.size() - 1);
-  info.host = text.data();
-  info.n_threads = n_threads();
-  const std::time_t now = std::time(nullptr);
-  std::strftime(text.data(), text.size(), "%FT%TZ", std::gmtime(&now));
-  info.started = text.data();
-  return info;
-}
 
 void print_body(const scene::Body& body) {
   const double volume = surface::enclosed_volume(body.positions, body.surface.triangles);
@@ -113,7 +96,7 @@ int run(const Arguments& arguments) {
     scene_text += '\n';
   for (const std::string& change : parsed.overrides)
     scene_text += "# --set \"" + change + "\"\n";
-  scene::Recorder recorder(parsed.output, world, run_info(arguments), scene_text);
+  scene::Recorder recorder(parsed.output, world, run_info("run", arguments), scene_text);
   scene::Progress progress(world.n_steps, world.n_steps * world.time_step, scene::progress_style(stdout), stdout);
   const Timings seconds = scene::run(world, recorder, progress);
   print_summary(world, seconds, parsed);

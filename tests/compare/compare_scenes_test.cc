@@ -12,14 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::vector<fs::path> compare_scenes() {
-  std::vector<fs::path> files;
-  for (const auto& entry : fs::directory_iterator(std::string(KERF_SOURCE_DIR) + "/params/compare"))
-    if (entry.path().extension() == ".prm")
-      files.push_back(entry.path());
-  std::sort(files.begin(), files.end());
-  return files;
-}
+std::vector<fs::path> compare_scenes() { return parameter_files("compare"); }
 
 SceneText with_backend(const fs::path& file, const std::string& backend) {
   SceneText text = read_scene_text(file.string(), {});

@@ -15,12 +15,10 @@ namespace fs = std::filesystem;
 
 /// Studies are no scenes, those are tested by their own room; nor is what has no section Time.
 std::vector<fs::path> example_scenes() {
-  std::vector<fs::path> files;
-  for (const auto& entry : fs::recursive_directory_iterator(std::string(KERF_SOURCE_DIR) + "/params"))
-    if (entry.path().extension() == ".prm" && entry.path().parent_path().filename() != "studies" &&
-        read_scene_text(entry.path().string(), {}).root.find_section("Time"))
-      files.push_back(entry.path());
-  std::sort(files.begin(), files.end());
+  std::vector<fs::path> files = parameter_files();
+  std::erase_if(files, [](const fs::path& file) {
+    return file.parent_path().filename() == "studies" || !read_scene_text(file.string(), {}).root.find_section("Time");
+  });
   return files;
 }
 

@@ -8,6 +8,7 @@
 #include "tests/output/samples.h"
 #include "tests/scene/scene_text.h"
 
+#include <algorithm>
 #include <random>
 
 namespace kerf::scene {
@@ -39,6 +40,17 @@ inline void set_in_motion(Body& body, const Vec3& common, const double deviation
   body.state.v = random_points(body.state.v.size(), deviation, 5);
   for (Vec3& v : body.state.v)
     v += common;
+}
+
+/// The parameter files anywhere below a folder of params/, sorted.
+inline std::vector<std::filesystem::path> parameter_files(const std::string& folder = "") {
+  std::vector<std::filesystem::path> files;
+  const auto root = std::filesystem::path(KERF_SOURCE_DIR) / "params" / folder;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(root))
+    if (entry.path().extension() == ".prm")
+      files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  return files;
 }
 
 /// What an observable says now.
