@@ -25,6 +25,7 @@ class Rows {
         last_[d] = std::max(last_[d], i[d]);
       }
     start_.assign(row(last_[1], last_[2]) + 2, 0);
+    x_.reserve(indices.size());
     for (const Index3& i : indices) {
       ++start_[row(i[1], i[2]) + 1];
       x_.push_back(i[0]);
@@ -69,46 +70,86 @@ Index3 cell_of(const grid::Lattice& lattice, const Vec3& p) {
   return i;
 }
 
-/// Calls f(place in the list, triangle) for each triangle and each cell that it may meet.
+/// Calls f(place in the list) for each cell that a triangle may meet.
 template <class Function>
-void for_each_pair(const Rows& rows, const grid::Lattice& lattice, const std::vector<FlatTriangle>& triangles,
-                   const Function& f) {
-  constexpr double slack = 1e-6; // parts of h: far more than a vertex on the mesh may be off
-  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
-    const auto& [a, b, c] = triangles[t].corners;
-    const Vec3& n = triangles[t].normal;
-    const double reach = (0.5 + slack) * lattice.h * n.lpNorm<1>();
-    rows.for_each(cell_of(lattice, a.cwiseMin(b).cwiseMin(c)), cell_of(lattice, a.cwiseMax(b).cwiseMax(c)),
-                  [&](const std::uint32_t place, const Index3& i) {
-                    const Vec3 middle = lattice.position(i) + Vec3::Constant(0.5 * lattice.h);
-                    if (std::abs(triangles[t].height(middle)) <= reach)
-                      f(place, t);
-                  });
-  }
+void for_each_cell(const Rows& rows, const grid::Lattice& lattice, const FlatTriangle& triangle, const Function& f) {
+  constexpr double slack = 1e-6; // parts of h: far more than a vertex on the mesh may be off, or round-off be
+  const auto& [a, b, c] = triangle.corners;
+  const Vec3 step = lattice.h * triangle.normal; // of the height, from cell to cell
+  const double reach = (0.5 + slack) * step.lpNorm<1>();
+  const double middle = triangle.height(lattice.origin) + 0.5 * step.sum(); // of cell (0, 0, 0)
+  rows.for_each(cell_of(lattice, a.cwiseMin(b).cwiseMin(c)), cell_of(lattice, a.cwiseMax(b).cwiseMax(c)),
+                [&](const std::uint32_t place, const Index3& i) {
+                  if (std::abs(middle + i[0] * step[0] + (i[1] * step[1] + i[2] * step[2])) <= reach)
+                    f(place);
+                });
 }
 
 } // namespace
 
+void TriangleGroup::push_back(const FlatTriangle& triangle) {
+  const auto& [a, b, c] = triangle.corners;
+  const Vec3 e = b - a, f = c - a;
+  for (int i = 0; i < 3; ++i) {
+    a_[i][n_] = a[i];
+    e_[i][n_] = e[i];
+    f_[i][n_] = f[i];
+    normal_[i][n_] = triangle.normal[i];
+  }
+  length_[n_] = e.lpNorm<1>() + f.lpNorm<1>();
+  area2_[n_++] = triangle.normal.squaredNorm();
+}
+
+std::uint32_t TriangleGroup::which_may_meet(const Vec3& p, const Vec3& d, const double room,
+                                            const double tolerance) const {
+  constexpr double roundoff = 1e-9;
+  const double px = p[0], py = p[1], pz = p[2], dx = d[0], dy = d[1], dz = d[2];
+  const double near2 = (1 + 1e-6) * tolerance * tolerance;
+  Column in_u, in_v, in_w, above; // not negative: on the right side of each side, near the plane
+  for (std::size_t i = 0; i < n_; ++i) {
+    const double ex = e_[0][i], ey = e_[1][i], ez = e_[2][i], fx = f_[0][i], fy = f_[1][i], fz = f_[2][i];
+    const double apx = px - a_[0][i], apy = py - a_[1][i], apz = pz - a_[2][i];
+    const double dfx = dy * fz - dz * fy, dfy = dz * fx - dx * fz, dfz = dx * fy - dy * fx;
+    const double determinant = ex * dfx + ey * dfy + ez * dfz, sign = std::copysign(1.0, determinant);
+    const double u = sign * (apx * dfx + apy * dfy + apz * dfz);
+    const double v = sign * (dx * (apy * ez - apz * ey) + dy * (apz * ex - apx * ez) + dz * (apx * ey - apy * ex));
+    const double doubt = roundoff * length_[i] * (length_[i] + room);
+    const double height = normal_[0][i] * apx + normal_[1][i] * apy + normal_[2][i] * apz;
+    in_u[i] = u + doubt;
+    in_v[i] = v + doubt;
+    in_w[i] = sign * determinant - u - v + doubt;
+    above[i] = near2 * area2_[i] - height * height;
+  }
+  std::uint32_t may_meet = 0;
+  for (std::size_t i = 0; i < n_; ++i)
+    may_meet |= std::uint32_t(((in_u[i] >= 0) & (in_v[i] >= 0) & (in_w[i] >= 0)) | (above[i] >= 0)) << i;
+  return may_meet;
+}
+
 CellTriangles::CellTriangles(const geometry::TriangleMesh& mesh, const grid::Grid& grid,
                              const std::span<const grid::TouchedCell> cells)
   : start_(cells.size() + 1, 0) {
+  const Rows rows(grid, cells);
+  std::vector<std::uint32_t> places, end_of; // the cells of one triangle after the other, and where they end
+  places.reserve(6 * cells.size());
+  end_of.reserve(mesh.triangles.size());
   flat_.reserve(mesh.triangles.size());
-  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-    const auto corners = geometry::corners(mesh, t);
-    flat_.push_back({(corners[1] - corners[0]).cross(corners[2] - corners[0]), corners});
+  for (const auto& [i, j, k] : mesh.triangles) {
+    const Vec3 &a = mesh.vertices[i], &b = mesh.vertices[j], &c = mesh.vertices[k];
+    flat_.push_back({(b - a).cross(c - a), {a, b, c}});
+    for_each_cell(rows, grid.lattice(), flat_.back(), [&](const std::uint32_t place) {
+      places.push_back(place);
+      ++start_[place + 1];
+    });
+    end_of.push_back(static_cast<std::uint32_t>(places.size()));
   }
-  std::vector<std::array<std::uint32_t, 2>> pairs;
-  pairs.reserve(8 * cells.size());
-  for_each_pair(Rows(grid, cells), grid.lattice(), flat_, [&](const std::uint32_t place, const std::uint32_t t) {
-    pairs.push_back({place, t});
-    ++start_[place + 1];
-  });
   for (std::size_t i = 1; i < start_.size(); ++i)
     start_[i] += start_[i - 1];
-  triangles_.resize(pairs.size());
+  triangles_.resize(places.size());
   std::vector<std::uint32_t> next(start_.begin(), start_.end() - 1);
-  for (const auto& [place, t] : pairs)
-    triangles_[next[place]++] = t;
+  for (std::uint32_t t = 0, i = 0; t < end_of.size(); ++t)
+    for (; i < end_of[t]; ++i)
+      triangles_[next[places[i]]++] = t;
 }
 
 } // namespace kerf::cut

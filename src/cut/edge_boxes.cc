@@ -5,13 +5,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
+#include <type_traits>
 
 namespace kerf::cut {
 
 namespace {
 
 constexpr int brick_bits = 2; // a brick has 2^2 nodes along each axis
+constexpr unsigned row_nodes = 1 << brick_bits;
 constexpr std::size_t n_children = 8;
 
 /// The bits of i, each followed by two zeros.
@@ -76,62 +79,86 @@ grid::NodeId lowest_material_node(const grid::Grid& grid, const grid::CellId cel
 } // namespace
 
 EdgeBoxes::EdgeBoxes(const grid::Grid& grid, const grid::CellComplex& complex) {
-  const Places places = list_nodes(grid, complex);
-  list_uppers(grid, complex, places);
-  list_cells(grid, places);
+  const Nodes nodes = list_nodes(grid);
+  starts_.resize(nodes.start.size());
+  list_rows(grid, complex, nodes);
+  list_cells(grid, nodes);
   levels_.emplace_back(n_blocks());
   while (levels_.back().size() > 1)
     levels_.emplace_back((levels_.back().size() + n_children - 1) / n_children);
 }
 
-/// The blocks' own corners; starts_ by node, as if there were no others.
-EdgeBoxes::Places EdgeBoxes::list_nodes(const grid::Grid& grid, const grid::CellComplex& complex) {
-  Places places{Table<grid::NodeId, std::uint32_t>(grid.n_nodes()), Table<grid::NodeId, std::uint8_t>(grid.n_nodes())};
-  std::uint32_t n = 0;
+EdgeBoxes::Nodes EdgeBoxes::list_nodes(const grid::Grid& grid) {
+  Nodes nodes{{}, {}, Table<grid::NodeId, std::uint32_t>(grid.n_nodes())};
   const auto runs = make_runs(grid);
   for (auto run = runs.begin(); run != runs.end();) {
-    const auto block = static_cast<std::uint32_t>(starts_.size());
-    starts_.push_back({0, n, 0});
+    const auto block = static_cast<std::uint32_t>(nodes.start.size());
+    nodes.start.push_back(static_cast<std::uint32_t>(nodes.all.size()));
     for (const std::uint64_t brick = run->brick; run != runs.end() && run->brick == brick; ++run)
-      for (std::uint32_t i = 0; i < run->n; ++i, ++n) {
-        const grid::NodeId node(run->first.value + i);
-        places.block[node] = block;
-        places.corner[node] = static_cast<std::uint8_t>(n - starts_.back().node);
-        corners_.push_back(complex.real_corner[node]);
+      for (std::uint32_t i = 0; i < run->n; ++i) {
+        nodes.all.emplace_back(run->first.value + i);
+        nodes.block[nodes.all.back()] = block;
       }
   }
-  starts_.push_back({0, n, 0});
-  return places;
+  nodes.start.push_back(static_cast<std::uint32_t>(nodes.all.size()));
+  return nodes;
 }
 
-void EdgeBoxes::list_uppers(const grid::Grid& grid, const grid::CellComplex& complex, const Places& places) {
-  const std::vector<grid::CornerId> own = std::move(corners_);
-  corners_.clear();
-  corners_.reserve(2 * own.size());
-  uppers_.reserve(own.size());
+void EdgeBoxes::list_rows(const grid::Grid& grid, const grid::CellComplex& complex, const Nodes& nodes) {
+  rows_.reserve(nodes.all.size() / 2);
+  const auto follows = [](const std::uint32_t corner, const std::uint32_t first, const std::uint32_t n) {
+    return first == none ? corner == none : corner == first + n;
+  };
+  const auto continues = [&](const Row& row, const Row& next) {
+    return row.x_end == next.first && follows(next.first, row.first, row.n) &&
+           follows(next.upper[0], row.upper[0], row.n) && follows(next.upper[1], row.upper[1], row.n);
+  };
   for (std::uint32_t block = 0; block < n_blocks(); ++block) {
-    const std::size_t first = starts_[block].corner = static_cast<std::uint32_t>(corners_.size());
-    const std::uint32_t begin = starts_[block].node, end = starts_[block + 1].node;
-    corners_.insert(corners_.end(), own.begin() + begin, own.begin() + end);
-    for (std::uint32_t i = begin; i < end; ++i) {
-      auto& uppers = uppers_.emplace_back();
-      for (int axis = 0; axis < 3; ++axis) {
-        const grid::NodeId upper = upper_end(grid, complex.node[own[i]], axis);
-        const bool is_own = upper.valid() && places.block[upper] == block;
-        uppers[axis] = !upper.valid() ? no_upper
-                       : is_own       ? places.corner[upper]
-                                      : static_cast<std::uint8_t>(corners_.size() - first);
-        if (upper.valid() && !is_own)
-          corners_.push_back(complex.real_corner[upper]);
-      }
+    starts_[block].row = static_cast<std::uint32_t>(rows_.size());
+    for (std::uint32_t i = nodes.start[block]; i < nodes.start[block + 1]; ++i) {
+      Row row{.first = complex.real_corner[nodes.all[i]].value,
+              .x_end = none,
+              .upper = {none, none},
+              .block = block,
+              .leaves = {}};
+      for (int axis = 0; axis < 3; ++axis)
+        if (const grid::NodeId upper = upper_end(grid, nodes.all[i], axis); upper.valid()) {
+          (axis == 0 ? row.x_end : row.upper[axis - 1]) = complex.real_corner[upper].value;
+          if (axis > 0)
+            row.leaves[axis - 1] = nodes.block[upper] != block;
+        }
+      if (i > nodes.start[block] && continues(rows_.back(), row)) {
+        ++rows_.back().n;
+        rows_.back().x_end = row.x_end;
+      } else
+        rows_.push_back(row);
     }
   }
-  starts_.back().corner = static_cast<std::uint32_t>(corners_.size());
-  corners_.shrink_to_fit();
+  starts_.back().row = static_cast<std::uint32_t>(rows_.size());
+  rows_.shrink_to_fit();
+  std::vector<std::uint32_t> slabs(n_blocks()); // by block
+  for (std::uint32_t block = 0; block < n_blocks(); ++block)
+    slabs[block] = static_cast<std::uint32_t>(grid.index(nodes.all[nodes.start[block]])[2] >> brick_bits);
+  sort_rows(slabs);
 }
 
-void EdgeBoxes::list_cells(const grid::Grid& grid, const Places& places) {
-  const auto block_of = [&](const grid::CellId c) { return places.block[lowest_material_node(grid, c)]; };
+void EdgeBoxes::sort_rows(const std::vector<std::uint32_t>& slabs) {
+  std::sort(rows_.begin(), rows_.end(), [&](const Row& a, const Row& b) {
+    return std::pair(slabs[a.block], a.first) < std::pair(slabs[b.block], b.first);
+  });
+  rows_of_blocks_.resize(rows_.size());
+  std::vector<std::uint32_t> next(n_blocks());
+  std::transform(starts_.begin(), starts_.end() - 1, next.begin(), [](const Start& start) { return start.row; });
+  for (std::uint32_t i = 0; i < rows_.size(); ++i) {
+    rows_of_blocks_[next[rows_[i].block]++] = i;
+    if (i == 0 || slabs[rows_[i].block] != slabs[rows_[i - 1].block])
+      slabs_.push_back(i);
+  }
+  slabs_.push_back(static_cast<std::uint32_t>(rows_.size()));
+}
+
+void EdgeBoxes::list_cells(const grid::Grid& grid, const Nodes& nodes) {
+  const auto block_of = [&](const grid::CellId c) { return nodes.block[lowest_material_node(grid, c)]; };
   for (const auto c : ids<grid::CellId>(grid.n_cells()))
     ++starts_[block_of(c) + 1].cell;
   for (std::size_t k = 1; k < starts_.size(); ++k)
@@ -144,12 +171,23 @@ void EdgeBoxes::list_cells(const grid::Grid& grid, const Places& places) {
 }
 
 void EdgeBoxes::fit(const Points& x_before, const Points& x) {
-  constexpr std::size_t worth = 64;
+  constexpr std::size_t worth = 64; // blocks
   require_finite(x);
   moves_ = x_before != x;
+  constexpr double inf = std::numeric_limits<double>::infinity();
+  std::fill(levels_[0].begin(), levels_[0].end(), Block{{Vec3::Constant(inf), Vec3::Constant(-inf)}, 0});
   parallel_for(
-    n_blocks(), [&](const std::size_t k) { levels_[0][k] = fitted(static_cast<std::uint32_t>(k), x_before, x); },
-    worth);
+    slabs_.size() - 1,
+    [&](const std::size_t slab) {
+      for (std::uint32_t i = slabs_[slab]; i < slabs_[slab + 1]; ++i)
+        if (const Row& row = rows_[i]; row.n == row_nodes)
+          take_in(row, std::integral_constant<unsigned, row_nodes>(), x_before, x);
+        else
+          take_in(row, unsigned(row.n), x_before, x);
+    },
+    n_blocks() < worth ? slabs_.size() : 2);
+  for (Block& block : levels_[0])
+    block.longest = std::sqrt(block.longest);
   for (std::size_t level = 1; level < levels_.size(); ++level)
     for (std::size_t i = 0; i < levels_[level].size(); ++i) {
       const auto& below = levels_[level - 1];
@@ -162,24 +200,47 @@ void EdgeBoxes::fit(const Points& x_before, const Points& x) {
     }
 }
 
-EdgeBoxes::Block EdgeBoxes::fitted(const std::uint32_t block, const Points& x_before, const Points& x) const {
-  const std::uint32_t first = starts_[block].corner, end = starts_[block + 1].corner;
-  Vec3 lower = x[corners_[first].value], upper = lower;
-  const auto enlarge_by = [&](const Points& places) {
-    for (std::uint32_t i = first; i < end; ++i) {
-      const Vec3& p = places[corners_[i].value];
-      lower = lower.cwiseMin(p);
-      upper = upper.cwiseMax(p);
+/// Takes a row of n nodes into its block; `longest` is squared meanwhile. Most rows have as many nodes as a brick: a
+/// constant, and all in registers.
+template <class N>
+void EdgeBoxes::take_in(const Row& row, const N n, const Points& x_before, const Points& x) {
+  Block& block = levels_[0][row.block];
+  Vec3 lower = block.box.lower, upper = block.box.upper;
+  const auto enlarge = [&](const Vec3* const places, const auto n_places) __attribute__((always_inline)) {
+    for (unsigned k = 0; k < n_places; ++k) {
+      lower = lower.cwiseMin(places[k]);
+      upper = upper.cwiseMax(places[k]);
     }
   };
-  enlarge_by(x);
+  const auto enlarge_by_ends = [&](const Vec3* const places) __attribute__((always_inline)) {
+    enlarge(places + row.first, n);
+    if (row.x_end != none)
+      enlarge(places + row.x_end, 1u);
+    if (row.leaves[0])
+      enlarge(places + row.upper[0], n);
+    if (row.leaves[1])
+      enlarge(places + row.upper[1], n);
+  };
+  enlarge_by_ends(x.data());
   if (moves_)
-    enlarge_by(x_before);
-  double squared = 0;
-  for_each_edge(block, [&](const grid::CornerId p, const grid::CornerId q, int) {
-    squared = std::max(squared, (x[q.value] - x[p.value]).squaredNorm());
-  });
-  return {{lower, upper}, std::sqrt(squared)};
+    enlarge_by_ends(x_before.data());
+  block.box = {lower, upper};
+
+  double squared = block.longest;
+  const auto lengthen = [&](const Vec3* const p, const Vec3* const q, const auto n_edges)
+    __attribute__((always_inline)) {
+    for (unsigned k = 0; k < n_edges; ++k)
+      squared = std::max(squared, (q[k] - p[k]).squaredNorm());
+  };
+  const Vec3* const first = x.data() + row.first;
+  lengthen(first, first + 1, n - 1);
+  if (row.x_end != none)
+    lengthen(first + n - 1, x.data() + row.x_end, 1u);
+  if (row.upper[0] != none)
+    lengthen(first, x.data() + row.upper[0], n);
+  if (row.upper[1] != none)
+    lengthen(first, x.data() + row.upper[1], n);
+  block.longest = squared;
 }
 
 std::vector<std::uint32_t> EdgeBoxes::blocks(const std::function<bool(const Block&)>& may_meet) const {
@@ -201,8 +262,9 @@ void EdgeBoxes::visit(const std::size_t level, const std::size_t i, const std::f
 }
 
 std::size_t EdgeBoxes::n_bytes() const {
-  std::size_t n = starts_.capacity() * sizeof(Start) + corners_.capacity() * sizeof(grid::CornerId) +
-                  uppers_.capacity() * sizeof(uppers_[0]) + cells_.capacity() * sizeof(grid::CellId);
+  std::size_t n = starts_.capacity() * sizeof(Start) + rows_.capacity() * sizeof(Row) +
+                  (slabs_.capacity() + rows_of_blocks_.capacity()) * sizeof(std::uint32_t) +
+                  cells_.capacity() * sizeof(grid::CellId);
   for (const auto& level : levels_)
     n += level.capacity() * sizeof(Block);
   return n;
@@ -214,10 +276,16 @@ void require_finite(const Points& x) {
   parallel_for(
     is_finite.size(),
     [&](const std::size_t k) {
-      Vec3 zero = Vec3::Zero(); // stays zero as long as the numbers are finite
-      for (std::size_t i = k * chunk; i < std::min(x.size(), (k + 1) * chunk); ++i)
-        zero += 0.0 * x[i];
-      is_finite[k] = zero == Vec3::Zero();
+      Vec3 even = Vec3::Zero(), odd = even; // stay zero as long as the numbers are finite
+      std::size_t i = k * chunk;
+      const std::size_t end = std::min(x.size(), (k + 1) * chunk);
+      for (; i + 1 < end; i += 2) {
+        even += 0.0 * x[i];
+        odd += 0.0 * x[i + 1];
+      }
+      if (i < end)
+        even += 0.0 * x[i];
+      is_finite[k] = even == Vec3::Zero() && odd == Vec3::Zero();
     },
     worth);
   const auto found = std::find(is_finite.begin(), is_finite.end(), 0);

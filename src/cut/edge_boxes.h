@@ -2,10 +2,11 @@
 
 /// Where the edges and cells of a body are now, block by block, so that whoever cuts looks at those nearby alone.
 ///
-/// Method: the material nodes in bricks of 4 x 4 x 4, in Morton order; an edge belongs to the brick of its lower node, a
-/// cell to that of its lowest material node. A brick's box holds the real corners of its nodes and of the upper ends of
-/// its edges; eight boxes make the box above them, up to one. Real corners keep their names for the life of a body, so
-/// lists of them are made once; fit() streams through them when the corners have moved.
+/// Method: the material nodes in bricks of 4 x 4 x 4, in Morton order; an edge belongs to the brick of its lower node,
+/// a cell to that of its lowest material node. A brick's box holds the real corners of its nodes and of the upper ends
+/// of its edges; eight boxes make the box above them, up to one. Real corners keep their names for the life of a body,
+/// so lists of them are made once, of rows that follow each other in memory. fit() goes through the rows in that order
+/// and not block by block: then the memory sees what comes next.
 ///
 /// Limit: where a brick's pieces have come apart, its box reaches from one to the other.
 
@@ -34,15 +35,24 @@ class EdgeBoxes {
   /// of the block would be.
   std::vector<std::uint32_t> blocks(const std::function<bool(const Block&)>& may_meet) const;
 
-  /// Calls f(real corner of the lower node, of the upper node, axis) for each edge between material nodes in a block, cut
-  /// or not.
+  /// Calls f(real corner of the lower node, of the upper node, axis) for each edge between material nodes in a block,
+  /// cut or not.
   template <class Function>
   void for_each_edge(const std::uint32_t block, const Function& f) const {
-    const Start &start = starts_[block], &end = starts_[block + 1];
-    for (std::uint32_t i = start.node, k = start.corner; i < end.node; ++i, ++k)
-      for (int axis = 0; axis < 3; ++axis)
-        if (uppers_[i][axis] != no_upper)
-          f(corners_[k], corners_[start.corner + uppers_[i][axis]], axis);
+    for (std::uint32_t i = starts_[block].row; i < starts_[block + 1].row; ++i) {
+      const Row& row = rows_[rows_of_blocks_[i]];
+      for (std::uint32_t k = 0; k < row.n; ++k) {
+        const grid::CornerId lower(row.first + k);
+        if (k + 1 < row.n)
+          f(lower, grid::CornerId(lower.value + 1), 0);
+        else if (row.x_end != none)
+          f(lower, grid::CornerId(row.x_end), 0);
+        if (row.upper[0] != none)
+          f(lower, grid::CornerId(row.upper[0] + k), 1);
+        if (row.upper[1] != none)
+          f(lower, grid::CornerId(row.upper[1] + k), 2);
+      }
+    }
   }
 
   /// Calls f(cell) for each cell of a block.
@@ -60,28 +70,44 @@ class EdgeBoxes {
   std::size_t n_bytes() const;
 
  private:
+  static constexpr std::uint32_t none = grid::CornerId::no_value;
+
+  /// Nodes of a brick in a row along x whose real corners follow each other, and so do those of the upper ends of their
+  /// edges along y, and along z.
+  struct Row {
+    std::uint32_t first;                ///< corner of the first node
+    std::uint32_t x_end;                ///< of the upper end of the last one's edge along x; none without
+    std::array<std::uint32_t, 2> upper; ///< of the upper ends along y, z of the first one's edges; none without
+    std::uint32_t block;
+    std::uint8_t n = 1;         ///< nodes
+    std::array<bool, 2> leaves; ///< whether the upper ends along y, z belong to other bricks
+  };
+
   /// Where a block's entries begin.
   struct Start {
-    std::uint32_t corner = 0, node = 0, cell = 0;
+    std::uint32_t row = 0, cell = 0;
   };
-  static constexpr std::uint8_t no_upper = 0xff;
 
-  /// Tables of nodes: the block they belong to, and their place among its corners.
-  struct Places {
+  /// Material nodes by block, and the block of each.
+  struct Nodes {
+    std::vector<grid::NodeId> all;
+    std::vector<std::uint32_t> start; ///< n_blocks + 1
     Table<grid::NodeId, std::uint32_t> block;
-    Table<grid::NodeId, std::uint8_t> corner;
   };
-  Places list_nodes(const grid::Grid& grid, const grid::CellComplex& complex);
-  void list_uppers(const grid::Grid& grid, const grid::CellComplex& complex, const Places& places);
-  void list_cells(const grid::Grid& grid, const Places& places);
-  Block fitted(std::uint32_t block, const Points& x_before, const Points& x) const;
+  static Nodes list_nodes(const grid::Grid& grid);
+  void list_rows(const grid::Grid& grid, const grid::CellComplex& complex, const Nodes& nodes);
+  void list_cells(const grid::Grid& grid, const Nodes& nodes);
+  void sort_rows(const std::vector<std::uint32_t>& slabs);
+  template <class N>
+  void take_in(const Row& row, N n, const Points& x_before, const Points& x);
   void visit(std::size_t level, std::size_t i, const std::function<bool(const Block&)>& may_meet,
              std::vector<std::uint32_t>& found) const;
 
-  std::vector<Start> starts_;                       // n_blocks + 1
-  std::vector<grid::CornerId> corners_;             // by block: of its own nodes, then of upper ends in other blocks
-  std::vector<std::array<std::uint8_t, 3>> uppers_; // by block, its own nodes: the upper ends among its corners
-  std::vector<grid::CellId> cells_;                 // by block
+  std::vector<Start> starts_;                 // n_blocks + 1
+  std::vector<Row> rows_;                     // by slab of bricks, the same along z, then by corner: as memory lies
+  std::vector<std::uint32_t> slabs_;          // where they begin among the rows, and where the last one ends
+  std::vector<std::uint32_t> rows_of_blocks_; // by block
+  std::vector<grid::CellId> cells_;           // by block
   bool moves_ = false;
   std::vector<std::vector<Block>> levels_; // the blocks, eights of them, ... one
 };

@@ -16,6 +16,7 @@ namespace kerf::cut {
 namespace {
 
 constexpr int index_bits = 20; // the grid's limit
+constexpr std::uint64_t max_index = (1u << index_bits) - 1;
 constexpr std::size_t triangles_per_chunk = 2048;
 
 /// The largest integer that is not above x: std::floor without the call.
@@ -75,7 +76,13 @@ grid::Lattice lattice_around(const geometry::TriangleMesh& mesh, const double h,
   return {box.lower + h * (offset - Vec3::Constant(2)), h};
 }
 
-/// Finds where the lattice lines cross one triangle.
+/// A sum of products of rounded differences whose sign is the exact one's when it is larger than this part of the sum
+/// of the products' sizes. J. R. Shewchuk, Adaptive precision floating-point arithmetic and fast robust geometric
+/// predicates, 1997, bounds A of orient2d and orient3d: (3 + 16 e) e and (7 + 56 e) e with e = epsilon / 2.
+constexpr double safety = 8 * std::numeric_limits<double>::epsilon();
+
+/// Finds where the lattice lines cross one triangle: geometry/predicates.h, which is asked where floating point does
+/// not tell the answer.
 class LineCrosser {
  public:
   LineCrosser(const geometry::TriangleMesh& mesh, const grid::Lattice& lattice) : mesh_(mesh), lattice_(lattice) {}
@@ -90,13 +97,15 @@ class LineCrosser {
       first[d] = -round_down(-lower[d]);
       last[d] = round_down(upper[d]);
     }
+    const Flat flat({va, vb, vc});
     for (int axis = 0; axis < 3; ++axis) {
       const int i = (axis + 1) % 3, j = (axis + 2) % 3;
       Index3 node;
       node[axis] = round_down(lower[axis]);
       for (node[i] = first[i]; node[i] <= last[i]; ++node[i])
         for (node[j] = first[j]; node[j] <= last[j]; ++node[j])
-          add_crossing(triangle, {axis, node}, last[axis] + 1, crossings);
+          if (const int side_above = line_crosses(lattice_.position(node), axis, flat); side_above != 0)
+            crossings.push_back(crossing(triangle, flat, {axis, node}, last[axis] + 1, side_above));
     }
   }
 
@@ -104,35 +113,105 @@ class LineCrosser {
   /// Parts of h; lattice coordinates are rounded, and the exact predicates see whatever is close.
   static constexpr double margin = 1e-6;
 
+  /// A triangle, its normal (b-a) x (c-a), and the sizes of the products in that.
+  struct Flat {
+    std::array<Vec3, 3> corners;
+    Vec3 normal, sizes;
+
+    explicit Flat(const std::array<Vec3, 3>& of) : corners(of) {
+      const Vec3 u = of[1] - of[0], v = of[2] - of[0];
+      for (int x = 0; x < 3; ++x) {
+        const int y = (x + 1) % 3, z = (x + 2) % 3;
+        const double left = u[y] * v[z], right = u[z] * v[y];
+        normal[x] = left - right;
+        sizes[x] = std::abs(left) + std::abs(right);
+      }
+    }
+  };
+
+  static int line_crosses(const Vec3& p, const int axis, const Flat& flat) {
+    const int i = (axis + 1) % 3, j = (axis + 2) % 3;
+    const auto& [a, b, c] = flat.corners;
+    const double ai = a[i] - p[i], bi = b[i] - p[i], ci = c[i] - p[i];
+    const double aj = a[j] - p[j], bj = b[j] - p[j], cj = c[j] - p[j];
+    const std::array<double, 3> left = {ai * bj, bi * cj, ci * aj}, right = {aj * bi, bj * ci, cj * ai};
+    int n_above = 0, n_below = 0; // edges with a certain sign
+    for (int k = 0; k < 3; ++k) {
+      const double difference = left[k] - right[k], doubt = safety * (std::abs(left[k]) + std::abs(right[k]));
+      n_above += difference > doubt;
+      n_below += -difference > doubt;
+    }
+    if (n_above > 0 && n_below > 0)
+      return 0;
+    return n_above == 3 ? 1 : n_below == 3 ? -1 : geometry::line_crosses(p, axis, flat.corners);
+  }
+
+  static int side(const Vec3& p, const Flat& flat) {
+    const Vec3 w = p - flat.corners[0];
+    const double height = flat.normal.dot(w);
+    if (std::abs(height) > safety * flat.sizes.dot(w.cwiseAbs()))
+      return height > 0 ? 1 : -1;
+    return geometry::side(p, flat.corners);
+  }
+
   /// `from` and `end` enclose the triangle along the line.
-  void add_crossing(const std::uint32_t triangle, LatticeEdge from, const int end,
-                    std::vector<Crossing>& crossings) const {
-    const auto corners = geometry::corners(mesh_, triangle);
-    const int side_above = geometry::line_crosses(lattice_.position(from.lower), from.axis, corners);
-    if (side_above == 0)
-      return;
+  Crossing crossing(const std::uint32_t triangle, const Flat& flat, LatticeEdge from, const int end,
+                    const int side_above) const {
     Index3 upper = from.lower;
     upper[from.axis] = end;
-    const double t = geometry::crossing_parameter(lattice_.position(from.lower), lattice_.position(upper), corners);
+    const double t =
+      geometry::crossing_parameter(lattice_.position(from.lower), lattice_.position(upper), flat.corners);
     const double estimate = from.lower[from.axis] + t * (end - from.lower[from.axis]);
 
     int& i = from.lower[from.axis];
     i = round_down(estimate);
-    while (side_of(from.lower, corners) == side_above)
+    while (side(lattice_.position(from.lower), flat) == side_above)
       --i;
     upper[from.axis] = i + 1;
-    for (; side_of(upper, corners) != side_above; ++upper[from.axis])
+    for (; side(lattice_.position(upper), flat) != side_above; ++upper[from.axis])
       ++i;
-    crossings.push_back({from.key(), std::clamp(estimate - i, 0.0, 1.0), triangle});
-  }
-
-  int side_of(const Index3& node, const std::array<Vec3, 3>& corners) const {
-    return geometry::side(lattice_.position(node), corners);
+    return {from.key(), std::clamp(estimate - i, 0.0, 1.0), triangle};
   }
 
   const geometry::TriangleMesh& mesh_;
   const grid::Lattice& lattice_;
 };
+
+/// All crossings in order: dealt out to their rows, where they are few each.
+std::vector<Crossing> sorted(const std::vector<std::vector<Crossing>>& parts) {
+  std::size_t n = 0;
+  std::array<std::uint64_t, 2> end{}; // of y, z
+  for (const auto& part : parts) {
+    n += part.size();
+    for (const Crossing& c : part)
+      for (int d = 0; d < 2; ++d)
+        end[d] = std::max(end[d], (c.edge >> (d + 1) * index_bits & max_index) + 1);
+  }
+  const auto row_of = [&](const Crossing& c) {
+    const std::uint64_t y = c.edge >> index_bits & max_index, z = c.edge >> 2 * index_bits & max_index;
+    return ((c.edge >> 3 * index_bits) * end[1] + z) * end[0] + y;
+  };
+  std::vector<Crossing> crossings(n);
+  if (3 * end[0] * end[1] > 8 * n) { // hardly one crossing a row
+    auto next = crossings.begin();
+    for (const auto& part : parts)
+      next = std::copy(part.begin(), part.end(), next);
+    std::sort(crossings.begin(), crossings.end());
+    return crossings;
+  }
+  std::vector<std::uint32_t> place(3 * end[0] * end[1] + 1, 0); // where the row's next one goes
+  for (const auto& part : parts)
+    for (const Crossing& c : part)
+      ++place[row_of(c) + 1];
+  for (std::size_t row = 1; row < place.size(); ++row)
+    place[row] += place[row - 1];
+  for (const auto& part : parts)
+    for (const Crossing& c : part)
+      crossings[place[row_of(c)]++] = c;
+  for (std::size_t row = 0, begin = 0; row + 1 < place.size(); begin = place[row++])
+    std::sort(crossings.begin() + begin, crossings.begin() + place[row]);
+  return crossings;
+}
 
 std::vector<Crossing> sorted_crossings(const geometry::TriangleMesh& mesh, const grid::Lattice& lattice) {
   const LineCrosser crosser(mesh, lattice);
@@ -140,14 +219,11 @@ std::vector<Crossing> sorted_crossings(const geometry::TriangleMesh& mesh, const
   std::vector<std::vector<Crossing>> parts((n + triangles_per_chunk - 1) / triangles_per_chunk);
   parallel_for(parts.size(), [&](const std::size_t k) {
     const std::size_t end = std::min(n, (k + 1) * triangles_per_chunk);
+    parts[k].reserve(2 * triangles_per_chunk);
     for (std::size_t i = k * triangles_per_chunk; i < end; ++i)
       crosser.add(static_cast<std::uint32_t>(i), parts[k]);
   });
-  std::vector<Crossing> crossings;
-  for (const auto& part : parts)
-    crossings.insert(crossings.end(), part.begin(), part.end());
-  std::sort(crossings.begin(), crossings.end());
-  return crossings;
+  return sorted(parts);
 }
 
 /// Nodes of x lines between odd and even crossings.
@@ -178,7 +254,10 @@ class Skin {
   void add(const std::vector<Crossing>& crossings) {
     const grid::Grid& grid = result_.grid;
     auto next = crossings.begin();
-    for (const grid::EdgeId e : grid.skin_edges()) {
+    const std::vector<grid::EdgeId> edges = grid.skin_edges();
+    cuts_.reserve(edges.size());
+    triangles_.reserve(edges.size());
+    for (const grid::EdgeId e : edges) {
       const std::uint64_t key = LatticeEdge{grid.axis(e), grid.index(grid.ends(e)[0])}.key();
       next = count_even(next, crossings.end(), key);
       const auto last = end_of_edge(next, crossings.end());
@@ -194,7 +273,7 @@ class Skin {
     find_normals();
     result_.cuts.reserve(cuts_.size() + cuts_.size() / 8); // some room for blades
     for (const grid::EdgeCut& cut : cuts_)
-      result_.cuts.add(cut);
+      result_.cuts.add(result_.grid, cut);
     result_.n_lost_components = std::count(is_lost_.begin(), is_lost_.end(), 1);
   }
 

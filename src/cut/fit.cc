@@ -8,6 +8,7 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <optional>
 
@@ -19,6 +20,26 @@ using grid::Grid;
 namespace {
 
 constexpr int no_axis = -1;
+constexpr double on_mesh = 1e-9; // parts of h: nearer lies on it
+
+constexpr std::array<int, 12> line_axes = [] {
+  std::array<int, 12> axes{};
+  for (int line = 0; line < cube::n_lines; ++line)
+    axes[line] = cube::line_axis(line);
+  return axes;
+}();
+
+/// Along whole numbers of lines; zero for none.
+const Vec3& unit_vector(const std::array<int, 3>& lines) {
+  constexpr int most = 4, n = 2 * most + 1; // lines along an axis, and what they can sum up to
+  static const std::vector<Vec3> vectors = [] {
+    std::vector<Vec3> all;
+    for (int i = 0; i < n * n * n; ++i)
+      all.push_back(Vec3(i / (n * n) - most, i / n % n - most, i % n - most).normalized());
+    return all;
+  }();
+  return vectors[((lines[0] + most) * n + lines[1] + most) * n + lines[2] + most];
+}
 
 std::vector<grid::EdgeId> cut_edges_of(const grid::Cuts& cuts) {
   std::vector<grid::EdgeId> edges;
@@ -28,41 +49,70 @@ std::vector<grid::EdgeId> cut_edges_of(const grid::Cuts& cuts) {
   return edges;
 }
 
-/// Moves the vertices of one cell and its faces; reads the mesh through the triangles near the cell.
+/// The lines whose lower end is among the vertices, for each set of vertices (8 bits).
+constexpr std::array<std::uint16_t, 256> lines_up_from = [] {
+  std::array<std::uint16_t, 256> lines{};
+  for (unsigned vertices = 0; vertices < 256; ++vertices)
+    for (int line = 0; line < cube::n_lines; ++line)
+      lines[vertices] |= static_cast<std::uint16_t>((vertices >> cube::line_vertices[line][0] & 1) << line);
+  return lines;
+}();
+
+/// Moves the vertices of one cell and its faces; reads the mesh through the triangles near the cell. `groups` is room
+/// for them, used again from cell to cell.
 class CellFitter {
  public:
   CellFitter(const Grid& grid, grid::Cuts& cuts, const CellTriangles& triangles, const std::size_t place,
-             const grid::TouchedCell& touched)
+             const grid::TouchedCell& touched, std::vector<TriangleGroup>& groups)
     : grid_(grid),
       cuts_(cuts),
       triangles_(triangles),
       near_(triangles.of(place)),
+      groups_(groups),
       cell_(touched.cell),
       cut_lines_(touched.lines),
-      lower_(grid.origin(touched.cell)) {
+      lower_(grid.origin(touched.cell)),
+      faces_(grid.faces(touched.cell)) {
+    triangles.prefetch(place + 1);
     const auto nodes = grid.nodes(cell_);
+    unsigned material = 0;
     for (int v = 0; v < cube::n_vertices; ++v)
-      material_ |= unsigned(grid.is_material(nodes[v])) << v;
+      material |= unsigned(grid.is_material(nodes[v])) << v;
+    leave_upwards_ = lines_up_from[material];
+    groups_.resize((near_.size() + TriangleGroup::most - 1) / TriangleGroup::most);
+    for (TriangleGroup& group : groups_)
+      group.clear();
+    for (std::size_t i = 0; i < near_.size(); ++i)
+      groups_[i / TriangleGroup::most].push_back(triangles[near_[i]]);
   }
 
   void fit_faces() {
-    const auto faces = grid_.faces(cell_);
     for (int face = 0; face < cube::n_faces; ++face) {
-      const grid::FaceId f = faces[face];
-      const bool first_seen = (face & 1) == 1 || !grid_.cells(f)[0].valid(); // else done from the cell below
-      if (!first_seen || !cuts_.point(f))
+      const grid::FaceId f = faces_[face];
+      const Vec3* const p = cuts_.point(f);
+      const bool first_seen = (face & 1) == 1 || !p || !grid_.cells(f)[0].valid(); // else done from the cell below
+      if (!first_seen || !p)
         continue;
-      if (const auto q = fit(*cuts_.point(f), outward_direction(cube::face_lines[face]), cube::face_axis(face)))
+      if (const auto q = fit(*p, outward_direction(cube::face_lines[face]), cube::face_axis(face)))
         cuts_.set_point(f, *q);
     }
   }
 
+  /// Are the cells below, those that are stored, `first` or later ones?
+  bool lies_above(const grid::CellId first) const {
+    for (int face = 0; face < cube::n_faces; face += 2)
+      if (const grid::CellId below = grid_.cells(faces_[face])[0]; below.valid() && below < first)
+        return false;
+    return true;
+  }
+
+  /// After all its faces, also those done from the cells below.
   void fit_centre() {
     if (lies_on_mesh(*cuts_.point(cell_)))
       return;
     Vec3 sum = Vec3::Zero();
     int n = 0;
-    for (const grid::FaceId f : grid_.faces(cell_))
+    for (const grid::FaceId f : faces_)
       if (const Vec3* q = cuts_.point(f)) {
         sum += *q;
         ++n;
@@ -75,13 +125,11 @@ class CellFitter {
  private:
   /// From material to empty, summed over the cut lines; zero where sheets of skin face each other.
   template <class Lines>
-  Vec3 outward_direction(const Lines& lines) const {
-    Vec3 sum = Vec3::Zero();
+  const Vec3& outward_direction(const Lines& lines) const {
+    std::array<int, 3> sum{};
     for (const int line : lines)
-      if (cut_lines_ >> line & 1) {
-        sum[cube::line_axis(line)] += material_ >> cube::line_vertices[line][0] & 1 ? 1 : -1;
-      }
-    return sum.norm() > 0 ? Vec3(sum.normalized()) : sum;
+      sum[line_axes[line]] += static_cast<int>(cut_lines_ >> line & 1) * (2 * (leave_upwards_ >> line & 1) - 1);
+    return unit_vector(sum);
   }
 
   bool lies_on_mesh(const Vec3& p) const {
@@ -91,7 +139,7 @@ class CellFitter {
 
   /// `height` is the triangle's of p.
   bool lies_on(const Vec3& p, const FlatTriangle& triangle, const double height) const {
-    const double tolerance = 1e-9 * grid_.h();
+    const double tolerance = on_mesh * grid_.h();
     if (height * height > 4 * tolerance * tolerance * triangle.normal.squaredNorm())
       return false; // the plane alone is too far away
     return (geometry::closest_point(p, triangle.corners) - p).squaredNorm() < tolerance * tolerance;
@@ -103,18 +151,22 @@ class CellFitter {
   std::optional<Vec3> fit(const Vec3& p, const Vec3& direction, const int normal) const {
     std::optional<Vec3> best;
     Reach reach = reach_inside(p, direction, normal);
-    for (const std::uint32_t t : near_) {
-      const FlatTriangle& triangle = triangles_[t];
-      const double height = triangle.height(p);
-      if (lies_on(p, triangle, height))
-        return std::nullopt;
-      const double slope = triangle.normal.dot(direction);
-      if ((height + reach.from * slope) * (height + reach.to * slope) > 0)
-        continue; // meets the plane outside of the cell, or farther away than the best
-      const auto s = geometry::line_meets(p, direction, triangle.corners);
-      if (s && keep_nearer(best, p, normal, p + *s * direction)) {
-        const double nearer = std::abs(*s) * (1 + 1e-9);
-        reach = {std::max(reach.from, -nearer), std::min(reach.to, nearer)};
+    for (std::size_t first = 0; first < near_.size(); first += TriangleGroup::most) {
+      const TriangleGroup& group = groups_[first / TriangleGroup::most];
+      const double room = 2 * grid_.h(), near_plane = 2 * on_mesh * grid_.h();
+      for (std::uint32_t bits = group.which_may_meet(p, direction, room, near_plane); bits != 0; bits &= bits - 1) {
+        const FlatTriangle& triangle = triangles_[near_[first + std::countr_zero(bits)]];
+        const double height = triangle.height(p);
+        if (lies_on(p, triangle, height))
+          return std::nullopt;
+        const double slope = triangle.normal.dot(direction);
+        if ((height + reach.from * slope) * (height + reach.to * slope) > 0)
+          continue; // meets the plane outside of the cell, or farther away than the best
+        const auto s = geometry::line_meets(p, direction, triangle.corners);
+        if (s && keep_nearer(best, p, normal, p + *s * direction)) {
+          const double nearer = std::abs(*s) * (1 + 1e-9);
+          reach = {std::max(reach.from, -nearer), std::min(reach.to, nearer)};
+        }
       }
     }
     return best ? best : nearest_of_all(p, normal);
@@ -141,7 +193,8 @@ class CellFitter {
     for (int axis = 0; axis < 3; ++axis) {
       if (axis == normal || direction[axis] == 0)
         continue;
-      const double a = (lower_[axis] - p[axis]) / direction[axis], b = a + grid_.h() / direction[axis];
+      const double slowness = 1 / direction[axis];
+      const double a = (lower_[axis] - p[axis]) * slowness, b = a + grid_.h() * slowness;
       reach = {std::max(reach.from, std::min(a, b) - slack), std::min(reach.to, std::max(a, b) + slack)};
     }
     return reach;
@@ -169,9 +222,12 @@ class CellFitter {
   grid::Cuts& cuts_;
   const CellTriangles& triangles_;
   std::span<const std::uint32_t> near_;
+  std::vector<TriangleGroup>& groups_; // of them
   grid::CellId cell_;
-  unsigned cut_lines_, material_ = 0;
+  unsigned cut_lines_;
+  int leave_upwards_; // lines whose lower end is material
   Vec3 lower_;
+  std::array<grid::FaceId, 6> faces_;
 };
 
 } // namespace
@@ -179,9 +235,25 @@ class CellFitter {
 void fit_skin(const geometry::TriangleMesh& mesh, const Grid& grid, grid::Cuts& cuts) {
   const auto cells = grid::touched_cells(grid, cut_edges_of(cuts));
   const CellTriangles triangles(mesh, grid, cells);
-  // Every vertex that is moved exists already, so each cell and face writes its own place.
-  parallel_for(cells.size(), [&](const std::size_t i) { CellFitter(grid, cuts, triangles, i, cells[i]).fit_faces(); });
-  parallel_for(cells.size(), [&](const std::size_t i) { CellFitter(grid, cuts, triangles, i, cells[i]).fit_centre(); });
+  // Every vertex that is moved exists already, so each cell and face writes its own place. A centre waits for the faces
+  // that other threads may be at: those of cells below that come before the range.
+  std::vector<std::uint8_t> waits(cells.size(), 0);
+  parallel_ranges(cells.size(), 2, [&](const std::size_t begin, const std::size_t end) {
+    std::vector<TriangleGroup> groups;
+    for (std::size_t i = begin; i < end; ++i) {
+      CellFitter fitter(grid, cuts, triangles, i, cells[i], groups);
+      fitter.fit_faces();
+      waits[i] = begin > 0 && !fitter.lies_above(cells[begin].cell);
+      if (!waits[i])
+        fitter.fit_centre();
+    }
+  });
+  parallel_ranges(cells.size(), 2, [&](const std::size_t begin, const std::size_t end) {
+    std::vector<TriangleGroup> groups;
+    for (std::size_t i = begin; i < end; ++i)
+      if (waits[i])
+        CellFitter(grid, cuts, triangles, i, cells[i], groups).fit_centre();
+  });
 }
 
 } // namespace kerf::cut

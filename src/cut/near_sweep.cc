@@ -50,6 +50,8 @@ NearSweep::NearSweep(std::vector<Patch> patches) : patches_(std::move(patches)),
 }
 
 bool NearSweep::may_be_in(const Box& box) const {
+  if (!is_in_reach(box))
+    return false;
   bool is_near = false;
   tree_.for_each(box, [&](const std::size_t i) { is_near = is_near || may_meet(i, box); });
   return is_near;

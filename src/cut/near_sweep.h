@@ -1,6 +1,7 @@
 #pragma once
 
-/// What a blade sweeps, as patches that tell whether they may meet something in a box: a few axes that may part the two.
+/// What a blade sweeps, as patches that tell whether they may meet something in a box: a few axes that may part the
+/// two.
 
 #include "cut/blade.h"
 #include "cut/may_meet.h"
@@ -25,6 +26,8 @@ class NearSweep {
   /// Calls f(patch) for each patch that may meet something in the box, in no order that means anything.
   template <class Function>
   void for_each(const Box& box, const Function& f) const {
+    if (!is_in_reach(box))
+      return;
     tree_.for_each(box, [&](const std::size_t i) {
       if (may_meet(i, box))
         f(patches_[i]);
@@ -34,6 +37,13 @@ class NearSweep {
   bool may_be_in(const Box& box) const;
 
  private:
+  /// Most boxes are not: told without a call.
+  bool is_in_reach(const Box& box) const {
+    for (int axis = 0; axis < 3; ++axis)
+      if (!(box.lower[axis] <= reach_.upper[axis] && reach_.lower[axis] <= box.upper[axis]))
+        return false;
+    return true;
+  }
   bool may_meet(std::size_t i, const Box& box) const;
 
   std::vector<Patch> patches_;

@@ -9,9 +9,11 @@ namespace kerf::geometry {
 
 LocalNormals::LocalNormals(const TriangleMesh& mesh) : mesh_(mesh), start_(mesh.vertices.size() + 1, 0) {
   area_normals_.reserve(mesh.triangles.size());
+  lengths_.reserve(mesh.triangles.size());
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
     const auto [a, b, c] = corners(mesh, i);
     area_normals_.push_back((b - a).cross(c - a));
+    lengths_.push_back(area_normals_.back().norm());
     for (const auto v : mesh.triangles[i])
       ++start_[v + 1];
   }
@@ -39,7 +41,7 @@ Vec3 LocalNormals::at(const std::uint32_t triangle, const Vec3& point, const dou
         continue;
       for (auto u = start_[v]; u < start_[v + 1]; ++u) {
         const Vec3& other = area_normals_[users_[u]];
-        if (!marks.mark_triangle(users_[u]) || !(other.dot(own) > crease * other.norm() * own.norm()))
+        if (!marks.mark_triangle(users_[u]) || !(other.dot(own) > crease * lengths_[users_[u]] * lengths_[triangle]))
           continue;
         marks.found_.push_back(users_[u]);
         sum += other;

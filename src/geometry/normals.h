@@ -44,6 +44,7 @@ class LocalNormals {
  private:
   const TriangleMesh& mesh_;
   Points area_normals_;                      // by triangle; length is twice the area
+  std::vector<double> lengths_;              // of these normals
   std::vector<std::uint32_t> start_, users_; // triangles of vertex v: users_[start_[v] .. start_[v + 1]]
 };
 

@@ -3,8 +3,8 @@
 #include "base/error.h"
 
 #include <algorithm>
+#include <cstring>
 #include <stdexcept>
-#include <tuple>
 
 namespace kerf::grid {
 
@@ -180,13 +180,21 @@ std::optional<CellId> Grid::find_cell(const Index3& lower) const {
 
 std::vector<EdgeId> Grid::skin_edges() const {
   std::vector<EdgeId> found;
+  found.reserve(edges_.n_runs());
   for (std::uint32_t run = 0; run < edges_.n_runs(); ++run) {
     const std::uint32_t first = edges_.begin(run), n = edges_.end(run) - first;
     const std::uint8_t* const lower = &material_.items()[edges_.at(first, 0, run)];
     const std::uint8_t* const upper = &material_.items()[edges_.at(first, 1, run)];
-    for (auto [l, u] = std::mismatch(lower, lower + n, upper); l != lower + n;
-         std::tie(l, u) = std::mismatch(l + 1, lower + n, u + 1))
-      found.push_back(EdgeId(first + (l - lower)));
+    constexpr std::uint32_t word = sizeof(std::uint64_t);
+    for (std::uint32_t i = 0; i < n;) {
+      if (i + word <= n && std::memcmp(lower + i, upper + i, word) == 0) { // mostly
+        i += word;
+        continue;
+      }
+      for (const std::uint32_t end = std::min(n, i + word); i < end; ++i)
+        if (lower[i] != upper[i])
+          found.push_back(EdgeId(first + i));
+    }
   }
   return found;
 }

@@ -34,7 +34,20 @@ class Cursor {
   std::size_t row_ = 0, run_ = 0, end_ = 0;
 };
 
+/// For n more, and for as many again where what is there must move.
+void make_room(std::vector<std::uint32_t>& numbers, const std::size_t n) {
+  if (numbers.capacity() < numbers.size() + n)
+    numbers.reserve(std::max(numbers.size() + n, 2 * numbers.capacity()));
+}
+
 } // namespace
+
+void RowSet::reserve(const std::size_t n_rows, const std::size_t n_runs) {
+  rows_.reserve(n_rows);
+  start_.reserve(n_rows);
+  runs_.reserve(n_runs);
+  number_.reserve(n_runs);
+}
 
 void RowSet::push_back(const Key row, const Run& run) {
   if (rows_.empty() || rows_.back() != row) {
@@ -57,6 +70,7 @@ RowSet dilate(const RowSet& points, const Index3& lower, const Index3& upper) {
     for (int y = lower[1]; y <= upper[1]; ++y)
       cursors.emplace_back(points, Index3{0, y, z});
   RowSet result;
+  result.reserve(points.n_rows() + points.n_rows() / 4, points.n_runs() + points.n_runs() / 4);
   constexpr Key none = std::numeric_limits<Key>::max();
   for (;;) {
     Key row = none;
@@ -83,9 +97,9 @@ RowSet dilate(const RowSet& points, const Index3& lower, const Index3& upper) {
 }
 
 void Runs::append(const RowSet& points, const std::span<const Neighbour> kinds) {
-  const std::size_t n_guess = 3 * points.first_run(points.n_rows()); // some runs break
-  first.reserve(first.size() + n_guess);
-  neighbours.reserve(neighbours.size() + n_guess * kinds.size());
+  const std::size_t n_guess = 3 * points.n_runs(); // some runs break
+  make_room(first, n_guess);
+  make_room(neighbours, n_guess * kinds.size());
   std::vector<Cursor> cursors;
   for (const Neighbour& kind : kinds)
     cursors.emplace_back(*kind.set, Index3{-kind.move[0], -kind.move[1], -kind.move[2]});

@@ -41,7 +41,10 @@ class RowSet {
  public:
   /// Runs come by row, then by x. One that meets or overlaps the one before it is joined to it.
   void push_back(Key row, const Run& run);
+  /// Makes room for so many in all.
+  void reserve(std::size_t n_rows, std::size_t n_runs);
 
+  std::size_t n_runs() const { return runs_.size(); }
   std::size_t n_rows() const { return rows_.size(); }
   /// Packed, with x = 0.
   Key row(const std::size_t r) const { return rows_[r]; }

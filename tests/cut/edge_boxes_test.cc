@@ -36,7 +36,7 @@ struct Placed {
   void cut(const std::vector<grid::EdgeCut>& cuts) {
     std::vector<EdgeId> edges;
     for (const auto& cut : cuts) {
-      body.cuts.add(cut);
+      body.cuts.add(body.grid, cut);
       edges.push_back(cut.edge);
     }
     const auto change = grid::update_complex(body.grid, body.cuts, edges, complex);
@@ -86,6 +86,34 @@ TEST(EdgeBoxes, HoldEveryEdgeOnce) {
     EXPECT_EQ(std::count(n_cells.begin(), n_cells.end(), 1), static_cast<std::ptrdiff_t>(grid.n_cells()));
     for (const auto e : ids<EdgeId>(grid.n_edges()))
       ASSERT_EQ(n_seen[e.value], support::is_inner(placed.body, e) ? 1 : 0);
+  }
+}
+
+/// Around a body in pieces, made before it was cut or after: no larger than the ends of the edges ask for.
+TEST(EdgeBoxes, FitTightly) {
+  Random random(65);
+  for (int i = 0; i < 10; ++i) {
+    Placed placed{support::block({6 + i, 5, 9})};
+    placed.cut(support::random_cuts(random, placed.body, 0.3));
+    if (i % 2)
+      placed.boxes = EdgeBoxes(placed.body.grid, placed.complex);
+    scramble(placed.x, random, 2);
+    placed.boxes.fit(placed.x_before, placed.x);
+    for (std::uint32_t block = 0; block < placed.boxes.n_blocks(); ++block) {
+      Points ends;
+      double longest = 0;
+      placed.boxes.for_each_edge(block, [&](const grid::CornerId lower, const grid::CornerId upper, int) {
+        for (const Points* x : {&placed.x, &placed.x_before})
+          ends.insert(ends.end(), {(*x)[lower.value], (*x)[upper.value]});
+        longest = std::max(longest, (placed.x[upper.value] - placed.x[lower.value]).norm());
+      });
+      if (ends.empty()) // but for nodes at the body's upper end
+        continue;
+      const Box tight = geometry::box_around(ends);
+      EXPECT_EQ(placed.boxes.block(block).box.lower, tight.lower);
+      EXPECT_EQ(placed.boxes.block(block).box.upper, tight.upper);
+      EXPECT_NEAR(placed.boxes.block(block).longest, longest, 1e-14);
+    }
   }
 }
 

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <functional>
 #include <iostream>
@@ -163,6 +164,23 @@ TEST(Embed, RandomTetrahedraOnLatticePoints) {
     }
   }
   EXPECT_GT(n_embedded, 150);
+}
+
+/// Along a space diagonal: far more rows of the lattice are beside it than meet it.
+TEST(Embed, ThinRodAskew) {
+  const double length = 60, width = 2.3;
+  geometry::TriangleMesh mesh = box_mesh(Vec3::Zero(), {width, width, length});
+  for (Vec3& v : mesh.vertices)
+    v += v[2] * Vec3(1, 1, 0);
+  const Embedding e = embed(mesh, 1, {0.31, 0.42, 0.77});
+  expect_consistent(e);
+  expect_nodes(
+    e,
+    [&](const Vec3& p) {
+      const double x = p[0] - p[2], y = p[1] - p[2];
+      return std::min({x, y, p[2]}) > 0 && std::max(x, y) < width && p[2] < length;
+    },
+    geometry::bounding_box(mesh));
 }
 
 TEST(Embed, CountsWhatTheGridCannotResolve) {
