@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <stdexcept>
 
 namespace kerf::grid {
 
@@ -18,29 +19,18 @@ constexpr std::uint32_t none = Id<void>::no_value;
 /// Room for some cuts, so that the first ones do not move the whole table.
 std::size_t with_room(const std::size_t n) { return n + n / 8; }
 
-std::uint8_t material_bits(const Grid& grid, const CellId c) {
-  const auto nodes = grid.nodes(c);
-  unsigned bits = 0;
-  for (int v = 0; v < 8; ++v)
-    bits |= unsigned(grid.is_material(nodes[v])) << v;
-  return static_cast<std::uint8_t>(bits);
-}
-
-/// The material components of a set of vertices, by lowest vertex.
-struct Components {
-  int n = 0;
-  std::array<std::uint8_t, 8> nodes{};
-
-  Components(const unsigned material, const unsigned cut_lines) {
-    for (unsigned left = material; left != 0; left &= ~unsigned(nodes[n++]))
-      nodes[n] = cube::reachable(std::countr_zero(left), cut_lines);
-  }
-};
-
 struct CutCell {
   CellId cell;
-  Components components;
+  Parts parts;
 };
+
+/// The lower end of the lowest of some lines.
+int first_vertex_of_rinds(const unsigned rinds) { return cube::line_vertices[std::countr_zero(rinds)][0]; }
+
+/// Parts come in this order.
+int rank(const Copy& copy) {
+  return copy.nodes != 0 ? std::countr_zero(copy.nodes) : cube::n_vertices + std::countr_zero(copy.rinds);
+}
 
 /// The cells with a cut edge, ascending.
 std::vector<CutCell> find_cut_cells(const Grid& grid, const Cuts& cuts) {
@@ -50,26 +40,26 @@ std::vector<CutCell> find_cut_cells(const Grid& grid, const Cuts& cuts) {
     edges.push_back(cut.edge);
   std::vector<CutCell> cells;
   for (const TouchedCell& touched : touched_cells(grid, edges)) // by which lines is its configuration
-    cells.push_back({touched.cell, Components(material_bits(grid, touched.cell), touched.lines)});
+    cells.push_back({touched.cell, parts_of(cuts_of(grid, cuts, touched.cell, touched.lines))});
   return cells;
 }
 
 void make_copies(const Grid& grid, const std::vector<CutCell>& cut_cells, CellComplex& complex) {
   std::size_t n_copies = grid.n_cells();
   for (const CutCell& cut : cut_cells)
-    n_copies += cut.components.n - 1;
+    n_copies += cut.parts.n - 1;
   complex.copies.reserve(with_room(n_copies));
   complex.first_copy.reserve(grid.n_cells());
   auto cut = cut_cells.begin();
   for (const CellId c : ids<CellId>(grid.n_cells())) {
     complex.first_copy.push_back(CopyId(complex.n_copies()));
     if (cut == cut_cells.end() || cut->cell != c) {
-      complex.copies.push_back({c, 0xff, {}, {}});
+      complex.copies.push_back({c, 0xff, 0, {}, {}});
       continue;
     }
-    for (int i = 0; i < cut->components.n; ++i) {
-      const bool is_last = i + 1 == cut->components.n;
-      complex.copies.push_back({c, cut->components.nodes[i], {}, is_last ? CopyId() : CopyId(complex.n_copies() + 1)});
+    for (const Part& part : cut->parts) {
+      const bool is_last = &part + 1 == cut->parts.end();
+      complex.copies.push_back({c, part.nodes, part.rinds, {}, is_last ? CopyId() : CopyId(complex.n_copies() + 1)});
     }
     ++cut;
   }
@@ -85,7 +75,7 @@ class SlotsOfNodes {
     for (const CutCell& cut : cut_cells) {
       const auto nodes = grid.nodes(cut.cell);
       for (std::uint8_t v = 0; v < 8; ++v)
-        if (cut.components.n > 1 || !grid.is_material(nodes[v])) {
+        if (cut.parts.n > 1 || !grid.is_material(nodes[v])) {
           slots_.push_back({cut.cell, v, first_[nodes[v]]});
           first_[nodes[v]] = static_cast<std::uint32_t>(slots_.size() - 1);
         }
@@ -181,14 +171,13 @@ class Update {
   };
 
   void split(const CellId cell) {
-    const unsigned cut_lines = cuts_.configuration(grid_, cell);
+    const CellCuts cell_cuts = cuts_of(grid_, cuts_, cell);
+    const Parts parts = parts_of(cell_cuts);
+    const unsigned rinds = new_rinds(cell, cell_cuts);
     bool splits = false;
     for (CopyId c = complex_.first_copy[cell]; c.valid();) {
       const CopyId next = complex_.copies[c].next;
-      const Components components(complex_.copies[c].nodes, cut_lines);
-      splits |= components.n > 1;
-      if (components.n > 1)
-        divide(c, components);
+      splits |= divide(c, parts, rinds);
       c = next;
     }
     if (splits) {
@@ -199,27 +188,61 @@ class Update {
     }
   }
 
-  /// The first component keeps the copy; the others start with its corners, and stand behind it.
-  void divide(const CopyId c, const Components& components) {
-    complex_.copies[c].nodes = components.nodes[0];
-    change_.copies.push_back(c);
-    for (int i = 1; i < components.n; ++i) {
-      Copy copy = complex_.copies[c];
-      copy.nodes = components.nodes[i];
-      const CopyId added = complex_.copies.push_back(copy);
-      complex_.copies[c].next = added;
-      change_.copies.push_back(added);
+  /// Lines that have been cut a second time since: their rinds are in the copies of their nodes still.
+  unsigned new_rinds(const CellId cell, const CellCuts& cell_cuts) const {
+    unsigned known = 0;
+    for (const CopyId c : complex_.copies_of(cell))
+      known |= complex_.copies[c].rinds;
+    return cell_cuts.twice & ~known;
+  }
+
+  /// The first of the parts that a copy falls into keeps it; the others start with its corners, and stand behind it.
+  /// Returns whether there are several.
+  bool divide(const CopyId c, const Parts& parts, const unsigned new_rinds) {
+    Part whole = complex_.copies[c].part();
+    for (int line = 0; line < cube::n_lines; ++line)
+      if (const auto& [v, w] = cube::line_vertices[line];
+          new_rinds >> line & 1 && (whole.nodes >> v | whole.nodes >> w) & 1)
+        whole.rinds |= static_cast<std::uint16_t>(1u << line);
+    bool is_first = true, is_split = false;
+    for (const Part& part : parts) {
+      if ((part.nodes & whole.nodes) == 0 && (part.rinds & whole.rinds) == 0)
+        continue;
+      if ((part.nodes & ~whole.nodes) != 0 || (part.rinds & ~whole.rinds) != 0)
+        throw std::logic_error("a cut has joined what was parted");
+      if (!is_first)
+        add_copy(c, part);
+      else if (part.nodes != complex_.copies[c].nodes || part.rinds != complex_.copies[c].rinds)
+        set_part(c, part);
+      is_split |= !is_first;
+      is_first = false;
     }
+    if (is_split)
+      change_.copies.push_back(c);
+    return is_split;
+  }
+
+  void set_part(const CopyId c, const Part& part) {
+    complex_.copies[c].nodes = part.nodes;
+    complex_.copies[c].rinds = part.rinds;
+    change_.copies.push_back(c);
+  }
+
+  void add_copy(const CopyId from, const Part& part) {
+    Copy copy = complex_.copies[from];
+    copy.next = complex_.copies[from].next;
+    const CopyId added = complex_.copies.push_back(copy);
+    complex_.copies[from].next = added;
+    set_part(added, part);
   }
 
   void sort_copies(const CellId cell) {
-    std::array<CopyId, 8> copies;
+    std::array<CopyId, 16> copies;
     int n = 0;
     for (const CopyId c : complex_.copies_of(cell))
       copies[n++] = c;
-    std::sort(copies.begin(), copies.begin() + n, [&](const CopyId a, const CopyId b) {
-      return std::countr_zero(complex_.copies[a].nodes) < std::countr_zero(complex_.copies[b].nodes);
-    });
+    std::sort(copies.begin(), copies.begin() + n,
+              [&](const CopyId a, const CopyId b) { return rank(complex_.copies[a]) < rank(complex_.copies[b]); });
     complex_.first_copy[cell] = copies[0];
     for (int i = 0; i < n; ++i)
       complex_.copies[copies[i]].next = i + 1 < n ? copies[i + 1] : CopyId();
@@ -265,6 +288,13 @@ CopyId CellComplex::copy_at(const CellId cell, const int vertex) const {
   return {};
 }
 
+CopyId CellComplex::copy_with_rind(const CellId cell, const int line) const {
+  for (CopyId c = first_copy[cell]; c.valid(); c = copies[c].next)
+    if (copies[c].rinds >> line & 1)
+      return c;
+  return {};
+}
+
 std::size_t CellComplex::n_bytes() const {
   return copies.items().capacity() * sizeof(Copy) + first_copy.items().capacity() * sizeof(CopyId) +
          node.items().capacity() * sizeof(NodeId) + real_corner.items().capacity() * sizeof(CornerId);
@@ -284,18 +314,23 @@ ComplexChange update_complex(const Grid& grid, const Cuts& cuts, const std::span
 }
 
 Pieces pieces(const CellComplex& complex) {
-  // Copies around a material node that hold it are glued: the cells around it are all there.
+  // All copies around a material node that hold it are glued, and so are those around an edge that hold its rind: they
+  // share a corner there.
   UnionFind corners(complex.n_corners());
-  const auto first_real = [](const Copy& copy) { return copy.corners[std::countr_zero(copy.nodes)].value; };
-  for (const Copy& copy : complex.copies)
-    for (int v = 0; v < 8; ++v)
-      if (copy.nodes >> v & 1)
-        corners.unite(first_real(copy), copy.corners[v].value);
+  const auto first = [](const Copy& copy) {
+    return copy.corners[copy.nodes != 0 ? std::countr_zero(copy.nodes) : first_vertex_of_rinds(copy.rinds)].value;
+  };
+  for (const Copy& copy : complex.copies) {
+    for (unsigned left = copy.nodes; left != 0; left &= left - 1)
+      corners.unite(first(copy), copy.corners[std::countr_zero(left)].value);
+    for (unsigned left = copy.rinds; left != 0; left &= left - 1)
+      corners.unite(first(copy), copy.corners[first_vertex_of_rinds(left)].value);
+  }
   Pieces result;
   Table<CornerId, std::uint32_t> number(complex.n_corners(), none);
   result.piece.reserve(complex.n_copies());
   for (const Copy& copy : complex.copies) {
-    std::uint32_t& piece = number[CornerId(corners.root(first_real(copy)))];
+    std::uint32_t& piece = number[CornerId(corners.root(first(copy)))];
     if (piece == none)
       piece = result.n_pieces++;
     result.piece.push_back(piece);

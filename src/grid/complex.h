@@ -1,15 +1,16 @@
 #pragma once
 
-/// The cells, duplicated once per connected component (the virtual node algorithm of Molino, Bao and Fedkiw
-/// 2004, on cubes; thesis §2.4.2). Two copies in face-adjacent cells that share a material node on the common face are
-/// glued along the whole face. Corners are the node instances that come out of it, the unknowns of every physics.
+/// The cells, duplicated once per connected component (the virtual node algorithm of Molino, Bao and Fedkiw 2004, on
+/// cubes; thesis §2.4.2). Two copies in face-adjacent cells that share a material node, or a rind (cuts.h), on the
+/// common face are glued along the whole face. Corners are the node instances that come out of it, the unknowns of
+/// every physics.
 ///
-/// A cut splits copies, and a corner depends on the copies of the (up to eight) cells around its node alone. So an update
-/// looks at the cells around the new cut edges and at the nodes of those that split; all that is there keeps its name:
-/// a copy the component with its lowest vertex, a corner the class with the node's own material, else the first one;
-/// what is new comes last. Names depend on the sequence of cuts, the complex up to names does not.
+/// A cut splits copies, and a corner depends on the copies of the (up to eight) cells around its node alone. So an
+/// update looks at the cells around the new cut edges and at the nodes of those that split; all that is there keeps its
+/// name: a copy the part (parts.h) with its lowest vertex, or rind, a corner the class with the node's own material,
+/// else the first one; what is new comes last. Names depend on the sequence of cuts, the complex up to names does not.
 
-#include "grid/cuts.h"
+#include "grid/parts.h"
 
 #include <span>
 
@@ -20,9 +21,12 @@ using CornerId = Id<struct CornerTag>;
 
 struct Copy {
   CellId cell;
-  std::uint8_t nodes = 0;          ///< bits of the material nodes of its component
+  std::uint8_t nodes = 0;          ///< bits of its material nodes; none where a blade has cut off rinds alone
+  std::uint16_t rinds = 0;         ///< bits of its rinds, by the line of the cell
   std::array<CornerId, 8> corners; ///< in deal.II's vertex order
-  CopyId next;                     ///< the cell's next copy, by lowest vertex; invalid for the last
+  CopyId next;                     ///< the cell's next copy, by its part (parts.h); invalid for the last
+
+  Part part() const { return {nodes, rinds}; }
 };
 
 /// The copies of one cell: for (const CopyId c : complex.copies_of(cell)).
@@ -60,22 +64,26 @@ struct CellComplex {
   CopiesOfCell copies_of(CellId cell) const { return {copies, first_copy[cell]}; }
   /// The copy of `cell` whose component holds the material node at `vertex`; invalid when that node is empty.
   CopyId copy_at(CellId cell, int vertex) const;
+  /// The copy of `cell` with the rind of `line`; invalid when there is none.
+  CopyId copy_with_rind(CellId cell, int line) const;
   /// Memory of all tables [B].
   std::size_t n_bytes() const;
 };
 
-/// Copies are ordered by cell, then by lowest vertex; corners by node.
+/// Copies are ordered by cell, then as their parts are (parts.h); corners by node.
 CellComplex build_complex(const Grid& grid, const Cuts& cuts);
 
 /// What an update did to a complex.
 struct ComplexChange {
   std::size_t n_copies_before = 0, n_corners_before = 0;
-  std::vector<CopyId> copies;    ///< those that are new, or whose nodes or corners have changed; ascending
+  std::vector<CopyId> copies;    ///< new, or divided, or with other rinds or corners than before; ascending
   std::vector<CornerId> parents; ///< of the corners n_corners_before, ... in their order: where they came from
 };
 
-/// Brings a complex up to date with edges that `cuts` holds, but did not when it was built or updated last. What it costs
-/// depends on the new edges alone, not on the size of the body.
+/// Brings a complex up to date with edges that `cuts` holds, but did not when it was built or updated last (an edge may
+/// be named again: where the skin of a face at it is now said to be parted). What it costs depends on the new edges
+/// alone. Throws std::logic_error, and leaves the complex of no use, where the skin of a face now joins what was
+/// parted.
 ComplexChange update_complex(const Grid& grid, const Cuts& cuts, std::span<const EdgeId> new_edges,
                              CellComplex& complex);
 

@@ -10,6 +10,21 @@ namespace {
 
 constexpr std::array<unsigned, 3> lower_face = {cube::face_mask(0), cube::face_mask(2), cube::face_mask(4)};
 
+/// Bits of the rinds in the lower face along an axis, of those in the face that it is glued to: the upper one of the
+/// cell below.
+constexpr unsigned seen_from_above(const int axis, const unsigned rinds_below) {
+  unsigned rinds = 0;
+  for (int i = 0; i < 4; ++i)
+    rinds |= (rinds_below >> cube::face_lines[2 * axis + 1][i] & 1) << cube::face_lines[2 * axis][i];
+  return rinds;
+}
+
+/// Do two copies have material in common on the face between them?
+bool are_glued(const Part& below, const Part& above, const int axis) {
+  return (below.nodes >> (1 << axis) & above.nodes & lower_face[axis]) != 0 ||
+         (below.rinds != 0 && above.rinds != 0 && (seen_from_above(axis, below.rinds) & above.rinds) != 0);
+}
+
 } // namespace
 
 void CellsAround::complete(const Grid& grid) {
@@ -30,7 +45,7 @@ CornerClasses::CornerClasses(const CellComplex& complex, const CellsAround& cell
     for (CopyId c = cells.at(v).valid() ? complex.first_copy[cells.at(v)] : CopyId(); c.valid();
          c = complex.copies[c].next) {
       slots_[n_slots_] = {c, static_cast<std::uint8_t>(v), static_cast<std::uint8_t>(n_slots_)};
-      nodes_[n_slots_++] = complex.copies[c].nodes;
+      parts_[n_slots_++] = complex.copies[c].part();
     }
   }
   first_slot_[8] = static_cast<std::uint8_t>(n_slots_);
@@ -47,8 +62,7 @@ void CornerClasses::join_across(const int upper_vertex, const int axis) {
   const int lower_vertex = upper_vertex ^ 1 << axis;
   for (int a = first_slot_[upper_vertex]; a < first_slot_[upper_vertex + 1]; ++a)
     for (int b = first_slot_[lower_vertex]; b < first_slot_[lower_vertex + 1]; ++b) {
-      const unsigned below = nodes_[a], above = nodes_[b];
-      if ((below >> (1 << axis) & above & lower_face[axis]) == 0)
+      if (!are_glued(parts_[a], parts_[b], axis))
         continue;
       const std::uint8_t p = slots_[a].class_number, q = slots_[b].class_number;
       if (p == q)

@@ -10,8 +10,8 @@ namespace kerf::grid {
 class CellsAround {
  public:
   void add(const CellId cell, const int vertex) { cells_[vertex] = cell; }
-  /// Adds all cells around the node that can be reached from those here across faces at the node. Others have no slots in
-  /// common with them.
+  /// Adds all cells around the node that can be reached from those here across faces at the node. Others have no slots
+  /// in common with them.
   void complete(const Grid& grid);
 
   CellId at(const int vertex) const { return cells_[vertex]; }
@@ -22,7 +22,7 @@ class CellsAround {
 
 class CornerClasses {
  public:
-  static constexpr int max_slots = 64; ///< eight copies in each of eight cells
+  static constexpr int max_slots = 128; ///< sixteen copies in each of eight cells
 
   struct Slot {
     CopyId copy;
@@ -41,8 +41,8 @@ class CornerClasses {
   void number();
 
   std::array<Slot, max_slots> slots_;
-  std::array<std::uint8_t, max_slots> nodes_; // of the slots' copies
-  std::array<std::uint8_t, 9> first_slot_;    // by vertex
+  std::array<Part, max_slots> parts_;      // of the slots' copies
+  std::array<std::uint8_t, 9> first_slot_; // by vertex
   std::size_t n_slots_ = 0;
   int n_classes_ = 0;
 };

@@ -41,6 +41,15 @@ constexpr int line_at(const int vertex, const int axis) {
 /// The face at `vertex` whose normal is along `axis`.
 constexpr int face_at(const int vertex, const int axis) { return 2 * axis + (vertex >> axis & 1); }
 
+/// The place of a line of a face among cube::face_lines.
+constexpr int place_in_face(const int face, const int line) {
+  int place = 0;
+  for (int i = 1; i < 4; ++i)
+    if (face_lines[face][i] == line)
+      place = i;
+  return place;
+}
+
 /// Bits of the vertices that can be reached from `vertex` without crossing a line of `cut_lines` (12 bits), staying
 /// inside `allowed` (8 bits).
 constexpr std::uint8_t reachable(const int vertex, const unsigned cut_lines, const unsigned allowed = 0xff) {

@@ -3,18 +3,36 @@
 #include "grid/cube.h"
 
 #include <algorithm>
-#include <bit>
 #include <stdexcept>
 
 namespace kerf::grid {
 
-Cuts::Cuts(const Grid& grid) : edge_cut_(grid.n_edges()), face_point_(grid.n_faces()), cell_point_(grid.n_cells()) {}
+Cuts::Cuts(const Grid& grid)
+  : edge_cut_(grid.n_edges()),
+    outer_cut_(grid.n_edges()),
+    seam_(grid.n_faces()),
+    face_point_(grid.n_faces()),
+    face_skin_point_(grid.n_faces()),
+    cell_point_(grid.n_cells()),
+    cell_skin_point_(grid.n_cells()) {}
 
-void Cuts::add(EdgeCut cut) {
+bool Cuts::can_be_cut(const Grid& grid, const EdgeId e) const {
+  const auto& [lower, upper] = grid.ends(e);
+  const bool of_skin = grid.is_material(lower) != grid.is_material(upper);
+  return of_skin ? is_cut(e) && !is_cut_twice(e) : !is_cut(e) && grid.is_material(lower);
+}
+
+void Cuts::add(const Grid& grid, EdgeCut cut) {
   std::uint32_t& index = edge_cut_.at(cut.edge);
-  if (index != none)
-    throw std::logic_error("an edge is cut once");
   cut.t = std::clamp(cut.t, min_edge_parameter, 1 - min_edge_parameter);
+  if (index != none) {
+    const double t_skin = cuts_[index].t;
+    const bool is_inside = grid.is_material(grid.ends(cut.edge)[0]) ? cut.t < t_skin : cut.t > t_skin;
+    if (!can_be_cut(grid, cut.edge) || !is_inside)
+      throw std::logic_error("an edge is cut once; one of the skin once more, below the skin");
+    outer_cut_.at(cut.edge) = index;
+    ++n_cut_twice_;
+  }
   index = static_cast<std::uint32_t>(cuts_.size());
   cuts_.push_back(cut);
 }
@@ -29,8 +47,10 @@ unsigned Cuts::configuration(const Grid& grid, const CellId c) const {
 }
 
 std::size_t Cuts::n_bytes() const {
-  return edge_cut_.n_bytes() + face_point_.n_bytes() + cell_point_.n_bytes() + cuts_.capacity() * sizeof(EdgeCut) +
-         points_.capacity() * sizeof(Vec3);
+  return edge_cut_.n_bytes() + outer_cut_.n_bytes() + seam_.n_bytes() + face_point_.n_bytes() +
+         face_skin_point_.n_bytes() + cell_point_.n_bytes() + cell_skin_point_.n_bytes() +
+         cuts_.capacity() * sizeof(EdgeCut) + points_.capacity() * sizeof(Vec3) +
+         skin_points_.capacity() * sizeof(SkinPoint);
 }
 
 void Cuts::set(std::uint32_t& index, const Vec3& p) {
@@ -41,11 +61,28 @@ void Cuts::set(std::uint32_t& index, const Vec3& p) {
     points_[index] = p;
 }
 
-Vec3 edge_point(const Grid& grid, const Cuts& cuts, const EdgeId e) {
+void Cuts::set(std::uint32_t& index, const SkinPoint& p) {
+  if (index == none) {
+    index = static_cast<std::uint32_t>(skin_points_.size());
+    skin_points_.push_back(p);
+  } else
+    skin_points_[index] = p;
+}
+
+namespace {
+
+Vec3 point_on(const Grid& grid, const EdgeId e, const EdgeCut* const cut) {
   Vec3 p = grid.position(grid.ends(e)[0]);
-  const EdgeCut* cut = cuts.find(e);
   p[grid.axis(e)] += grid.h() * (cut ? cut->t : 0.5);
   return p;
+}
+
+} // namespace
+
+Vec3 edge_point(const Grid& grid, const Cuts& cuts, const EdgeId e) { return point_on(grid, e, cuts.find(e)); }
+
+Vec3 edge_skin_point(const Grid& grid, const Cuts& cuts, const EdgeId e) {
+  return point_on(grid, e, cuts.find_outer(e));
 }
 
 Vec3 centre(const Grid& grid, const CellId c) { return grid.origin(c) + Vec3::Constant(0.5 * grid.h()); }
@@ -70,30 +107,14 @@ Vec3 cell_point(const Grid& grid, const Cuts& cuts, const CellId c) {
   return p ? *p : centre(grid, c);
 }
 
-std::array<Tetrahedron, 6> octant(const Grid& grid, const Cuts& cuts, const CellId c, const int vertex) {
-  const Vec3 origin = grid.origin(c);
-  const auto edges = grid.edges(c);
-  const auto faces = grid.faces(c);
-  const auto local = [&](const Vec3& p) -> Vec3 { return (p - origin) / grid.h(); };
-  const Vec3 node(vertex & 1, vertex >> 1 & 1, vertex >> 2 & 1);
-  const Vec3 middle = local(cell_point(grid, cuts, c));
-  std::array<Vec3, 3> on_edge, in_face;  // by the edge's direction, by the face's normal
-  for (int axis = 0; axis < 3; ++axis) { // right on the edge and in the face: round-off may not turn a thin octant over
-    on_edge[axis] = node;
-    on_edge[axis][axis] = local(edge_point(grid, cuts, edges[cube::line_at(vertex, axis)]))[axis];
-    in_face[axis] = local(face_point(grid, cuts, faces[cube::face_at(vertex, axis)]));
-    in_face[axis][axis] = node[axis];
-  }
-  std::array<Tetrahedron, 6> tetrahedra;
-  for (int i = 0; i < 6; ++i) {
-    const int edge = i % 3, normal = (edge + (i < 3 ? 1 : 2)) % 3;
-    Tetrahedron& t = tetrahedra[i];
-    t = {node, on_edge[edge], in_face[normal], middle};
-    const bool mirrored = (std::popcount(static_cast<unsigned>(vertex)) & 1) != 0;
-    if (mirrored == (i >= 3))
-      std::swap(t[1], t[2]);
-  }
-  return tetrahedra;
+Vec3 face_skin_point(const Grid& grid, const Cuts& cuts, const FaceId f, const int i) {
+  const SkinPoint* const of_skin = cuts.skin_point(f);
+  return of_skin && (of_skin->lines >> i & 1) ? of_skin->p : face_point(grid, cuts, f);
+}
+
+Vec3 cell_skin_point(const Grid& grid, const Cuts& cuts, const CellId c, const int line) {
+  const SkinPoint* const of_skin = cuts.skin_point(c);
+  return of_skin && (of_skin->lines >> line & 1) ? of_skin->p : cell_point(grid, cuts, c);
 }
 
 } // namespace kerf::grid

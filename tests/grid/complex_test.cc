@@ -1,145 +1,34 @@
-/// The complex of copies against a slow one made from the definitions of grid/complex.h, on random cut sets and on embedded
-/// bodies.
+/// The complex of copies against a slow one made from the definitions of grid/complex.h, on random cut sets and on
+/// embedded bodies.
 
 #include "grid/complex.h"
 
+#include "cut/at_skin.h"
 #include "cut/embed.h"
 #include "geometry/solid.h"
 #include "tests/geometry/meshes.h"
+#include "tests/grid/histories.h"
+#include "tests/grid/slow_complex.h"
 #include "tests/support/bodies.h"
 #include "tests/support/same.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <functional>
+#include <bit>
 #include <map>
 #include <set>
+#include <stdexcept>
 
 namespace kerf::grid {
 namespace {
 
+using histories::Plan;
+using slow::Items;
+using slow::SlowComplex;
 using support::Body;
 using support::Random;
-using NodeSet = std::set<Index3>;
-
-/// A copy by its definition: a cell, and the material nodes of one component. Slots are its eight lattice places.
-struct SlowCopy {
-  Index3 cell;
-  NodeSet nodes;
-};
-
-struct SlowComplex {
-  std::vector<SlowCopy> copies;
-  std::vector<std::array<int, 8>> instance; ///< names of node instances, by copy and vertex
-  std::vector<int> piece;
-};
-
-Index3 vertex(const Index3& cell, const int v) {
-  return {cell[0] + (v & 1), cell[1] + (v >> 1 & 1), cell[2] + (v >> 2 & 1)};
-}
-
-int local(const Index3& cell, const Index3& node) {
-  return (node[0] - cell[0]) + 2 * (node[1] - cell[1]) + 4 * (node[2] - cell[2]);
-}
-
-bool inside(const Index3& cell, const Index3& node) {
-  for (int axis = 0; axis < 3; ++axis)
-    if (node[axis] < cell[axis] || node[axis] > cell[axis] + 1)
-      return false;
-  return true;
-}
-
-bool is_material(const Body& body, const Index3& i) {
-  const auto n = body.grid.find_node(i);
-  return n && body.grid.is_material(*n);
-}
-
-/// The nodes one uncut edge away.
-std::vector<Index3> neighbours(const Body& body, const Index3& node) {
-  std::vector<Index3> result;
-  for (int axis = 0; axis < 3; ++axis)
-    for (const int step : {-1, 1}) {
-      Index3 other = node;
-      other[axis] += step;
-      const auto e = body.grid.find_edge(std::min(node, other), axis);
-      if (e && !body.cuts.is_cut(*e))
-        result.push_back(other);
-    }
-  return result;
-}
-
-NodeSet flood(const Body& body, const Index3& from, const std::function<bool(const Index3&)>& allowed) {
-  NodeSet reached = {from};
-  std::vector<Index3> open = {from};
-  while (!open.empty()) {
-    const Index3 node = open.back();
-    open.pop_back();
-    for (const Index3& other : neighbours(body, node))
-      if (allowed(other) && reached.insert(other).second)
-        open.push_back(other);
-  }
-  return reached;
-}
-
-std::vector<SlowCopy> slow_copies(const Body& body) {
-  std::vector<SlowCopy> copies;
-  for (const auto c : ids<CellId>(body.grid.n_cells())) {
-    const Index3 cell = body.grid.index(body.grid.nodes(c)[0]);
-    NodeSet seen;
-    for (int v = 0; v < 8; ++v) {
-      const Index3 node = vertex(cell, v);
-      if (!is_material(body, node) || seen.contains(node))
-        continue;
-      copies.push_back({cell, flood(body, node, [&](const Index3& i) { return inside(cell, i); })});
-      seen.insert(copies.back().nodes.begin(), copies.back().nodes.end());
-    }
-  }
-  return copies;
-}
-
-std::vector<std::pair<int, int>> glued_pairs(const std::vector<SlowCopy>& copies) {
-  std::map<Index3, std::vector<int>> in_cell;
-  for (int i = 0; i < static_cast<int>(copies.size()); ++i)
-    in_cell[copies[i].cell].push_back(i);
-  std::vector<std::pair<int, int>> pairs;
-  for (int a = 0; a < static_cast<int>(copies.size()); ++a)
-    for (int axis = 0; axis < 3; ++axis) {
-      Index3 above = copies[a].cell;
-      ++above[axis];
-      for (const int b : in_cell[above])
-        if (std::any_of(copies[a].nodes.begin(), copies[a].nodes.end(),
-                        [&](const Index3& n) { return copies[b].nodes.contains(n); }))
-          pairs.emplace_back(a, b);
-    }
-  return pairs;
-}
-
-/// Names spread over glued faces until nothing changes any more.
-SlowComplex slow_complex(const Body& body) {
-  SlowComplex slow{slow_copies(body), {}, {}};
-  for (int i = 0; i < static_cast<int>(slow.copies.size()); ++i) {
-    slow.instance.push_back({});
-    for (int v = 0; v < 8; ++v)
-      slow.instance[i][v] = 8 * i + v;
-    slow.piece.push_back(i);
-  }
-  const auto pairs = glued_pairs(slow.copies);
-  for (bool changed = true; changed;) {
-    changed = false;
-    const auto agree = [&](int& x, int& y) {
-      changed |= x != y;
-      x = y = std::min(x, y);
-    };
-    for (const auto& [a, b] : pairs) {
-      agree(slow.piece[a], slow.piece[b]);
-      for (int v = 0; v < 8; ++v)
-        if (const Index3 node = vertex(slow.copies[a].cell, v); inside(slow.copies[b].cell, node))
-          agree(slow.instance[a][v], slow.instance[b][local(slow.copies[b].cell, node)]);
-    }
-  }
-  return slow;
-}
+using support::uniform;
 
 /// True when two numberings name the same classes.
 class SameClasses {
@@ -154,32 +43,28 @@ class SameClasses {
   std::map<int, std::uint32_t> to_a_;
 };
 
-/// For each copy of the complex, the slow copy with the same cell and nodes.
+/// For each copy of the complex, the slow copy with the same cell and material.
 std::vector<int> match_copies(const Body& body, const CellComplex& complex, const SlowComplex& slow) {
-  std::map<std::pair<Index3, NodeSet>, int> by_content;
+  std::map<std::pair<Index3, Items>, int> by_content;
   for (int i = 0; i < static_cast<int>(slow.copies.size()); ++i)
-    by_content[{slow.copies[i].cell, slow.copies[i].nodes}] = i;
+    by_content[{slow.copies[i].cell, slow.copies[i].items}] = i;
   std::vector<int> match;
   for (const Copy& copy : complex.copies) {
-    const Index3 cell = body.grid.index(body.grid.nodes(copy.cell)[0]);
-    NodeSet nodes;
-    for (int v = 0; v < 8; ++v)
-      if (copy.nodes >> v & 1)
-        nodes.insert(vertex(cell, v));
-    const auto found = by_content.find({cell, nodes});
+    const Index3 cell = slow::lattice_cell(body.grid, copy.cell);
+    const auto found = by_content.find({cell, slow::items_of(copy.part(), cell)});
     match.push_back(found == by_content.end() ? -1 : found->second);
   }
   return match;
 }
 
 void expect_matches_slow(const Body& body, const CellComplex& complex) {
-  const SlowComplex slow = slow_complex(body);
+  const SlowComplex slow = slow::slow_complex(body);
   ASSERT_EQ(complex.n_copies(), slow.copies.size());
   const auto match = match_copies(body, complex, slow);
   const Pieces all = pieces(complex);
   SameClasses corners, same_pieces;
   for (const auto c : ids<CopyId>(complex.n_copies())) {
-    ASSERT_GE(match[c.value], 0) << "no such component";
+    ASSERT_GE(match[c.value], 0) << "no such part";
     for (int v = 0; v < 8; ++v)
       ASSERT_TRUE(corners.add(complex.copies[c].corners[v].value, slow.instance[match[c.value]][v]));
     ASSERT_TRUE(same_pieces.add(all.piece[c], slow.piece[match[c.value]]));
@@ -188,62 +73,98 @@ void expect_matches_slow(const Body& body, const CellComplex& complex) {
   EXPECT_EQ(same_pieces.size(), all.n_pieces);
 }
 
+/// The copies of a cell are in the order of their parts, and each is found by its material.
+void expect_listed(const Body& body, const CellComplex& complex, const CellId cell) {
+  const auto edges = body.grid.edges(cell);
+  std::array<CopyId, 8> of_node;
+  std::array<CopyId, 12> of_rind;
+  int last = -1;
+  for (const CopyId c : complex.copies_of(cell)) {
+    const Copy& copy = complex.copies[c];
+    ASSERT_EQ(copy.cell, cell);
+    const int rank = copy.nodes != 0 ? std::countr_zero(copy.nodes) : 8 + std::countr_zero(copy.rinds);
+    ASSERT_LT(last, rank);
+    last = rank;
+    for (int v = 0; v < 8; ++v)
+      if (copy.nodes >> v & 1)
+        of_node[v] = c;
+    for (int line = 0; line < 12; ++line)
+      if (copy.rinds >> line & 1)
+        of_rind[line] = c;
+  }
+  for (int v = 0; v < 8; ++v) {
+    ASSERT_EQ(of_node[v].valid(), body.grid.is_material(body.grid.nodes(cell)[v]));
+    ASSERT_EQ(complex.copy_at(cell, v), of_node[v]);
+  }
+  for (int line = 0; line < 12; ++line) {
+    ASSERT_EQ(of_rind[line].valid(), body.cuts.is_cut_twice(edges[line]));
+    ASSERT_EQ(complex.copy_with_rind(cell, line), of_rind[line]);
+  }
+}
+
 /// Invariant 2, and that every table says the same thing.
 void expect_consistent(const Body& body, const CellComplex& complex) {
   std::vector<std::set<CornerId>> holders(body.grid.n_nodes());
   ASSERT_EQ(complex.first_copy.size(), body.grid.n_cells());
-  for (const auto c : ids<CopyId>(complex.n_copies())) {
-    const Copy& copy = complex.copies[c];
-    bool is_listed = false;
-    for (const CopyId other : complex.copies_of(copy.cell))
-      is_listed |= other == c;
-    ASSERT_TRUE(is_listed);
-    for (int v = 0; v < 8; ++v) {
-      const NodeId node = body.grid.nodes(copy.cell)[v];
-      ASSERT_EQ(complex.node[copy.corners[v]], node);
-      if (copy.nodes >> v & 1) {
-        holders[node.value].insert(copy.corners[v]);
-        ASSERT_EQ(complex.copy_at(copy.cell, v), c);
-      } else if (!body.grid.is_material(node)) {
-        ASSERT_FALSE(complex.copy_at(copy.cell, v).valid());
+  std::size_t n_listed = 0;
+  for (const auto cell : ids<CellId>(body.grid.n_cells())) {
+    expect_listed(body, complex, cell);
+    for (const CopyId c : complex.copies_of(cell)) {
+      const Copy& copy = complex.copies[c];
+      for (int v = 0; v < 8; ++v) {
+        const NodeId node = body.grid.nodes(copy.cell)[v];
+        ASSERT_EQ(complex.node[copy.corners[v]], node);
+        if (copy.nodes >> v & 1)
+          holders[node.value].insert(copy.corners[v]);
       }
+      ++n_listed;
     }
   }
+  ASSERT_EQ(n_listed, complex.n_copies());
   for (const auto n : ids<NodeId>(body.grid.n_nodes())) {
     ASSERT_EQ(holders[n.value].size(), body.grid.is_material(n) ? 1u : 0u);
     ASSERT_EQ(complex.real_corner[n], holders[n.value].empty() ? CornerId() : *holders[n.value].begin());
   }
 }
 
-/// A piece is exactly a component of the material nodes over uncut edges: the eight cells around a material node all
-/// exist, any two that share a face are glued there, and glued copies share a material node.
-void expect_pieces_of_nodes(const Body& body, const CellComplex& complex) {
-  std::set<Index3> seen;
+/// A piece is exactly what uncut edges and whole skin hold together, through the body, whatever its cells: the cells
+/// around a node or a rind all exist, any two of them that share a face are glued there, and glued copies share a node
+/// or a rind.
+void expect_pieces_of_material(const Body& body, const CellComplex& complex) {
   const Pieces all = pieces(complex);
-  std::set<std::uint32_t> seen_pieces;
-  for (const auto n : ids<NodeId>(body.grid.n_nodes())) {
-    if (!body.grid.is_material(n) || seen.contains(body.grid.index(n)))
-      continue;
-    const NodeSet component = flood(body, body.grid.index(n), [](const Index3&) { return true; });
-    seen.insert(component.begin(), component.end());
-    std::set<std::uint32_t> of_component;
-    for (const auto c : ids<CopyId>(complex.n_copies()))
-      for (int v = 0; v < 8; ++v)
-        if ((complex.copies[c].nodes >> v & 1) &&
-            component.contains(body.grid.index(body.grid.nodes(complex.copies[c].cell)[v])))
-          of_component.insert(all.piece[c]);
-    ASSERT_EQ(of_component.size(), 1u);
-    ASSERT_TRUE(seen_pieces.insert(*of_component.begin()).second) << "two components in one piece";
+  std::map<slow::Point, std::set<std::uint32_t>> pieces_at;
+  for (const auto c : ids<CopyId>(complex.n_copies()))
+    for (const auto& p :
+         slow::items_of(complex.copies[c].part(), slow::lattice_cell(body.grid, complex.copies[c].cell)))
+      pieces_at[p].insert(all.piece[c]);
+  std::set<std::uint32_t> seen;
+  for (const Items& items : slow::pieces_of(body)) {
+    std::set<std::uint32_t> of_items;
+    for (const auto& p : items)
+      of_items.insert(pieces_at[p].begin(), pieces_at[p].end());
+    ASSERT_EQ(of_items.size(), 1u);
+    ASSERT_TRUE(seen.insert(*of_items.begin()).second) << "two in one piece";
   }
-  EXPECT_EQ(seen_pieces.size(), all.n_pieces);
+  EXPECT_EQ(seen.size(), all.n_pieces);
 }
 
 /// Built again, and up to names after an update.
 void expect_same(const CellComplex& a, const CellComplex& b) { ASSERT_TRUE(support::renaming(a, b).has_value()); }
 
+/// The copy in which the copy's material was: a rind that is new, with the node from which it was cut off.
+CopyId copy_before(const Body& body, const CellComplex& before, const Copy& copy) {
+  if (copy.nodes != 0)
+    return before.copy_at(copy.cell, std::countr_zero(copy.nodes));
+  const int line = std::countr_zero(copy.rinds);
+  if (const CopyId c = before.copy_with_rind(copy.cell, line); c.valid())
+    return c;
+  const auto& [v, w] = cube::line_vertices[line];
+  return before.copy_at(copy.cell, body.grid.is_material(body.grid.nodes(copy.cell)[v]) ? v : w);
+}
+
 /// One parent a corner, an instance of the same node, whichever copy is asked; real stays real; pieces only split; what
 /// is not named as changed has not.
-void expect_change(const CellComplex& before, const CellComplex& after, const ComplexChange& change) {
+void expect_change(const Body& body, const CellComplex& before, const CellComplex& after, const ComplexChange& change) {
   ASSERT_EQ(change.n_copies_before, before.n_copies());
   ASSERT_EQ(change.n_corners_before, before.n_corners());
   ASSERT_EQ(change.parents.size(), after.n_corners() - before.n_corners());
@@ -257,58 +178,86 @@ void expect_change(const CellComplex& before, const CellComplex& after, const Co
   ASSERT_TRUE(std::is_sorted(change.copies.begin(), change.copies.end()));
   ASSERT_EQ(std::adjacent_find(change.copies.begin(), change.copies.end()), change.copies.end()) << "named twice";
   const Pieces pieces_before = pieces(before), pieces_after = pieces(after);
+  std::set<CopyId> divided;
+  for (const auto c : ids<CopyId>(after.n_copies()))
+    if (const CopyId from = copy_before(body, before, after.copies[c]); from != c)
+      divided.insert(from);
   std::map<std::uint32_t, std::uint32_t> piece_before;
   for (const auto c : ids<CopyId>(after.n_copies())) {
     const Copy& copy = after.copies[c];
-    const bool same =
-      c.value < before.n_copies() && before.copies[c].nodes == copy.nodes && before.copies[c].corners == copy.corners;
+    const bool same = c.value < before.n_copies() && before.copies[c].nodes == copy.nodes &&
+                      before.copies[c].rinds == copy.rinds && before.copies[c].corners == copy.corners &&
+                      !divided.contains(c);
     ASSERT_NE(same, std::binary_search(change.copies.begin(), change.copies.end(), c));
+    const CopyId from = copy_before(body, before, copy);
+    ASSERT_TRUE(from.valid());
+    ASSERT_EQ(copy.nodes & ~before.copies[from].nodes, 0) << "cuts join nothing";
+    for (const CopyId old : before.copies_of(copy.cell))
+      ASSERT_TRUE(old == from || (copy.rinds & before.copies[old].rinds) == 0) << "cuts join nothing";
     for (int v = 0; v < 8; ++v)
-      if (copy.nodes >> v & 1) {
-        const CopyId from = before.copy_at(copy.cell, v);
-        ASSERT_EQ(copy.nodes & ~before.copies[from].nodes, 0) << "cuts join nothing";
-        for (int w = 0; w < 8; ++w)
-          ASSERT_EQ(parent(copy.corners[w]), before.copies[from].corners[w]);
-        const std::uint32_t piece = pieces_before.piece[from];
-        ASSERT_EQ(piece_before.emplace(pieces_after.piece[c], piece).first->second, piece);
-      }
+      ASSERT_EQ(parent(copy.corners[v]), before.copies[from].corners[v]);
+    const std::uint32_t piece = pieces_before.piece[from];
+    ASSERT_EQ(piece_before.emplace(pieces_after.piece[c], piece).first->second, piece);
   }
   ASSERT_EQ(after.real_corner.items(), before.real_corner.items()) << "a real corner keeps its name";
 }
 
-/// Adds cuts in a random order and in random steps; after each of them, updated is built.
-void expect_updates(Random& random, Body body, std::vector<EdgeCut> cuts, const std::size_t n_steps) {
-  std::shuffle(cuts.begin(), cuts.end(), random);
+/// Follows a plan in a random order and in random steps; after each of them, updated is built.
+void expect_updates(Random& random, Body body, const Plan& plan, const std::size_t n_steps) {
   CellComplex complex = build_complex(body.grid, body.cuts);
-  for (std::size_t step = 0; step < n_steps; ++step) {
-    std::vector<EdgeId> edges;
-    for (std::size_t i = step * cuts.size() / n_steps; i < (step + 1) * cuts.size() / n_steps; ++i) {
-      body.cuts.add(cuts[i]);
-      edges.push_back(cuts[i].edge);
-    }
+  for (const histories::Step& step : histories::dealt(random, body, plan, n_steps)) {
+    histories::apply(step, body);
     const CellComplex before = complex;
-    const ComplexChange change = update_complex(body.grid, body.cuts, edges, complex);
-    expect_change(before, complex, change);
+    const ComplexChange change = update_complex(body.grid, body.cuts, step.edges, complex);
+    expect_change(body, before, complex, change);
+    expect_consistent(body, complex);
     expect_same(complex, build_complex(body.grid, body.cuts));
     if (testing::Test::HasFatalFailure())
       return;
   }
 }
 
-Body cut_at_once(Body body, const std::vector<EdgeCut>& cuts) {
-  for (const EdgeCut& cut : cuts)
-    body.cuts.add(cut);
-  return body;
+/// A surface without an end inside the body makes these cuts.
+Plan through(const Body& body, const std::vector<EdgeCut>& cuts) {
+  Body cut = histories::applied({cuts, {}}, body);
+  std::vector<EdgeId> edges;
+  for (const EdgeCut& c : cuts)
+    edges.push_back(c.edge);
+  cut::part_skin(cut.grid, cut.cuts, edges);
+  Plan plan{cuts, {}};
+  for (const auto face : ids<FaceId>(body.grid.n_faces()))
+    if (cut.cuts.seam(face) != Seam::unsaid)
+      plan.seams[face] = cut.cuts.seam(face);
+  return plan;
 }
 
-void check(Random& random, const Body& body, const std::vector<EdgeCut>& cuts) {
-  const Body cut = cut_at_once(body, cuts);
+struct Tally {
+  std::size_t n_pieces = 0, n_copies_of_rinds = 0, n_held_by_skin = 0, n_fronts = 0;
+
+  void add(const Body& body, const CellComplex& complex) {
+    n_pieces += grid::n_pieces(complex);
+    for (const Copy& copy : complex.copies) {
+      n_copies_of_rinds += copy.nodes == 0;
+      n_fronts += copy.nodes != 0 && copy.rinds != 0;
+      if (copy.nodes != 0)
+        n_held_by_skin +=
+          copy.nodes != cube::reachable(std::countr_zero(copy.nodes), body.cuts.configuration(body.grid, copy.cell));
+    }
+  }
+};
+
+CellComplex check(Random& random, const Body& body, const Plan& plan) {
+  const Body cut = histories::applied(plan, body);
   const CellComplex complex = build_complex(cut.grid, cut.cuts);
   expect_consistent(cut, complex);
   expect_matches_slow(cut, complex);
-  expect_pieces_of_nodes(cut, complex);
-  const std::size_t n_steps = 1 + random() % std::max<std::size_t>(1, std::min<std::size_t>(6, cuts.size()));
-  expect_updates(random, body, cuts, n_steps);
+  expect_pieces_of_material(cut, complex);
+  Plan other = plan;
+  std::shuffle(other.cuts.begin(), other.cuts.end(), random);
+  expect_same(complex, build_complex(cut.grid, histories::applied(other, body).cuts));
+  const std::size_t n_steps = 1 + random() % std::max<std::size_t>(1, std::min<std::size_t>(6, plan.cuts.size()));
+  expect_updates(random, body, plan, n_steps);
+  return complex;
 }
 
 TEST(Complex, OfAnUncutBodyIsItsGrid) {
@@ -328,7 +277,7 @@ TEST(Complex, OfAnUncutBodyIsItsGrid) {
 TEST(Complex, HasTwoCopiesAtTheFaceOfAFront) {
   // Four nodes in a ring, its lower x edge cut: the cell through the ring holds one component, the one below it two.
   Body body = support::block({2, 1, 2});
-  body.cuts.add({*body.grid.find_edge({1, 1, 1}, 0), 0.5, Vec3::UnitX(), 1});
+  body.cuts.add(body.grid, {*body.grid.find_edge({1, 1, 1}, 0), 0.5, Vec3::UnitX(), 1});
   const CellComplex complex = build_complex(body.grid, body.cuts);
   const CellId below = *body.grid.find_cell({1, 1, 0}), above = *body.grid.find_cell({1, 1, 1});
   EXPECT_TRUE(complex.copies[complex.first_copy[below]].next.valid());
@@ -344,21 +293,47 @@ TEST(Complex, HasTwoCopiesAtTheFaceOfAFront) {
 
 TEST(Complex, AgreesWithItsDefinitionOnRandomCutSets) {
   Random random(4);
-  std::size_t n_cut_sets = 0, n_pieces = 0;
+  std::size_t n_cut_sets = 0;
+  Tally tally;
   for (int i = 0; i < 300; ++i) {
     const Index3 n = {2 + i % 4, 1 + i / 4 % 4, 1 + i / 16 % 4};
     auto nodes = i % 2 == 0 ? support::block_nodes(n) : support::some_nodes(random, n, 0.7);
     if (nodes.empty())
       nodes = {{1, 1, 1}};
     const Body body = support::make_body({}, nodes, support::midway);
-    const auto cuts = support::random_cuts(random, body, support::uniform(random, 0.02, 0.98));
-    check(random, body, cuts);
+    const Plan plan{support::random_cuts(random, body, uniform(random, 0.02, 0.98)), {}};
+    tally.add(body, check(random, body, plan));
     ASSERT_FALSE(HasFatalFailure()) << "random set " << i;
-    n_cut_sets += cuts.empty() ? 0 : 1;
-    n_pieces += grid::n_pieces(build_complex(body.grid, cut_at_once(body, cuts).cuts));
+    n_cut_sets += plan.cuts.empty() ? 0 : 1;
   }
   EXPECT_GT(n_cut_sets, 250u);
-  EXPECT_GT(n_pieces, 1500u) << "the sets are too tame";
+  EXPECT_GT(tally.n_pieces, 1500u) << "the sets are too tame";
+}
+
+TEST(Complex, AgreesWithItsDefinitionOnCutsBelowTheSkin) {
+  Random random(6);
+  Tally tally;
+  for (int i = 0; i < 1200; ++i) {
+    const Index3 n = {1 + i % 4, 1 + i / 4 % 3, 1 + i / 12 % 3};
+    auto nodes = i % 4 == 0 ? support::block_nodes(n) : support::some_nodes(random, n, uniform(random, 0.1, 1));
+    if (nodes.empty())
+      nodes = {{1, 1, 1}};
+    const Body body = i % 10 == 9 ? support::ball(1, uniform(random, 0.4, 0.8), support::random_offset(random))
+                                  : support::make_body({}, nodes, [&](const Grid& grid, const EdgeId e) {
+                                      EdgeCut cut = support::midway(grid, e);
+                                      cut.t = uniform(random, 0.01, 0.99);
+                                      return cut;
+                                    });
+    const double inner = i % 3 == 0 ? 0 : uniform(random, 0, 1), second = uniform(random, 0, 1);
+    const Plan plan = histories::random_plan(random, body, inner, second, i % 5 == 0 ? 0 : uniform(random, 0, 1));
+    const CellComplex complex = check(random, body, plan);
+    ASSERT_FALSE(HasFatalFailure()) << "random body " << i;
+    tally.add(histories::applied(plan, body), complex);
+  }
+  EXPECT_GT(tally.n_pieces, 2000u) << "the sets are too tame";
+  EXPECT_GT(tally.n_copies_of_rinds, 5000u);
+  EXPECT_GT(tally.n_held_by_skin, 1000u) << "nodes that only the skin holds together";
+  EXPECT_GT(tally.n_fronts, 5000u) << "rinds that hold to nodes";
 }
 
 TEST(Complex, AgreesWithItsDefinitionOnEmbeddedBodies) {
@@ -369,11 +344,112 @@ TEST(Complex, AgreesWithItsDefinitionOnEmbeddedBodies) {
     const cut::Embedding e = cut::embed(mesh, h, {0.1, 0.5, 0.7});
     const Body body{e.grid, e.cuts};
     for (const double probability : {0.0, 0.1, 0.5, 0.9})
-      check(random, body, support::random_cuts(random, body, probability));
+      for (const double seam : {0.0, 0.7})
+        check(random, body, histories::random_plan(random, body, probability, uniform(random, 0, 1), seam));
     const support::Plane plane{Vec3(1, 0.3, -0.2).normalized(), 0.12};
-    check(random, body, support::plane_cuts(body, plane));
+    check(random, body, through(body, support::plane_cuts(body, plane)));
     ASSERT_FALSE(HasFatalFailure());
   }
+}
+
+TEST(Complex, GivesARindThatIsCutOffCopiesOfItsOwn) {
+  // One node in eight cells; its edge along x is cut a second time, and the skin of the four faces around it opens one
+  // by one.
+  Body body = support::block({1, 1, 1});
+  CellComplex complex = build_complex(body.grid, body.cuts);
+  const EdgeId edge = *body.grid.find_edge({1, 1, 1}, 0);
+  const std::array<CellId, 4> around = body.grid.cells(edge);
+  const auto face = [&](const int cell, const int local) { return body.grid.faces(around[cell])[local]; };
+  body.cuts.add(body.grid, {edge, 0.2, Vec3::UnitX(), 1});
+  const auto expect = [&](const std::size_t n_copies, const std::size_t n_corners, const std::uint32_t n_pieces) {
+    update_complex(body.grid, body.cuts, std::array{edge}, complex);
+    EXPECT_EQ(complex.n_copies(), n_copies);
+    EXPECT_EQ(complex.n_corners(), n_corners);
+    EXPECT_EQ(grid::n_pieces(complex), n_pieces);
+    expect_consistent(body, complex);
+    expect_matches_slow(body, complex);
+  };
+  expect(8, 27, 1); // all four faces hold the rind
+  body.cuts.set_seam(face(0, 2), Seam::parted);
+  expect(8, 27, 1); // in each cell another face holds it
+  body.cuts.set_seam(face(0, 4), Seam::parted);
+  expect(9, 27 + 2, 1); // alone in the first cell: two corners on that cell's own edge
+  body.cuts.set_seam(face(3, 3), Seam::parted);
+  expect(10, 27 + 6, 1); // in two cells side by side: six on their far side
+  body.cuts.set_seam(face(3, 5), Seam::parted);
+  expect(12, 27 + 18, 2); // on its own in four cells
+}
+
+TEST(Complex, RefusesCutsThatJoin) {
+  Body body = support::block({2, 1, 1});
+  const EdgeId inner = *body.grid.find_edge({1, 1, 1}, 0), edge = *body.grid.find_edge({1, 1, 1}, 1);
+  const FaceId face = body.grid.faces(*body.grid.find_cell({1, 1, 1}))[4];
+  CellComplex complex = build_complex(body.grid, body.cuts);
+  body.cuts.add(body.grid, {inner, 0.5, Vec3::UnitX(), 1});
+  update_complex(body.grid, body.cuts, std::array{inner}, complex);
+  ASSERT_EQ(grid::n_pieces(complex), 2u);
+  body.cuts.set_seam(face, Seam::whole);
+  CellComplex joined = complex;
+  EXPECT_THROW(update_complex(body.grid, body.cuts, std::array{edge}, joined), std::logic_error);
+  body.cuts.set_seam(face, Seam::parted);
+  EXPECT_NO_THROW(update_complex(body.grid, body.cuts, std::array{edge}, complex));
+}
+
+/// Does a part hold what was in several?
+bool has_joined(const Body& before, const Body& after) {
+  std::map<std::pair<Index3, slow::Point>, std::size_t> copy_of;
+  const auto old = slow::slow_copies(before);
+  for (std::size_t i = 0; i < old.size(); ++i)
+    for (const auto& p : old[i].items)
+      copy_of[{old[i].cell, p}] = i;
+  for (const slow::SlowCopy& copy : slow::slow_copies(after)) {
+    std::set<std::size_t> from;
+    for (slow::Point p : copy.items) {
+      if (slow::n_odd(p) == 1 && !copy_of.contains({copy.cell, p})) { // a new rind: it was with its node
+        const slow::Point node = slow::moved(p, slow::axis_of(p), -1);
+        p = slow::material_of(after).is_material(node) ? node : slow::moved(p, slow::axis_of(p), 1);
+      }
+      from.insert(copy_of.at({copy.cell, p}));
+    }
+    if (from.size() > 1)
+      return true;
+  }
+  return false;
+}
+
+TEST(Complex, RefusesExactlyTheSeamsThatJoin) {
+  Random random(7);
+  int n_refused = 0, n_taken = 0;
+  for (int i = 0; i < 300; ++i) {
+    auto nodes = support::some_nodes(random, {2, 2, 2}, uniform(random, 0.3, 1));
+    nodes.push_back({1, 1, 1});
+    const Body blank = support::make_body({}, nodes, support::midway);
+    const Plan plan = histories::random_plan(random, blank, uniform(random, 0, 1), uniform(random, 0, 1), 0.7);
+    Plan first = plan;
+    while (!first.cuts.empty() && random() % 4 != 0)
+      first.cuts.pop_back();
+    const Body before = histories::applied(first, blank);
+    Body after = histories::applied(plan, blank);
+    auto said = plan.seams.begin();
+    std::advance(said, random() % plan.seams.size());
+    const FaceId face = random() % 4 != 0 ? said->first : FaceId(random() % blank.grid.n_faces());
+    after.cuts.set_seam(face, random() % 2 ? Seam::whole : static_cast<Seam>(random() % 3));
+    std::vector<EdgeId> edges = {histories::edges_of(blank.grid, face)[random() % 4]};
+    for (std::size_t k = first.cuts.size(); k < plan.cuts.size(); ++k)
+      edges.push_back(plan.cuts[k].edge);
+    CellComplex complex = build_complex(before.grid, before.cuts);
+    if (has_joined(before, after)) {
+      EXPECT_THROW(update_complex(after.grid, after.cuts, edges, complex), std::logic_error);
+      ++n_refused;
+    } else {
+      ASSERT_NO_THROW(update_complex(after.grid, after.cuts, edges, complex));
+      expect_same(complex, build_complex(after.grid, after.cuts));
+      ++n_taken;
+    }
+    ASSERT_FALSE(HasFatalFailure()) << "random body " << i;
+  }
+  EXPECT_GT(n_refused, 20);
+  EXPECT_GT(n_taken, 100);
 }
 
 } // namespace
