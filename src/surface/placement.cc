@@ -1,9 +1,10 @@
 #include "surface/placement.h"
 
 #include "grid/cube.h"
+#include "grid/material.h"
 #include "grid/touched.h"
-#include "surface/planes.h"
-#include "surface/table.h"
+#include "surface/cell_rim.h"
+#include "surface/fold.h"
 
 #include <Eigen/Geometry>
 
@@ -23,6 +24,8 @@ using grid::Grid;
 
 namespace {
 
+constexpr int no_axis = -1;
+
 constexpr std::array<unsigned, 6> lines_of_face = [] {
   std::array<unsigned, 6> masks{};
   for (int face = 0; face < cube::n_faces; ++face)
@@ -31,32 +34,13 @@ constexpr std::array<unsigned, 6> lines_of_face = [] {
   return masks;
 }();
 
-/// Calls f(i) for each bit i of a mask, upwards.
-template <class Function>
-void for_each_bit(unsigned mask, const Function& f) {
-  for (; mask != 0; mask &= mask - 1)
-    f(std::countr_zero(mask));
-}
-
-/// A cell, with the planes of its cut edges; sets are bits, of lines or of vertices.
-struct View {
-  CellId cell;
-  Vec3 lower, upper; ///< the cell's corners [m]
-  unsigned cut = 0, old = 0, skin = 0;
-  unsigned material = 0;
-  std::array<Plane, 12> planes; ///< by line, where it is cut
-  std::array<grid::CutLabel, 12> labels;
-};
-
 /// A face or a cell, with the planes of its cut edges sorted by what they ask of its vertex.
 struct Site {
-  Site(const View& of, const Directions& directions) : view(of), inside(directions), allowed(directions) {}
+  Site(const View& of, const Directions& directions) : view(of), inside(directions) {}
 
   const View& view;
-  Directions inside;  ///< the directions within it
-  Directions allowed; ///< those of them that keep the skin's volume
-  Planes skin;        ///< the skin that stood before
-  Planes locked;      ///< cuts that already separate material here: the vertex stays on them
+  Directions inside; ///< the directions within it
+  Planes locked;     ///< cuts that already separate material here: the vertex stays on them
   Few<grid::CutLabel, 12> locked_labels;
   Planes open;         ///< cuts that the vertex has yet to meet
   bool splits = false; ///< with all cuts, material here is separated
@@ -98,63 +82,6 @@ class Joint {
   double smooth_, turning_back_; ///< cosines of the turns where these begin
 };
 
-unsigned skin_lines(const Grid& grid, const Cuts& cuts, const CellId c) {
-  unsigned lines = 0;
-  const auto edges = grid.edges(c);
-  for (int line = 0; line < cube::n_lines; ++line) {
-    const grid::EdgeCut* cut = cuts.find(edges[line]);
-    lines |= unsigned(cut && cut->label == grid::skin_label) << line;
-  }
-  return lines;
-}
-
-/// Calls f(e, first face, its vertex, second face, its vertex) for each quadrilateral of the skin in the cell, seen
-/// from the cell's vertex. Volume is linear in each vertex: a move at right angles to its derivative keeps it exactly.
-template <class Function>
-void for_each_skin_quad(const Grid& grid, const Cuts& cuts, const CellId c, const Function& f) {
-  const Vec3 origin = grid::cell_point(grid, cuts, c);
-  const auto nodes = grid.nodes(c);
-  const auto edges = grid.edges(c);
-  const auto faces = grid.faces(c);
-  for (const Quad& quad : splitting_table().row(skin_lines(grid, cuts, c))) {
-    if (!grid.is_material(nodes[quad.end]))
-      continue;
-    const int first = quad.vertices[1].index, second = quad.vertices[3].index;
-    const auto face = [&](const int i) -> Vec3 { return grid::face_point(grid, cuts, faces[i]) - origin; };
-    f(grid::edge_point(grid, cuts, edges[quad.line]) - origin, first, face(first), second, face(second));
-  }
-}
-
-/// The derivative of the skin's volume (times 6) in a cell by the cell's vertex.
-Vec3 volume_by_centre(const Grid& grid, const Cuts& cuts, const CellId c) {
-  Vec3 sum = Vec3::Zero();
-  for_each_skin_quad(grid, cuts, c,
-                     [&](const Vec3& e, int, const Vec3& f, int, const Vec3& g) { sum += e.cross(f) + g.cross(e); });
-  return sum;
-}
-
-/// The same by the vertex in a face, of the triangles in both cells.
-Vec3 volume_by_face(const Grid& grid, const Cuts& cuts, const FaceId f) {
-  Vec3 result = Vec3::Zero();
-  for (const CellId c : grid.cells(f)) {
-    if (!c.valid())
-      continue;
-    const auto faces = grid.faces(c);
-    const auto face = std::find(faces.begin(), faces.end(), f) - faces.begin();
-    Vec3 sum = Vec3::Zero();
-    // The triangles (e, p, centre) and (e, centre, q), each seen from a face point's own place.
-    for_each_skin_quad(grid, cuts, c,
-                       [&](const Vec3& e, const int first, const Vec3& p, const int second, const Vec3& q) {
-                         if (first == face)
-                           sum += (-p).cross(e - p);
-                         if (second == face)
-                           sum += (e - q).cross(-q);
-                       });
-    result += sum;
-  }
-  return result;
-}
-
 class Placer {
  public:
   Placer(const Grid& grid, Cuts& cuts, const Placement& placement)
@@ -165,7 +92,7 @@ class Placer {
 
   PlacementCounts run(const std::span<const EdgeId> new_edges) {
     for (const auto& [c, new_lines] : grid::touched_cells(grid_, new_edges)) {
-      const View view = look_at(c, new_lines);
+      const View view = look_at(grid_, cuts_, c, new_lines);
       const auto faces = grid_.faces(c);
       for (int face = 0; face < cube::n_faces; ++face) {
         const FaceId f = faces[face];
@@ -173,47 +100,19 @@ class Placer {
         if ((new_lines & lines_of_face[face]) != 0 && first_seen)
           cuts_.set_point(f, place_face(view, face));
       }
+      const Vec3 before = grid::cell_point(grid_, cuts_, c);
       cuts_.set_point(c, place_cell(view));
+      if (view.now.has_two_points())
+        unfold(view, before);
     }
     return counts_;
   }
 
  private:
-  View look_at(const CellId c, const unsigned new_lines) const {
-    View view;
-    view.cell = c;
-    const auto nodes = grid_.nodes(c);
-    const auto edges = grid_.edges(c);
-    Index3 index = grid_.index(nodes[0]);
-    view.lower = grid_.lattice().position(index);
-    for (int& i : index)
-      ++i;
-    view.upper = grid_.lattice().position(index);
-    for (int v = 0; v < cube::n_vertices; ++v)
-      view.material |= unsigned(grid_.is_material(nodes[v])) << v;
-    for (int line = 0; line < cube::n_lines; ++line)
-      if (const grid::EdgeCut* cut = cuts_.find(edges[line])) {
-        view.cut |= 1u << line;
-        view.planes[line] = {point_on(view, line, cut->t), cut->normal};
-        view.labels[line] = cut->label;
-        view.skin |= unsigned(cut->label == grid::skin_label) << line;
-      }
-    view.old = view.cut & ~new_lines;
-    return view;
-  }
-
-  Vec3 point_on(const View& view, const int line, const double t) const {
-    const int v = cube::line_vertices[line][0];
-    Vec3 p(v & 1 ? view.upper[0] : view.lower[0], v & 2 ? view.upper[1] : view.lower[1],
-           v & 4 ? view.upper[2] : view.lower[2]);
-    p[cube::line_axis(line)] += grid_.h() * t;
-    return p;
-  }
-
-  /// Sorts the cuts of a face or cell into old skin, locked and open ones.
+  /// Sorts the cuts of a face or cell into those that separated material there before and open ones.
   static Site make_site(const View& view, const unsigned vertices, const unsigned lines, const Directions& inside) {
     Site site(view, inside);
-    const unsigned cut = view.cut & lines, old = view.old & lines, material = view.material & vertices;
+    const unsigned cut = view.now.cut & lines, old = view.old & lines, material = view.now.material & vertices;
     const auto separates = [&](const unsigned cut_lines) {
       return std::popcount(cut_lines) > 1 && material != 0 &&
              (material & ~cube::reachable(std::countr_zero(material), cut_lines, vertices)) != 0;
@@ -221,28 +120,26 @@ class Placer {
     site.splits = material != vertices || separates(cut);
     const bool was_split = separates(old);
     for_each_bit(cut, [&](const int line) {
-      const Plane& plane = view.planes[line];
-      if ((old & view.skin) >> line & 1)
-        site.skin.push_back(plane);
-      else if (was_split && (old >> line & 1))
-        site.lock(plane, view.labels[line]);
+      if (was_split && (old >> line & 1))
+        site.lock(view.planes[line], view.labels[line]);
       else
-        site.open.push_back(plane);
+        site.open.push_back(view.planes[line]);
     });
     return site;
   }
 
-  /// Locks a vertex of the skin: it moves at right angles to the volume's derivative, and along a sharp edge of the
-  /// skin only.
-  void lock_skin(Site& site, const Vec3& derivative) const {
-    const Vec3 normal = site.inside.projection * derivative;
-    const bool sharp = fixed_directions(site.skin, site.inside, threshold_).n > 1;
-    const bool opposed = normal.norm() < 1e-9 * grid_.h() * grid_.h(); // sheets that face each other
-    if (!opposed)
-      site.allowed.remove(normal.normalized(), 0.5);
-    if (sharp || opposed)
-      for (const Plane& plane : site.skin)
-        site.lock(plane, grid::skin_label);
+  /// The same of the blades' cuts alone, where the skin has a vertex of its own.
+  static Site make_site_of_blades(const View& view, const unsigned lines, const Directions& inside, const int n_before,
+                                  const int n_old, const int n_now) {
+    Site site(view, inside);
+    site.splits = n_now > n_before;
+    for_each_bit(view.now.blades() & lines, [&](const int line) {
+      if (n_old > n_before && (view.old >> line & 1))
+        site.lock(view.planes[line], view.labels[line]);
+      else
+        site.open.push_back(view.planes[line]);
+    });
+    return site;
   }
 
   Vec3 place_face(const View& view, const int face) {
@@ -250,35 +147,155 @@ class Placer {
     const int normal = cube::face_axis(face);
     Directions in_face{Mat3::Identity(), 2};
     in_face.projection(normal, normal) = 0;
-    Site site = make_site(view, cube::face_mask(face), lines_of_face[face], in_face);
-    if (!site.skin.empty())
-      lock_skin(site, volume_by_face(grid_, cuts_, f));
-    if (!site.skin.empty() || !site.locked.empty())
-      return slide(site, grid::face_point(grid_, cuts_, f));
-    if (site.open.size() == 2) {
-      const Vec3 middle = inside(site, mean_point(site.open));
-      Moves moves;
-      moves.push_back(join_(site.open[0], site.open[1], (normal + 1) % 3, (normal + 2) % 3) - middle);
-      moves.push_back(Vec3::Zero());
-      return hold_inside(site, middle, moves);
-    }
-    return meet(site, grid::centre(grid_, f));
+    const unsigned vertices = cube::face_mask(face), lines = lines_of_face[face];
+    if (!view.now.has_two_points(face))
+      return place_in(make_site(view, vertices, lines, in_face), normal, grid::face_point(grid_, cuts_, f),
+                      grid::centre(grid_, f));
+    const int n_old = keep_skin_point(f) ? 0 : parts_of(view.before(), face).n;
+    const int n_before = parts_of(view.without_blades(), face).n;
+    for (const grid::SkinArc& arc : grid::skin_arcs(face, view.now.material))
+      if (view.now.is_rim(face, arc) && (cuts_.skin_point(f)->has_rim || n_old <= n_before))
+        return place_on_rim(view, face, arc);
+    const Site site = make_site_of_blades(view, lines, in_face, n_before, n_old, parts_of(view.now, face).n);
+    const Vec3 p = place_in(site, normal, grid::face_point(grid_, cuts_, f), middle_of_material(site, vertices));
+    const Vec3 from = mean_point_of_blades(view, lines);
+    double part = 1;
+    for (const grid::SkinArc& arc : grid::skin_arcs(face, view.now.material))
+      part = std::min(part, part_before_line(from, p, view.skin_at(arc.lines[0]), cuts_.skin_point(f)->p,
+                                             view.skin_at(arc.lines[1]), normal));
+    const Vec3 q = inside(site, hold_below_skin(from, p, part));
+    const grid::SkinPoint& skin = *cuts_.skin_point(f);
+    for (const Vec3& candidate : {q, Vec3(grid::face_point(grid_, cuts_, f))})
+      if (!is_folded(view, face, candidate, skin))
+        return candidate;
+    return skin.p;
   }
 
   Vec3 place_cell(const View& view) {
-    Site site = make_site(view, 0xff, 0xfff, Directions());
-    if (!site.skin.empty())
-      lock_skin(site, volume_by_centre(grid_, cuts_, view.cell));
-    if (!site.skin.empty() || !site.locked.empty())
-      return slide(site, grid::cell_point(grid_, cuts_, view.cell));
-    return meet(site, 0.5 * (view.lower + view.upper));
+    const Vec3 p = grid::cell_point(grid_, cuts_, view.cell);
+    if (!view.now.has_two_points())
+      return place_in(make_site(view, 0xff, 0xfff, Directions()), no_axis, p, 0.5 * (view.lower + view.upper));
+    const int n_old = keep_skin_point(view.cell) ? 0 : parts_of(view.before()).n;
+    const int n_before = parts_of(view.without_blades()).n;
+    if (cuts_.skin_point(view.cell)->has_rim)
+      return p; // an earlier rim stays
+    if (n_old <= n_before && rim_passes(grid_, cuts_, view)) {
+      const auto on_rim = surface::place_on_rim(grid_, cuts_, view, threshold_);
+      ++(on_rim ? counts_.n_placed : counts_.n_clamped);
+      if (on_rim) {
+        cuts_.set_skin_point(view.cell, on_rim->skin);
+        return on_rim->p;
+      }
+    }
+    const Site site = make_site_of_blades(view, 0xfff, Directions(), n_before, n_old, parts_of(view.now).n);
+    const Vec3 q = place_in(site, no_axis, p, middle_of_material(site, 0xff));
+    const Vec3 from = mean_point_of_blades(view, 0xfff);
+    double part = 1;
+    for_each_skin_triangle(grid_, cuts_, view, [&](const std::array<Vec3, 3>& triangle) {
+      part = std::min(part, part_before(from, q, triangle));
+    });
+    return inside(site, hold_below_skin(from, q, part));
+  }
+
+  /// Where the cell's vertex folds the skin, it goes back to where it was, on earlier cuts, or else to the skin's.
+  void unfold(const View& view, const Vec3& before) {
+    const Vec3 of_skin = cuts_.skin_point(view.cell)->p;
+    for (const Vec3& p : {before, of_skin})
+      if (is_folded(grid_, cuts_, view)) {
+        cuts_.set_point(view.cell, p);
+        cuts_.set_skin_point(view.cell, {of_skin});
+        counts_.n_clamped += &p == &before;
+      }
+  }
+
+  static Vec3 mean_point_of_blades(const View& view, const unsigned lines) {
+    Planes planes;
+    for_each_bit(view.now.blades() & lines, [&](const int line) { planes.push_back(view.planes[line]); });
+    return mean_point(planes);
+  }
+
+  /// p, or where the way there from the cuts' edges still lies below the skin: material has no negative volume.
+  Vec3 hold_below_skin(const Vec3& from, const Vec3& p, const double part) {
+    constexpr double inside = 0.9;
+    if (part >= 1)
+      return p;
+    ++counts_.n_clamped;
+    return from + inside * part * (p - from);
+  }
+
+  /// Where the cuts ask for the vertex that is at p now; the first cuts of a front bring it near `middle`. A face has
+  /// its normal's axis.
+  Vec3 place_in(const Site& site, const int normal, const Vec3& p, const Vec3& middle) {
+    if (!site.locked.empty())
+      return slide(site, p);
+    if (normal != no_axis && site.open.size() == 2) {
+      const Vec3 start = inside(site, mean_point(site.open));
+      Moves moves;
+      moves.push_back(join_(site.open[0], site.open[1], (normal + 1) % 3, (normal + 2) % 3) - start);
+      moves.push_back(Vec3::Zero());
+      return hold_inside(site, start, moves);
+    }
+    return meet(site, middle);
+  }
+
+  /// Where blades come to have a vertex of their own, the one that was there stays with the skin. Returns whether that
+  /// is so.
+  template <class Id>
+  bool keep_skin_point(const Id id) {
+    if (cuts_.skin_point(id))
+      return false;
+    cuts_.set_skin_point(id, {point_of(id)});
+    return true;
+  }
+  Vec3 point_of(const FaceId f) const { return grid::face_point(grid_, cuts_, f); }
+  Vec3 point_of(const CellId c) const { return grid::cell_point(grid_, cuts_, c); }
+
+  Vec3 place_on_rim(const View& view, const int face, const grid::SkinArc& arc) {
+    const FaceId f = grid_.faces(view.cell)[face];
+    grid::SkinPoint of_skin = *cuts_.skin_point(f);
+    if (of_skin.has_rim)
+      return grid::face_point(grid_, cuts_, f); // an earlier rim stays
+    const RimPoint rim = meet_line(view.mean_plane(view.now.blades() & grid::CellCuts::beside(arc)),
+                                   view.skin_at(arc.lines[0]), of_skin.p, view.skin_at(arc.lines[1]));
+    of_skin.lines &= static_cast<std::uint16_t>(~(1u << cube::place_in_face(face, arc.lines[1 - rim.side_of_corner])));
+    of_skin.has_rim = true;
+    ++counts_.n_placed;
+    counts_.n_clamped += !rim.is_met;
+    const Vec3 p = along_skin(view, cube::face_axis(face), rim.p, of_skin.p);
+    if (is_folded(view, face, p, of_skin))
+      return of_skin.p;
+    cuts_.set_skin_point(f, of_skin);
+    return p;
+  }
+
+  /// p, no closer to the sides of a face than a vertex may be: it moves towards the skin's vertex, along the skin.
+  static Vec3 along_skin(const View& view, const int normal, const Vec3& p, const Vec3& corner) {
+    const Vec3 inside = view.inside(p);
+    double part = 0;
+    for (int axis = 0; axis < 3; ++axis)
+      if (axis != normal && inside[axis] != p[axis])
+        part = std::max(part, corner[axis] != p[axis] ? (inside[axis] - p[axis]) / (corner[axis] - p[axis]) : 1);
+    return p + std::min(part, 1.0) * (corner - p);
+  }
+
+  /// Halfway between the site's cuts and its material nodes: below the skin, where a front ends there.
+  static Vec3 middle_of_material(const Site& site, const unsigned vertices) {
+    const View& view = site.view;
+    Vec3 sum = Vec3::Zero();
+    int n = 0;
+    for_each_bit(view.now.material & vertices, [&](const int v) {
+      for (int axis = 0; axis < 3; ++axis)
+        sum[axis] += v >> axis & 1 ? view.upper[axis] : view.lower[axis];
+      ++n;
+    });
+    return 0.5 * (mean_point(site.open) + sum / n);
   }
 
   /// The directions that keep all locked planes: what each cut fixes alone, so that a cut that meets an earlier one at
   /// a small angle is not taken for one bent cut with it.
   Directions along_locked(const Site& site) const {
     constexpr double same = 1e-6; // sine of the angle below which sheets are taken for one, or for a side of the site
-    Directions along = site.allowed;
+    Directions along = site.inside;
     for (int i = 0; i < site.locked.size(); ++i) {
       const grid::CutLabel label = site.locked_labels[i];
       const auto* labels = site.locked_labels.begin();
@@ -288,9 +305,7 @@ class Placer {
       for (int k = i; k < site.locked.size(); ++k)
         if (site.locked_labels[k] == label)
           of_label.push_back(site.locked[k]);
-      const Directions& seen_from = label == grid::skin_label ? site.allowed : site.inside;
-      const Fixed fixed =
-        fixed_directions(of_label, seen_from, threshold_, label == grid::skin_label ? least_lean : same);
+      const Fixed fixed = fixed_directions(of_label, site.inside, threshold_, same);
       for (int k = 0; k < fixed.n; ++k)
         along.remove(fixed.of.vectors.col(k), same);
     }
@@ -317,12 +332,12 @@ class Placer {
   double margin() const { return grid::min_edge_parameter * grid_.h(); }
 
   /// p, no closer to the sides of the site than a vertex may be.
-  Vec3 inside(const Site& site, Vec3 p) const {
-    const Vec3& lower = site.view.lower;
+  Vec3 inside(const Site& site, const Vec3& p) const {
+    Vec3 q = site.view.inside(p);
     for (int axis = 0; axis < 3; ++axis)
-      if (site.reaches(axis))
-        p[axis] = std::clamp(p[axis], lower[axis] + margin(), lower[axis] + grid_.h() - margin());
-    return p;
+      if (!site.reaches(axis))
+        q[axis] = p[axis];
+    return q;
   }
 
   /// The sides of the site that p has reached.

@@ -2,24 +2,27 @@
 
 /// Where the vertices that a cut makes in faces and cells lie at rest (thesis §2.4.3, figure 2.15).
 ///
-/// A cut edge gives a cut plane: its edge vertex and the normal of the cutting surface there.
-/// Face, inside the body: (a) one plane, the face's centre projected onto it (a front ends here); two planes, (b) the
-/// middle of the Bezier curve of edge vertices and the planes' intersection where they meet smoothly, (c) that
-/// intersection where they are sharp; (d), (e) later cuts of a face already split project the vertex onto the new
-/// planes, within the planes of each earlier cut. Cell, inside the body: the point nearest its centre that minimises
-/// the squared distances to all planes [GH97]; later cuts of a cell already split project it, in the same way. On the
-/// skin: the input's planes are known all at once and give the quadric's minimum; later cuts move the vertex at right
-/// angles to the derivative of the enclosed volume by its position. The volume is linear in each vertex, so the rest
-/// volume is kept to round-off, for a curved skin too (the thesis lets the skin jump: §2.8); sharp edges of the skin
-/// stay.
+/// A cut edge gives a cut plane: its edge vertex and the normal of the cutting surface there. Face, inside the body:
+/// (a) one plane, the face's centre projected onto it (a front ends here); two planes, (b) the middle of the Bezier
+/// curve of edge vertices and the planes' intersection where they meet smoothly, (c) that intersection where they are
+/// sharp; (d), (e) later cuts of a face already split project the vertex onto the new planes, within the planes of
+/// each earlier cut. Cell, inside the body: the point nearest its centre that minimises the squared distances to all
+/// planes [GH97]; later cuts of a cell already split project it, in the same way. The skin: the input's planes are
+/// known all at once and give the quadric's minimum; that vertex never moves again (the thesis lets the skin jump:
+/// §2.8). Where a blade cuts beside the skin, the cuts get a vertex of their own (grid::SkinPoint), placed by their
+/// planes alone; where a cut meets the skin it lies on the rim (rim.h), and in the cell as far along the cut from
+/// there as keeps the rest volume of a curved skin to round-off.
 ///
-/// Departures: the thesis projects plainly onto the new plane, which would bend an earlier cut that it does not meet at
-/// a right angle, and move volume from one of its sides to the other; here what was flat stays flat. A cell with a
-/// front takes the quadric too, not the mean of its face vertices, which may lie beside the plane that is cut; a face
-/// whose two edges are cut in different steps by different fronts is (b) or (c) all the same. A vertex never leaves its
-/// face or cell, so that every octant (grid/cuts.h) has six positive tetrahedra: where all planes would meet outside,
-/// the weakest of them is given up, then the next; where even the strongest one leads outside, the vertex stops at the
-/// side. Limit: more than three planes in a cell are met in the least-squares sense.
+/// Departures: the thesis has one vertex a face and component, which cannot lie on the skin and on a cut below it; and
+/// it projects plainly onto the new plane, which would bend an earlier cut that it does not meet at a right angle, and
+/// move volume from one of its sides to the other; here what was flat stays flat. A cell with a front takes the
+/// quadric too, not the mean of its face vertices, which may lie beside the plane that is cut; a face whose two edges
+/// are cut in different steps by different fronts is (b) or (c) all the same. A vertex never leaves its face or cell,
+/// so that every octant (grid/material.h) has six positive tetrahedra: where all planes would meet outside, the
+/// weakest of them is given up, then the next; where even the strongest one leads outside, the vertex stops at the
+/// side. Limits: more than three planes in a cell are met in the least-squares sense; a rim has one vertex in a face
+/// and one in a cell, so that where cuts cross on the skin, or a rim bends twice in a cell, it passes by the skin's
+/// vertex; of a plane, the tip of a sharp edge that lies between the grid's edges is lost.
 
 #include "grid/cuts.h"
 
@@ -32,8 +35,8 @@ struct Placement {
   double sharp_angle = 45;
 };
 
-/// How many vertices were placed, and how many of them the sides of their face or cell held back from where their
-/// planes ask for them.
+/// How many vertices were placed, and how many of them the sides of their face or cell, or the skin, held back from
+/// where their planes ask for them.
 struct PlacementCounts {
   std::size_t n_placed = 0, n_clamped = 0;
 };

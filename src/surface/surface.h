@@ -7,12 +7,18 @@
 /// place in its copy: linear on an edge, bilinear in a face, trilinear in a cell (§2.4.4, with corners as unknowns
 /// instead of extrapolated frames).
 ///
-/// A later cut takes no vertex and no triangle away: a quadrilateral belongs to a cut edge, and an edge is cut once; a
-/// vertex belongs to a component, and of the parts that a component falls into, the one with its smallest vertex keeps
-/// the vertex and uses it, for it has an end of the edge that parts it. So an update writes the cells around what is
-/// new, and appends. The order of vertices depends on the sequence of cuts, the surface does not.
+/// Where a blade has cut below the skin (grid/cuts.h), cuts and skin are two sheets: the quadrilaterals of an edge
+/// that is cut twice belong to the one and to the other, and so do the vertices in faces and cells that both pass
+/// without meeting. Where they meet, at the rim of a cut, they have their vertices in common.
+///
+/// A later cut takes no triangle away: a quadrilateral belongs to a cut of an edge. A vertex belongs to a part of a
+/// face or cell, and of those that it falls into, the first keeps the vertex. So an update writes the cells around
+/// what is new, and appends; a vertex of skin or cut that is taken over by the other sheet may remain without
+/// triangles. The order of vertices depends on the sequence of cuts, the surface does not.
 
 #include "grid/complex.h"
+
+#include <unordered_map>
 
 namespace kerf::surface {
 
@@ -38,11 +44,17 @@ struct Surface {
 
 /// Which vertex is where: what an update needs to know of the surface beside the surface.
 struct SurfaceIndex {
-  grid::SparseIndex<grid::FaceId> first_face_vertex; ///< into face_vertices, where a face has some
-  std::vector<std::uint32_t> face_vertices;          ///< four a face: by the component's smallest vertex
-  std::vector<std::uint32_t> edge_vertices;          ///< two a cut edge: of its lower and its upper end
-  std::vector<std::uint32_t> first_triangle;         ///< of each cut edge
+  grid::SparseIndex<grid::FaceId> first_face_vertex;  ///< into face_vertices, where a face has some
+  std::vector<std::uint32_t> face_vertices;           ///< four a face: by the component's smallest vertex
+  grid::SparseIndex<grid::FaceId> first_sheet_vertex; ///< into face_vertices, where a blade has cut below the skin
+  std::vector<std::uint32_t> edge_vertices;           ///< two a cut: of its lower and its upper side
+  std::vector<std::uint32_t> first_triangle;          ///< of each cut
   Table<grid::CopyId, std::uint32_t> centres;
+  std::unordered_map<std::uint32_t, std::uint32_t>
+    skin_centres; ///< by copy, where they are others than those of the cuts
+
+  /// By cell, face and line: the first triangle of the wall there, where a cut meets the skin.
+  std::unordered_map<std::uint64_t, std::uint32_t> first_of_wall;
 
   std::size_t n_bytes() const;
 };

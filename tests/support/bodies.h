@@ -63,7 +63,7 @@ Body make_body(const grid::Lattice& lattice, const std::vector<Index3>& nodes, c
   for (const auto e : ids<grid::EdgeId>(grid.n_edges())) {
     const auto& [lower, upper] = grid.ends(e);
     if (grid.is_material(lower) != grid.is_material(upper))
-      cuts.add(skin(grid, e));
+      cuts.add(grid, skin(grid, e));
   }
   return {std::move(grid), std::move(cuts)};
 }
@@ -126,14 +126,23 @@ struct Plane {
   double height(const Vec3& p) const { return normal.dot(p) - offset; }
 };
 
-/// The edges between material nodes that a plane crosses.
+/// Does a crossing at t lie in the material of an edge of the skin?
+inline bool is_below_skin(const Body& body, const grid::EdgeId e, const double t) {
+  const double skin = body.cuts.find_outer(e)->t;
+  return body.grid.is_material(body.grid.ends(e)[0]) ? t < skin - grid::min_edge_parameter
+                                                     : t > skin + grid::min_edge_parameter;
+}
+
+/// The edges that a plane crosses in the material.
 inline std::vector<grid::EdgeCut> plane_cuts(const Body& body, const Plane& plane, const grid::CutLabel label = 1) {
   std::vector<grid::EdgeCut> cuts;
   for (const auto e : ids<grid::EdgeId>(body.grid.n_edges())) {
     const auto& [lower, upper] = body.grid.ends(e);
     const double a = plane.height(body.grid.position(lower)), b = plane.height(body.grid.position(upper));
-    if (is_inner(body, e) && !body.cuts.is_cut(e) && (a < 0) != (b < 0))
-      cuts.push_back({e, a / (a - b), plane.normal, label});
+    if (!body.cuts.can_be_cut(body.grid, e) || (a < 0) == (b < 0))
+      continue;
+    if (const double t = a / (a - b); is_inner(body, e) || is_below_skin(body, e, t))
+      cuts.push_back({e, t, plane.normal, label});
   }
   return cuts;
 }

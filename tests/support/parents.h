@@ -12,7 +12,15 @@ namespace kerf::support {
 inline Table<grid::CornerId, grid::CornerId> parents(const grid::CellComplex& before, const grid::CellComplex& after) {
   Table<grid::CornerId, grid::CornerId> parent(after.n_corners());
   for (const grid::Copy& copy : after.copies) {
-    const grid::Copy& from = before.copies[before.copy_at(copy.cell, std::countr_zero(copy.nodes))];
+    grid::CopyId at_before = copy.nodes != 0 ? before.copy_at(copy.cell, std::countr_zero(copy.nodes)) : grid::CopyId();
+    if (copy.nodes == 0) { // its rind, or the node from which that was cut off
+      const int line = std::countr_zero(copy.rinds);
+      at_before = before.copy_with_rind(copy.cell, line);
+      for (const int end : grid::cube::line_vertices[line])
+        if (!at_before.valid())
+          at_before = before.copy_at(copy.cell, end);
+    }
+    const grid::Copy& from = before.copies[at_before];
     for (int v = 0; v < 8; ++v)
       parent[copy.corners[v]] = from.corners[v];
   }

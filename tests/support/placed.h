@@ -2,10 +2,11 @@
 
 /// Embedded bodies with their skin placed, cuts with their vertices placed, and what tests ask of them.
 
+#include "cut/at_skin.h"
 #include "cut/embed.h"
 #include "cut/fit.h"
 #include "geometry/solid.h"
-#include "grid/complex.h"
+#include "grid/material.h"
 #include "surface/placement.h"
 #include "surface/surface.h"
 #include "tests/geometry/meshes.h"
@@ -48,11 +49,22 @@ inline Body embedded(const geometry::TriangleMesh& mesh, const double h, const V
 /// All these edges in one step.
 inline surface::PlacementCounts cut(Body& body, const std::span<const grid::EdgeCut> cuts) {
   for (const auto& cut : cuts)
-    body.cuts.add(cut);
+    body.cuts.add(body.grid, cut);
   return place(body, cuts);
 }
 
-inline double volume(const grid::Tetrahedron& t) { return (t[1] - t[0]).dot((t[2] - t[0]).cross(t[3] - t[0])) / 6; }
+/// All that a surface without an end inside the body cuts.
+inline surface::PlacementCounts cut_through(Body& body, const std::span<const grid::EdgeCut> cuts) {
+  std::vector<grid::EdgeId> edges;
+  for (const auto& cut : cuts) {
+    body.cuts.add(body.grid, cut);
+    edges.push_back(cut.edge);
+  }
+  cut::part_skin(body.grid, body.cuts, edges);
+  return place(body, cuts);
+}
+
+using grid::volume;
 
 /// Volume of each piece [m^3], from the octants.
 inline std::vector<double> octant_volumes(const Body& body, const grid::CellComplex& complex) {
@@ -60,10 +72,9 @@ inline std::vector<double> octant_volumes(const Body& body, const grid::CellComp
   std::vector<double> volumes(pieces.n_pieces, 0.0);
   const double h = body.grid.h();
   for (const auto c : ids<grid::CopyId>(complex.n_copies()))
-    for (int v = 0; v < 8; ++v)
-      if (complex.copies[c].nodes >> v & 1)
-        for (const auto& t : grid::octant(body.grid, body.cuts, complex.copies[c].cell, v))
-          volumes[pieces.piece[c]] += h * h * h * volume(t);
+    grid::for_each_tetrahedron(body.grid, body.cuts, complex.copies[c], [&](const grid::Tetrahedron& t, int) {
+      volumes[pieces.piece[c]] += h * h * h * volume(t);
+    });
   return volumes;
 }
 

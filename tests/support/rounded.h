@@ -3,7 +3,7 @@
 /// Volume and area that a curved cut surface encloses in a body, against the exact values.
 
 #include "cut/cut_surface.h"
-#include "tests/support/placed.h"
+#include "tests/support/cut_by_plane.h"
 
 #include <bit>
 #include <cmath>
@@ -29,8 +29,8 @@ inline RoundCut round_cut(const char* name, const cut::Cylinder& rod, const doub
   return {name, rod, height, volume, area};
 }
 
-/// In the unit cube, off every lattice: nothing about them is a round number. A sphere; a cylinder that is smooth inside
-/// the cube, as its ends are outside above z = 1 and below z = 0; and one with its sharp rims inside.
+/// In the unit cube, off every lattice: nothing about them is a round number. A sphere; a cylinder that is smooth
+/// inside the cube, as its ends are outside above z = 1 and below z = 0; and one with its sharp rims inside.
 inline std::vector<RoundCut> round_cuts() {
   constexpr double pi = std::numbers::pi;
   const cut::Sphere ball{{0.5137, 0.4871, 0.5219}, 0.311};
@@ -54,15 +54,14 @@ inline Enclosed cut_out(const RoundCut& round, const double h, const Vec3& offse
   auto complex = grid::build_complex(body.grid, body.cuts);
   const auto found = cut::cut_edges(cut::CutSurface{round.name, round.shape, 1}, body.grid, body.cuts, complex,
                                     grid::rest_positions(body.grid, complex));
-  cut(body, found.cuts);
+  cut_through(body, found.cuts);
   complex = grid::build_complex(body.grid, body.cuts);
   const auto surface = surface::build_surface(body.grid, body.cuts, complex);
   Enclosed result;
   for (std::size_t i = 0; i < surface.triangles.size(); ++i) {
     const grid::Copy& copy = complex.copies[surface.copies[i]];
-    const auto node = body.grid.nodes(copy.cell)[std::countr_zero(unsigned(copy.nodes))];
-    if (round.height(body.grid.position(node)) >= 0)
-      continue; // of the part around it: no copy has nodes on both sides
+    if (round.height(point_in(body, copy)) >= 0)
+      continue; // of the part around it: no copy has material on both sides
     const auto& [a, b, c] = surface.triangles[i];
     const Vec3 &p = surface.rest[a], &q = surface.rest[b], &s = surface.rest[c];
     result.volume += p.dot(q.cross(s)) / 6;

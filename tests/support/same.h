@@ -4,7 +4,9 @@
 
 #include "surface/surface.h"
 
+#include <algorithm>
 #include <optional>
+#include <string>
 
 namespace kerf::support {
 
@@ -32,7 +34,7 @@ class Pairs {
   Table<Key, Key> to_b_, to_a_;
 };
 
-/// Nothing when the complexes differ. The copies of a cell are told apart by their nodes, and come in a fixed order.
+/// Nothing when the complexes differ. The copies of a cell are told apart by their parts, and come in a fixed order.
 inline std::optional<Renaming> renaming(const grid::CellComplex& a, const grid::CellComplex& b) {
   if (a.n_copies() != b.n_copies() || a.n_corners() != b.n_corners() || a.first_copy.size() != b.first_copy.size())
     return std::nullopt;
@@ -43,7 +45,7 @@ inline std::optional<Renaming> renaming(const grid::CellComplex& a, const grid::
     auto i = a.copies_of(cell).begin(), j = b.copies_of(cell).begin();
     for (; (*i).valid() && (*j).valid(); ++i, ++j, ++n_found) {
       const grid::Copy &p = a.copies[*i], &q = b.copies[*j];
-      if (!copies.add(*i, *j) || p.cell != cell || q.cell != cell || p.nodes != q.nodes)
+      if (!copies.add(*i, *j) || p.cell != cell || q.cell != cell || p.nodes != q.nodes || p.rinds != q.rinds)
         return std::nullopt;
       for (int v = 0; v < 8; ++v)
         if (!corners.add(p.corners[v], q.corners[v]) || a.node[p.corners[v]] != b.node[q.corners[v]])
@@ -62,33 +64,46 @@ inline std::optional<Renaming> renaming(const grid::CellComplex& a, const grid::
   return Renaming{copies.to_b(), corners.to_b()};
 }
 
+/// A triangle by what it is: copy, label, and the bits of its vertices' rest positions and weights, from the smallest
+/// vertex on.
+inline std::string described(const surface::Surface& s, const std::size_t t, const Renaming* const names) {
+  std::array<std::string, 3> vertices;
+  const auto add = [](std::string& text, const auto value) {
+    text.append(reinterpret_cast<const char*>(&value), sizeof value);
+  };
+  for (int i = 0; i < 3; ++i) {
+    const std::uint32_t v = s.triangles[t][i];
+    for (const double x : s.rest[v])
+      add(vertices[i], x + 0.0); // one zero
+    for (auto k = s.weights.row_start[v]; k < s.weights.row_start[v + 1]; ++k) {
+      const grid::CornerId corner = s.weights.corners[k];
+      add(vertices[i], (names ? names->corners[corner] : corner).value);
+      add(vertices[i], s.weights.values[k]);
+    }
+  }
+  std::rotate(vertices.begin(), std::min_element(vertices.begin(), vertices.end()), vertices.end());
+  std::string text = vertices[0] + vertices[1] + vertices[2];
+  add(text, s.labels[t]);
+  add(text, (names ? names->copies[s.copies[t]] : s.copies[t]).value);
+  return text;
+}
+
 /// Surfaces of the same cuts, on complexes that `names` pairs: the same triangles, the same bits of rest positions and
-/// weights.
+/// weights; neither their order nor vertices without triangles count.
 inline bool is_same(const surface::Surface& a, const surface::Surface& b, const Renaming& names) {
-  if (a.rest.size() != b.rest.size() || a.labels != b.labels || a.triangles.size() != b.triangles.size() ||
-      a.copies.size() != b.copies.size() || a.weights.n_rows() != b.weights.n_rows())
+  if (a.triangles.size() != b.triangles.size() || a.labels.size() != a.triangles.size() ||
+      b.labels.size() != b.triangles.size() || a.copies.size() != a.triangles.size() ||
+      b.copies.size() != b.triangles.size() || a.weights.n_rows() != a.rest.size() ||
+      b.weights.n_rows() != b.rest.size())
     return false;
-  Pairs<Id<void>> vertices(a.rest.size(), b.rest.size());
+  std::vector<std::string> of_a, of_b;
   for (std::size_t t = 0; t < a.triangles.size(); ++t) {
-    if (names.copies[a.copies[t]] != b.copies[t])
-      return false;
-    for (int i = 0; i < 3; ++i)
-      if (!vertices.add(Id<void>(a.triangles[t][i]), Id<void>(b.triangles[t][i])))
-        return false;
+    of_a.push_back(described(a, t, &names));
+    of_b.push_back(described(b, t, nullptr));
   }
-  for (std::size_t i = 0; i < a.rest.size(); ++i) {
-    const Id<void> j = vertices.to_b()[Id<void>(i)];
-    if (!j.valid() || a.rest[i] != b.rest[j.value])
-      return false;
-    const surface::Weights &v = a.weights, &w = b.weights;
-    const std::uint32_t first = v.row_start[i], other = w.row_start[j.value], n = v.row_start[i + 1] - first;
-    if (w.row_start[j.value + 1] - other != n)
-      return false;
-    for (std::uint32_t k = 0; k < n; ++k)
-      if (v.values[first + k] != w.values[other + k] || names.corners[v.corners[first + k]] != w.corners[other + k])
-        return false;
-  }
-  return true;
+  std::sort(of_a.begin(), of_a.end());
+  std::sort(of_b.begin(), of_b.end());
+  return of_a == of_b;
 }
 
 } // namespace kerf::support

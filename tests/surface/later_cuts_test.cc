@@ -23,6 +23,7 @@ enum class Where { inside, everywhere };
 
 /// What later cuts leave of earlier ones.
 struct Flatness {
+  std::size_t n_moved = 0;               ///< of those that were on their plane before: that are not any more
   std::size_t n_vertices = 0, n_met = 0; ///< in faces and cells of earlier cuts; of those, on their plane before
   double worst = 0;                      ///< distance of a vertex that was on its plane, afterwards [h]
 };
@@ -63,7 +64,7 @@ void cut_one_by_one(Body body, const std::vector<support::Plane>& planes, const 
     std::vector<std::vector<double>> before;
     for (grid::CutLabel i = 0; i < k; ++i)
       before.push_back(heights(body, i + 1, planes[i], where));
-    support::cut(body, support::plane_cuts(body, planes[k], k + 1));
+    support::cut_through(body, support::plane_cuts(body, planes[k], k + 1));
     for (grid::CutLabel i = 0; i < k; ++i) {
       const auto after = heights(body, i + 1, planes[i], where);
       ASSERT_EQ(after.size(), before[i].size());
@@ -72,6 +73,7 @@ void cut_one_by_one(Body body, const std::vector<support::Plane>& planes, const 
         if (before[i][v] < flat) {
           ++result.n_met;
           result.worst = std::max(result.worst, after[v]);
+          result.n_moved += after[v] > flat;
         }
       }
     }
@@ -89,7 +91,8 @@ std::vector<support::Plane> planes_through(Random& random, const Vec3& p, const 
 
 void print(const char* what, const Flatness& f) {
   std::cout << what << ": " << f.n_vertices << " vertices of earlier cuts; " << f.n_vertices - f.n_met
-            << " never met their plane; the others are off it by at most " << f.worst << " h\n";
+            << " never met their plane; of the others " << f.n_moved << " have left it, by at most " << f.worst
+            << " h\n";
 }
 
 TEST(LaterCuts, LeaveEarlierPlanesFlatInsideTheBody) {
@@ -121,9 +124,8 @@ TEST(LaterCuts, LeaveEarlierPlanesFlatUnderTheSkin) {
       cut_one_by_one(whole, planes_through(random, p, 3), Where::everywhere, all);
     }
   print("skin and all", all);
-  EXPECT_LT(all.worst, flat);
-  EXPECT_GT(static_cast<double>(all.n_met), 0.85 * static_cast<double>(all.n_vertices))
-    << "on the skin, a vertex keeps the volume first";
+  EXPECT_LT(all.n_moved, 1e-4 * all.n_met) << "a vertex leaves its plane only where the skin would fold under it";
+  EXPECT_GT(static_cast<double>(all.n_met), 0.95 * static_cast<double>(all.n_vertices));
 }
 
 TEST(LaterCuts, MeetWhereTheyCrossInsideTheCell) {
@@ -135,7 +137,7 @@ TEST(LaterCuts, MeetWhereTheyCrossInsideTheCell) {
     const Points normals = {Vec3::UnitX(), Vec3(std::cos(angle), std::sin(angle), 0), Vec3(0.2, 0.1, 1).normalized()};
     Body body = support::with_placed_skin(support::block({7, 7, 7}));
     for (grid::CutLabel k = 1; k <= 3; ++k)
-      support::cut(body, support::plane_cuts(body, {normals[k - 1], normals[k - 1].dot(p)}, k));
+      support::cut_through(body, support::plane_cuts(body, {normals[k - 1], normals[k - 1].dot(p)}, k));
     const Vec3 q = grid::cell_point(body.grid, body.cuts, *body.grid.find_cell({4, 4, 4}));
     for (const Vec3& n : normals)
       EXPECT_NEAR(n.dot(q - p), 0, 1e-13) << degrees << " degrees";

@@ -89,7 +89,7 @@ TEST_F(Inside, TheSharpAngleDecides) {
   const std::vector<EdgeCut> cuts = {{edge(2, 2, 2, 0), 0.4, Vec3(std::cos(lean), std::sin(lean), 0), 1},
                                      {edge(2, 3, 2, 0), 0.4, Vec3(std::cos(lean), -std::sin(lean), 0), 1}};
   for (const auto& c : cuts)
-    body.cuts.add(c);
+    body.cuts.add(body.grid, c);
   // The planes' intersection: from (2.4, 2) along (-sin, cos) to y = 2.5.
   const Vec3 meeting(2.4 - 0.5 * std::tan(lean), 2.5, 2);
   const std::vector<EdgeId> edges = {cuts[0].edge, cuts[1].edge};

@@ -50,7 +50,10 @@ std::size_t n_open_edges(const std::vector<Triangle>& triangles) {
   return n;
 }
 
-void expect_closed(const Cut& cut) {
+/// An update may leave vertices without triangles.
+enum class Vertices { all_used, some_used };
+
+void expect_closed(const Cut& cut, const Vertices vertices) {
   const auto& triangles = cut.surface.triangles;
   EXPECT_EQ(n_open_edges(triangles), 0u);
   std::vector<std::vector<Triangle>> of_piece(cut.pieces.n_pieces);
@@ -62,7 +65,9 @@ void expect_closed(const Cut& cut) {
       used[v] = 1;
     of_piece[cut.pieces.piece[cut.surface.copies[i]]].push_back(triangles[i]);
   }
-  EXPECT_EQ(std::count(used.begin(), used.end(), 0), 0) << "vertices without triangles";
+  if (vertices == Vertices::all_used) {
+    EXPECT_EQ(std::count(used.begin(), used.end(), 0), 0) << "vertices without triangles";
+  }
   for (const auto& piece : of_piece) {
     EXPECT_FALSE(piece.empty());
     EXPECT_EQ(n_open_edges(piece), 0u);
@@ -83,6 +88,8 @@ void expect_two_sides(const Cut& cut) {
     std::array<Vec3, 3> p;
     for (int k = 0; k < 3; ++k)
       p[k] = cut.surface.rest[cut.surface.triangles[i][k]];
+    if (p[0] == p[1] || p[1] == p[2] || p[2] == p[0])
+      continue; // a wall of no extent
     std::rotate(p.begin(), std::min_element(p.begin(), p.end(), is_before), p.end());
     const bool swapped = is_before(p[2], p[1]);
     if (swapped)
@@ -163,7 +170,7 @@ void expect_affine(Random& random, const Cut& cut) {
   const double cell = std::pow(cut.body.grid.h(), 3);
   for (std::uint32_t p = 0; p < cut.pieces.n_pieces; ++p)
     ASSERT_NEAR(after[p], stretch[p].determinant() * before[p],
-                1e-12 * (std::abs(after[p]) + cell + shift[p].norm() * cell / cut.body.grid.h()));
+                2e-11 * (std::abs(after[p]) + cell + shift[p].norm() * cell / cut.body.grid.h()));
 }
 
 /// Under any motion of the corners each piece stays closed: its area vectors sum to zero.
@@ -185,8 +192,8 @@ void expect_closed_when_deformed(Random& random, const Cut& cut) {
     ASSERT_LE(area[p].norm(), 1e-12 * total[p]);
 }
 
-void expect_good(Random& random, const Cut& cut) {
-  expect_closed(cut);
+void expect_good(Random& random, const Cut& cut, const Vertices vertices = Vertices::all_used) {
+  expect_closed(cut, vertices);
   expect_two_sides(cut);
   expect_weights(cut);
   expect_affine(random, cut);
@@ -251,7 +258,7 @@ void expect_as_built(Random& random, const Updated& updated) {
   built.complex = updated.complex;
   built.pieces = grid::pieces(updated.complex);
   built.surface = updated.surface;
-  expect_good(random, built);
+  expect_good(random, built, Vertices::some_used);
 }
 
 TEST(Surface, UpdatedIsTheOneThatIsBuilt) {
