@@ -140,8 +140,8 @@ Verdict meet(const Cylinder& cylinder, const Segment& segment) {
   return judge(chord, side(out_p, up_p), side(out_q, up_q));
 }
 
-/// Whether the surface of a convex body, with its centre and half the size of its box, may meet a box. Inside of the body
-/// nothing meets it; `depth` is how far in a corner of the box is, beyond round-off.
+/// Whether the surface of a convex body, with its centre and half the size of its box, may meet a box. Inside of the
+/// body nothing meets it; `depth` is how far in a corner of the box is, beyond round-off.
 template <class Depth>
 bool may_meet_convex(const Vec3& centre, const Vec3& half, const Box& box, const Depth& depth) {
   const Vec3 margin = Vec3::Constant(1e-9 * (half.sum() + centre.cwiseAbs().sum()));
@@ -183,6 +183,10 @@ std::vector<std::array<Vec3, 3>> triangles_of(const geometry::TriangleMesh& mesh
 
 void check(const CutSurface& surface) {
   std::visit([](const auto& shape) { check_shape(shape); }, surface.shape);
+}
+
+bool has_end(const CutSurface& surface) {
+  return std::holds_alternative<Disc>(surface.shape) || std::holds_alternative<geometry::TriangleMesh>(surface.shape);
 }
 
 SweepCuts cut_edges(const CutSurface& surface, const grid::Grid& grid, const grid::Cuts& cuts,

@@ -10,8 +10,8 @@
 /// or closed, cuts like a sweep (recut.h): edges that an odd number of its triangles cross, by exact predicates. So
 /// where a mesh runs through itself, or lies on itself twice, the edges that it crosses evenly stay whole.
 ///
-/// Limits: an edge is cut once, so where a sphere or cylinder passes an edge between its two ends, it is left whole and
-/// counted; what is crossed between the skin and the last nodes inside it is not seen.
+/// Limit: an edge inside the body is cut once, so where a sphere or cylinder passes an edge between its two ends, it is
+/// left whole and counted.
 
 #include "cut/recut.h"
 #include "geometry/triangle_mesh.h"
@@ -58,9 +58,12 @@ struct CutSurface {
 /// unit vector, numbers that are not finite, a mesh without triangles.
 void check(const CutSurface& surface);
 
+/// May the surface end inside a body? Discs do; meshes are taken to.
+bool has_end(const CutSurface& surface);
+
 /// The edges that the surface cuts when the corners are at `x` [m, world frame, one a corner]; check() must accept the
-/// surface. `boxes`, fitted to x, spare it edges that are far away; null for none. Throws NumericalError when a corner is
-/// not at a finite position.
+/// surface. `boxes`, fitted to x, spare it edges that are far away; null for none. Throws NumericalError when a corner
+/// is not at a finite position.
 SweepCuts cut_edges(const CutSurface& surface, const grid::Grid& grid, const grid::Cuts& cuts,
                     const grid::CellComplex& complex, const Points& x, const EdgeBoxes* boxes = nullptr);
 

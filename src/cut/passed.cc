@@ -2,6 +2,7 @@
 
 #include "base/parallel.h"
 #include "cut/near_sweep.h"
+#include "grid/material.h"
 #include "grid/shape.h"
 #include "grid/touched.h"
 
@@ -101,19 +102,19 @@ class Search {
   }
 
   bool passes(const grid::Copy& copy, const std::array<Vec3, 8>& corners, const std::array<Vec3, 3>& triangle) const {
-    for (int vertex = 0; vertex < 8; ++vertex)
-      if (copy.nodes >> vertex & 1)
-        for (const auto& rest : grid::octant(grid_, cuts_, copy.cell, vertex)) {
-          grid::Tetrahedron now;
-          for (int i = 0; i < 4; ++i) {
-            now[i] = Vec3::Zero();
-            for (int v = 0; v < 8; ++v)
-              now[i] += grid::shape(v, rest[i]) * corners[v];
-          }
-          if (meets(triangle, now))
-            return true;
-        }
-    return false;
+    bool found = false;
+    grid::for_each_tetrahedron(grid_, cuts_, copy, [&](const grid::Tetrahedron& rest, int) {
+      if (found)
+        return;
+      grid::Tetrahedron now;
+      for (int i = 0; i < 4; ++i) {
+        now[i] = Vec3::Zero();
+        for (int v = 0; v < 8; ++v)
+          now[i] += grid::shape(v, rest[i]) * corners[v];
+      }
+      found = meets(triangle, now);
+    });
+    return found;
   }
 
   NearSweep near_;

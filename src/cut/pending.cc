@@ -38,10 +38,10 @@ std::vector<grid::EdgeCut> PendingCuts::release(const grid::Grid& grid, const gr
   std::deque<grid::EdgeCut> waiting;
   CutCounts counts;
   for (const grid::EdgeCut& cut : queue_) {
-    const bool is_released = !cuts.is_cut(cut.edge) && counts.take(grid, cut.edge);
+    const bool can_be_cut = cuts.can_be_cut(grid, cut.edge), is_released = can_be_cut && counts.take(grid, cut.edge);
     if (is_released)
       released.push_back(cut);
-    if (is_released || cuts.is_cut(cut.edge))
+    if (is_released || !can_be_cut)
       waiting_.erase(cut.edge);
     else
       waiting.push_back(cut);

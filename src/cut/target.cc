@@ -1,7 +1,7 @@
 #include "cut/target.h"
 
 #include "base/parallel.h"
-#include "grid/cube.h"
+#include "grid/parts.h"
 #include "grid/shape.h"
 
 #include <algorithm>
@@ -33,6 +33,19 @@ SweepCuts joined(const std::size_t n, const Fill& fill) {
   return result;
 }
 
+/// The vertex that a node is of a cell.
+int vertex_of(const grid::Grid& grid, const grid::CellId c, const grid::NodeId node) {
+  const auto nodes = grid.nodes(c);
+  return static_cast<int>(std::find(nodes.begin(), nodes.end(), node) - nodes.begin());
+}
+
+/// The block's box holds edges between material nodes; edges of the skin begin at one of those. A block may have no
+/// edges of the first kind, or collapsed ones: a cube's edge h is taken for the least.
+Box with_skin(const EdgeBoxes::Block& block, const double h) {
+  const Vec3 slack = Vec3::Constant(4 * std::max(block.longest, h));
+  return {block.box.lower - slack, block.box.upper + slack};
+}
+
 } // namespace
 
 Target::Target(const grid::Grid& grid, const grid::Cuts& cuts, const grid::CellComplex& complex, const Points& x_before,
@@ -43,8 +56,7 @@ Target::Target(const grid::Grid& grid, const grid::Cuts& cuts, const grid::CellC
 }
 
 Segment Target::segment(const grid::EdgeId edge, const Points& x) const {
-  const auto& [lower, upper] = grid_.ends(edge);
-  return {x[complex_.real_corner[lower].value], x[complex_.real_corner[upper].value]};
+  return ends_of(grid_, cuts_, complex_, edge).segment(x);
 }
 
 SweepCuts Target::cut(const grid::CutLabel label, const Nearness& near,
@@ -56,65 +68,105 @@ SweepCuts Target::cut_anywhere(const grid::CutLabel label, const std::function<V
   return joined((grid_.n_edges() + edges_per_chunk - 1) / edges_per_chunk, [&](const std::size_t k, SweepCuts& part) {
     const std::size_t end = std::min(grid_.n_edges(), (k + 1) * edges_per_chunk);
     for (std::size_t e = k * edges_per_chunk; e < end; ++e)
-      if (const grid::EdgeId edge(e); can_be_cut(edge))
+      if (const grid::EdgeId edge(e); cuts_.can_be_cut(grid_, edge))
         add(edge, judge(edge), label, part);
   });
 }
 
 SweepCuts Target::cut_near(const grid::CutLabel label, const Nearness& near,
                            const std::function<Verdict(grid::EdgeId)>& judge) const {
-  const auto blocks = boxes_->blocks([&](const EdgeBoxes::Block& block) {
-    return geometry::overlap(block.box, near.reach) && near.may_meet(block.box);
-  });
+  const auto is_near = [&](const Box& box) { return geometry::overlap(box, near.reach) && near.may_meet(box); };
+  const auto blocks =
+    boxes_->blocks([&](const EdgeBoxes::Block& block) { return is_near(with_skin(block, grid_.h())); });
   const std::size_t n = (blocks.size() + blocks_per_chunk - 1) / blocks_per_chunk;
   SweepCuts result = joined(n, [&](const std::size_t k, SweepCuts& part) {
-    for (std::size_t b = k * blocks_per_chunk; b < std::min(blocks.size(), (k + 1) * blocks_per_chunk); ++b)
+    const auto add_judged = [&](const grid::EdgeId edge) { add(edge, judge(edge), label, part); };
+    for (std::size_t b = k * blocks_per_chunk; b < std::min(blocks.size(), (k + 1) * blocks_per_chunk); ++b) {
+      judge_skin(blocks[b], near, add_judged);
+      if (!is_near(boxes_->block(blocks[b]).box))
+        continue;
       boxes_->for_each_edge(blocks[b], [&](const grid::CornerId lower, const grid::CornerId upper, const int axis) {
         const Segment before{x_before_[lower.value], x_before_[upper.value]}, now{x_[lower.value], x_[upper.value]};
         if (!geometry::overlap(room(before, now), near.reach))
           return;
         const grid::EdgeId edge = grid_.edge(complex_.node[lower], axis);
-        if (can_be_cut(edge))
-          add(edge, judge(edge), label, part);
+        if (cuts_.can_be_cut(grid_, edge))
+          add_judged(edge);
       });
+    }
   });
   std::sort(result.cuts.begin(), result.cuts.end(),
             [](const grid::EdgeCut& a, const grid::EdgeCut& b) { return a.edge < b.edge; });
   return result;
 }
 
-bool Target::can_be_cut(const grid::EdgeId edge) const {
-  const auto& [lower, upper] = grid_.ends(edge);
-  return !cuts_.is_cut(edge) && grid_.is_material(lower) && grid_.is_material(upper);
+/// An edge of the skin is judged by the block of the cell in which it is the first one around it.
+void Target::judge_skin(const std::uint32_t block, const Nearness& near,
+                        const std::function<void(grid::EdgeId)>& judge) const {
+  boxes_->for_each_cell(block, [&](const grid::CellId c) {
+    const grid::CellCuts cell = grid::cuts_of(grid_, cuts_, c);
+    if ((cell.skin & ~cell.twice) == 0)
+      return;
+    const auto edges = grid_.edges(c);
+    for (int line = 0; line < grid::cube::n_lines; ++line) {
+      if (!((cell.skin & ~cell.twice) >> line & 1))
+        continue;
+      const auto around = grid_.cells(edges[line]);
+      if (*std::ranges::find_if(around, [](const grid::CellId other) { return other.valid(); }) != c)
+        continue;
+      const EdgeEnds ends = ends_of(grid_, cuts_, complex_, edges[line]);
+      if (geometry::overlap(room(ends.segment(x_before_), ends.segment(x_)), near.reach))
+        judge(edges[line]);
+    }
+  });
 }
 
 void Target::add(const grid::EdgeId edge, const Verdict& verdict, const grid::CutLabel label, SweepCuts& result) const {
-  if (verdict.n_crossings % 2 == 1)
-    result.cuts.push_back({edge, verdict.t, rest_normal(edge, verdict.t, verdict.normal), label});
-  else if (verdict.n_crossings > 0)
+  if (verdict.n_crossings % 2 == 1) {
+    const EdgeEnds ends = ends_of(grid_, cuts_, complex_, edge);
+    const double t = ends.from + verdict.t * (ends.to - ends.from), least = grid::min_edge_parameter;
+    if ((ends.from == 0 || t > ends.from + least) && (ends.to == 1 || t < ends.to - least)) // else on the skin itself
+      result.cuts.push_back({edge, t, pulled_back(grid_, complex_, x_, edge, t, verdict.normal), label});
+  } else if (verdict.n_crossings > 0)
     ++result.n_double_crossings;
 }
 
-Vec3 Target::rest_normal(const grid::EdgeId edge, const double t, const Vec3& normal) const {
-  const Vec3 pulled_back = mean_gradient(edge, t).transpose() * normal;
-  // Along the edge it is n . (q - p) / h, which is 0 only by rounding, since the surface is crossed.
-  const double length = pulled_back.norm();
-  return length > 0 ? Vec3(pulled_back / length) : Vec3::Unit(grid_.axis(edge));
+EdgeEnds ends_of(const grid::Grid& grid, const grid::Cuts& cuts, const grid::CellComplex& complex,
+                 const grid::EdgeId edge) {
+  const auto& [lower, upper] = grid.ends(edge);
+  const bool from_lower = grid.is_material(lower);
+  if (from_lower == grid.is_material(upper))
+    return {{complex.real_corner[lower], complex.real_corner[upper]}};
+  const auto around = grid.cells(edge);
+  const grid::CellId c = *std::ranges::find_if(around, [](const grid::CellId cell) { return cell.valid(); });
+  const int v = vertex_of(grid, c, lower), w = v | 1 << grid.axis(edge);
+  const grid::Copy& copy = complex.copies[complex.copy_at(c, from_lower ? v : w)];
+  const double skin = cuts.find_outer(edge)->t;
+  return {{copy.corners[v], copy.corners[w]}, from_lower ? 0 : skin, from_lower ? skin : 1};
 }
 
-Mat3 Target::mean_gradient(const grid::EdgeId edge, const double t) const {
-  const grid::NodeId lower = grid_.ends(edge)[0];
+Mat3 gradient_on(const grid::Grid& grid, const grid::CellComplex& complex, const Points& x, const grid::EdgeId edge,
+                 const double t) {
+  const auto& [lower, upper] = grid.ends(edge);
   Mat3 sum = Mat3::Zero();
-  for (const grid::CellId c : grid_.cells(edge)) {
+  for (const grid::CellId c : grid.cells(edge)) {
     if (!c.valid())
       continue;
-    const auto& nodes = grid_.nodes(c);
-    const int vertex = static_cast<int>(std::find(nodes.begin(), nodes.end(), lower) - nodes.begin());
+    const int vertex = vertex_of(grid, c, lower);
     Vec3 at(vertex & 1, vertex >> 1 & 1, vertex >> 2 & 1);
-    at[grid_.axis(edge)] = t;
-    sum += deformation_gradient(complex_.copies[complex_.copy_at(c, vertex)], x_, grid_.h(), at);
+    at[grid.axis(edge)] = t;
+    const int held = grid.is_material(lower) ? vertex : vertex | 1 << grid.axis(edge);
+    sum += deformation_gradient(complex.copies[complex.copy_at(c, held)], x, grid.h(), at);
   }
-  return sum; // only its direction matters, so the sum is as good as the mean
+  return sum;
+}
+
+Vec3 pulled_back(const grid::Grid& grid, const grid::CellComplex& complex, const Points& x, const grid::EdgeId edge,
+                 const double t, const Vec3& normal) {
+  const Vec3 at_rest = gradient_on(grid, complex, x, edge, t).transpose() * normal;
+  // Along the edge it is n . (q - p) / h, which is 0 only by rounding, since the surface is crossed.
+  const double length = at_rest.norm();
+  return length > 0 ? Vec3(at_rest / length) : Vec3::Unit(grid.axis(edge));
 }
 
 } // namespace kerf::cut

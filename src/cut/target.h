@@ -1,11 +1,12 @@
 #pragma once
 
 /// The body that is cut, edge by edge, as it stands now. An uncut edge between two material nodes is one current
-/// segment, from the real corner of its lower node to that of its upper node; whoever cuts judges the segments one by one,
-/// all of them or those near the cut (edge_boxes.h).
+/// segment, from the real corner of its lower node to that of its upper node; an edge of the skin that is cut once is
+/// one from the real corner of its material node towards the virtual corner at its empty node, as far as the skin.
+/// Whoever cuts judges the segments one by one, all of them or those near the cut (edge_boxes.h).
 ///
 /// Normals are pulled back to rest with the deformation gradient F = dx/dX at the cut, averaged over the copies around
-/// the edge: N ~ F^T n.
+/// the edge: N ~ F^T n; and pushed forward as n ~ F^-T N.
 
 #include "cut/edge_boxes.h"
 #include "cut/recut.h"
@@ -36,6 +37,30 @@ struct Nearness {
   std::function<bool(const Box&)> may_meet; ///< false for boxes that hold, before and now, no edge that is crossed
 };
 
+/// What an edge that may be cut is made of.
+struct EdgeEnds {
+  std::array<grid::CornerId, 2>
+    corners;               ///< of the lower and the upper node: of an empty node, that of the copies around
+                           ///< the edge
+  double from = 0, to = 1; ///< the part that is material now [1]
+
+  Segment segment(const Points& x) const {
+    const Vec3 &lower = x[corners[0].value], &upper = x[corners[1].value];
+    const auto at = [&](const double t) -> Vec3 { return lower + t * (upper - lower); };
+    return {from == 0 ? lower : at(from), to == 1 ? upper : at(to)};
+  }
+};
+EdgeEnds ends_of(const grid::Grid& grid, const grid::Cuts& cuts, const grid::CellComplex& complex, grid::EdgeId edge);
+
+/// dx/dX on an edge at t, summed over the copies around it that hold its material node, when the corners are at `x`:
+/// only its direction matters.
+Mat3 gradient_on(const grid::Grid& grid, const grid::CellComplex& complex, const Points& x, grid::EdgeId edge,
+                 double t);
+
+/// The unit normal at rest of a surface that cuts an edge at t with a current normal.
+Vec3 pulled_back(const grid::Grid& grid, const grid::CellComplex& complex, const Points& x, grid::EdgeId edge, double t,
+                 const Vec3& normal);
+
 class Target {
  public:
   /// Everything must outlive it. `boxes` are fitted to x_before and x, or null: then every edge is judged. Throws
@@ -47,7 +72,7 @@ class Target {
   /// Where the edge is when the corners are at `x`.
   Segment segment(grid::EdgeId edge, const Points& x) const;
 
-  /// Cuts every uncut edge inside the material that `judge` finds crossed an odd number of times. Edges are judged in
+  /// Cuts every edge whose segment `judge` finds crossed an odd number of times. Edges are judged in
   /// parallel; the result is ordered by edge.
   SweepCuts cut(grid::CutLabel label, const Nearness& near, const std::function<Verdict(grid::EdgeId)>& judge) const;
 
@@ -55,10 +80,8 @@ class Target {
   SweepCuts cut_anywhere(grid::CutLabel label, const std::function<Verdict(grid::EdgeId)>& judge) const;
   SweepCuts cut_near(grid::CutLabel label, const Nearness& near,
                      const std::function<Verdict(grid::EdgeId)>& judge) const;
-  bool can_be_cut(grid::EdgeId edge) const;
+  void judge_skin(std::uint32_t block, const Nearness& near, const std::function<void(grid::EdgeId)>& judge) const;
   void add(grid::EdgeId edge, const Verdict& verdict, grid::CutLabel label, SweepCuts& result) const;
-  Vec3 rest_normal(grid::EdgeId edge, double t, const Vec3& normal) const;
-  Mat3 mean_gradient(grid::EdgeId edge, double t) const;
 
   const grid::Grid& grid_;
   const grid::Cuts& cuts_;

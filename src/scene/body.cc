@@ -1,6 +1,8 @@
 #include "scene/body.h"
 
+#include "cut/at_skin.h"
 #include "cut/fit.h"
+#include "cut/nodes_apart.h"
 #include "cut/recut.h"
 
 namespace kerf::scene {
@@ -40,12 +42,30 @@ void build_surface(Body& body) {
                               : surface::build_surface(body.grid, body.cuts, body.complex);
 }
 
-/// Adds cuts to the body; returns the edges.
-std::vector<grid::EdgeId> add_cuts(Body& body, const std::vector<grid::EdgeCut>& cuts) {
+/// Whether cuts may end inside the body.
+enum class Front { none, possible };
+
+/// Adds cuts to the body, and what they do to its skin; returns the edges.
+std::vector<grid::EdgeId> add_cuts(Body& body, const std::vector<grid::EdgeCut>& cuts, const Front front) {
+  const std::size_t n_before = body.cuts.all().size();
   std::vector<grid::EdgeId> edges;
-  for (const grid::EdgeCut& cut : cuts) {
-    body.cuts.add(cut);
-    edges.push_back(cut.edge);
+  const auto is_of_skin = [&](const grid::EdgeCut& cut) { return body.cuts.is_cut(cut.edge); };
+  for (const bool of_skin : {false, true}) // whether a cut of the skin goes on depends on those below it
+    for (const grid::EdgeCut& cut : cuts) {
+      if (is_of_skin(cut) != of_skin || !body.cuts.can_be_cut(body.grid, cut.edge))
+        continue;
+      if (of_skin && front == Front::possible && !cut::goes_on(body.grid, body.cuts, body.complex, corners(body), cut))
+        continue;
+      body.cuts.add(body.grid, cut);
+      edges.push_back(cut.edge);
+    }
+  const auto take = [&](const std::vector<grid::EdgeId>& more) { edges.insert(edges.end(), more.begin(), more.end()); };
+  if (front == Front::none)
+    cut::part_skin(body.grid, body.cuts, edges);
+  else
+    take(cut::end_at_skin(body.grid, body.cuts, body.complex, corners(body), edges));
+  take(cut::keep_nodes_apart(body.grid, body.cuts, edges));
+  for (const grid::EdgeCut& cut : body.cuts.all().subspan(n_before)) {
     ++body.cutting->n_cut_edges[cut.label - 1];
     body.cutting->passed[cut.label - 1].remove_around(body.grid, cut.edge);
   }
@@ -65,25 +85,34 @@ grid::ComplexChange update_topology(Body& body, const std::vector<grid::EdgeId>&
   return change;
 }
 
-/// Puts what a blade cuts between two times to what waits, and counts what the grid cannot resolve of it.
-void meet(Body& body, const cut::Blade& blade, const double t0, const double t1) {
+/// Puts what a blade cuts between two times to what waits, and counts what the grid cannot resolve of it. Returns
+/// edges at faces where its cuts have come to an end.
+std::vector<grid::EdgeId> meet(Body& body, const cut::Blade& blade, const double t0, const double t1) {
   Cutting& cutting = *body.cutting;
   const auto found = cut::cut_edges(cut::path(blade, t0, t1), body.grid, body.cuts, body.complex, cutting.x_before,
                                     corners(body), blade.label, &*cutting.boxes);
   cutting.pending.push(found.cuts);
   cutting.n_double_crossings += found.n_double_crossings;
-  cutting.passed[blade.label - 1].pass(cut::sweep(blade, t0, t1), found.cuts, body.grid, body.cuts, body.complex,
-                                       corners(body), *cutting.boxes, blade.label);
+  const auto strip = cut::sweep(blade, t0, t1);
+  cutting.passed[blade.label - 1].pass(strip, found.cuts, body.grid, body.cuts, body.complex, corners(body),
+                                       *cutting.boxes, blade.label);
+  return cutting.open_ends[blade.label - 1].close(strip, body.grid, body.cuts, body.complex, corners(body),
+                                                  blade.label);
 }
 
-void make_cuts(Body& body, const std::vector<grid::EdgeCut>& cuts, Timings& timings) {
-  if (cuts.empty())
-    return;
-  const std::vector<grid::EdgeId> edges = add_cuts(body, cuts);
+/// `ended` are edges that were cut before, around which the skin is parted now. Returns all edges at which something is
+/// cut.
+std::vector<grid::EdgeId> make_cuts(Body& body, const std::vector<grid::EdgeCut>& cuts,
+                                    const std::vector<grid::EdgeId>& ended, const Front front, Timings& timings) {
+  std::vector<grid::EdgeId> edges = add_cuts(body, cuts, front);
+  edges.insert(edges.end(), ended.begin(), ended.end());
+  if (edges.empty())
+    return {};
   const grid::ComplexChange change = update_topology(body, edges, timings);
   const ScopedTimer timer(timings, "assemble");
   body.physics->follow_cut(seen(body), {edges, change}, body.state);
   make_loads(body);
+  return edges;
 }
 
 } // namespace
@@ -111,22 +140,27 @@ void start(Body& body, const geometry::TriangleMesh& mesh, const PhysicsMaker& m
     body.cutting->x_before = corners(body);
     body.cutting->boxes.emplace(body.grid, body.complex);
     body.cutting->passed.resize(body.cutting->n_cut_edges.size());
+    body.cutting->open_ends.resize(body.cutting->n_cut_edges.size());
   }
 }
 
 void recut(Body& body, const std::span<const cut::Blade> blades, const double t0, const double t1, Timings& timings) {
   std::vector<grid::EdgeCut> released;
+  std::vector<grid::EdgeId> ended;
   {
     const ScopedTimer timer(timings, "cut");
     Cutting& cutting = *body.cutting;
     if (!blades.empty())
       cutting.boxes->fit(cutting.x_before, corners(body));
     for (const cut::Blade& blade : blades)
-      meet(body, blade, t0, t1);
+      for (const grid::EdgeId e : meet(body, blade, t0, t1))
+        ended.push_back(e);
     released = cutting.pending.release(body.grid, body.cuts);
     cutting.x_before = corners(body); // not after the cut: where corners jump then, the blade meets them on their way
   }
-  make_cuts(body, released, timings);
+  const auto edges = make_cuts(body, released, ended, Front::possible, timings);
+  for (const cut::Blade& blade : blades)
+    body.cutting->open_ends[blade.label - 1].note(body.grid, body.cuts, edges, blade.label);
 }
 
 void cut_at_once(Body& body, const cut::CutSurface& surface, Timings& timings) {
@@ -137,7 +171,7 @@ void cut_at_once(Body& body, const cut::CutSurface& surface, Timings& timings) {
     found = cut::cut_edges(surface, body.grid, body.cuts, body.complex, corners(body), &*body.cutting->boxes);
   }
   body.cutting->n_double_crossings += found.n_double_crossings;
-  make_cuts(body, found.cuts, timings);
+  make_cuts(body, found.cuts, {}, cut::has_end(surface) ? Front::possible : Front::none, timings);
 }
 
 void follow(Body& body) {

@@ -6,6 +6,7 @@
 #include "cut/blade.h"
 #include "cut/cut_surface.h"
 #include "cut/edge_boxes.h"
+#include "cut/open_ends.h"
 #include "cut/passed.h"
 #include "cut/pending.h"
 #include "geometry/triangle_mesh.h"
@@ -61,6 +62,7 @@ struct Cutting {
   surface::SurfaceIndex surface_index;
   std::optional<cut::EdgeBoxes> boxes;  ///< around the edges; there from start() on
   std::vector<cut::PassedCells> passed; ///< by label, from 1
+  std::vector<cut::OpenEnds> open_ends; ///< by label, from 1
   Points x_before;                      ///< where the corners were when the blades were met last [m]
   std::vector<std::size_t> n_cut_edges; ///< by label, from 1: the blades, then the cut surfaces
   std::size_t n_double_crossings = 0;   ///< edges that one cut crossed an even number of times: left uncut

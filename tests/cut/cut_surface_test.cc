@@ -1,6 +1,7 @@
 #include "cut/cut_surface.h"
 
 #include "base/error.h"
+#include "cut/at_skin.h"
 #include "cut/blade.h"
 #include "tests/support/clipped_box.h"
 #include "tests/support/placed.h"
@@ -35,7 +36,17 @@ struct Resting {
   SweepCuts meet(const Shape& shape) const { return cut_edges({"", shape, 1}, body.grid, body.cuts, complex, x); }
   SweepCuts cut(const Shape& shape) {
     SweepCuts found = meet(shape);
-    support::cut(body, found.cuts);
+    std::vector<EdgeId> edges;
+    for (const EdgeCut& cut : found.cuts) {
+      body.cuts.add(body.grid, cut);
+      edges.push_back(cut.edge);
+    }
+    if (!has_end({"", shape, 1}))
+      part_skin(body.grid, body.cuts, edges);
+    else
+      for (const EdgeId e : end_at_skin(body.grid, body.cuts, complex, x, edges))
+        edges.push_back(e);
+    surface::place(body.grid, body.cuts, edges, {});
     complex = grid::build_complex(body.grid, body.cuts);
     x = grid::rest_positions(body.grid, complex);
     return found;
@@ -112,7 +123,7 @@ TEST(CutSurface, PlanesThroughNodesCutBelowThem) {
 TEST(CutSurface, ClosedShapesCutTheBorderOfASetOfNodes) {
   const Resting body = block(8);
   Random random(42);
-  std::size_t n_cut = 0;
+  std::size_t n_cut = 0, n_of_skin = 0;
   for (int i = 0; i < 40; ++i) {
     const Vec3 centre =
       i < 20 ? Vec3(Vec3::Constant(0.5 * (i % 6 + 5))) : Vec3(Vec3::Constant(4.5) + 2 * random_offset(random));
@@ -129,8 +140,22 @@ TEST(CutSurface, ClosedShapesCutTheBorderOfASetOfNodes) {
       for (const auto e : ids<EdgeId>(body.body.grid.n_edges())) {
         const auto& [lower, upper] = body.body.grid.ends(e);
         const bool is_cut = next != cuts.end() && next->edge == e;
-        const bool parted = is_inside(body.body.grid.position(lower)) != is_inside(body.body.grid.position(upper));
-        EXPECT_EQ(is_cut, parted && support::is_inner(body.body, e));
+        if (!body.body.grid.is_material(lower) && !body.body.grid.is_material(upper)) {
+          EXPECT_FALSE(is_cut);
+          continue;
+        }
+        const auto is_end_inside = [&](const grid::NodeId n,
+                                       const double beyond) { // the skin's, where the node is empty
+          const Vec3 p = body.body.grid.position(n);
+          const Vec3 skin = grid::edge_skin_point(body.body.grid, body.body.cuts, e);
+          return is_inside(body.body.grid.is_material(n) ? p : Vec3(skin + beyond * (p - skin)));
+        };
+        const auto is_parted = [&](const double beyond) {
+          return is_end_inside(lower, beyond) != is_end_inside(upper, beyond);
+        };
+        const bool is_on_skin = is_parted(1e-8) != is_parted(-1e-8); // then either will do
+        EXPECT_TRUE(is_on_skin || is_cut == is_parted(0));
+        n_of_skin += is_cut && !support::is_inner(body.body, e);
         next += is_cut;
       }
       n_cut += cuts.size();
@@ -139,6 +164,7 @@ TEST(CutSurface, ClosedShapesCutTheBorderOfASetOfNodes) {
     check_border(Cylinder{centre, axis, r, height}, in_cylinder);
   }
   EXPECT_GT(n_cut, 2000u);
+  EXPECT_GT(n_of_skin, 200u);
 }
 
 /// Places and normals of a cut against the surface itself.
@@ -208,8 +234,8 @@ TEST(CutSurface, CylinderVolumeConvergesToSecondOrder) {
   EXPECT_LT(rate.errors.back(), 1e-2);
 }
 
-/// A crack: no piece comes free, and it ends at the rim. Its faces are flat, but for vertices at the rim of a tilted disc
-/// that are held in their face or cell: they would stand where the disc's plane has left it.
+/// A crack: no piece comes free, and it ends at the rim. Its faces are flat, but for vertices at the rim of a tilted
+/// disc that are held in their face or cell: they would stand where the disc's plane has left it.
 TEST(CutSurface, DiscsMakeCracks) {
   constexpr double h = 1. / 32, r = 0.3;
   Random random(45);
@@ -319,6 +345,47 @@ TEST(CutSurface, ClosedMeshesCutLikeTheirShapes) {
   ASSERT_EQ(volumes.size(), 2u);
   EXPECT_NEAR(volumes[0] / geometry::volume(mesh), 1, 0.02);
   EXPECT_NEAR(volumes[0] + volumes[1], 1, 1e-12);
+}
+
+/// Balls around a corner, a point of an edge, of a face, and inside of a unit cube: what they cut out, known at once
+/// (part_skin) and as a fine mesh, which is taken to end (end_at_skin).
+TEST(CutSurface, SpheresThroughTheSkinAreOfSecondOrder) {
+  constexpr double r = 0.37;
+  const std::vector<std::pair<Vec3, double>> balls = {
+    {{0.5, 0.5, 0.5}, 8}, {{0.03, 0.5, -0.5}, 4}, {{0.07, -0.02, 0.5}, 2}, {{0.01, 0.03, -0.02}, 1}};
+  for (const auto& [centre, parts] : balls) {
+    const auto mesh = geometry::sphere_mesh(r, centre, 6); // 32,768 triangles
+    const double exact = 4 * pi / 3 * r * r * r / parts, of_mesh = geometry::volume(mesh) / parts;
+    std::array<Rate, 3> rates; // sphere; mesh; between them
+    for (const double h : {0.1, 0.05, 0.025}) {
+      Random random(48);
+      std::array<double, 3> sums{};
+      constexpr int n = 4;
+      for (int i = 0; i < n; ++i) {
+        Resting by_sphere = cube(1, h, random_offset(random)), by_mesh = by_sphere;
+        by_sphere.cut(Sphere{centre, r});
+        by_mesh.cut(mesh);
+        const auto a = by_sphere.volumes(), b = by_mesh.volumes();
+        EXPECT_EQ(a.size(), 2u) << parts << ' ' << h;
+        EXPECT_EQ(b.size(), 2u) << parts << ' ' << h;
+        EXPECT_NEAR(std::accumulate(a.begin(), a.end(), 0.0), 1, 1e-12);
+        EXPECT_NEAR(std::accumulate(b.begin(), b.end(), 0.0), 1, 1e-12);
+        sums[0] += std::abs(a[0] / exact - 1) / n;
+        sums[1] += std::abs(b[0] / of_mesh - 1) / n;
+        sums[2] += std::abs(a[0] / exact - b[0] / of_mesh) / n;
+      }
+      for (int k = 0; k < 3; ++k)
+        rates[k].errors.push_back(sums[k]);
+    }
+    std::cout << "1/" << parts << " ball, sphere, mesh, between them:";
+    for (const Rate& rate : rates)
+      std::cout << "  " << rate.errors.front() << " to " << rate.errors.back() << ", order " << rate.order() << ';';
+    std::cout << '\n';
+    EXPECT_GT(rates[0].order(), 1.75);
+    EXPECT_GT(rates[1].order(), 1.75);
+    EXPECT_LT(rates[0].errors.back(), 1e-3);
+    EXPECT_LT(rates[2].errors.back(), 0.1 * rates[0].errors.back());
+  }
 }
 
 TEST(CutSurface, WhatPassesBetweenTwoNodesIsCounted) {

@@ -98,15 +98,15 @@ std::vector<CellId> cells_with(const Resting& body, const Vec3& p) {
     const Vec3 local = (p - body.body.grid.origin(c)) / body.body.grid.h();
     if ((local.array() < 0).any() || (local.array() > 1).any())
       continue;
-    for (int v = 0; v < 8; ++v)
-      if (body.body.grid.is_material(body.body.grid.nodes(c)[v]))
-        for (const auto& t : grid::octant(body.body.grid, body.body.cuts, c, v)) {
-          Mat3 sides;
-          sides << t[1] - t[0], t[2] - t[0], t[3] - t[0];
-          const Vec3 b = sides.inverse() * (local - t[0]);
-          if ((b.array() > 1e-5).all() && b.sum() < 1 - 1e-5)
-            found.push_back(c);
-        }
+    for (const auto copy : body.complex.copies_of(c))
+      grid::for_each_tetrahedron(body.body.grid, body.body.cuts, body.complex.copies[copy],
+                                 [&](const grid::Tetrahedron& t, int) {
+                                   Mat3 sides;
+                                   sides << t[1] - t[0], t[2] - t[0], t[3] - t[0];
+                                   const Vec3 b = sides.inverse() * (local - t[0]);
+                                   if ((b.array() > 1e-5).all() && b.sum() < 1 - 1e-5)
+                                     found.push_back(c);
+                                 });
   }
   return found;
 }

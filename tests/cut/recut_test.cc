@@ -6,6 +6,7 @@
 #include "cut/blade.h"
 #include "cut/embed.h"
 #include "cut/pending.h"
+#include "cut/target.h"
 #include "geometry/predicates.h"
 #include "grid/cube.h"
 #include "tests/geometry/meshes.h"
@@ -36,6 +37,10 @@ struct Block {
     return cut_edges(strip, body.grid, body.cuts, complex, x, 1);
   }
 
+  bool is_inner(const EdgeId e) const {
+    return body.grid.is_material(body.grid.ends(e)[0]) && body.grid.is_material(body.grid.ends(e)[1]);
+  }
+
   /// Classes of material nodes joined by edges that are not cut.
   std::size_t n_classes(const std::vector<EdgeCut>& cuts) const {
     std::set<EdgeId> is_cut;
@@ -52,9 +57,11 @@ struct Block {
     return roots.size();
   }
 
-  /// A cut edge joins different classes: a cut has no edge too many.
+  /// A cut edge between two nodes joins different classes: a cut has no edge too many.
   bool is_clean(const std::vector<EdgeCut>& cuts) const {
     return std::all_of(cuts.begin(), cuts.end(), [&](const EdgeCut& healed) {
+      if (!is_inner(healed.edge))
+        return true; // joins no nodes
       std::vector<EdgeCut> others;
       std::copy_if(cuts.begin(), cuts.end(), std::back_inserter(others),
                    [&](const EdgeCut& c) { return c.edge != healed.edge; });
@@ -183,11 +190,12 @@ TEST(Recut, AgreesWithBruteForceOnTurningBlades) {
   const auto strip = sweep(blade, 0, 2);
   const auto cuts = block.cut(strip);
   std::size_t n_odd = 0, n_even = 0;
+  std::size_t n_of_skin = 0;
   for (const EdgeId e : ids<EdgeId>(block.body.grid.n_edges())) {
-    if (block.body.cuts.is_cut(e) || !block.body.grid.is_material(block.body.grid.ends(e)[0]))
+    if (!block.body.cuts.can_be_cut(block.body.grid, e))
       continue;
-    const Vec3 p = block.x[block.complex.real_corner[block.body.grid.ends(e)[0]].value];
-    const Vec3 q = block.x[block.complex.real_corner[block.body.grid.ends(e)[1]].value];
+    const EdgeEnds ends = ends_of(block.body.grid, block.body.cuts, block.complex, e);
+    const auto [p, q] = ends.segment(block.x);
     std::size_t n = 0;
     double first = 2;
     for (const auto& triangle : strip)
@@ -199,13 +207,53 @@ TEST(Recut, AgreesWithBruteForceOnTurningBlades) {
     if (n % 2 == 1) {
       ASSERT_LT(n_odd, cuts.cuts.size());
       EXPECT_EQ(cuts.cuts[n_odd].edge, e);
-      EXPECT_EQ(cuts.cuts[n_odd].t, first);
+      EXPECT_EQ(cuts.cuts[n_odd].t, ends.from + first * (ends.to - ends.from));
+      n_of_skin += !block.is_inner(e);
       ++n_odd;
     }
   }
   EXPECT_EQ(cuts.cuts.size(), n_odd);
   EXPECT_EQ(cuts.n_double_crossings, n_even);
   EXPECT_GT(n_odd, 20u);
+  EXPECT_GT(n_of_skin, 5u);
+}
+
+/// The edges of the skin end at the skin, whichever of their nodes is empty, and wherever the body is.
+TEST(Recut, EdgesOfTheSkinAreCutBelowTheSkin) {
+  for (const Vec3& shift : {Vec3(0, 0, 0), Vec3(3, -1, 7)}) {
+    Block block;
+    for (Vec3& p : block.x)
+      p += shift;
+    for (int axis = 0; axis < 3; ++axis)
+      for (const bool lower : {false, true})
+        for (const double depth : {-0.1, 1e-6, 0.1, 0.3, 0.499}) { // below the skin, in cube edges
+          const double at = lower ? -0.5 + depth : Block::n - 0.5 - depth;
+          const Vec3 u = Vec3::Unit((axis + 1) % 3), v = Vec3::Unit((axis + 2) % 3);
+          const auto cuts = block.cut(plane_sweep(shift + at * Vec3::Unit(axis) - 2 * (u + v), 9 * u, 9 * v, 2)).cuts;
+          ASSERT_EQ(cuts.size(), depth < 0 ? 0u : 25u) << depth;
+          for (const EdgeCut& cut : cuts) {
+            EXPECT_FALSE(block.is_inner(cut.edge));
+            EXPECT_EQ(block.body.grid.axis(cut.edge), axis);
+            EXPECT_NEAR(block.body.grid.position(block.body.grid.ends(cut.edge)[0])[axis] + cut.t, at, 1e-12);
+            EXPECT_NEAR(std::abs(cut.normal[axis]), 1, 1e-12);
+          }
+        }
+  }
+}
+
+/// An edge of the skin is cut once more, and then no more.
+TEST(Recut, EdgesOfTheSkinAreCutOnceMore) {
+  Block block;
+  const auto strip = plane_sweep(Vec3(-2, -2, -0.3), Vec3(9, 0, 0), Vec3(0, 9, 0), 1);
+  const auto cuts = block.cut(strip).cuts;
+  ASSERT_EQ(cuts.size(), 25u);
+  for (const EdgeCut& cut : cuts)
+    block.body.cuts.add(block.body.grid, cut);
+  block.complex = grid::build_complex(block.body.grid, block.body.cuts);
+  block.x = grid::rest_positions(block.body.grid, block.complex);
+  EXPECT_EQ(block.body.cuts.n_cut_twice(), 25u);
+  EXPECT_TRUE(block.cut(strip).cuts.empty());
+  EXPECT_TRUE(block.cut(plane_sweep(Vec3(-2, -2, -0.2), Vec3(9, 0, 0), Vec3(0, 9, 0), 1)).cuts.empty());
 }
 
 /// In an affinely deformed body a deformed plane cuts as the plane did at rest.
@@ -233,7 +281,7 @@ TEST(Recut, BentBodiesAreSeparated) {
   Block block;
   const auto first = block.cut(plane_sweep(Vec3(-9, -9, 2.3), Vec3(20, 0, 0), Vec3(0, 20, 0), 1)).cuts;
   for (const EdgeCut& cut : first)
-    block.body.cuts.add(cut);
+    block.body.cuts.add(block.body.grid, cut);
   block.complex = grid::build_complex(block.body.grid, block.body.cuts);
   ASSERT_EQ(grid::n_pieces(block.complex), 2u);
   block.x = grid::rest_positions(block.body.grid, block.complex);
@@ -302,7 +350,7 @@ TEST(PendingCuts, ReleaseTwoEdgesACellInOrder) {
     for (const EdgeCut& cut : pending.release(block.body.grid, block.body.cuts)) {
       for (const auto cell : block.body.grid.cells(cut.edge))
         EXPECT_TRUE(!cell.valid() || ++n_cut[cell.value] <= PendingCuts::max_per_cell);
-      block.body.cuts.add(cut);
+      block.body.cuts.add(block.body.grid, cut);
       released.push_back(cut.edge);
     }
     EXPECT_LT(pending.size(), oldest_waits) << "the oldest one always goes";
@@ -313,13 +361,44 @@ TEST(PendingCuts, ReleaseTwoEdgesACellInOrder) {
   EXPECT_EQ(grid::n_pieces(grid::build_complex(block.body.grid, block.body.cuts)), 2u);
 }
 
+/// Edges of the skin wait as others do, and go when they are cut twice.
+TEST(PendingCuts, EdgesOfTheSkinWaitToo) {
+  Block block;
+  const auto cuts = block.cut(plane_sweep(Vec3(-9, -9, -1.05), Vec3(20, 0, 1), Vec3(0, 20, 1), 1)).cuts;
+  const auto n_of_skin = static_cast<std::size_t>(
+    std::count_if(cuts.begin(), cuts.end(), [&](const EdgeCut& cut) { return !block.is_inner(cut.edge); }));
+  ASSERT_GT(n_of_skin, 5u);
+  ASSERT_LT(n_of_skin, cuts.size());
+  PendingCuts pending;
+  pending.push(cuts);
+  std::size_t n_released = 0, n_dropped = 0;
+  for (int step = 0; pending.size() > 0; ++step) {
+    ASSERT_LT(step, 50);
+    const std::size_t n_waiting = pending.size();
+    const auto released = pending.release(block.body.grid, block.body.cuts);
+    n_released += released.size();
+    n_dropped += n_waiting - released.size() - pending.size();
+    for (const EdgeCut& cut : released)
+      block.body.cuts.add(block.body.grid, cut);
+    if (step == 0) // another cut along the same edge comes first
+      for (const EdgeCut& cut : cuts)
+        if (!block.is_inner(cut.edge) && block.body.cuts.can_be_cut(block.body.grid, cut.edge)) {
+          block.body.cuts.add(block.body.grid, cut);
+          break;
+        }
+  }
+  EXPECT_EQ(n_dropped, 1u);
+  EXPECT_EQ(n_released, cuts.size() - 1);
+  EXPECT_EQ(block.body.cuts.n_cut_twice(), n_of_skin);
+}
+
 TEST(PendingCuts, DropEdgesThatWereCutMeanwhile) {
   Block block;
   const auto cuts = block.cut(plane_sweep(Vec3(-9, -9, 2.3), Vec3(20, 0, 0), Vec3(0, 20, 0), 1)).cuts;
   PendingCuts pending;
   pending.push(cuts);
   for (const EdgeCut& cut : cuts)
-    block.body.cuts.add(cut);
+    block.body.cuts.add(block.body.grid, cut);
   EXPECT_TRUE(pending.release(block.body.grid, block.body.cuts).empty());
   EXPECT_EQ(pending.size(), 0u);
 }

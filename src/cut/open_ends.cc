@@ -1,0 +1,101 @@
+#include "cut/open_ends.h"
+
+#include "geometry/triangle.h"
+#include "grid/touched.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace kerf::cut {
+
+namespace cube = grid::cube;
+
+namespace {
+
+/// Has the blade cut beside the skin of a face an odd number of times, and not parted it?
+bool is_open(const grid::Grid& grid, const grid::Cuts& cuts, const grid::CellId c, const grid::CellCuts& cell,
+             const int face, const grid::CutLabel label) {
+  const auto edges = grid.edges(c);
+  for (const grid::SkinArc& arc : grid::skin_arcs(face, cell.material)) {
+    const unsigned lines = cell.blades() & grid::CellCuts::beside(arc);
+    int n = 0;
+    for (unsigned left = lines; left != 0; left &= left - 1)
+      n += cuts.find(edges[std::countr_zero(left)])->label == label;
+    if (n % 2 != 0 && cell.is_whole(face, arc))
+      return true;
+  }
+  return false;
+}
+
+bool is_of_skin(const grid::Grid& grid, const grid::EdgeId e) {
+  const auto& [lower, upper] = grid.ends(e);
+  return grid.is_material(lower) != grid.is_material(upper);
+}
+
+/// Does the rind of an edge hang together with something where the blade's cut goes through?
+bool is_held(const grid::Grid& grid, const grid::Cuts& cuts, const grid::EdgeId edge, const grid::CutLabel label) {
+  for (const grid::CellId c : grid.cells(edge)) {
+    if (!c.valid())
+      continue;
+    const grid::CellCuts cell = grid::cuts_of(grid, cuts, c);
+    const auto edges = grid.edges(c);
+    const auto line = std::find(edges.begin(), edges.end(), edge) - edges.begin();
+    for (int face = 0; face < cube::n_faces; ++face)
+      for (const grid::SkinArc& arc : grid::skin_arcs(face, cell.material))
+        if ((arc.lines[0] == line || arc.lines[1] == line) && cell.is_whole(face, arc) &&
+            !is_open(grid, cuts, c, cell, face, label))
+          return true;
+  }
+  return false;
+}
+
+/// Is any of the triangles within a cell's width of the cell?
+bool is_near(const std::span<const std::array<Vec3, 3>> strip, const grid::Copy& copy, const Points& x) {
+  Vec3 middle = Vec3::Zero();
+  for (const grid::CornerId corner : copy.corners)
+    middle += x[corner.value] / cube::n_vertices;
+  double reach = 0;
+  for (const grid::CornerId corner : copy.corners)
+    reach = std::max(reach, (x[corner.value] - middle).norm());
+  return std::ranges::any_of(strip, [&](const std::array<Vec3, 3>& triangle) {
+    return (geometry::closest_point(middle, triangle) - middle).norm() < 2 * reach;
+  });
+}
+
+} // namespace
+
+void OpenEnds::note(const grid::Grid& grid, const grid::Cuts& cuts, const std::span<const grid::EdgeId> edges,
+                    const grid::CutLabel label) {
+  for (const grid::TouchedCell& touched : grid::touched_cells(grid, edges)) {
+    const grid::CellCuts cell = grid::cuts_of(grid, cuts, touched.cell);
+    for (int face = 0; cell.skin != 0 && face < cube::n_faces; ++face)
+      if (is_open(grid, cuts, touched.cell, cell, face, label))
+        faces_.push_back({touched.cell, face});
+  }
+  std::sort(faces_.begin(), faces_.end());
+  faces_.erase(std::unique(faces_.begin(), faces_.end()), faces_.end());
+}
+
+std::vector<grid::EdgeId> OpenEnds::close(const std::span<const std::array<Vec3, 3>> strip, const grid::Grid& grid,
+                                          grid::Cuts& cuts, const grid::CellComplex& complex, const Points& x,
+                                          const grid::CutLabel label) {
+  std::vector<grid::EdgeId> closed;
+  std::erase_if(faces_, [&](const Face& f) {
+    if (!is_open(grid, cuts, f.cell, grid::cuts_of(grid, cuts, f.cell), f.face, label))
+      return true;
+    if (is_near(strip, complex.copies[complex.first_copy[f.cell]], x))
+      return false;
+    const auto edges = grid.edges(f.cell);
+    for (const int line : cube::face_lines[f.face])
+      if (cuts.is_cut_twice(edges[line]) && !is_held(grid, cuts, edges[line], label))
+        return true; // the last that holds the rind
+    cuts.set_seam(grid.faces(f.cell)[f.face], grid::Seam::parted);
+    for (const int line : cube::face_lines[f.face])
+      if (cuts.is_cut_twice(edges[line]) || (cuts.is_cut(edges[line]) && !is_of_skin(grid, edges[line])))
+        closed.push_back(edges[line]);
+    return true;
+  });
+  return closed;
+}
+
+} // namespace kerf::cut

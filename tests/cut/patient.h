@@ -1,0 +1,145 @@
+#pragma once
+
+/// A body that is cut as scenes cut theirs, in steps, while it stands deformed; and a box to cut.
+
+#include "cut/at_skin.h"
+#include "cut/cut_surface.h"
+#include "cut/pending.h"
+#include "tests/support/placed.h"
+#include "tests/support/same.h"
+
+#include <functional>
+#include <numeric>
+
+namespace kerf::cut {
+
+using grid::EdgeCut;
+using grid::EdgeId;
+using support::Body;
+using support::Random;
+using support::random_direction;
+using support::random_offset;
+using support::uniform;
+
+constexpr double h = 0.1;
+inline const Box box{{0, 0, 0}, {0.73, 0.61, 0.52}};
+inline const double box_volume = (box.upper - box.lower).prod(), cube = h * h * h;
+
+inline Body box_body(Random& random) {
+  return support::embedded(geometry::box_mesh(box.lower, box.upper), h, random_offset(random));
+}
+
+/// A map from where material rests to where it is now.
+using Map = std::function<Vec3(const Vec3&)>;
+
+/// Cuts that are found in a step: all made in it, or at most two edges of a cell (pending.h).
+enum class Release { at_once, queued };
+
+/// A body and where its corners are, cut as scenes do.
+struct Patient {
+  Body body;
+  grid::CellComplex complex = grid::build_complex(body.grid, body.cuts);
+  Points x = grid::rest_positions(body.grid, complex);
+
+  void deform(const Map& map) { std::transform(x.begin(), x.end(), x.begin(), map); }
+
+  void update(const std::vector<EdgeId>& edges) {
+    surface::place(body.grid, body.cuts, edges, {});
+    grid::inherit(grid::update_complex(body.grid, body.cuts, edges, complex), x);
+  }
+
+  std::vector<EdgeId> add(const std::vector<EdgeCut>& cuts) {
+    std::vector<EdgeId> edges;
+    for (const EdgeCut& cut : cuts) {
+      body.cuts.add(body.grid, cut);
+      edges.push_back(cut.edge);
+    }
+    return edges;
+  }
+
+  /// With ends inside the body, for all that is known.
+  void cut(const std::vector<EdgeCut>& cuts) {
+    std::vector<EdgeId> edges;
+    for (const bool inner : {true, false}) // whether a cut of the skin goes on depends on those below it
+      for (const EdgeCut& cut : cuts)
+        if (support::is_inner(body, cut.edge) == inner && (inner || goes_on(body.grid, body.cuts, complex, x, cut))) {
+          body.cuts.add(body.grid, cut);
+          edges.push_back(cut.edge);
+        }
+    for (const EdgeId e : end_at_skin(body.grid, body.cuts, complex, x, edges))
+      edges.push_back(e);
+    update(edges);
+  }
+
+  void cut_through(const std::vector<EdgeCut>& cuts) {
+    std::vector<EdgeId> edges = add(cuts);
+    part_skin(body.grid, body.cuts, edges);
+    update(edges);
+  }
+  void cut_through(const Shape& shape, const grid::CutLabel label = 1) {
+    cut_through(cut_edges(CutSurface{"", shape, label}, body.grid, body.cuts, complex, x).cuts);
+  }
+
+  /// The blade's whole motion, from 0 to 1 s.
+  void pass(const Blade& blade, const int n_steps, const Release release) {
+    PendingCuts pending;
+    for (int k = 0; k < n_steps || pending.size() > 0; ++k) {
+      if (k < n_steps) {
+        const BladePath way = path(blade, double(k) / n_steps, double(k + 1) / n_steps);
+        const auto found = cut_edges(way, body.grid, body.cuts, complex, x, x, blade.label).cuts;
+        if (release == Release::at_once)
+          cut(found);
+        else
+          pending.push(found);
+      }
+      if (release == Release::queued)
+        cut(pending.release(body.grid, body.cuts));
+    }
+  }
+
+  /// Is the complex, which each cut has brought up to date, the one that all cuts make?
+  bool is_as_built() const { return support::renaming(complex, grid::build_complex(body.grid, body.cuts)).has_value(); }
+
+  /// Of each piece, ascending [m^3].
+  std::vector<double> volumes() const {
+    auto volumes = surface::piece_volumes(surface::build_surface(body.grid, body.cuts, complex), complex);
+    std::sort(volumes.begin(), volumes.end());
+    return volumes;
+  }
+};
+
+/// A straight blade in a plane through `middle` with the directions u of its edge and v of its motion, as far as
+/// `reach` either way and, along v, from -reach to `stop`.
+inline Blade straight(const Vec3& middle, const Vec3& u, const Vec3& v, const double reach, const double stop,
+                      const grid::CutLabel label = 1) {
+  const Blade blade{.name = "straight",
+                    .edge = {middle - reach * u - reach * v, middle + reach * u - reach * v},
+                    .key_frames = {{0, Vec3::Zero(), Vec3::Zero()}, {1, (reach + stop) * v, Vec3::Zero()}},
+                    .label = label};
+  check(blade);
+  return blade;
+}
+
+struct Frame {
+  Vec3 u, v;
+};
+
+/// Two unit vectors across n, turned by an angle [rad].
+inline Frame across(const Vec3& n, const double angle) {
+  const Vec3 a = n.unitOrthogonal(), b = n.cross(a);
+  return {std::cos(angle) * a + std::sin(angle) * b, std::cos(angle) * b - std::sin(angle) * a};
+}
+
+inline double total(const std::vector<double>& volumes) { return std::accumulate(volumes.begin(), volumes.end(), 0.0); }
+
+inline double largest_difference(const std::vector<double>& a, const std::vector<double>& b) {
+  double worst = 0;
+  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
+    worst = std::max(worst, std::abs(a[i] - b[i]));
+  return worst;
+}
+
+/// In how many steps the i-th blade passes.
+inline int steps(const int i) { return std::array{1, 7, 40, 150}[i % 4]; }
+
+} // namespace kerf::cut
