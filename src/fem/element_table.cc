@@ -47,7 +47,7 @@ void ElementTable::update(const grid::Grid& grid, const grid::Cuts& cuts, const 
   }
   parallel_for(partial.size(), [&](const std::size_t i) {
     const grid::Copy& copy = complex.copies[partial[i]];
-    elements_[element_of_[partial[i].value]] = make(octant_moments(grid, cuts, copy.cell, copy.nodes));
+    elements_[element_of_[partial[i].value]] = make(material_moments(grid, cuts, copy));
   });
 }
 

@@ -1,5 +1,7 @@
 #include "fem/moments.h"
 
+#include "grid/material.h"
+
 #include <Eigen/Geometry>
 
 #include <deal.II/base/quadrature_lib.h>
@@ -26,6 +28,18 @@ void add(Moments& m, const Vec3& p, const double weight) {
   }
 }
 
+void add(Moments& m, const grid::Tetrahedron& t) {
+  const auto& rule = tetrahedron_rule();
+  const Vec3 a = t[1] - t[0], b = t[2] - t[0], c = t[3] - t[0];
+  const double jacobian = a.dot(b.cross(c));
+  if (jacobian == 0)
+    return;
+  for (unsigned q = 0; q < rule.size(); ++q) {
+    const auto& xi = rule.point(q);
+    add(m, t[0] + xi[0] * a + xi[1] * b + xi[2] * c, jacobian * rule.weight(q));
+  }
+}
+
 } // namespace
 
 Moments full_cube_moments() {
@@ -38,17 +52,22 @@ Moments full_cube_moments() {
 Moments octant_moments(const grid::Grid& grid, const grid::Cuts& cuts, const grid::CellId cell,
                        const unsigned vertices) {
   Moments m{};
-  const auto& rule = tetrahedron_rule();
   for (int vertex = 0; vertex < 8; ++vertex)
     if (vertices >> vertex & 1)
-      for (const grid::Tetrahedron& t : grid::octant(grid, cuts, cell, vertex)) {
-        const Vec3 a = t[1] - t[0], b = t[2] - t[0], c = t[3] - t[0];
-        const double jacobian = a.dot(b.cross(c));
-        for (unsigned q = 0; q < rule.size(); ++q) {
-          const auto& xi = rule.point(q);
-          add(m, t[0] + xi[0] * a + xi[1] * b + xi[2] * c, jacobian * rule.weight(q));
-        }
-      }
+      for (const grid::Tetrahedron& t : grid::octant(grid, cuts, cell, vertex))
+        add(m, t);
+  return m;
+}
+
+Moments material_moments(const grid::Grid& grid, const grid::Cuts& cuts, const grid::Copy& copy) {
+  constexpr double least = 1e-12; // far below any sliver that is material
+  Moments m{};
+  grid::for_each_tetrahedron(grid, cuts, copy, [&](const grid::Tetrahedron& t, int) { add(m, t); });
+  if (copy.nodes != 0 || m[0] >= least)
+    return m;
+  m = full_cube_moments();
+  for (double& moment : m)
+    moment *= least;
   return m;
 }
 

@@ -17,5 +17,8 @@ Moments full_cube_moments();
 
 /// Moments of the octants of the given vertices (bits) of a cell.
 Moments octant_moments(const grid::Grid& grid, const grid::Cuts& cuts, grid::CellId cell, unsigned vertices);
+/// Moments of all material of a copy; of rinds alone 1e-12 of a cube at least, for where the skin is bent they may
+/// vanish.
+Moments material_moments(const grid::Grid& grid, const grid::Cuts& cuts, const grid::Copy& copy);
 
 } // namespace kerf::fem

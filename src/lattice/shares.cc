@@ -1,5 +1,7 @@
 #include "lattice/shares.h"
 
+#include "grid/followed.h"
+
 #include "base/parallel.h"
 
 #include <Eigen/Geometry>
@@ -21,16 +23,21 @@ double mean_product(const Eigen::Array4d& f, const Eigen::Array4d& g, const Eige
 /// By the vertex of a node, and of a corner.
 using CopyShares = std::array<std::array<double, 8>, 8>;
 
-/// The integral of each N_a over the octant of each node of the copy.
-CopyShares octant_integrals(const grid::Grid& grid, const grid::Cuts& cuts, const grid::Copy& copy) {
-  CopyShares integrals{};
-  for (int vertex = 0; vertex < 8; ++vertex)
-    if (copy.nodes >> vertex & 1)
-      for (const grid::Tetrahedron& t : grid::octant(grid, cuts, copy.cell, vertex)) {
-        const auto of_tetrahedron = shape_integrals(t);
-        for (int a = 0; a < 8; ++a)
-          integrals[vertex][a] += of_tetrahedron[a];
-      }
+/// The integral of each N_a over the material at each node of the copy, and over that under the skin of nodes that are
+/// not the copy's.
+struct Integrals {
+  CopyShares at_nodes{};
+  std::array<double, 8> elsewhere{};
+};
+
+Integrals integrals_of(const grid::Grid& grid, const grid::Cuts& cuts, const grid::Copy& copy) {
+  Integrals integrals;
+  grid::for_each_tetrahedron(grid, cuts, copy, [&](const grid::Tetrahedron& t, const int vertex) {
+    auto& sum = copy.nodes >> vertex & 1 ? integrals.at_nodes[vertex] : integrals.elsewhere;
+    const auto of_tetrahedron = shape_integrals(t);
+    for (int a = 0; a < 8; ++a)
+      sum[a] += of_tetrahedron[a];
+  });
   return integrals;
 }
 
@@ -54,10 +61,10 @@ CopyShares shares_of(const grid::Grid& grid, const grid::Cuts& cuts, const grid:
       shares[a][a] = 1.0 / 8;
     return shares;
   }
-  const CopyShares integrals = octant_integrals(grid, cuts, copy);
+  const auto& [integrals, elsewhere] = integrals_of(grid, cuts, copy);
   for (int a = 0; a < 8; ++a) {
     const unsigned owners = nearest(copy.nodes, a);
-    double total = 0, of_owners = 0;
+    double total = elsewhere[a], of_owners = 0;
     for (int v = 0; v < 8; ++v) {
       total += integrals[v][a];
       of_owners += (owners >> v & 1) != 0 ? integrals[v][a] : 0;
@@ -107,6 +114,13 @@ std::vector<Share> material_shares(const grid::Grid& grid, const grid::Cuts& cut
     [&](const std::size_t c) { of_copy[c] = shares_of(grid, cuts, complex.copies[grid::CopyId(c)]); }, 256);
   const double scale = density * grid.h() * grid.h() * grid.h();
   std::vector<Share> shares;
+  for (const auto& [c, node] : grid::followed_nodes(grid, complex)) {
+    const grid::Copy& copy = complex.copies[c];
+    const auto integrals = integrals_of(grid, cuts, copy).elsewhere;
+    for (int a = 0; a < 8; ++a)
+      if (integrals[a] > 0)
+        shares.push_back({node, copy.corners[a], scale * integrals[a]});
+  }
   for (const auto c : ids<grid::CopyId>(complex.n_copies())) {
     const grid::Copy& copy = complex.copies[c];
     for (int vertex = 0; vertex < 8; ++vertex)

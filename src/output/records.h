@@ -55,7 +55,9 @@ struct Complex {
   std::vector<std::array<std::uint32_t, 8>> corners; ///< per copy
   std::vector<Index3> cells;                         ///< per copy: lattice index of its cell
   std::vector<std::uint8_t> nodes;                   ///< per copy: bits of its material nodes
-  Points rest_positions;                             ///< per corner [m], rest configuration
+  std::vector<std::uint16_t> rinds; ///< per copy: bits of its cell's lines of which it has what lies between a blade's
+                                    ///< cut and the skin
+  Points rest_positions;            ///< per corner [m], rest configuration
 };
 
 /// A sparse matrix by rows: entries row_starts[i] .. row_starts[i + 1] belong to row i.

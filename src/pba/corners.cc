@@ -1,6 +1,7 @@
 #include "pba/corners.h"
 
 #include "base/parallel.h"
+#include "grid/followed.h"
 #include "pba/kernel.h"
 #include "pba/point_grid.h"
 #include "pba/reach.h"
@@ -59,8 +60,9 @@ void fill_rows(const grid::CellComplex& complex, const Phyxels& phyxels, std::sp
 }
 
 /// Real corners of a copy the fewest edges away from one of its corners, as rows of the map.
+constexpr int far = 99; ///< more edges than a copy has
 struct Sources {
-  int n_edges = 99;
+  int n_edges = far;
   std::vector<std::uint32_t> rows;
 
   void offer(const int distance, const std::uint32_t row) {
@@ -74,7 +76,7 @@ struct Sources {
   }
 };
 
-void fill_sources(const grid::CellComplex& complex, const NodePairs& pairs, CornerMap& map) {
+void fill_sources(const grid::Grid& grid, const grid::CellComplex& complex, const NodePairs& pairs, CornerMap& map) {
   const auto rows = rows_of(complex, pairs);
   std::vector<Sources> sources(complex.n_corners());
   for (const grid::Copy& copy : complex.copies)
@@ -82,6 +84,9 @@ void fill_sources(const grid::CellComplex& complex, const NodePairs& pairs, Corn
       for (unsigned real = 0; real < 8; ++real)
         if (copy.nodes >> real & 1)
           sources[copy.corners[v].value].offer(std::popcount(v ^ real), rows[complex.node[copy.corners[real]]]);
+  for (const auto& [c, node] : grid::followed_nodes(grid, complex))
+    for (const grid::CornerId corner : complex.copies[c].corners)
+      sources[corner.value].offer(far, rows[node]);
   map.source_start.push_back(0);
   for (Sources& s : sources) {
     std::sort(s.rows.begin(), s.rows.end());
@@ -120,7 +125,7 @@ CornerMap build_corner_map(const grid::Grid& grid, const grid::CellComplex& comp
   map.rest = phyxels.rest;
   map.corners = grid::rest_positions(grid, complex);
   fill_rows(complex, phyxels, copies, pairs, sights, map);
-  fill_sources(complex, pairs, map);
+  fill_sources(grid, complex, pairs, map);
   return map;
 }
 

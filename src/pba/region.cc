@@ -2,6 +2,7 @@
 
 #include "base/parallel.h"
 #include "grid/cube.h"
+#include "grid/material.h"
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
@@ -24,20 +25,26 @@ double depth(const Tetrahedron& t, const Vec3& p) {
   return std::min(b.minCoeff(), 1 - b.sum());
 }
 
-/// The vertex, among the given ones (bits), whose octant p lies deepest in; p in coordinates of the cell [1].
-int octant_around(const grid::Grid& grid, const grid::Cuts& cuts, const grid::CellId c, const unsigned vertices,
-                  const Vec3& p) {
-  int best = 0;
+/// The copy of the cell whose material p lies deepest in, p in coordinates of the cell [1]; invalid where p lies deeper
+/// among those vertices of the cell (bits) that are not material.
+grid::CopyId deepest(const grid::Grid& grid, const grid::Cuts& cuts, const grid::CellComplex& complex,
+                     const grid::CellId c, const unsigned empty, const Vec3& p) {
+  grid::CopyId best;
   double greatest = -1e300;
-  for (int v = 0; v < grid::cube::n_vertices; ++v) {
-    if (!(vertices >> v & 1))
-      continue;
-    for (const Tetrahedron& t : grid::octant(grid, cuts, c, v))
-      if (const double d = depth(t, p); d > greatest) { // false for NaN: a flat tetrahedron holds nothing
-        greatest = d;
-        best = v;
-      }
-  }
+  const auto offer = [&](const Tetrahedron& t, const grid::CopyId copy) {
+    if (const double d = depth(t, p); d > greatest) { // false for NaN: a flat tetrahedron holds nothing
+      greatest = d;
+      best = copy;
+    }
+  };
+  for (const grid::CopyId copy : complex.copies_of(c))
+    grid::for_each_tetrahedron(grid, cuts, complex.copies[copy], [&](const Tetrahedron& t, int) { offer(t, copy); });
+  if (greatest >= 0)
+    return best;
+  for (int v = 0; v < grid::cube::n_vertices; ++v)
+    if (empty >> v & 1)
+      for (const Tetrahedron& t : grid::octant(grid, cuts, c, v))
+        offer(t, grid::CopyId());
   return best;
 }
 
@@ -62,15 +69,25 @@ void split(const Tetrahedron& t, const double volume, const double size, std::ve
   split(upper, 0.5 * volume, size, parts);
 }
 
-void split_octant(const grid::Grid& grid, const grid::Cuts& cuts, const grid::CellId c, const int vertex,
-                  const double size, std::vector<Crumb>& parts) {
-  for (const Tetrahedron& local : grid::octant(grid, cuts, c, vertex)) {
+/// Tetrahedra between cuts and skin may be negative (grid/material.h): the others are scaled to the copy's volume.
+void split_material(const grid::Grid& grid, const grid::Cuts& cuts, const grid::Copy& copy, const double size,
+                    std::vector<Crumb>& parts) {
+  double sum = 0, positive = 0;
+  grid::for_each_tetrahedron(grid, cuts, copy, [&](const Tetrahedron& t, int) {
+    sum += grid::volume(t);
+    positive += std::max(0.0, grid::volume(t));
+  });
+  if (sum <= 0)
+    return;
+  constexpr double negligible = 1e-12; // of h^3: flat ones
+  grid::for_each_tetrahedron(grid, cuts, copy, [&](const Tetrahedron& local, int) {
+    if (grid::volume(local) < negligible)
+      return;
     Tetrahedron t;
     for (int i = 0; i < 4; ++i)
-      t[i] = grid.origin(c) + grid.h() * local[i];
-    const double volume = (t[1] - t[0]).dot((t[2] - t[0]).cross(t[3] - t[0])) / 6;
-    split(t, volume, size, parts);
-  }
+      t[i] = grid.origin(copy.cell) + grid.h() * local[i];
+    split(t, sum / positive * grid::volume(t), size, parts);
+  });
 }
 
 void split_cell(const grid::Grid& grid, const grid::CellId c, const double size, std::vector<Crumb>& parts) {
@@ -94,12 +111,11 @@ unsigned material_vertices(const grid::Grid& grid, const grid::CellId c) {
   return vertices;
 }
 
-/// The copy at the vertex, among the given ones, whose octant p lies deepest in.
 grid::CopyId copy_among(const grid::Grid& grid, const grid::Cuts& cuts, const grid::CellComplex& complex,
-                        const grid::CellId cell, const unsigned vertices, const Vec3& p) {
-  const bool whole = cuts.configuration(grid, cell) == 0;
-  return complex.copy_at(cell,
-                         whole ? 0 : octant_around(grid, cuts, cell, vertices, (p - grid.origin(cell)) / grid.h()));
+                        const grid::CellId cell, const unsigned empty, const Vec3& p) {
+  return cuts.configuration(grid, cell) == 0
+           ? complex.first_copy[cell]
+           : deepest(grid, cuts, complex, cell, empty, (p - grid.origin(cell)) / grid.h());
 }
 
 } // namespace
@@ -107,7 +123,7 @@ grid::CopyId copy_among(const grid::Grid& grid, const grid::Cuts& cuts, const gr
 grid::CopyId copy_around(const grid::Grid& grid, const grid::Cuts& cuts, const grid::CellComplex& complex,
                          const Vec3& p) {
   const auto cell = cell_around(grid, p);
-  return cell ? copy_among(grid, cuts, complex, *cell, 0xff, p) : grid::CopyId();
+  return cell ? copy_among(grid, cuts, complex, *cell, 0xff & ~material_vertices(grid, *cell), p) : grid::CopyId();
 }
 
 std::vector<grid::CopyId> copies_around(const grid::Grid& grid, const grid::Cuts& cuts,
@@ -117,7 +133,7 @@ std::vector<grid::CopyId> copies_around(const grid::Grid& grid, const grid::Cuts
     points.size(),
     [&](const std::size_t i) {
       if (const auto cell = cell_around(grid, points[i]))
-        copies[i] = copy_among(grid, cuts, complex, *cell, material_vertices(grid, *cell), points[i]);
+        copies[i] = copy_among(grid, cuts, complex, *cell, 0, points[i]);
     },
     64);
   return copies;
@@ -130,21 +146,18 @@ std::vector<Crumb> crumbs(const grid::Grid& grid, const grid::Cuts& cuts, const 
     if (cuts.configuration(grid, copy.cell) == 0)
       split_cell(grid, copy.cell, size, parts);
     else
-      for (int v = 0; v < grid::cube::n_vertices; ++v)
-        if (copy.nodes >> v & 1)
-          split_octant(grid, cuts, copy.cell, v, size, parts);
+      split_material(grid, cuts, copy, size, parts);
   return parts;
 }
 
 Box bounds(const grid::Grid& grid, const grid::Cuts& cuts, const grid::CellComplex& complex) {
   Box box{Vec3::Constant(1e300), Vec3::Constant(-1e300)};
   for (const grid::Copy& copy : complex.copies)
-    for (int v = 0; v < grid::cube::n_vertices; ++v)
-      if (copy.nodes >> v & 1)
-        for (const Tetrahedron& t : grid::octant(grid, cuts, copy.cell, v))
-          for (const Vec3& p : t)
-            box = {box.lower.cwiseMin(p * grid.h() + grid.origin(copy.cell)),
-                   box.upper.cwiseMax(p * grid.h() + grid.origin(copy.cell))};
+    grid::for_each_tetrahedron(grid, cuts, copy, [&](const Tetrahedron& t, int) {
+      for (const Vec3& p : t)
+        box = {box.lower.cwiseMin(p * grid.h() + grid.origin(copy.cell)),
+               box.upper.cwiseMax(p * grid.h() + grid.origin(copy.cell))};
+    });
   return box;
 }
 

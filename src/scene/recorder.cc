@@ -66,6 +66,7 @@ output::Complex to_record(const Body& body) {
     record.corners.push_back(corners);
     record.cells.push_back(body.grid.index(body.grid.nodes(copy.cell)[0]));
     record.nodes.push_back(copy.nodes);
+    record.rinds.push_back(copy.rinds);
   }
   record.rest_positions = grid::rest_positions(body.grid, body.complex);
   return record;

@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/parameters.h"
+#include "grid/material.h"
 
 #include <Eigen/Geometry>
 
@@ -21,17 +22,12 @@ void require_positive(const std::string& path, const double value) {
     throw ParameterError({.path = path, .value = to_text(value), .rule = positive.rule()});
 }
 
-double volume(const grid::Tetrahedron& t) { return (t[1] - t[0]).dot((t[2] - t[0]).cross(t[3] - t[0])) / 6; }
-
 /// The material's part of the copy's cube [1].
 double fill_of(const grid::Grid& grid, const grid::Cuts& cuts, const grid::Copy& copy) {
   if (copy.nodes == 0xff)
     return 1;
   double sum = 0;
-  for (int vertex = 0; vertex < 8; ++vertex)
-    if (copy.nodes >> vertex & 1)
-      for (const grid::Tetrahedron& t : grid::octant(grid, cuts, copy.cell, vertex))
-        sum += volume(t);
+  grid::for_each_tetrahedron(grid, cuts, copy, [&](const grid::Tetrahedron& t, int) { sum += grid::volume(t); });
   return sum;
 }
 

@@ -1,9 +1,10 @@
 /// What a cut costs by the size of the body, at equal cut area: a blade 16 cubes wide goes 16 cubes deep into boxes of
-/// ever more cells, in steps of 0.9 cubes, as scene/body.cc takes it in, stage by stage; at rest and while the body drifts
-/// and turns with the blade. And what all tables take of memory by the cell. Prints microseconds a touched cell (a cell
-/// around an edge that is cut in the step): CPU time of one thread, stage by stage the best of several runs.
+/// ever more cells, in steps of 0.9 cubes, as scene/body.cc takes it in, stage by stage; at rest and while the body
+/// drifts and turns with the blade. And what all tables take of memory by the cell. Prints microseconds a touched cell
+/// (a cell around an edge that is cut in the step): CPU time of one thread, stage by stage the best of several runs.
 
 #include "base/parallel.h"
+#include "cut/at_skin.h"
 #include "cut/embed.h"
 #include "cut/passed.h"
 #include "cut/pending.h"
@@ -77,7 +78,7 @@ Body make_body(const int n) {
   std::vector<grid::EdgeId> skin;
   for (const auto e : ids<grid::EdgeId>(grid.n_edges()))
     if (const auto& [lower, upper] = grid.ends(e); grid.is_material(lower) != grid.is_material(upper)) {
-      cuts.add({e, 0.5, Vec3::Unit(grid.axis(e)), grid::skin_label});
+      cuts.add(grid, {e, 0.5, Vec3::Unit(grid.axis(e)), grid::skin_label});
       skin.push_back(e);
     }
   surface::place(grid, cuts, skin, {});
@@ -121,7 +122,7 @@ void take_in(Body& body, const std::vector<grid::EdgeCut>& released, Tally& tall
   std::vector<grid::EdgeId> edges;
   timed(s[wait], [&] {
     for (const grid::EdgeCut& cut : released) {
-      body.cuts.add(cut);
+      body.cuts.add(body.grid, cut);
       edges.push_back(cut.edge);
     }
   });
@@ -129,7 +130,11 @@ void take_in(Body& body, const std::vector<grid::EdgeCut>& released, Tally& tall
     for (const grid::EdgeId e : edges)
       body.passed.remove_around(body.grid, e);
   });
-  timed(s[place], [&] { surface::place(body.grid, body.cuts, edges, {}); });
+  timed(s[place], [&] {
+    for (const grid::EdgeId e : cut::end_at_skin(body.grid, body.cuts, body.complex, body.x, edges))
+      edges.push_back(e);
+    surface::place(body.grid, body.cuts, edges, {});
+  });
   const auto change = timed(s[split], [&] {
     auto result = grid::update_complex(body.grid, body.cuts, edges, body.complex);
     for (Points* points : {&body.x, &body.v, &body.x_before})

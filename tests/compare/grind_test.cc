@@ -14,6 +14,7 @@ std::string name_of(const testing::TestParamInfo<std::string>& backend) {
   return backend.param == "mass-spring" ? "springs" : backend.param;
 }
 
+/// In shape matching a splinter without a node goes with the node that it follows, and draws it off its way a little.
 /// Symplectic Euler, which shape matching is, lets the energy swing by half of frequency times step, here 5 %; implicit
 /// Euler never adds. A later cut shifts the vertices of earlier ones in the same cells, and with them material from one
 /// copy to another: momentum goes with it, and where the other copy's corners had hardly any mass before and are fast
@@ -25,16 +26,18 @@ void expect_carried_on(const Ground& ground, const std::string& backend) {
   EXPECT_LE(ground.most_work_of_cut, backend == "fem" || backend == "pba" ? 0.1 : 0.01);
   EXPECT_LE(ground.most_mass, 1e-12);
   EXPECT_LE(ground.most_momentum, 0.02);
-  EXPECT_LE(ground.most_drift, 1e-4);
+  EXPECT_LE(ground.most_drift, backend == "lattice" ? 0.1 : 1e-4);
   EXPECT_EQ(ground.n_pieces, ground.n_nodes);
+  EXPECT_LT(ground.n_splinters, ground.n_nodes / 5);
 }
 
 void print(const std::string& what, const std::string& backend, const Ground& g) {
   std::printf(
-    "%s, %s: %d strokes, %zu pieces; energy at most %.4f of the first, a stroke adds at most %.1e; momentum "
+    "%s, %s: %d strokes, %zu pieces and %zu splinters; energy at most %.4f of the first, a stroke adds at most %.1e; "
+    "momentum "
     "%.1e, mass %.1e, drift %.1e\n",
-    what.c_str(), backend.c_str(), g.n_strokes, g.n_pieces, g.most_energy, g.most_work_of_cut, g.most_momentum,
-    g.most_mass, g.most_drift);
+    what.c_str(), backend.c_str(), g.n_strokes, g.n_pieces, g.n_splinters, g.most_energy, g.most_work_of_cut,
+    g.most_momentum, g.most_mass, g.most_drift);
 }
 
 class Grind : public testing::TestWithParam<std::string> {};
@@ -58,6 +61,7 @@ TEST_P(GrindLong, TenThousandStrokes) {
     expect_carried_on(ground, GetParam());
     worst.n_strokes += ground.n_strokes;
     worst.n_pieces += ground.n_pieces;
+    worst.n_splinters += ground.n_splinters;
     worst.most_energy = std::max(worst.most_energy, ground.most_energy);
     worst.most_work_of_cut = std::max(worst.most_work_of_cut, ground.most_work_of_cut);
     worst.most_momentum = std::max(worst.most_momentum, ground.most_momentum);

@@ -46,7 +46,7 @@ struct Body {
   void cut(const std::vector<grid::EdgeCut>& added) {
     std::vector<grid::EdgeId> edges;
     for (const grid::EdgeCut& c : added) {
-      cuts.add(c);
+      cuts.add(grid, c);
       edges.push_back(c.edge);
     }
     surface::place(grid, cuts, edges, {});

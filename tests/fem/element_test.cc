@@ -143,8 +143,8 @@ TEST(Element, SliverMassesAreNotNegative) {
                           grid::skin_label});
       sliver.cut(skin);
       const grid::Copy& copy = sliver.complex.copies[grid::CopyId(vertex)];
-      const Element element = make_element(octant_moments(sliver.grid, sliver.cuts, copy.cell, copy.nodes), 1, rubber,
-                                           {.sliver_floor = 1e-3});
+      const Element element =
+        make_element(material_moments(sliver.grid, sliver.cuts, copy), 1, rubber, {.sliver_floor = 1e-3});
       for (int a = 0; a < 8; ++a)
         EXPECT_TRUE(element.mass[a] > 0 || (element.mass[a] == 0 && t < 1e-4))
           << "t " << t << ", octant " << vertex << ", vertex " << a << ": " << element.mass[a];

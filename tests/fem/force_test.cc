@@ -302,7 +302,7 @@ TEST(Mass, ConsistentOneIntegratesLinearFields) {
   for (std::size_t c = 0; c < v.size(); ++c)
     found += v[c].dot(Mv[c]);
   for (const grid::Copy& copy : body.complex.copies)
-    for (const auto& [x, weight] : material_rule(body.grid, body.cuts, copy.cell, copy.nodes, 4))
+    for (const auto& [x, weight] : material_rule(body.grid, body.cuts, copy, 4))
       expected += rubber.density * 0.008 * weight * (A * (body.grid.origin(copy.cell) + 0.2 * x)).squaredNorm();
   EXPECT_NEAR(found / expected, 1, 1e-12);
 

@@ -52,7 +52,7 @@ TEST(Moments, OfTheCopiesOfACellSumToTheFullCubeInEveryConfiguration) {
     ASSERT_EQ(body.cuts.configuration(body.grid, cell), configuration);
     Moments sum{};
     for (const grid::CopyId c : body.complex.copies_of(cell)) {
-      const Moments m = octant_moments(body.grid, body.cuts, cell, body.complex.copies[c].nodes);
+      const Moments m = material_moments(body.grid, body.cuts, body.complex.copies[c]);
       EXPECT_GT(m[0], 0);
       for (int n = 0; n < 27; ++n)
         sum[n] += m[n];

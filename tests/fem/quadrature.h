@@ -4,7 +4,7 @@
 /// onto triangles and tetrahedra.
 
 #include "base/vec.h"
-#include "grid/cuts.h"
+#include "grid/material.h"
 
 #include <cmath>
 #include <numbers>
@@ -83,6 +83,17 @@ inline std::vector<WeightedPoint<Vec3>> material_rule(const grid::Grid& grid, co
         const auto part = tetrahedron_rule(t, n);
         rule.insert(rule.end(), part.begin(), part.end());
       }
+  return rule;
+}
+
+/// Points of all material of a copy.
+inline std::vector<WeightedPoint<Vec3>> material_rule(const grid::Grid& grid, const grid::Cuts& cuts,
+                                                      const grid::Copy& copy, const int n) {
+  std::vector<WeightedPoint<Vec3>> rule;
+  grid::for_each_tetrahedron(grid, cuts, copy, [&](const grid::Tetrahedron& t, int) {
+    const auto part = tetrahedron_rule(t, n);
+    rule.insert(rule.end(), part.begin(), part.end());
+  });
   return rule;
 }
 

@@ -100,8 +100,8 @@ TEST(Stiffness, IsTheSumOfItsElements) {
   const Matrix found = assembled(model);
   Matrix K = Matrix::Zero(found.rows(), found.cols());
   for (const grid::Copy& copy : body.complex.copies) {
-    const Element element = make_element(octant_moments(body.grid, body.cuts, copy.cell, copy.nodes), body.grid.h(),
-                                         rubber, {.sliver_floor = 1e-3});
+    const Element element =
+      make_element(material_moments(body.grid, body.cuts, copy), body.grid.h(), rubber, {.sliver_floor = 1e-3});
     const Eigen::Map<const Matrix24> k(element.stiffness.data());
     for (int a = 0; a < 8; ++a)
       for (int b = 0; b < 8; ++b)
@@ -249,8 +249,7 @@ TEST(Stiffness, OnlySliversAreToppedUp) {
   std::vector<double> smallest(body.complex.n_corners(), 1);
   for (const grid::Copy& copy : body.complex.copies)
     for (const auto corner : copy.corners)
-      smallest[corner.value] =
-        std::min(smallest[corner.value], octant_moments(body.grid, body.cuts, copy.cell, copy.nodes)[0]);
+      smallest[corner.value] = std::min(smallest[corner.value], material_moments(body.grid, body.cuts, copy)[0]);
   std::size_t n_slivers = 0;
   const double cube = make_element(full_cube_moments(), 1, rubber, {.sliver_floor = 0}).stiffness[0];
   for (std::size_t c = 0; c < before.size(); ++c) {

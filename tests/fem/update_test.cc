@@ -46,7 +46,7 @@ std::vector<grid::CopyId> cut_some(Body& body, const double probability, Draw& d
   std::vector<grid::EdgeId> edges;
   for (const auto e : inner_edges(body))
     if (draw(0, 1) < probability) {
-      body.cuts.add({e, draw(0.1, 0.9), draw.vector().normalized(), 1});
+      body.cuts.add(body.grid, {e, draw(0.1, 0.9), draw.vector().normalized(), 1});
       edges.push_back(e);
     }
   surface::place(body.grid, body.cuts, edges, {});
@@ -106,7 +106,7 @@ TEST(Update, ChangesFewElements) {
   Draw draw(93);
   Body body = make_block({8, 8, 8}, 0.1, draw, {0.5, 0.5});
   const auto edge = inner_edges(body)[100];
-  body.cuts.add({edge, 0.5, Vec3::UnitX(), 1});
+  body.cuts.add(body.grid, {edge, 0.5, Vec3::UnitX(), 1});
   const auto change = grid::update_complex(body.grid, body.cuts, {&edge, 1}, body.complex);
   EXPECT_EQ(changed_copies(body.grid, body.complex, change, {&edge, 1}).size(), 4u);
 }

@@ -1,6 +1,7 @@
 #include "tests/fuzz/cases.h"
 
 #include "cut/pending.h"
+#include "cut/target.h"
 #include "grid/cube.h"
 #include "tests/fuzz/invariants.h"
 #include "tests/fuzz/states.h"
@@ -33,7 +34,9 @@ void require_sound_cuts(const Subject& subject, const cut::SweepCuts& found) {
     const grid::EdgeCut& cut = found.cuts[i];
     if (i > 0 && !(found.cuts[i - 1].edge < cut.edge))
       throw Violation("cuts are not ordered by edge");
-    if (subject.cuts.is_cut(cut.edge) || !support::is_inner(subject.specimen.body, cut.edge))
+    const support::Body& body = subject.specimen.body; // its skin is that of the subject
+    if (!subject.cuts.can_be_cut(body.grid, cut.edge) ||
+        (!support::is_inner(body, cut.edge) && !support::is_below_skin(body, cut.edge, cut.t)))
       throw Violation("an edge is cut again, or outside of the material");
     if (!(cut.t >= 0 && cut.t <= 1) || !(std::abs(cut.normal.norm() - 1) < 1e-12))
       throw Violation("edge " + std::to_string(cut.edge.value) + " is cut at t = " + std::to_string(cut.t) +
@@ -59,6 +62,42 @@ void require_no_hole(const Subject& subject, const std::vector<grid::EdgeCut>& f
     }
 }
 
+double height(const cut::Plane& plane, const Vec3& p) { return plane.normal.dot(p - plane.point); }
+
+/// Each cut lies where the plane meets the current edge.
+void require_on_plane(const Subject& subject, const cut::Plane& plane, const std::vector<grid::EdgeCut>& found) {
+  for (const auto& cut : found) {
+    const auto [lower, upper] = cut::ends_of(subject.grid(), subject.cuts, subject.complex, cut.edge).corners;
+    const Vec3 &p = subject.x[lower.value], &q = subject.x[upper.value];
+    const double off = std::abs(height(plane, p + cut.t * (q - p)));
+    if (!(off < 1e-13 * (p.norm() + q.norm() + plane.point.norm())))
+      throw Violation("edge " + std::to_string(cut.edge.value) + " is cut " + std::to_string(off) + " m off the plane");
+  }
+}
+
+/// Where nothing had been cut before, a plane leaves nothing joined across it: not by edges, nor by the skin.
+void require_parted(const Subject& subject, const cut::Plane& plane) {
+  const grid::Grid& grid = subject.grid();
+  const Items items(grid, subject.cuts, subject.specimen.arcs);
+  std::vector<bool> is_above(items.n_names());
+  for (const auto n : ids<grid::NodeId>(grid.n_nodes()))
+    if (grid.is_material(n))
+      is_above[items.node(n)] = height(plane, subject.x[subject.complex.real_corner[n].value]) >= 0;
+  for (const auto e : ids<grid::EdgeId>(grid.n_edges()))
+    if (items.has_rind(e)) {
+      const auto& [lower, upper] = grid.ends(e);
+      is_above[items.rind(e)] = !is_above[items.node(grid.is_material(lower) ? lower : upper)];
+    }
+  ItemLinks links;
+  for (const auto e : ids<grid::EdgeId>(grid.n_edges()))
+    items.add_links(e, links);
+  for (const auto f : ids<grid::FaceId>(grid.n_faces()))
+    items.add_links(f, links);
+  for (const auto& [a, b] : links)
+    if (is_above[a] != is_above[b])
+      throw Violation("a plane leaves material joined across it");
+}
+
 class Run {
  public:
   Run(const Case& one, const std::vector<Specimen>& specimens, Tally& tally, Outcome& outcome)
@@ -80,6 +119,8 @@ class Run {
       ++tally_.n_sweeps;
     }
     drain();
+    strip_.clear(); // all blades are gone
+    cut(subject_, {}, strip_, tally_);
     require_untouched_elsewhere();
     require_same_in_any_order();
     outcome_.digest = digest(subject_, outcome_.digest);
@@ -97,14 +138,21 @@ class Run {
     require_sound_cuts(subject_, found);
     if (swept.extent == Extent::closed)
       require_no_hole(subject_, found.cuts);
+    const cut::Plane* const plane = plane_of(swept.sweep);
+    const bool is_first = subject_.cuts.all().size() == subject_.specimen.body.cuts.all().size();
+    if (plane)
+      require_on_plane(subject_, *plane, found.cuts);
     tally_.n_double_crossings += found.n_double_crossings;
     tally_.n_idle_sweeps += found.cuts.empty();
     last_ = swept;
+    strip_ = strip_of(swept.sweep);
     if (release_ == Release::at_once || std::holds_alternative<cut::CutSurface>(swept.sweep)) {
-      cut_now(found.cuts);
+      cut_at_once(found.cuts, swept.sweep);
+      if (plane && is_first)
+        require_parted(subject_, *plane);
     } else {
       pending_.push(found.cuts);
-      cut_now(pending_.release(subject_.grid(), subject_.cuts));
+      cut_swept(pending_.release(subject_.grid(), subject_.cuts));
       tally_.n_most_waiting = std::max(tally_.n_most_waiting, pending_.size());
       if (release_ == Release::drained)
         drain();
@@ -113,40 +161,59 @@ class Run {
     outcome_.digest = digest(subject_, outcome_.digest);
   }
 
-  void cut_now(const std::vector<grid::EdgeCut>& cuts) {
-    if (!cuts.empty())
-      cut(subject_, cuts, tally_);
+  static const cut::Plane* plane_of(const Sweep& sweep) {
+    const auto* const surface = std::get_if<cut::CutSurface>(&sweep);
+    return surface ? std::get_if<cut::Plane>(&surface->shape) : nullptr;
   }
+
+  static Soup strip_of(const Sweep& sweep) {
+    if (const auto* const soup = std::get_if<Soup>(&sweep))
+      return *soup;
+    Soup strip;
+    if (const auto* const path = std::get_if<cut::BladePath>(&sweep))
+      for (std::size_t k = 1; k < path->lines.size(); ++k)
+        cut::add_strip(path->lines[k - 1], path->lines[k], strip);
+    return strip;
+  }
+
+  void cut_at_once(const std::vector<grid::EdgeCut>& cuts, const Sweep& sweep) {
+    const auto* const surface = std::get_if<cut::CutSurface>(&sweep);
+    const Front front = surface && !cut::has_end(*surface) ? Front::none : Front::possible;
+    if (!cuts.empty())
+      cut(subject_, cuts, front, tally_);
+  }
+
+  void cut_swept(const std::vector<grid::EdgeCut>& cuts) { cut(subject_, cuts, strip_, tally_); }
 
   void drain() {
     while (pending_.size() > 0) {
       const auto released = pending_.release(subject_.grid(), subject_.cuts);
       if (released.empty() && pending_.size() > 0)
         throw Violation("nothing is released although cuts wait");
-      cut_now(released);
+      cut_swept(released);
     }
   }
 
   /// The ledger was kept up to date in the cells around new cuts alone.
   void require_untouched_elsewhere() const {
     for (const auto c : ids<grid::CellId>(subject_.grid().n_cells()))
-      if (require_positive_octants(subject_.grid(), subject_.cuts, c) != subject_.octants[c])
+      if (require_sound_volumes(subject_.grid(), subject_.cuts, subject_.complex, c, tally_) != subject_.volumes[c])
         throw Violation("cell " + std::to_string(c.value) + " changed without a cut");
   }
 
   void require_same_in_any_order() {
-    std::vector<grid::EdgeCut> cuts;
+    const grid::Grid& grid = subject_.grid();
+    grid::histories::Plan plan;
     for (const auto& cut : subject_.cuts.all())
       if (cut.label != grid::skin_label)
-        cuts.push_back(cut);
-    std::shuffle(cuts.begin(), cuts.end(), random_);
+        plan.cuts.push_back(cut);
+    for (const auto f : ids<grid::FaceId>(grid.n_faces()))
+      if (subject_.cuts.seam(f) != grid::Seam::unsaid)
+        plan.seams[f] = subject_.cuts.seam(f);
     Subject other = make_subject(subject_.specimen, tally_);
-    for (std::size_t i = 0; i < cuts.size();) {
-      const auto n = static_cast<int>(cuts.size() - i);
-      const std::size_t n_now = draw(random_, 3) == 0 ? n : 1 + draw(random_, n);
-      cut(other, std::span(cuts).subspan(i, n_now), tally_);
-      i += n_now;
-    }
+    for (const auto& step : grid::histories::dealt(random_, subject_.specimen.body, plan, 1 + draw(random_, 6)))
+      if (!step.cuts.empty() || !step.seams.empty())
+        cut(other, step, tally_);
     require_same(subject_.complex, other.complex);
   }
 
@@ -158,6 +225,7 @@ class Run {
   Outcome& outcome_;
   cut::PendingCuts pending_;
   std::optional<NamedSweep> last_;
+  Soup strip_; // what is swept now
 };
 
 } // namespace

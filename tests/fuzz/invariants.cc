@@ -21,7 +21,7 @@ using grid::NodeId;
 
 namespace {
 
-constexpr double tolerance = 1e-12; // of the body's volume, and of h^3 for a corner's mass
+constexpr double tolerance = 1e-12; // of the body's volume, and of h^3 for masses
 
 using Labels = std::vector<std::uint32_t>;
 using Links = std::vector<std::array<std::uint32_t, 2>>;
@@ -83,32 +83,52 @@ std::size_t require_same_sets(const Labels& a, const Labels& b, const std::strin
   return n;
 }
 
-/// The smallest vertex of the cell that each vertex reaches along uncut lines.
-std::array<int, 8> components(const grid::Grid& grid, const grid::Cuts& cuts, const CellId c) {
-  std::array<int, 8> label = {0, 1, 2, 3, 4, 5, 6, 7};
-  for (int round = 0; round < 8; ++round)
-    for (int line = 0; line < cube::n_lines; ++line)
-      if (!cuts.is_cut(grid.edges(c)[line])) {
-        auto &a = label[cube::line_vertices[line][0]], &b = label[cube::line_vertices[line][1]];
-        a = b = std::min(a, b);
-      }
-  return label;
+/// What a cell may hold: its material vertices, and its lines with a rind.
+struct Held {
+  Item item;
+  CopyId copy; ///< by the complex
+};
+
+std::vector<Held> held_by(const Items& items, const grid::Grid& grid, const CellComplex& complex, const CellId c) {
+  std::vector<Held> all;
+  const auto add = [&](const bool is_item, const Item item, const CopyId copy) {
+    if (copy.valid() != is_item)
+      complain("a copy of cell " + std::to_string(c.value) + " holds a node or rind that is not there, or the reverse");
+    if (is_item)
+      all.push_back({item, copy});
+  };
+  for (int v = 0; v < cube::n_vertices; ++v)
+    add(grid.is_material(grid.nodes(c)[v]), items.node(grid.nodes(c)[v]), complex.copy_at(c, v));
+  for (int line = 0; line < cube::n_lines; ++line)
+    add(items.has_rind(grid.edges(c)[line]), items.rind(grid.edges(c)[line]), complex.copy_with_rind(c, line));
+  return all;
 }
 
-void require_sound_copies(const grid::Grid& grid, const grid::Cuts& cuts, const CellComplex& complex) {
+/// The place of an item among what a cell holds.
+std::uint32_t place_of(const std::vector<Held>& held, const Item item) {
+  const auto at = std::ranges::find(held, item, &Held::item);
+  return static_cast<std::uint32_t>(at - held.begin());
+}
+
+void require_sound_copies(const Items& items, const grid::Grid& grid, const CellComplex& complex) {
+  std::size_t n_copies = 0;
   for (const CellId c : ids<CellId>(grid.n_cells())) {
-    const auto component = components(grid, cuts, c);
-    std::array<std::uint32_t, 8> copy_of{};
-    for (int v = 0; v < 8; ++v) {
-      const CopyId copy = complex.copy_at(c, v);
-      if (copy.valid() != grid.is_material(grid.nodes(c)[v]))
-        complain("a vertex of cell " + std::to_string(c.value) + " is in a copy, but not material, or the reverse");
-      copy_of[v] = copy.value;
-      for (int w = 0; w < v; ++w)
-        if (copy.valid() && (copy_of[w] == copy_of[v]) != (component[w] == component[v]))
-          complain("the copies of cell " + std::to_string(c.value) + " are not its components");
-    }
+    const auto held = held_by(items, grid, complex, c);
+    ItemLinks links;
+    for (const auto e : grid.edges(c))
+      items.add_links(e, links);
+    for (const auto f : grid.faces(c))
+      items.add_links(f, links);
+    for (auto& link : links)
+      link = {place_of(held, link[0]), place_of(held, link[1])};
+    Labels copies;
+    for (const Held& one : held)
+      copies.push_back(one.copy.value);
+    n_copies += require_same_sets(flooded(held.size(), links), copies,
+                                  "the copies of cell " + std::to_string(c.value) + " are not its parts");
   }
+  if (n_copies != complex.n_copies())
+    complain("there are copies of nothing");
 }
 
 /// The copies without a node's material may hold its real corner all the same: those at a cut's front.
@@ -128,44 +148,55 @@ void require_real_corners(const grid::Grid& grid, const CellComplex& complex) {
       complain("node " + std::to_string(node.value) + " has a real corner, but is not material, or the reverse");
 }
 
-void require_pieces(const grid::Grid& grid, const grid::Cuts& cuts, const CellComplex& complex) {
-  Links links;
+void require_pieces(const Items& items, const grid::Grid& grid, const CellComplex& complex) {
+  ItemLinks links;
   for (const auto e : ids<grid::EdgeId>(grid.n_edges()))
-    if (!cuts.is_cut(e))
-      links.push_back({grid.ends(e)[0].value, grid.ends(e)[1].value});
-  const Labels component = flooded(grid.n_nodes(), links);
+    items.add_links(e, links);
+  for (const auto f : ids<grid::FaceId>(grid.n_faces()))
+    items.add_links(f, links);
+  const Labels component = flooded(items.n_names(), links);
   const grid::Pieces pieces = grid::pieces(complex);
-  Labels by_nodes, by_copies;
-  for (const CopyId c : ids<CopyId>(complex.n_copies()))
-    for (int v = 0; v < 8; ++v)
-      if (complex.copies[c].nodes >> v & 1) {
-        by_nodes.push_back(component[grid.nodes(complex.copies[c].cell)[v].value]);
-        by_copies.push_back(pieces.piece[c]);
-      }
-  if (require_same_sets(by_nodes, by_copies, "pieces are not the components of material nodes") != pieces.n_pieces)
+  Labels by_items, by_copies;
+  for (const CopyId c : ids<CopyId>(complex.n_copies())) {
+    const Copy& copy = complex.copies[c];
+    const auto add = [&](const Item item) {
+      by_items.push_back(component[item]);
+      by_copies.push_back(pieces.piece[c]);
+    };
+    for (int v = 0; v < cube::n_vertices; ++v)
+      if (copy.nodes >> v & 1)
+        add(items.node(grid.nodes(copy.cell)[v]));
+    for (int line = 0; line < cube::n_lines; ++line)
+      if (copy.rinds >> line & 1)
+        add(items.rind(grid.edges(copy.cell)[line]));
+  }
+  if (require_same_sets(by_items, by_copies, "pieces are not what edges and skin join") != pieces.n_pieces)
     complain("the number of pieces is wrong");
 }
 
-/// Node by node: the copies on both sides of a face that hold a node of it are one along the whole face.
-Links glued_slots(const grid::Grid& grid, const CellComplex& complex) {
+/// Item by item: the copies on both sides of a face that hold a node or a rind of it are one along the whole face.
+Links glued_slots(const Items& items, const grid::Grid& grid, const CellComplex& complex) {
+  Table<CellId, std::vector<Held>> held;
+  for (const CellId c : ids<CellId>(grid.n_cells()))
+    held.push_back(held_by(items, grid, complex, c));
   Links links;
   for (const CellId below : ids<CellId>(grid.n_cells()))
     for (int axis = 0; axis < 3; ++axis) {
       const CellId above = grid.cells(grid.faces(below)[2 * axis + 1])[1];
       if (!above.valid())
         continue;
-      for (const int v : cube::face_vertices[2 * axis]) {
-        const CopyId a = complex.copy_at(below, v | 1 << axis), b = complex.copy_at(above, v);
-        if (a.valid() && b.valid())
+      for (const auto& [item, a] : held[below]) {
+        const std::size_t at = place_of(held[above], item);
+        if (at < held[above].size())
           for (const int w : cube::face_vertices[2 * axis])
-            links.push_back({8 * a.value + (w | 1 << axis), 8 * b.value + w});
+            links.push_back({8 * a.value + (w | 1 << axis), 8 * held[above][at].copy.value + w});
       }
     }
   return links;
 }
 
-void require_gluing(const grid::Grid& grid, const CellComplex& complex) {
-  const Labels glued = flooded(8 * complex.n_copies(), glued_slots(grid, complex));
+void require_gluing(const Items& items, const grid::Grid& grid, const CellComplex& complex) {
+  const Labels glued = flooded(8 * complex.n_copies(), glued_slots(items, grid, complex));
   Labels corners;
   for (const Copy& copy : complex.copies)
     for (const CornerId corner : copy.corners)
@@ -187,28 +218,49 @@ void add_mass(const grid::Tetrahedron& t, std::array<double, 8>& mass) {
     add(centre + (p - centre) / 3, 0.45 * volume);
 }
 
+/// For each node and rind of a copy, the copy before that had it; a rind that is new was under its node.
+std::vector<CopyId> origins_of(const CellComplex& before, const Copy& copy) {
+  std::vector<CopyId> origins;
+  for (int v = 0; v < cube::n_vertices; ++v)
+    if (copy.nodes >> v & 1)
+      origins.push_back(before.copy_at(copy.cell, v));
+  for (int line = 0; line < cube::n_lines; ++line)
+    if (copy.rinds >> line & 1) {
+      CopyId origin = before.copy_with_rind(copy.cell, line);
+      for (const int end : cube::line_vertices[line]) // one of them is empty
+        if (!origin.valid())
+          origin = before.copy_at(copy.cell, end);
+      origins.push_back(origin);
+    }
+  return origins;
+}
+
 } // namespace
 
-void require_sound_complex(const grid::Grid& grid, const grid::Cuts& cuts, const CellComplex& complex) {
-  require_sound_copies(grid, cuts, complex);
+void require_sound_complex(const grid::Grid& grid, const grid::Cuts& cuts, const FaceArcs& arcs,
+                           const CellComplex& complex) {
+  const Items items(grid, cuts, arcs);
+  require_sound_copies(items, grid, complex);
   require_real_corners(grid, complex);
-  require_pieces(grid, cuts, complex);
-  require_gluing(grid, complex);
+  require_pieces(items, grid, complex);
+  require_gluing(items, grid, complex);
 }
 
 void require_sound_parents(const CellComplex& before, const CellComplex& after,
                            const Table<CornerId, CornerId>& parents) {
-  for (const Copy& copy : after.copies)
-    for (int v = 0; v < 8; ++v) {
+  for (const Copy& copy : after.copies) {
+    const auto origins = origins_of(before, copy);
+    for (int v = 0; v < cube::n_vertices; ++v) {
       const CornerId parent = parents[copy.corners[v]];
-      for (int w = 0; w < 8; ++w)
-        if ((copy.nodes >> w & 1) && before.copies[before.copy_at(copy.cell, w)].corners[v] != parent)
+      for (const CopyId origin : origins)
+        if (!origin.valid() || before.copies[origin].corners[v] != parent)
           complain("a corner of cell " + std::to_string(copy.cell.value) + " has several parents");
       if (before.node[parent] != after.node[copy.corners[v]])
         complain("a corner and its parent are instances of different nodes");
       if ((copy.nodes >> v & 1) && before.real_corner[before.node[parent]] != parent)
         complain("a real corner has a virtual parent");
     }
+  }
 }
 
 void require_sound_change(const CellComplex& before, const CellComplex& after, const grid::ComplexChange& change) {
@@ -217,12 +269,17 @@ void require_sound_change(const CellComplex& before, const CellComplex& after, c
     complain("a change does not say how large the complex was");
   if (!std::is_sorted(change.copies.begin(), change.copies.end()))
     complain("changed copies are not in order");
-  for (const CopyId c : ids<CopyId>(after.n_copies())) {
-    const bool same = c.value < before.n_copies() && before.copies[c].nodes == after.copies[c].nodes &&
-                      before.copies[c].corners == after.copies[c].corners;
-    if (same == std::binary_search(change.copies.begin(), change.copies.end(), c))
-      complain("copy " + std::to_string(c.value) + " has changed, but is not named, or the reverse");
+  Table<CopyId, std::uint8_t> has_changed(after.n_copies(), 1); // new ones have
+  for (const CopyId c : ids<CopyId>(before.n_copies())) {
+    const Copy &was = before.copies[c], &is = after.copies[c];
+    has_changed[c] = was.nodes != is.nodes || was.rinds != is.rinds || was.corners != is.corners;
   }
+  for (std::size_t i = before.n_copies(); i < after.n_copies(); ++i)
+    for (const CopyId origin : origins_of(before, after.copies[CopyId(i)]))
+      has_changed[origin] = 1; // divided: it may have lost nothing that was named
+  for (const CopyId c : ids<CopyId>(after.n_copies()))
+    if ((has_changed[c] != 0) != std::binary_search(change.copies.begin(), change.copies.end(), c))
+      complain("copy " + std::to_string(c.value) + " has changed, but is not named, or the reverse");
 }
 
 void require_closed(const surface::Surface& surface) {
@@ -261,36 +318,50 @@ void require_sound_weights(const grid::Grid& grid, const CellComplex& complex, c
   }
 }
 
-OctantVolumes require_positive_octants(const grid::Grid& grid, const grid::Cuts& cuts, const CellId cell) {
-  OctantVolumes volumes{};
-  for (int v = 0; v < 8; ++v)
+double CellVolumes::sum() const { return std::accumulate(of_copies.begin(), of_copies.end(), 0.0); }
+
+CellVolumes require_sound_volumes(const grid::Grid& grid, const grid::Cuts& cuts, const CellComplex& complex,
+                                  const CellId cell, Tally& tally) {
+  CellVolumes volumes;
+  for (int v = 0; v < cube::n_vertices; ++v)
     for (const auto& t : grid::octant(grid, cuts, cell, v)) {
       const double volume = support::volume(t);
       if (!(volume > 0))
         complain("a tetrahedron of cell " + std::to_string(cell.value) + " has the volume " + number(volume) + " h^3");
-      volumes[v] += volume;
+      volumes.of_octants[v] += volume;
     }
+  for (const CopyId c : complex.copies_of(cell)) {
+    std::array<double, 8> mass{};
+    grid::for_each_tetrahedron(grid, cuts, complex.copies[c],
+                               [&](const grid::Tetrahedron& t, int) { add_mass(t, mass); });
+    const double least = *std::min_element(mass.begin(), mass.end());
+    tally.least_mass = std::min(tally.least_mass, least);
+    if (!(least > -tolerance))
+      complain("a copy of cell " + std::to_string(cell.value) + " has the mass " + number(least) + " h^3 at a corner");
+    volumes.of_copies.push_back(std::accumulate(mass.begin(), mass.end(), 0.0));
+  }
   return volumes;
 }
 
 void require_kept_volumes(const Subject& subject, Tally& tally) {
   const CellComplex& complex = subject.complex;
   const grid::Pieces pieces = grid::pieces(complex);
-  std::vector<double> by_octants(pieces.n_pieces, 0.0);
+  std::vector<double> by_tetrahedra(pieces.n_pieces, 0.0);
   const double cube = std::pow(subject.grid().h(), 3);
-  for (const CopyId c : ids<CopyId>(complex.n_copies()))
-    for (int v = 0; v < 8; ++v)
-      if (complex.copies[c].nodes >> v & 1)
-        by_octants[pieces.piece[c]] += cube * subject.octants[complex.copies[c].cell][v];
+  for (const CellId cell : ids<CellId>(subject.grid().n_cells())) {
+    std::size_t i = 0;
+    for (const CopyId c : complex.copies_of(cell))
+      by_tetrahedra[pieces.piece[c]] += cube * subject.volumes[cell].of_copies.at(i++);
+  }
   const auto by_triangles = surface::piece_volumes(subject.surface, complex);
-  for (std::size_t p = 0; p < by_octants.size(); ++p) {
-    const double difference = std::abs(by_octants[p] - by_triangles[p]) / subject.volume;
+  for (std::size_t p = 0; p < by_tetrahedra.size(); ++p) {
+    const double difference = std::abs(by_tetrahedra[p] - by_triangles[p]) / subject.volume;
     tally.worst_disagreement = std::max(tally.worst_disagreement, difference);
     if (!(difference < tolerance))
-      complain("piece " + std::to_string(p) + ": volumes by octants and by triangles differ by " + number(difference) +
-               " of the body");
+      complain("piece " + std::to_string(p) + ": volumes by tetrahedra and by triangles differ by " +
+               number(difference) + " of the body");
   }
-  const double change = std::accumulate(by_octants.begin(), by_octants.end(), 0.0) / subject.volume - 1;
+  const double change = std::accumulate(by_tetrahedra.begin(), by_tetrahedra.end(), 0.0) / subject.volume - 1;
   tally.worst_volume = std::max(tally.worst_volume, std::abs(change));
   if (!(std::abs(change) < tolerance))
     complain("the rest volume has changed by " + number(change) + " of the body");
@@ -308,10 +379,7 @@ Table<CornerId, double> corner_masses(const grid::Grid& grid, const grid::Cuts& 
     for (const CopyId c : complex.copies_of(cell)) {
       const Copy& copy = complex.copies[c];
       std::array<double, 8> mass{};
-      for (int v = 0; v < 8; ++v)
-        if (copy.nodes >> v & 1)
-          for (const auto& t : grid::octant(grid, cuts, cell, v))
-            add_mass(t, mass);
+      grid::for_each_tetrahedron(grid, cuts, copy, [&](const grid::Tetrahedron& t, int) { add_mass(t, mass); });
       for (int v = 0; v < 8; ++v)
         masses[copy.corners[v]] += mass[v];
     }
@@ -319,7 +387,7 @@ Table<CornerId, double> corner_masses(const grid::Grid& grid, const grid::Cuts& 
 }
 
 void require_sound(const Subject& subject, Tally& tally) {
-  require_sound_complex(subject.grid(), subject.cuts, subject.complex);
+  require_sound_complex(subject.grid(), subject.cuts, subject.specimen.arcs, subject.complex);
   require_closed(subject.surface);
   require_sound_weights(subject.grid(), subject.complex, subject.surface);
   require_kept_volumes(subject, tally);

@@ -19,11 +19,13 @@ class Violation : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Copies are the components of their cells; each material node has one real corner; pieces are the components of
-/// material nodes over uncut edges; corners are the slots that gluing joins, no more and no fewer.
-void require_sound_complex(const grid::Grid& grid, const grid::Cuts& cuts, const grid::CellComplex& complex);
+/// Copies are the parts of their cells; each material node has one real corner; pieces are what uncut edges and the
+/// skin join of nodes and rinds; corners are the slots that gluing joins, no more and no fewer.
+void require_sound_complex(const grid::Grid& grid, const grid::Cuts& cuts, const FaceArcs& arcs,
+                           const grid::CellComplex& complex);
 
-/// Every corner has one parent, whatever copy is asked, an instance of the same node; real corners have real ones.
+/// Every corner has one parent, whatever copy is asked, an instance of the same node; real corners have real ones. A
+/// copy comes from that which had its nodes, its rinds, or the nodes under rinds that are new.
 void require_sound_parents(const grid::CellComplex& before, const grid::CellComplex& after,
                            const Table<grid::CornerId, grid::CornerId>& parents);
 
@@ -37,10 +39,13 @@ void require_closed(const surface::Surface& surface);
 /// Rows of W sum to 1 and take rest positions to rest positions.
 void require_sound_weights(const grid::Grid& grid, const grid::CellComplex& complex, const surface::Surface& surface);
 
-/// Volumes of the octants of a cell [1]; each of their tetrahedra must be positive.
-OctantVolumes require_positive_octants(const grid::Grid& grid, const grid::Cuts& cuts, grid::CellId cell);
+/// Volumes in a cell. The octants of all its vertices have positive tetrahedra; below a curved skin a tetrahedron may
+/// be turned over, but no copy has less than no mass at any of its corners.
+CellVolumes require_sound_volumes(const grid::Grid& grid, const grid::Cuts& cuts, const grid::CellComplex& complex,
+                                  grid::CellId cell, Tally& tally);
 
-/// The octants of each piece enclose what its triangles enclose, and the pieces together the volume of the uncut body.
+/// The tetrahedra of each piece enclose what its triangles enclose, and the pieces together the volume of the uncut
+/// body.
 void require_kept_volumes(const Subject& subject, Tally& tally);
 
 /// The same copies and corners, whatever their names.

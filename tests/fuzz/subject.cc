@@ -1,5 +1,7 @@
 #include "tests/fuzz/subject.h"
 
+#include "cut/at_skin.h"
+#include "cut/nodes_apart.h"
 #include "tests/fuzz/invariants.h"
 #include "tests/support/placed.h"
 #include "tests/support/same.h"
@@ -14,10 +16,10 @@ using grid::CornerId;
 
 namespace {
 
-std::vector<CellId> cells_around(const grid::Grid& grid, const std::span<const grid::EdgeCut> cuts) {
+std::vector<CellId> cells_around(const grid::Grid& grid, const std::span<const grid::EdgeId> edges) {
   std::vector<CellId> cells;
-  for (const auto& cut : cuts)
-    for (const CellId c : grid.cells(cut.edge))
+  for (const auto e : edges)
+    for (const CellId c : grid.cells(e))
       if (c.valid())
         cells.push_back(c);
   std::sort(cells.begin(), cells.end());
@@ -35,15 +37,11 @@ std::vector<CellId> cells_that_keep_mass(const Subject& subject, std::vector<Cel
   return cells;
 }
 
-/// The skin keeps its volume vertex by vertex: what one cell loses, its neighbour wins. How much that is, is told.
+/// How much material a cell of the skin wins or loses is told.
 void measure_skin_cells(const Subject& subject, const std::vector<CellId>& cells, Tally& tally) {
-  for (const CellId c : cells) {
-    double change = 0;
-    for (int v = 0; v < 8; ++v)
-      if (subject.grid().is_material(subject.grid().nodes(c)[v]))
-        change += subject.octants[c][v] - subject.first_octants[c][v];
-    tally.worst_skin_cell = std::max(tally.worst_skin_cell, std::abs(change));
-  }
+  for (const CellId c : cells)
+    tally.worst_skin_cell =
+      std::max(tally.worst_skin_cell, std::abs(subject.volumes[c].sum() - subject.first_volumes[c]));
 }
 
 void require_inherited(const Table<CornerId, double>& before, const Table<CornerId, double>& after,
@@ -81,6 +79,71 @@ void require_as_built(const Subject& subject) {
     throw Violation("the updated surface is not the one that is built");
 }
 
+/// What `cuts` has more than the complex and the surface: edges that are cut or named, maybe twice.
+void follow_cuts(Subject& subject, const grid::Cuts& cuts, const std::span<const grid::EdgeId> edges, Tally& tally) {
+  const grid::Grid& grid = subject.grid();
+  const auto cells = cells_around(grid, edges), keeping = cells_that_keep_mass(subject, cells);
+  const auto masses = corner_masses(grid, subject.cuts, subject.complex, keeping);
+  tally.n_cut_edges += cuts.all().size() - subject.cuts.all().size();
+  tally.n_rinds += cuts.n_cut_twice() - subject.cuts.n_cut_twice();
+
+  subject.cuts = cuts;
+  const auto placed = surface::place(grid, subject.cuts, edges, {});
+  const auto before = subject.complex;
+  const auto change = grid::update_complex(grid, subject.cuts, edges, subject.complex);
+  const auto parents = all_parents(change);
+  require_sound_change(before, subject.complex, change);
+  require_sound_parents(before, subject.complex, parents);
+  surface::update_surface(grid, subject.cuts, subject.complex, edges, change, subject.surface, subject.index);
+  require_as_built(subject);
+  grid::inherit(change, subject.x);
+  grid::inherit(change, subject.x_before);
+
+  for (const CellId c : cells)
+    subject.volumes[c] = require_sound_volumes(grid, subject.cuts, subject.complex, c, tally);
+  measure_skin_cells(subject, cells, tally);
+  require_sound(subject, tally);
+  require_inherited(masses, corner_masses(grid, subject.cuts, subject.complex, keeping), parents, tally);
+
+  ++tally.n_releases;
+  tally.n_placed += placed.n_placed;
+  tally.n_clamped += placed.n_clamped;
+  tally.n_most_pieces = std::max<std::size_t>(tally.n_most_pieces, grid::n_pieces(subject.complex));
+}
+
+bool is_of_skin(const grid::Grid& grid, const grid::EdgeId e) {
+  const auto& [lower, upper] = grid.ends(e);
+  return grid.is_material(lower) != grid.is_material(upper);
+}
+
+bool is_cut_by_blade(const grid::Grid& grid, const grid::Cuts& cuts, const grid::EdgeId e) {
+  return cuts.is_cut_twice(e) || (cuts.is_cut(e) && !is_of_skin(grid, e));
+}
+
+/// Adds new cuts to `cuts`, and what they do to the skin, as scene/body.cc does; returns the edges.
+std::vector<grid::EdgeId> add(const Subject& subject, const std::span<const grid::EdgeCut> new_cuts, const Front front,
+                              grid::Cuts& cuts) {
+  const grid::Grid& grid = subject.grid();
+  std::vector<grid::EdgeId> edges;
+  for (const bool of_skin : {false, true}) // whether a cut of the skin goes on depends on those below it
+    for (const auto& cut : new_cuts) {
+      if (is_of_skin(grid, cut.edge) != of_skin)
+        continue;
+      if (of_skin && front == Front::possible && !cut::goes_on(grid, cuts, subject.complex, subject.x, cut))
+        continue;
+      cuts.add(grid, cut);
+      edges.push_back(cut.edge);
+    }
+  if (front == Front::none)
+    cut::part_skin(grid, cuts, edges);
+  else
+    for (const auto e : cut::end_at_skin(grid, cuts, subject.complex, subject.x, edges))
+      edges.push_back(e);
+  for (const auto e : cut::keep_nodes_apart(grid, cuts, edges))
+    edges.push_back(e);
+  return edges;
+}
+
 class Fnv {
  public:
   explicit Fnv(const std::uint64_t start) : value(start) {}
@@ -107,59 +170,69 @@ Subject make_subject(const Specimen& specimen, Tally& tally) {
   const grid::Grid& grid = specimen.body.grid;
   auto complex = grid::build_complex(grid, specimen.body.cuts);
   cut::EdgeBoxes boxes(grid, complex);
-  Subject subject{specimen,
-                  specimen.body.cuts,
-                  std::move(complex),
-                  {},
-                  {},
-                  std::move(boxes),
-                  {},
-                  {},
-                  Table<CellId, OctantVolumes>(grid.n_cells()),
-                  {},
-                  0};
+  Subject subject{.specimen = specimen,
+                  .cuts = specimen.body.cuts,
+                  .complex = std::move(complex),
+                  .surface = {},
+                  .index = {},
+                  .boxes = std::move(boxes),
+                  .open_ends = {},
+                  .x = {},
+                  .x_before = {},
+                  .volumes = {},
+                  .first_volumes = {}};
   subject.surface = surface::build_surface(grid, subject.cuts, subject.complex, subject.index);
   subject.x = subject.x_before = grid::rest_positions(grid, subject.complex);
   subject.volume = surface::enclosed_volume(subject.surface.rest, subject.surface.triangles);
-  for (const CellId c : ids<CellId>(grid.n_cells()))
-    subject.octants[c] = require_positive_octants(grid, subject.cuts, c);
-  subject.first_octants = subject.octants;
+  for (const CellId c : ids<CellId>(grid.n_cells())) {
+    subject.volumes.push_back(require_sound_volumes(grid, subject.cuts, subject.complex, c, tally));
+    subject.first_volumes.push_back(subject.volumes[c].sum());
+  }
   require_sound(subject, tally);
   return subject;
 }
 
-void cut(Subject& subject, const std::span<const grid::EdgeCut> cuts, Tally& tally) {
-  const grid::Grid& grid = subject.grid();
-  const auto cells = cells_around(grid, cuts), keeping = cells_that_keep_mass(subject, cells);
-  const auto masses = corner_masses(grid, subject.cuts, subject.complex, keeping);
+void cut(Subject& subject, const std::span<const grid::EdgeCut> new_cuts, const Front front, Tally& tally) {
+  grid::Cuts cuts = subject.cuts;
+  const auto edges = add(subject, new_cuts, front, cuts);
+  if (!edges.empty())
+    follow_cuts(subject, cuts, edges, tally);
+}
 
+void cut(Subject& subject, const std::span<const grid::EdgeCut> new_cuts,
+         const std::span<const std::array<Vec3, 3>> strip, Tally& tally) {
+  const grid::Grid& grid = subject.grid();
+  grid::Cuts cuts = subject.cuts;
+  std::vector<grid::EdgeId> ended;
+  for (auto& [label, ends] : subject.open_ends)
+    for (const auto e : ends.close(strip, grid, cuts, subject.complex, subject.x, label))
+      ended.push_back(e);
+  tally.n_ended += ended.size();
+  auto edges = add(subject, new_cuts, Front::possible, cuts);
+  edges.insert(edges.end(), ended.begin(), ended.end());
+  if (edges.empty())
+    return;
+  follow_cuts(subject, cuts, edges, tally);
+  for (const auto& cut : new_cuts)
+    subject.open_ends[cut.label];
+  for (auto& [label, ends] : subject.open_ends)
+    ends.note(grid, subject.cuts, edges, label);
+}
+
+void cut(Subject& subject, const grid::histories::Step& step, Tally& tally) {
+  grid::Cuts cuts = subject.cuts;
   std::vector<grid::EdgeId> edges;
-  for (const auto& cut : cuts) {
-    subject.cuts.add(cut);
+  for (const auto& cut : step.cuts) {
+    cuts.add(subject.grid(), cut);
     edges.push_back(cut.edge);
   }
-  const auto placed = surface::place(grid, subject.cuts, edges, {});
-  const auto before = subject.complex;
-  const auto change = grid::update_complex(grid, subject.cuts, edges, subject.complex);
-  const auto parents = all_parents(change);
-  require_sound_change(before, subject.complex, change);
-  require_sound_parents(before, subject.complex, parents);
-  surface::update_surface(grid, subject.cuts, subject.complex, edges, change, subject.surface, subject.index);
-  require_as_built(subject);
-  grid::inherit(change, subject.x);
-  grid::inherit(change, subject.x_before);
-
-  for (const CellId c : cells)
-    subject.octants[c] = require_positive_octants(grid, subject.cuts, c);
-  measure_skin_cells(subject, cells, tally);
-  require_sound(subject, tally);
-  require_inherited(masses, corner_masses(grid, subject.cuts, subject.complex, keeping), parents, tally);
-
-  ++tally.n_releases;
-  tally.n_cut_edges += cuts.size();
-  tally.n_placed += placed.n_placed;
-  tally.n_clamped += placed.n_clamped;
-  tally.n_most_pieces = std::max<std::size_t>(tally.n_most_pieces, grid::n_pieces(subject.complex));
+  for (const auto& [face, seam] : step.seams) {
+    cuts.set_seam(face, seam);
+    for (const auto e : grid::histories::edges_of(subject.grid(), face))
+      if (seam == grid::Seam::parted && is_cut_by_blade(subject.grid(), cuts, e))
+        edges.push_back(e);
+  }
+  follow_cuts(subject, cuts, edges, tally);
 }
 
 std::uint64_t digest(const Subject& subject, const std::uint64_t start) {
@@ -172,6 +245,7 @@ std::uint64_t digest(const Subject& subject, const std::uint64_t start) {
   }
   for (const auto& copy : subject.complex.copies) {
     sum.add(copy.nodes);
+    sum.add(copy.rinds);
     for (const auto corner : copy.corners)
       sum.add(corner.value);
   }

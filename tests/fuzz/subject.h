@@ -3,11 +3,15 @@
 /// A body under test: what scene/body.cc keeps of a body, without physics, so that a test can put its corners anywhere.
 
 #include "cut/cut_surface.h"
+#include "cut/open_ends.h"
 #include "surface/placement.h"
 #include "surface/surface.h"
+#include "tests/fuzz/items.h"
+#include "tests/grid/histories.h"
 #include "tests/support/bodies.h"
 
 #include <cstdint>
+#include <map>
 #include <span>
 #include <string>
 #include <vector>
@@ -16,8 +20,8 @@ namespace kerf::fuzz {
 
 using support::Random;
 
-/// How well a placed skin keeps mass: vertices slide along planes without any change of shape, on curved skins they
-/// keep the volume alone.
+/// How well a skin keeps mass where a rim crosses it: a plane one without any change of shape, a curved one keeps the
+/// volume alone.
 enum class Skin { plane, curved };
 
 /// A body as it comes from the mesh, made once and copied by every case.
@@ -25,21 +29,29 @@ struct Specimen {
   std::string name;
   support::Body body;
   Skin skin = Skin::curved;
+  FaceArcs arcs = face_arcs(body.grid);
 };
 
 /// What the cases met, summed.
 struct Tally {
   std::size_t n_cases = 0, n_sweeps = 0, n_idle_sweeps = 0, n_cut_edges = 0, n_releases = 0, n_placed = 0;
   std::size_t n_clamped = 0, n_double_crossings = 0, n_masses = 0, n_most_pieces = 0, n_most_waiting = 0;
-  std::size_t n_thread_pairs = 0;
+  std::size_t n_thread_pairs = 0, n_rinds = 0, n_ended = 0;
   double worst_volume = 0;       ///< change of the rest volume, relative to the body [1]
-  double worst_disagreement = 0; ///< of a piece's volumes by octants and by triangles, relative to the body [1]
+  double worst_disagreement = 0; ///< of a piece's volumes by tetrahedra and by triangles, relative to the body [1]
   double worst_mass = 0;         ///< difference of a corner's mass and that of its heirs, in h^3 [1]
   double worst_skin_cell = 0;    ///< change of the material in one cell of the skin, in h^3 [1]
+  double least_mass = 1;         ///< of a copy at one of its corners, in h^3 [1]
 };
 
-/// Parts of h^3 that belong to each vertex of a cell [1].
-using OctantVolumes = std::array<double, 8>;
+/// Parts of h^3 in a cell [1].
+struct CellVolumes {
+  std::array<double, 8> of_octants{}; ///< by vertex
+  std::vector<double> of_copies;      ///< in the order of CellComplex::copies_of
+
+  double sum() const;
+  bool operator==(const CellVolumes&) const = default;
+};
 
 struct Subject {
   const Specimen& specimen;
@@ -47,10 +59,12 @@ struct Subject {
   grid::CellComplex complex;
   surface::Surface surface;
   surface::SurfaceIndex index;
-  cut::EdgeBoxes boxes;                                      ///< made before any cut
-  Points x, x_before;                                        ///< corners now, and when the blades were met last [m]
-  Table<grid::CellId, OctantVolumes> octants, first_octants; ///< now, and before any cut
-  double volume = 0;                                         ///< at rest, before any cut [m^3]
+  cut::EdgeBoxes boxes;                              ///< made before any cut
+  std::map<grid::CutLabel, cut::OpenEnds> open_ends; ///< of the blades that have cut
+  Points x, x_before;                                ///< corners now, and when the blades were met last [m]
+  Table<grid::CellId, CellVolumes> volumes;          ///< now
+  Table<grid::CellId, double> first_volumes;         ///< before any cut [h^3]
+  double volume = 0;                                 ///< at rest, before any cut [m^3]
 
   const grid::Grid& grid() const { return specimen.body.grid; }
 };
@@ -58,8 +72,19 @@ struct Subject {
 /// At rest; every invariant is checked (invariants.h).
 Subject make_subject(const Specimen& specimen, Tally& tally);
 
-/// Cuts these edges in one step, carries the corners over, and checks every invariant. Throws Violation.
-void cut(Subject& subject, std::span<const grid::EdgeCut> cuts, Tally& tally);
+/// Whether cuts may end inside the body.
+enum class Front { none, possible };
+
+/// Cuts these edges at once, and what goes with them at the skin, carries the corners over, and checks every
+/// invariant. Throws Violation.
+void cut(Subject& subject, std::span<const grid::EdgeCut> cuts, Front front, Tally& tally);
+
+/// The same for a step in which blades sweep `strip` (triangles [m]): cuts that it has left come to their end.
+void cut(Subject& subject, std::span<const grid::EdgeCut> cuts, std::span<const std::array<Vec3, 3>> strip,
+         Tally& tally);
+
+/// The same with seams that are known: no further edges are cut.
+void cut(Subject& subject, const grid::histories::Step& step, Tally& tally);
 
 /// Adds the bits of positions, cuts, complex and surface to a number.
 std::uint64_t digest(const Subject& subject, std::uint64_t start);

@@ -40,7 +40,7 @@ TEST(Shares, CornersWeighTheIntegralsOfTheirShapeFunctions) {
   for (const Share& share : material_shares(body.grid, body.cuts, body.complex, 1100))
     mass[share.corner.value] += share.mass;
   for (const grid::Copy& copy : body.complex.copies) {
-    const auto moments = fem::octant_moments(body.grid, body.cuts, copy.cell, copy.nodes);
+    const auto moments = fem::material_moments(body.grid, body.cuts, copy);
     for (int a = 0; a < 8; ++a)
       expected[copy.corners[a].value] += 1100 * 1e-3 * (copy.nodes == 0xff ? 1.0 / 8 : shape_integral(moments, a));
   }
@@ -58,15 +58,13 @@ TEST(Shares, MassAndCentreAreTheMaterials) {
   std::vector<std::uint32_t> piece(body.complex.n_corners());
   for (const auto c : ids<grid::CopyId>(body.complex.n_copies())) {
     const grid::Copy& copy = body.complex.copies[c];
-    for (int v = 0; v < 8; ++v) {
-      piece[copy.corners[v].value] = pieces.piece[c];
-      if (copy.nodes >> v & 1)
-        for (const auto& t : grid::octant(body.grid, body.cuts, copy.cell, v)) {
-          const double m = density * h * h * h * support::volume(t);
-          mass[pieces.piece[c]] += m;
-          moment[pieces.piece[c]] += m * (body.grid.origin(copy.cell) + h / 4 * (t[0] + t[1] + t[2] + t[3]));
-        }
-    }
+    for (const grid::CornerId corner : copy.corners)
+      piece[corner.value] = pieces.piece[c];
+    grid::for_each_tetrahedron(body.grid, body.cuts, copy, [&](const grid::Tetrahedron& t, int) {
+      const double m = density * h * h * h * support::volume(t);
+      mass[pieces.piece[c]] += m;
+      moment[pieces.piece[c]] += m * (body.grid.origin(copy.cell) + h / 4 * (t[0] + t[1] + t[2] + t[3]));
+    });
   }
   const Points rest = body.rest();
   for (const Share& share : material_shares(body.grid, body.cuts, body.complex, density)) {

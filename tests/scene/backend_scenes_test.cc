@@ -176,8 +176,8 @@ TEST(BackendScene, ForcepsCarryWhatHangs) {
   }
 }
 
-/// Corners that follow phyxels jump when a cut takes phyxels out of their sight: none may jump past the blade uncut. The
-/// blade's plane is a layer of nodes, where it has most edges along it.
+/// Corners that follow phyxels jump when a cut takes phyxels out of their sight: none may jump past the blade uncut.
+/// The blade's plane is a layer of nodes, where it has most edges along it.
 TEST(BackendScene, ABladePartsABarOfPhyxelsBetweenItsHeldEnds) {
   const Trial bar(
     steps(0.002, 400) + section("Gravity", {}) +
@@ -188,7 +188,14 @@ TEST(BackendScene, ABladePartsABarOfPhyxelsBetweenItsHeldEnds) {
     section("Blade knife", {"Edge [m] = 0, -0.2, 0; 0, 0.5, 0", "Times [s] = 0.2, 0.8",
                             "Positions [m] = 0.5, 0, 0.25; 0.5, 0, -0.3"}) +
     observe("pieces"));
-  EXPECT_EQ(bar.last("pieces"), 2);
+  // It may leave splinters of the skin along those edges; all nodes are in two pieces.
+  const grid::CellComplex& complex = bar.body().complex;
+  const grid::Pieces pieces = grid::pieces(complex);
+  std::map<std::uint32_t, int> n_copies;
+  for (const auto c : ids<grid::CopyId>(complex.n_copies()))
+    n_copies[pieces.piece[c]] += complex.copies[c].nodes != 0;
+  std::erase_if(n_copies, [](const auto& piece) { return piece.second == 0; });
+  EXPECT_EQ(n_copies.size(), 2u);
 }
 
 } // namespace

@@ -91,7 +91,7 @@ void cut(Body& body, const support::Plane& plane, const std::function<bool(const
       added.push_back({e, t, plane.normal, 1});
   }
   for (const auto& one : added)
-    body.cuts.add(one);
+    body.cuts.add(body.grid, one);
   place(body, added);
 }
 
