@@ -65,6 +65,8 @@ class EdgeBoxes {
   /// Whether a corner has moved between what the boxes were fitted to.
   bool moves() const { return moves_; }
   const Block& block(const std::uint32_t i) const { return levels_[0][i]; }
+  /// The longest edge of all, now [m].
+  double longest() const { return levels_.back().front().longest; }
   std::size_t n_blocks() const { return starts_.size() - 1; }
   /// Memory of all tables [B].
   std::size_t n_bytes() const;

@@ -39,10 +39,10 @@ int vertex_of(const grid::Grid& grid, const grid::CellId c, const grid::NodeId n
   return static_cast<int>(std::find(nodes.begin(), nodes.end(), node) - nodes.begin());
 }
 
-/// The block's box holds edges between material nodes; edges of the skin begin at one of those. A block may have no
-/// edges of the first kind, or collapsed ones: a cube's edge h is taken for the least.
-Box with_skin(const EdgeBoxes::Block& block, const double h) {
-  const Vec3 slack = Vec3::Constant(4 * std::max(block.longest, h));
+/// The block's box holds edges between material nodes; edges of the skin begin at one of those. How far they reach, to
+/// corners outside of the material, is not known: not farther than four times the longest edge of the body.
+Box with_skin(const EdgeBoxes::Block& block, const double longest) {
+  const Vec3 slack = Vec3::Constant(4 * longest);
   return {block.box.lower - slack, block.box.upper + slack};
 }
 
@@ -76,8 +76,8 @@ SweepCuts Target::cut_anywhere(const grid::CutLabel label, const std::function<V
 SweepCuts Target::cut_near(const grid::CutLabel label, const Nearness& near,
                            const std::function<Verdict(grid::EdgeId)>& judge) const {
   const auto is_near = [&](const Box& box) { return geometry::overlap(box, near.reach) && near.may_meet(box); };
-  const auto blocks =
-    boxes_->blocks([&](const EdgeBoxes::Block& block) { return is_near(with_skin(block, grid_.h())); });
+  const double longest = std::max(boxes_->longest(), grid_.h());
+  const auto blocks = boxes_->blocks([&](const EdgeBoxes::Block& block) { return is_near(with_skin(block, longest)); });
   const std::size_t n = (blocks.size() + blocks_per_chunk - 1) / blocks_per_chunk;
   SweepCuts result = joined(n, [&](const std::size_t k, SweepCuts& part) {
     const auto add_judged = [&](const grid::EdgeId edge) { add(edge, judge(edge), label, part); };
