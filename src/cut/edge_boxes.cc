@@ -83,6 +83,7 @@ EdgeBoxes::EdgeBoxes(const grid::Grid& grid, const grid::CellComplex& complex) {
   starts_.resize(nodes.start.size());
   list_rows(grid, complex, nodes);
   list_cells(grid, nodes);
+  list_skin(grid, complex, nodes);
   levels_.emplace_back(n_blocks());
   while (levels_.back().size() > 1)
     levels_.emplace_back((levels_.back().size() + n_children - 1) / n_children);
@@ -168,6 +169,23 @@ void EdgeBoxes::list_cells(const grid::Grid& grid, const Nodes& nodes) {
   std::transform(starts_.begin(), starts_.end() - 1, next.begin(), [](const Start& start) { return start.cell; });
   for (const auto c : ids<grid::CellId>(grid.n_cells()))
     cells_[next[block_of(c)]++] = c;
+}
+
+void EdgeBoxes::list_skin(const grid::Grid& grid, const grid::CellComplex& complex, const Nodes& nodes) {
+  const auto material_end = [&](const grid::EdgeId e) {
+    const auto& [lower, upper] = grid.ends(e);
+    return grid.is_material(lower) ? lower : upper;
+  };
+  const auto edges = grid.skin_edges();
+  for (const grid::EdgeId e : edges)
+    ++starts_[nodes.block[material_end(e)] + 1].skin;
+  for (std::size_t k = 1; k < starts_.size(); ++k)
+    starts_[k].skin += starts_[k - 1].skin;
+  skin_.resize(edges.size());
+  std::vector<std::uint32_t> next(n_blocks());
+  std::transform(starts_.begin(), starts_.end() - 1, next.begin(), [](const Start& start) { return start.skin; });
+  for (const grid::EdgeId e : edges)
+    skin_[next[nodes.block[material_end(e)]]++] = {e, complex.real_corner[material_end(e)]};
 }
 
 void EdgeBoxes::fit(const Points& x_before, const Points& x) {
@@ -264,7 +282,7 @@ void EdgeBoxes::visit(const std::size_t level, const std::size_t i, const std::f
 std::size_t EdgeBoxes::n_bytes() const {
   std::size_t n = starts_.capacity() * sizeof(Start) + rows_.capacity() * sizeof(Row) +
                   (slabs_.capacity() + rows_of_blocks_.capacity()) * sizeof(std::uint32_t) +
-                  cells_.capacity() * sizeof(grid::CellId);
+                  cells_.capacity() * sizeof(grid::CellId) + skin_.capacity() * sizeof(SkinEdge);
   for (const auto& level : levels_)
     n += level.capacity() * sizeof(Block);
   return n;

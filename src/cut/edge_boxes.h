@@ -62,6 +62,13 @@ class EdgeBoxes {
       f(cells_[i]);
   }
 
+  /// Calls f(edge, real corner of its material node) for each edge of the skin that begins in a block.
+  template <class Function>
+  void for_each_skin_edge(const std::uint32_t block, const Function& f) const {
+    for (std::uint32_t i = starts_[block].skin; i < starts_[block + 1].skin; ++i)
+      f(skin_[i].edge, skin_[i].corner);
+  }
+
   /// Whether a corner has moved between what the boxes were fitted to.
   bool moves() const { return moves_; }
   const Block& block(const std::uint32_t i) const { return levels_[0][i]; }
@@ -87,7 +94,12 @@ class EdgeBoxes {
 
   /// Where a block's entries begin.
   struct Start {
-    std::uint32_t row = 0, cell = 0;
+    std::uint32_t row = 0, cell = 0, skin = 0;
+  };
+
+  struct SkinEdge {
+    grid::EdgeId edge;
+    grid::CornerId corner;
   };
 
   /// Material nodes by block, and the block of each.
@@ -99,6 +111,7 @@ class EdgeBoxes {
   static Nodes list_nodes(const grid::Grid& grid);
   void list_rows(const grid::Grid& grid, const grid::CellComplex& complex, const Nodes& nodes);
   void list_cells(const grid::Grid& grid, const Nodes& nodes);
+  void list_skin(const grid::Grid& grid, const grid::CellComplex& complex, const Nodes& nodes);
   void sort_rows(const std::vector<std::uint32_t>& slabs);
   template <class N>
   void take_in(const Row& row, N n, const Points& x_before, const Points& x);
@@ -110,6 +123,7 @@ class EdgeBoxes {
   std::vector<std::uint32_t> slabs_;          // where they begin among the rows, and where the last one ends
   std::vector<std::uint32_t> rows_of_blocks_; // by block
   std::vector<grid::CellId> cells_;           // by block
+  std::vector<SkinEdge> skin_;                // by block
   bool moves_ = false;
   std::vector<std::vector<Block>> levels_; // the blocks, eights of them, ... one
 };

@@ -40,9 +40,11 @@ int vertex_of(const grid::Grid& grid, const grid::CellId c, const grid::NodeId n
 }
 
 /// The block's box holds edges between material nodes; edges of the skin begin at one of those. How far they reach, to
-/// corners outside of the material, is not known: not farther than four times the longest edge of the body.
+/// corners outside of the material, is not known: not farther than so many times the longest edge of the body.
+constexpr double reach_of_skin = 4;
+
 Box with_skin(const EdgeBoxes::Block& block, const double longest) {
-  const Vec3 slack = Vec3::Constant(4 * longest);
+  const Vec3 slack = Vec3::Constant(reach_of_skin * longest);
   return {block.box.lower - slack, block.box.upper + slack};
 }
 
@@ -82,7 +84,7 @@ SweepCuts Target::cut_near(const grid::CutLabel label, const Nearness& near,
   SweepCuts result = joined(n, [&](const std::size_t k, SweepCuts& part) {
     const auto add_judged = [&](const grid::EdgeId edge) { add(edge, judge(edge), label, part); };
     for (std::size_t b = k * blocks_per_chunk; b < std::min(blocks.size(), (k + 1) * blocks_per_chunk); ++b) {
-      judge_skin(blocks[b], near, add_judged);
+      judge_skin(blocks[b], near, longest, add_judged);
       if (!is_near(boxes_->block(blocks[b]).box))
         continue;
       boxes_->for_each_edge(blocks[b], [&](const grid::CornerId lower, const grid::CornerId upper, const int axis) {
@@ -100,24 +102,19 @@ SweepCuts Target::cut_near(const grid::CutLabel label, const Nearness& near,
   return result;
 }
 
-/// An edge of the skin is judged by the block of the cell in which it is the first one around it.
-void Target::judge_skin(const std::uint32_t block, const Nearness& near,
+void Target::judge_skin(const std::uint32_t block, const Nearness& near, const double longest,
                         const std::function<void(grid::EdgeId)>& judge) const {
-  boxes_->for_each_cell(block, [&](const grid::CellId c) {
-    const grid::CellCuts cell = grid::cuts_of(grid_, cuts_, c);
-    if ((cell.skin & ~cell.twice) == 0)
+  const double room_around = reach_of_skin * longest;
+  const auto is_near = [&](const Vec3& before, const Vec3& now) {
+    return ((near.reach.lower - before.cwiseMax(now)).array() <= room_around).all() &&
+           ((before.cwiseMin(now) - near.reach.upper).array() <= room_around).all();
+  };
+  boxes_->for_each_skin_edge(block, [&](const grid::EdgeId edge, const grid::CornerId corner) {
+    if (!is_near(x_before_[corner.value], x_[corner.value]) || !cuts_.can_be_cut(grid_, edge))
       return;
-    const auto edges = grid_.edges(c);
-    for (int line = 0; line < grid::cube::n_lines; ++line) {
-      if (!((cell.skin & ~cell.twice) >> line & 1))
-        continue;
-      const auto around = grid_.cells(edges[line]);
-      if (*std::ranges::find_if(around, [](const grid::CellId other) { return other.valid(); }) != c)
-        continue;
-      const EdgeEnds ends = ends_of(grid_, cuts_, complex_, edges[line]);
-      if (geometry::overlap(room(ends.segment(x_before_), ends.segment(x_)), near.reach))
-        judge(edges[line]);
-    }
+    const EdgeEnds ends = ends_of(grid_, cuts_, complex_, edge);
+    if (geometry::overlap(room(ends.segment(x_before_), ends.segment(x_)), near.reach))
+      judge(edge);
   });
 }
 

@@ -80,7 +80,8 @@ class Target {
   SweepCuts cut_anywhere(grid::CutLabel label, const std::function<Verdict(grid::EdgeId)>& judge) const;
   SweepCuts cut_near(grid::CutLabel label, const Nearness& near,
                      const std::function<Verdict(grid::EdgeId)>& judge) const;
-  void judge_skin(std::uint32_t block, const Nearness& near, const std::function<void(grid::EdgeId)>& judge) const;
+  void judge_skin(std::uint32_t block, const Nearness& near, double longest,
+                  const std::function<void(grid::EdgeId)>& judge) const;
   void add(grid::EdgeId edge, const Verdict& verdict, grid::CutLabel label, SweepCuts& result) const;
 
   const grid::Grid& grid_;
