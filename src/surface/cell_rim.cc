@@ -31,14 +31,14 @@ class CellRim {
     plane_ = view.mean_plane(lines);
   }
 
-  std::optional<RimVertex> place(const double threshold) {
+  std::optional<RimVertex> place() {
     const Vec3 p = view_.inside(rim_in_fan(plane_, std::span(rim_.begin(), rim_.end()), skin_.p, spokes()));
     skin_.lines = lines_beside_corner();
     skin_.has_rim = true;
     const Vec3 q = p + volume_move(p);
     // A bent skin has its volume back by a small move; where it is sharp, a vertex beside the rim would blunt it.
-    constexpr double negligible = 1e-13, little = 0.01;
-    if (std::abs(excess(p)) > (is_sharp(threshold) ? negligible : little) || view_.inside(q) != q ||
+    constexpr double negligible = 1e-13, little = 0.1;
+    if (std::abs(excess(p)) > (is_sharp() ? negligible : little) || view_.inside(q) != q ||
         std::abs(excess(q)) > negligible)
       return std::nullopt;
     return RimVertex{q, skin_};
@@ -84,11 +84,15 @@ class CellRim {
     return lines;
   }
 
-  /// Do the planes of the skin make a sharp edge?
-  bool is_sharp(const double threshold) const {
-    Planes planes;
-    for_each_bit(view_.now.skin, [&](const int line) { planes.push_back(view_.skin_plane(line)); });
-    return fixed_directions(planes, Directions(), threshold).n > 1;
+  /// Do the planes of the skin make a sharp edge, as those of a box do?
+  bool is_sharp() const {
+    constexpr double sharp = 0.5; // cosine
+    bool result = false;
+    for_each_bit(view_.now.skin, [&](const int a) {
+      for_each_bit(view_.now.skin,
+                   [&](const int b) { result |= view_.skin_plane(a).normal.dot(view_.skin_plane(b).normal) < sharp; });
+    });
+    return result;
   }
 
   /// The move of the cuts' vertex from p, along the plane of the cut, that gives the cell its volume: that is linear in
@@ -169,9 +173,8 @@ bool rim_passes(const grid::Grid& grid, const grid::Cuts& cuts, const View& view
   return n > 1;
 }
 
-std::optional<RimVertex> place_on_rim(const grid::Grid& grid, const grid::Cuts& cuts, const View& view,
-                                      const double threshold) {
-  return CellRim(grid, cuts, view).place(threshold);
+std::optional<RimVertex> place_on_rim(const grid::Grid& grid, const grid::Cuts& cuts, const View& view) {
+  return CellRim(grid, cuts, view).place();
 }
 
 } // namespace kerf::surface

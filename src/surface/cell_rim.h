@@ -24,8 +24,6 @@ bool rim_passes(const grid::Grid& grid, const grid::Cuts& cuts, const View& view
 
 /// On the rim that passes through the cell, whose faces have their vertices already; along the cut from where the skin
 /// bends, as far as gives the cell the volume that it had before any cut. Nothing where no such place is near.
-/// `threshold`: see fixed_directions.
-std::optional<RimVertex> place_on_rim(const grid::Grid& grid, const grid::Cuts& cuts, const View& view,
-                                      double threshold);
+std::optional<RimVertex> place_on_rim(const grid::Grid& grid, const grid::Cuts& cuts, const View& view);
 
 } // namespace kerf::surface

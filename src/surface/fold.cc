@@ -49,9 +49,9 @@ bool is_folded(const grid::Grid& grid, const grid::Cuts& cuts, const View& view)
   return false;
 }
 
-bool is_folded(const View& view, const int face, const Vec3& p, const grid::SkinPoint& skin) {
+bool is_folded(const View& view, const int face, const Vec3& p, const grid::SkinPoint& skin, const double little) {
   const int normal = cube::face_axis(face), u = (normal + 1) % 3, v = (normal + 2) % 3;
-  const double negative = -negligible * (view.upper - view.lower).squaredNorm();
+  const double negative = -(little + negligible) * (view.upper - view.lower).squaredNorm();
   for (const grid::SkinArc& arc : grid::skin_arcs(face, view.now.material))
     for (const int end : {0, 1}) {
       const int line = arc.lines[end], axis = cube::line_axis(line);

@@ -13,6 +13,7 @@ bool is_folded(const grid::Grid& grid, const grid::Cuts& cuts, const View& view)
 
 /// Does the line of the skin in a face pass below the cuts' vertex p, seen from one of its ends? `skin` is the skin's
 /// vertex.
-bool is_folded(const View& view, int face, const Vec3& p, const grid::SkinPoint& skin);
+/// By more than `little` of the cells' side, an area in h^2: where the skin is hollow, a rim on it lies a little deep.
+bool is_folded(const View& view, int face, const Vec3& p, const grid::SkinPoint& skin, double little = 0);
 
 } // namespace kerf::surface

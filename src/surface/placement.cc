@@ -180,7 +180,7 @@ class Placer {
     if (cuts_.skin_point(view.cell)->has_rim)
       return p; // an earlier rim stays
     if (n_old <= n_before && rim_passes(grid_, cuts_, view)) {
-      const auto on_rim = surface::place_on_rim(grid_, cuts_, view, threshold_);
+      const auto on_rim = surface::place_on_rim(grid_, cuts_, view);
       ++(on_rim ? counts_.n_placed : counts_.n_clamped);
       if (on_rim) {
         cuts_.set_skin_point(view.cell, on_rim->skin);
@@ -262,7 +262,8 @@ class Placer {
     ++counts_.n_placed;
     counts_.n_clamped += !rim.is_met;
     const Vec3 p = along_skin(view, cube::face_axis(face), rim.p, of_skin.p);
-    if (is_folded(view, face, p, of_skin))
+    constexpr double little = 0.02;
+    if (is_folded(view, face, p, of_skin, little))
       return of_skin.p;
     cuts_.set_skin_point(f, of_skin);
     return p;

@@ -11,6 +11,10 @@ grid::CellCuts View::before() const {
   grid::CellCuts result = now;
   result.twice &= old;
   result.cut &= old | result.skin;
+  for (int face = 0; face < cube::n_faces; ++face)
+    for (const int line : cube::face_lines[face])
+      if ((now.blades() & ~old) >> line & 1)
+        result.seams[face] = grid::Seam::whole; // what parts it now is new
   return result;
 }
 
