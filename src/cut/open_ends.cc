@@ -27,11 +27,6 @@ bool is_open(const grid::Grid& grid, const grid::Cuts& cuts, const grid::CellId 
   return false;
 }
 
-bool is_of_skin(const grid::Grid& grid, const grid::EdgeId e) {
-  const auto& [lower, upper] = grid.ends(e);
-  return grid.is_material(lower) != grid.is_material(upper);
-}
-
 /// Does the rind of an edge hang together with something where the blade's cut goes through?
 bool is_held(const grid::Grid& grid, const grid::Cuts& cuts, const grid::EdgeId edge, const grid::CutLabel label) {
   for (const grid::CellId c : grid.cells(edge)) {
@@ -81,17 +76,18 @@ std::vector<grid::EdgeId> OpenEnds::close(const std::span<const std::array<Vec3,
                                           const grid::CutLabel label) {
   std::vector<grid::EdgeId> closed;
   std::erase_if(faces_, [&](const Face& f) {
-    if (!is_open(grid, cuts, f.cell, grid::cuts_of(grid, cuts, f.cell), f.face, label))
+    const grid::CellCuts cell = grid::cuts_of(grid, cuts, f.cell);
+    if (!is_open(grid, cuts, f.cell, cell, f.face, label))
       return true;
     if (is_near(strip, complex.copies[complex.first_copy[f.cell]], x))
       return false;
     const auto edges = grid.edges(f.cell);
     for (const int line : cube::face_lines[f.face])
-      if (cuts.is_cut_twice(edges[line]) && !is_held(grid, cuts, edges[line], label))
+      if ((cell.twice >> line & 1) != 0 && !is_held(grid, cuts, edges[line], label))
         return true; // the last that holds the rind
     cuts.set_seam(grid.faces(f.cell)[f.face], grid::Seam::parted);
     for (const int line : cube::face_lines[f.face])
-      if (cuts.is_cut_twice(edges[line]) || (cuts.is_cut(edges[line]) && !is_of_skin(grid, edges[line])))
+      if (cell.blades() >> line & 1)
         closed.push_back(edges[line]);
     return true;
   });

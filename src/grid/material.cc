@@ -74,9 +74,7 @@ double volume(const Tetrahedron& t) { return (t[1] - t[0]).dot((t[2] - t[0]).cro
 
 unsigned lines_under_skin(const Grid& grid, const Cuts& cuts, const Copy& copy) {
   const CellCuts cell = cuts_of(grid, cuts, copy.cell);
-  const auto has_skin_point = [&](const FaceId f) { return cuts.skin_point(f) != nullptr; };
-  if (cell.skin == 0 || cell.blades() == 0 ||
-      (cell.twice == 0 && !cuts.skin_point(copy.cell) && std::ranges::none_of(grid.faces(copy.cell), has_skin_point)))
+  if (!cell.has_two_points())
     return 0;
   unsigned lines = copy.rinds;
   for (int line = 0; line < cube::n_lines; ++line)
