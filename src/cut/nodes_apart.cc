@@ -1,7 +1,6 @@
 #include "cut/nodes_apart.h"
 
 #include "grid/parts.h"
-#include "grid/touched.h"
 
 #include <bit>
 
@@ -9,18 +8,46 @@ namespace kerf::cut {
 
 namespace cube = grid::cube;
 using grid::CellCuts;
+using grid::Grid;
 
 namespace {
 
-/// Does a part hold nodes that no edges of the cell join?
-bool joins_nodes(const CellCuts& cell) {
-  for (const grid::Part& part : parts_of(cell)) {
-    if (part.nodes == 0)
+/// Of each node of a cell, those that lie on the other side of one of the planes along which blades have cut in the
+/// cell.
+using OtherSide = std::array<unsigned, cube::n_vertices>;
+
+OtherSide other_side(const Grid& grid, const grid::Cuts& cuts, const grid::CellId c, const CellCuts& cell) {
+  const double on_the_plane = 2 * grid::min_edge_parameter * grid.h();
+  const auto nodes = grid.nodes(c);
+  const auto edges = grid.edges(c);
+  OtherSide result{};
+  for (int line = 0; line < cube::n_lines; ++line) {
+    if ((cell.blades() >> line & 1) == 0)
       continue;
-    const unsigned reached = cube::reachable(std::countr_zero(part.nodes), cell.cut | cell.skin);
-    if ((part.nodes & ~reached) != 0)
-      return true;
+    const Vec3 normal = cuts.find(edges[line])->normal;
+    const Vec3 p = grid::edge_point(grid, cuts, edges[line]);
+    unsigned above = 0, below = 0;
+    for (int v = 0; v < cube::n_vertices; ++v) {
+      const double height = normal.dot(grid.position(nodes[v]) - p);
+      above |= unsigned(height > on_the_plane) << v;
+      below |= unsigned(height < -on_the_plane) << v;
+    }
+    for (int v = 0; v < cube::n_vertices; ++v)
+      result[v] |= (above >> v & 1) != 0 ? below : (below >> v & 1) != 0 ? above : 0;
   }
+  return result;
+}
+
+constexpr OtherSide any_side{0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff};
+
+/// Does a part hold nodes on two sides of a cut that no edges of the cell join?
+bool joins_nodes(const CellCuts& cell, const OtherSide& other_side) {
+  for (const grid::Part& part : parts_of(cell))
+    for (unsigned left = part.nodes; left != 0; left &= left - 1) {
+      const int v = std::countr_zero(left);
+      if ((part.nodes & other_side[v] & ~unsigned(cube::reachable(v, cell.cut | cell.skin))) != 0)
+        return true;
+    }
   return false;
 }
 
@@ -34,14 +61,14 @@ Join kind_of(const CellCuts& cell, const grid::SkinArc& arc) {
 }
 
 /// The faces whose skin is to be parted so that it joins no nodes: no more than needed.
-std::vector<int> joining_faces(CellCuts cell) {
+std::vector<int> joining_faces(CellCuts cell, const OtherSide& other_side) {
   std::vector<int> faces;
   std::vector<grid::Seam> before;
   for (const Join kind : {Join::where_a_cut_may_go_on, Join::between_rinds, Join::other})
     for (int face = 0; face < cube::n_faces; ++face)
       for (const grid::SkinArc& arc : grid::skin_arcs(face, cell.material)) {
         if ((cell.blades() & CellCuts::beside(arc)) == 0 || !cell.is_whole(face, arc) || kind_of(cell, arc) != kind ||
-            !joins_nodes(cell))
+            !joins_nodes(cell, other_side))
           continue;
         faces.push_back(face);
         before.push_back(cell.seams[face]);
@@ -49,7 +76,7 @@ std::vector<int> joining_faces(CellCuts cell) {
       }
   for (std::size_t i = faces.size(); i-- > 0;) {
     cell.seams[faces[i]] = before[i];
-    if (joins_nodes(cell))
+    if (joins_nodes(cell, other_side))
       cell.seams[faces[i]] = grid::Seam::parted;
     else
       faces.erase(faces.begin() + static_cast<std::ptrdiff_t>(i));
@@ -57,22 +84,28 @@ std::vector<int> joining_faces(CellCuts cell) {
   return faces;
 }
 
+/// The faces of a cell whose skin is to be parted.
+std::vector<int> joining_faces(const Grid& grid, const grid::Cuts& cuts, const grid::CellId c, const CellCuts& cell) {
+  if (cell.skin == 0 || cell.blades() == 0 || !joins_nodes(cell, any_side))
+    return {};
+  return joining_faces(cell, other_side(grid, cuts, c, cell));
+}
+
 } // namespace
 
-std::vector<grid::EdgeId> keep_nodes_apart(const grid::Grid& grid, grid::Cuts& cuts,
-                                           const std::span<const grid::EdgeId> edges) {
+bool joins_nodes(const Grid& grid, const grid::Cuts& cuts, const grid::CellId c) {
+  return !joining_faces(grid, cuts, c, grid::cuts_of(grid, cuts, c)).empty();
+}
+
+std::vector<grid::EdgeId> keep_nodes_apart(const Grid& grid, grid::Cuts& cuts, const grid::CellId c) {
   std::vector<grid::EdgeId> parted;
-  for (const grid::TouchedCell& touched : grid::touched_cells(grid, edges)) {
-    const CellCuts cell = grid::cuts_of(grid, cuts, touched.cell);
-    if (cell.skin == 0 || cell.blades() == 0)
-      continue;
-    for (const int face : joining_faces(cell)) {
-      cuts.set_seam(grid.faces(touched.cell)[face], grid::Seam::parted);
-      const auto of_cell = grid.edges(touched.cell);
-      for (const int line : cube::face_lines[face])
-        if (cell.blades() >> line & 1)
-          parted.push_back(of_cell[line]);
-    }
+  const CellCuts cell = grid::cuts_of(grid, cuts, c);
+  for (const int face : joining_faces(grid, cuts, c, cell)) {
+    cuts.set_seam(grid.faces(c)[face], grid::Seam::parted);
+    const auto edges = grid.edges(c);
+    for (const int line : cube::face_lines[face])
+      if (cell.blades() >> line & 1)
+        parted.push_back(edges[line]);
   }
   return parted;
 }

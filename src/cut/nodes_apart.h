@@ -5,14 +5,16 @@
 
 #include "grid/cuts.h"
 
-#include <span>
 #include <vector>
 
 namespace kerf::cut {
 
-/// In the cells around these edges, parts the skin of faces that joins nodes of the cell which no edges of the cell
-/// join: first where a cut may still go on, then between rinds, then anywhere. Returns cut edges at those faces.
-std::vector<grid::EdgeId> keep_nodes_apart(const grid::Grid& grid, grid::Cuts& cuts,
-                                           std::span<const grid::EdgeId> edges);
+/// Does the skin of a cell hold nodes together that no edges of the cell join, and that lie on two sides of a plane
+/// along which a blade has cut in it?
+bool joins_nodes(const grid::Grid& grid, const grid::Cuts& cuts, grid::CellId c);
+
+/// Parts the skin of the cell's faces that do: first where a cut may still go on, then between rinds, then anywhere, no
+/// more than needed. Returns cut edges at those faces.
+std::vector<grid::EdgeId> keep_nodes_apart(const grid::Grid& grid, grid::Cuts& cuts, grid::CellId c);
 
 } // namespace kerf::cut

@@ -1,5 +1,6 @@
 #include "cut/open_ends.h"
 
+#include "cut/nodes_apart.h"
 #include "geometry/triangle.h"
 #include "grid/touched.h"
 
@@ -18,10 +19,10 @@ bool is_open(const grid::Grid& grid, const grid::Cuts& cuts, const grid::CellId 
   const auto edges = grid.edges(c);
   for (const grid::SkinArc& arc : grid::skin_arcs(face, cell.material)) {
     const unsigned lines = cell.blades() & grid::CellCuts::beside(arc);
-    int n = 0;
+    int n = 0, n_others = 0; // where others have cut before, CrossedAgain has told
     for (unsigned left = lines; left != 0; left &= left - 1)
-      n += cuts.find(edges[std::countr_zero(left)])->label == label;
-    if (n % 2 != 0 && cell.is_whole(face, arc))
+      ++(cuts.find(edges[std::countr_zero(left)])->label == label ? n : n_others);
+    if (n % 2 != 0 && n_others == 0 && cell.is_whole(face, arc))
       return true;
   }
   return false;
@@ -45,16 +46,32 @@ bool is_held(const grid::Grid& grid, const grid::Cuts& cuts, const grid::EdgeId 
 }
 
 /// Is any of the triangles within a cell's width of the cell?
-bool is_near(const std::span<const std::array<Vec3, 3>> strip, const grid::Copy& copy, const Points& x) {
+bool is_near(const std::span<const std::array<Vec3, 3>> blade, const grid::Copy& copy, const Points& x) {
   Vec3 middle = Vec3::Zero();
   for (const grid::CornerId corner : copy.corners)
     middle += x[corner.value] / cube::n_vertices;
   double reach = 0;
   for (const grid::CornerId corner : copy.corners)
     reach = std::max(reach, (x[corner.value] - middle).norm());
-  return std::ranges::any_of(strip, [&](const std::array<Vec3, 3>& triangle) {
+  return std::ranges::any_of(blade, [&](const std::array<Vec3, 3>& triangle) {
     return (geometry::closest_point(middle, triangle) - middle).norm() < 2 * reach;
   });
+}
+
+/// Do cuts wait in the cell or beside it?
+bool wait_near(const PendingCuts& pending, const grid::Grid& grid, const grid::CellId c) {
+  if (pending.size() == 0)
+    return false;
+  const auto waits_in = [&](const grid::CellId around) {
+    return around.valid() && std::ranges::any_of(grid.edges(around), [&](const auto e) { return pending.waits(e); });
+  };
+  return std::ranges::any_of(grid.edges(c), [&](const auto e) { return std::ranges::any_of(grid.cells(e), waits_in); });
+}
+
+template <class T>
+void sort_unique(std::vector<T>& items) {
+  std::sort(items.begin(), items.end());
+  items.erase(std::unique(items.begin(), items.end()), items.end());
 }
 
 } // namespace
@@ -66,20 +83,25 @@ void OpenEnds::note(const grid::Grid& grid, const grid::Cuts& cuts, const std::s
     for (int face = 0; cell.skin != 0 && face < cube::n_faces; ++face)
       if (is_open(grid, cuts, touched.cell, cell, face, label))
         faces_.push_back({touched.cell, face});
+    if (joins_nodes(grid, cuts, touched.cell))
+      cells_.push_back(touched.cell);
   }
-  std::sort(faces_.begin(), faces_.end());
-  faces_.erase(std::unique(faces_.begin(), faces_.end()), faces_.end());
+  sort_unique(faces_);
+  sort_unique(cells_);
 }
 
-std::vector<grid::EdgeId> OpenEnds::close(const std::span<const std::array<Vec3, 3>> strip, const grid::Grid& grid,
-                                          grid::Cuts& cuts, const grid::CellComplex& complex, const Points& x,
-                                          const grid::CutLabel label) {
+std::vector<grid::EdgeId> OpenEnds::close(const std::span<const std::array<Vec3, 3>> blade, const PendingCuts& pending,
+                                          const grid::Grid& grid, grid::Cuts& cuts, const grid::CellComplex& complex,
+                                          const Points& x, const grid::CutLabel label) {
   std::vector<grid::EdgeId> closed;
+  const auto may_go_on = [&](const grid::CellId c) {
+    return is_near(blade, complex.copies[complex.first_copy[c]], x) || wait_near(pending, grid, c);
+  };
   std::erase_if(faces_, [&](const Face& f) {
     const grid::CellCuts cell = grid::cuts_of(grid, cuts, f.cell);
     if (!is_open(grid, cuts, f.cell, cell, f.face, label))
       return true;
-    if (is_near(strip, complex.copies[complex.first_copy[f.cell]], x))
+    if (may_go_on(f.cell))
       return false;
     const auto edges = grid.edges(f.cell);
     for (const int line : cube::face_lines[f.face])
@@ -89,6 +111,15 @@ std::vector<grid::EdgeId> OpenEnds::close(const std::span<const std::array<Vec3,
     for (const int line : cube::face_lines[f.face])
       if (cell.blades() >> line & 1)
         closed.push_back(edges[line]);
+    return true;
+  });
+  std::erase_if(cells_, [&](const grid::CellId c) {
+    if (!joins_nodes(grid, cuts, c))
+      return true;
+    if (may_go_on(c))
+      return false;
+    for (const grid::EdgeId e : keep_nodes_apart(grid, cuts, c))
+      closed.push_back(e);
     return true;
   });
   return closed;

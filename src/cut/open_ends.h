@@ -1,10 +1,11 @@
 #pragma once
 
-/// Faces of the skin in which a blade's cut has come in and not gone out: the cut may go on there in the next step,
-/// and until then the skin holds together what lies below it. Once the blade has gone, or rests, the cut ends at the
-/// skin, which is parted: where the blade passes between the edges of the grid, no bridge stays that no edge stands
-/// for.
+/// Faces of the skin in which a blade's cut has come in and not gone out, and cells in which the skin joins nodes that
+/// it has parted (nodes_apart.h): the cut may go on there in the next step, and until then the skin holds together what
+/// lies below it. Once the blade has gone, the cut ends at the skin, which is parted: where the blade passes between
+/// the edges of the grid, no bridge stays that no edge stands for.
 
+#include "cut/pending.h"
 #include "grid/complex.h"
 
 #include <span>
@@ -14,16 +15,17 @@ namespace kerf::cut {
 
 class OpenEnds {
  public:
-  /// Notes such faces at edges that the blade with this label has cut.
+  /// Notes them at edges that the blade with this label has cut.
   void note(const grid::Grid& grid, const grid::Cuts& cuts, std::span<const grid::EdgeId> edges, grid::CutLabel label);
 
-  /// Parts the skin of the faces that are more than a cell away from what the blade sweeps in this step (triangles
-  /// [m], world frame), when the corners are at `x`; forgets those where the cut has gone on. Returns cut edges at the
-  /// parted faces.
-  std::vector<grid::EdgeId> close(std::span<const std::array<Vec3, 3>> strip, const grid::Grid& grid, grid::Cuts& cuts,
-                                  const grid::CellComplex& complex, const Points& x, grid::CutLabel label);
+  /// Parts the skin of those that are more than a cell away from where the blade is in this step (whereabouts();
+  /// triangles [m], world frame), when the corners are at `x`, and from cuts that wait; forgets those where the cut has
+  /// gone on. Returns cut edges at the parted faces.
+  std::vector<grid::EdgeId> close(std::span<const std::array<Vec3, 3>> blade, const PendingCuts& pending,
+                                  const grid::Grid& grid, grid::Cuts& cuts, const grid::CellComplex& complex,
+                                  const Points& x, grid::CutLabel label);
 
-  std::size_t size() const { return faces_.size(); }
+  std::size_t size() const { return faces_.size() + cells_.size(); }
 
  private:
   struct Face {
@@ -31,7 +33,8 @@ class OpenEnds {
     int face;
     auto operator<=>(const Face&) const = default;
   };
-  std::vector<Face> faces_; // ascending
+  std::vector<Face> faces_;         // ascending
+  std::vector<grid::CellId> cells_; // ascending
 };
 
 } // namespace kerf::cut

@@ -24,6 +24,7 @@ class PendingCuts {
   std::vector<grid::EdgeCut> release(const grid::Grid& grid, const grid::Cuts& cuts);
 
   std::size_t size() const { return queue_.size(); }
+  bool waits(grid::EdgeId e) const { return waiting_.contains(e); }
 
  private:
   std::deque<grid::EdgeCut> queue_;

@@ -20,6 +20,15 @@ constexpr std::array<std::array<int, 4>, 6> face_lines = {
 constexpr std::array<std::array<int, 4>, 6> face_vertices = {
   {{0, 2, 4, 6}, {1, 3, 5, 7}, {0, 4, 1, 5}, {2, 6, 3, 7}, {0, 1, 2, 3}, {4, 5, 6, 7}}};
 
+/// Bits of the lines of a face.
+constexpr std::array<unsigned, 6> lines_of_face = [] {
+  std::array<unsigned, 6> masks{};
+  for (int face = 0; face < 6; ++face)
+    for (const int line : face_lines[face])
+      masks[face] |= 1u << line;
+  return masks;
+}();
+
 /// 0, 1, 2 for a line along x, y, z.
 constexpr int line_axis(const int line) {
   const int difference = line_vertices[line][1] - line_vertices[line][0];

@@ -37,6 +37,18 @@ void Cuts::add(const Grid& grid, EdgeCut cut) {
   cuts_.push_back(cut);
 }
 
+void Cuts::set_seam(const FaceId f, const Seam seam) {
+  std::uint32_t& now = seam_.at(f);
+  if (seam == Seam::parted && now != static_cast<std::uint32_t>(seam))
+    newly_parted_.insert(std::ranges::lower_bound(newly_parted_, f), f);
+  now = static_cast<std::uint32_t>(seam);
+}
+
+void Cuts::settle() {
+  n_settled_ = cuts_.size();
+  newly_parted_.clear();
+}
+
 unsigned Cuts::configuration(const Grid& grid, const CellId c) const {
   const auto edges = grid.edges(c);
   unsigned lines = 0;

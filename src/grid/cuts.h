@@ -10,6 +10,7 @@
 #include "grid/grid.h"
 #include "grid/sparse_index.h"
 
+#include <algorithm>
 #include <optional>
 #include <span>
 #include <vector>
@@ -85,7 +86,15 @@ class Cuts {
     const std::uint32_t i = seam_[f];
     return i == none ? Seam::unsaid : static_cast<Seam>(i);
   }
-  void set_seam(FaceId f, Seam seam) { seam_.at(f) = static_cast<std::uint32_t>(seam); }
+  void set_seam(FaceId f, Seam seam);
+
+  /// What has been cut, and where skin has been parted, since settle() was called last: their vertices are yet to be
+  /// placed.
+  bool is_new(EdgeId e) const { return edge_cut_[e] != none && edge_cut_[e] >= n_settled_; }
+  std::span<const EdgeCut> new_cuts() const { return all().subspan(n_settled_); }
+  bool is_newly_parted(FaceId f) const { return std::ranges::binary_search(newly_parted_, f); }
+  std::span<const FaceId> newly_parted() const { return newly_parted_; }
+  void settle();
 
   /// The vertex in a face or a cell, where a cut has placed one; the middle otherwise is the caller's to know.
   const Vec3* point(FaceId f) const { return point_at(face_point_[f]); }
@@ -121,7 +130,8 @@ class Cuts {
   SparseIndex<FaceId> face_point_, face_skin_point_;
   SparseIndex<CellId> cell_point_, cell_skin_point_;
   std::vector<EdgeCut> cuts_;
-  std::size_t n_cut_twice_ = 0;
+  std::size_t n_cut_twice_ = 0, n_settled_ = 0;
+  std::vector<FaceId> newly_parted_; // ascending
   Points points_;
   std::vector<SkinPoint> skin_points_;
 };

@@ -6,14 +6,6 @@ namespace kerf::grid {
 
 namespace {
 
-constexpr std::array<unsigned, 6> lines_of_face = [] {
-  std::array<unsigned, 6> masks{};
-  for (int face = 0; face < cube::n_faces; ++face)
-    for (const int line : cube::face_lines[face])
-      masks[face] |= 1u << line;
-  return masks;
-}();
-
 /// Lines between a material and an empty vertex, by the material vertices.
 constexpr std::array<std::uint16_t, 256> skin_lines = [] {
   std::array<std::uint16_t, 256> lines{};
@@ -146,9 +138,9 @@ Parts parts_of(const CellCuts& cell) {
 
 Parts parts_of(const CellCuts& cell, const int face) {
   Joints joints(cell);
-  joints.join_nodes(lines_of_face[face]);
+  joints.join_nodes(cube::lines_of_face[face]);
   joints.join_under_skin(face);
-  return joints.parts(cube::face_mask(face), lines_of_face[face]);
+  return joints.parts(cube::face_mask(face), cube::lines_of_face[face]);
 }
 
 } // namespace kerf::grid

@@ -1,8 +1,7 @@
 #include "scene/body.h"
 
-#include "cut/at_skin.h"
+#include "cut/add_cuts.h"
 #include "cut/fit.h"
-#include "cut/nodes_apart.h"
 #include "cut/recut.h"
 
 namespace kerf::scene {
@@ -42,29 +41,10 @@ void build_surface(Body& body) {
                               : surface::build_surface(body.grid, body.cuts, body.complex);
 }
 
-/// Whether cuts may end inside the body.
-enum class Front { none, possible };
-
-/// Adds cuts to the body, and what they do to its skin; returns the edges.
-std::vector<grid::EdgeId> add_cuts(Body& body, const std::vector<grid::EdgeCut>& cuts, const Front front) {
+/// Adds cuts to the body, and counts them; returns the edges at which something has changed.
+std::vector<grid::EdgeId> add_cuts(Body& body, const std::vector<grid::EdgeCut>& cuts, const cut::Front front) {
   const std::size_t n_before = body.cuts.all().size();
-  std::vector<grid::EdgeId> edges;
-  const auto is_of_skin = [&](const grid::EdgeCut& cut) { return body.cuts.is_cut(cut.edge); };
-  for (const bool of_skin : {false, true}) // whether a cut of the skin goes on depends on those below it
-    for (const grid::EdgeCut& cut : cuts) {
-      if (is_of_skin(cut) != of_skin || !body.cuts.can_be_cut(body.grid, cut.edge))
-        continue;
-      if (of_skin && front == Front::possible && !cut::goes_on(body.grid, body.cuts, body.complex, corners(body), cut))
-        continue;
-      body.cuts.add(body.grid, cut);
-      edges.push_back(cut.edge);
-    }
-  const auto take = [&](const std::vector<grid::EdgeId>& more) { edges.insert(edges.end(), more.begin(), more.end()); };
-  if (front == Front::none)
-    cut::part_skin(body.grid, body.cuts, edges);
-  else
-    take(cut::end_at_skin(body.grid, body.cuts, body.complex, corners(body), edges));
-  take(cut::keep_nodes_apart(body.grid, body.cuts, edges));
+  const auto edges = cut::add_cuts(body.grid, body.cuts, body.complex, corners(body), cuts, front);
   for (const grid::EdgeCut& cut : body.cuts.all().subspan(n_before)) {
     ++body.cutting->n_cut_edges[cut.label - 1];
     body.cutting->passed[cut.label - 1].remove_around(body.grid, cut.edge);
@@ -75,7 +55,7 @@ std::vector<grid::EdgeId> add_cuts(Body& body, const std::vector<grid::EdgeCut>&
 /// Returns what has changed, for the physics.
 grid::ComplexChange update_topology(Body& body, const std::vector<grid::EdgeId>& edges, Timings& timings) {
   const ScopedTimer timer(timings, "topology");
-  const auto placed = surface::place(body.grid, body.cuts, edges, body.placement);
+  const auto placed = surface::place(body.grid, body.cuts, body.placement);
   body.placed.n_placed += placed.n_placed;
   body.placed.n_clamped += placed.n_clamped;
   grid::ComplexChange change = grid::update_complex(body.grid, body.cuts, edges, body.complex);
@@ -96,14 +76,14 @@ std::vector<grid::EdgeId> meet(Body& body, const cut::Blade& blade, const double
   const auto strip = cut::sweep(blade, t0, t1);
   cutting.passed[blade.label - 1].pass(strip, found.cuts, body.grid, body.cuts, body.complex, corners(body),
                                        *cutting.boxes, blade.label);
-  return cutting.open_ends[blade.label - 1].close(strip, body.grid, body.cuts, body.complex, corners(body),
-                                                  blade.label);
+  return cutting.open_ends[blade.label - 1].close(cut::whereabouts(blade, t0, t1), cutting.pending, body.grid,
+                                                  body.cuts, body.complex, corners(body), blade.label);
 }
 
 /// `ended` are edges that were cut before, around which the skin is parted now. Returns all edges at which something is
 /// cut.
 std::vector<grid::EdgeId> make_cuts(Body& body, const std::vector<grid::EdgeCut>& cuts,
-                                    const std::vector<grid::EdgeId>& ended, const Front front, Timings& timings) {
+                                    const std::vector<grid::EdgeId>& ended, const cut::Front front, Timings& timings) {
   std::vector<grid::EdgeId> edges = add_cuts(body, cuts, front);
   edges.insert(edges.end(), ended.begin(), ended.end());
   if (edges.empty())
@@ -120,10 +100,7 @@ std::vector<grid::EdgeId> make_cuts(Body& body, const std::vector<grid::EdgeCut>
 void start(Body& body, const geometry::TriangleMesh& mesh, const PhysicsMaker& make_physics, Timings& timings) {
   {
     const ScopedTimer timer(timings, "topology");
-    std::vector<grid::EdgeId> skin;
-    for (const grid::EdgeCut& cut : body.cuts.all())
-      skin.push_back(cut.edge);
-    body.placed = surface::place(body.grid, body.cuts, skin, body.placement);
+    body.placed = surface::place(body.grid, body.cuts, body.placement);
     cut::fit_skin(mesh, body.grid, body.cuts);
     body.complex = grid::build_complex(body.grid, body.cuts);
     build_surface(body);
@@ -158,7 +135,7 @@ void recut(Body& body, const std::span<const cut::Blade> blades, const double t0
     released = cutting.pending.release(body.grid, body.cuts);
     cutting.x_before = corners(body); // not after the cut: where corners jump then, the blade meets them on their way
   }
-  const auto edges = make_cuts(body, released, ended, Front::possible, timings);
+  const auto edges = make_cuts(body, released, ended, cut::Front::possible, timings);
   for (const cut::Blade& blade : blades)
     body.cutting->open_ends[blade.label - 1].note(body.grid, body.cuts, edges, blade.label);
 }
@@ -171,7 +148,7 @@ void cut_at_once(Body& body, const cut::CutSurface& surface, Timings& timings) {
     found = cut::cut_edges(surface, body.grid, body.cuts, body.complex, corners(body), &*body.cutting->boxes);
   }
   body.cutting->n_double_crossings += found.n_double_crossings;
-  make_cuts(body, found.cuts, {}, cut::has_end(surface) ? Front::possible : Front::none, timings);
+  make_cuts(body, found.cuts, {}, cut::has_end(surface) ? cut::Front::possible : cut::Front::none, timings);
 }
 
 void follow(Body& body) {

@@ -26,14 +26,6 @@ namespace {
 
 constexpr int no_axis = -1;
 
-constexpr std::array<unsigned, 6> lines_of_face = [] {
-  std::array<unsigned, 6> masks{};
-  for (int face = 0; face < cube::n_faces; ++face)
-    for (const int line : cube::face_lines[face])
-      masks[face] |= 1u << line;
-  return masks;
-}();
-
 /// A face or a cell, with the planes of its cut edges sorted by what they ask of its vertex.
 struct Site {
   Site(const View& of, const Directions& directions) : view(of), inside(directions) {}
@@ -90,14 +82,18 @@ class Placer {
       join_(placement.sharp_angle * std::numbers::pi / 180),
       threshold_(std::tan(0.5 * placement.sharp_angle * std::numbers::pi / 180)) {}
 
-  PlacementCounts run(const std::span<const EdgeId> new_edges) {
-    for (const auto& [c, new_lines] : grid::touched_cells(grid_, new_edges)) {
-      const View view = look_at(grid_, cuts_, c, new_lines);
+  PlacementCounts run() {
+    for (const CellId c : changed_cells()) {
+      const View view = look_at(grid_, cuts_, c);
+      const unsigned new_lines = view.now.cut & ~view.old;
+      if (new_lines == 0 && view.parted_faces == 0)
+        continue;
       const auto faces = grid_.faces(c);
       for (int face = 0; face < cube::n_faces; ++face) {
         const FaceId f = faces[face];
         const bool first_seen = (face & 1) == 1 || !grid_.cells(f)[0].valid(); // else done from the cell below
-        if ((new_lines & lines_of_face[face]) != 0 && first_seen)
+        const bool has_changed = (new_lines & cube::lines_of_face[face]) != 0 || (view.parted_faces >> face & 1) != 0;
+        if (has_changed && first_seen)
           cuts_.set_point(f, place_face(view, face));
       }
       const Vec3 before = grid::cell_point(grid_, cuts_, c);
@@ -105,10 +101,30 @@ class Placer {
       if (view.now.has_two_points())
         unfold(view, before);
     }
+    cuts_.settle();
     return counts_;
   }
 
  private:
+  /// Those around new cuts, and beside newly parted faces; ascending.
+  std::vector<CellId> changed_cells() const {
+    std::vector<EdgeId> edges;
+    for (const grid::EdgeCut& cut : cuts_.new_cuts())
+      edges.push_back(cut.edge);
+    std::vector<CellId> cells;
+    for (const grid::TouchedCell& touched : grid::touched_cells(grid_, edges))
+      cells.push_back(touched.cell);
+    if (cuts_.newly_parted().empty())
+      return cells;
+    for (const FaceId f : cuts_.newly_parted())
+      for (const CellId c : grid_.cells(f))
+        if (c.valid())
+          cells.push_back(c);
+    std::sort(cells.begin(), cells.end());
+    cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+    return cells;
+  }
+
   /// Sorts the cuts of a face or cell into those that separated material there before and open ones.
   static Site make_site(const View& view, const unsigned vertices, const unsigned lines, const Directions& inside) {
     Site site(view, inside);
@@ -147,7 +163,7 @@ class Placer {
     const int normal = cube::face_axis(face);
     Directions in_face{Mat3::Identity(), 2};
     in_face.projection(normal, normal) = 0;
-    const unsigned vertices = cube::face_mask(face), lines = lines_of_face[face];
+    const unsigned vertices = cube::face_mask(face), lines = cube::lines_of_face[face];
     if (!view.now.has_two_points(face))
       return place_in(make_site(view, vertices, lines, in_face), normal, grid::face_point(grid_, cuts_, f),
                       grid::centre(grid_, f));
@@ -390,9 +406,8 @@ class Placer {
 
 } // namespace
 
-PlacementCounts place(const Grid& grid, Cuts& cuts, const std::span<const EdgeId> new_edges,
-                      const Placement& placement) {
-  return Placer(grid, cuts, placement).run(new_edges);
+PlacementCounts place(const Grid& grid, Cuts& cuts, const Placement& placement) {
+  return Placer(grid, cuts, placement).run();
 }
 
 } // namespace kerf::surface

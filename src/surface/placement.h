@@ -26,8 +26,6 @@
 
 #include "grid/cuts.h"
 
-#include <span>
-
 namespace kerf::surface {
 
 struct Placement {
@@ -41,8 +39,8 @@ struct PlacementCounts {
   std::size_t n_placed = 0, n_clamped = 0;
 };
 
-/// Places the vertices in all faces and cells at `new_edges`, which `cuts` holds already.
-PlacementCounts place(const grid::Grid& grid, grid::Cuts& cuts, std::span<const grid::EdgeId> new_edges,
-                      const Placement& placement);
+/// Places the vertices in all faces and cells that are newly cut, or whose skin is newly parted beside a cut; then all
+/// cuts are settled.
+PlacementCounts place(const grid::Grid& grid, grid::Cuts& cuts, const Placement& placement);
 
 } // namespace kerf::surface

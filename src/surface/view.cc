@@ -12,9 +12,8 @@ grid::CellCuts View::before() const {
   result.twice &= old;
   result.cut &= old | result.skin;
   for (int face = 0; face < cube::n_faces; ++face)
-    for (const int line : cube::face_lines[face])
-      if ((now.blades() & ~old) >> line & 1)
-        result.seams[face] = grid::Seam::whole; // what parts it now is new
+    if ((now.blades() & ~old & cube::lines_of_face[face]) != 0 || (parted_faces >> face & 1) != 0)
+      result.seams[face] = grid::Seam::whole; // what parts it now is new
   return result;
 }
 
@@ -41,7 +40,7 @@ Vec3 View::inside(const Vec3& p) const {
   return p.cwiseMax(lower + margin).cwiseMin(upper - margin);
 }
 
-View look_at(const grid::Grid& grid, const grid::Cuts& cuts, const grid::CellId c, const unsigned new_lines) {
+View look_at(const grid::Grid& grid, const grid::Cuts& cuts, const grid::CellId c) {
   View view;
   view.cell = c;
   const auto edges = grid.edges(c);
@@ -61,13 +60,16 @@ View look_at(const grid::Grid& grid, const grid::Cuts& cuts, const grid::CellId 
   for (int line = 0; line < cube::n_lines; ++line)
     if (const grid::EdgeCut* cut = cuts.find(edges[line])) {
       cut_lines |= 1u << line;
+      view.old |= unsigned(!cuts.is_new(edges[line])) << line;
       view.planes[line] = plane_of(line, *cut);
       view.labels[line] = cut->label;
     }
   view.now = grid::cuts_of(grid, cuts, c, cut_lines);
+  const auto faces = grid.faces(c);
+  for (int face = 0; face < cube::n_faces; ++face)
+    view.parted_faces |= unsigned(cuts.is_newly_parted(faces[face]) && view.now.has_two_points(face)) << face;
   for_each_bit(view.now.twice,
                [&](const int line) { view.skin_planes[line] = plane_of(line, *cuts.find_outer(edges[line])); });
-  view.old = cut_lines & ~new_lines;
   return view;
 }
 

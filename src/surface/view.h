@@ -20,6 +20,7 @@ struct View {
   Vec3 lower, upper;            ///< the cell's corners [m]
   grid::CellCuts now;           ///< with the new cuts
   unsigned old = 0;             ///< lines without a new cut
+  unsigned parted_faces = 0;    ///< where a cut has been, and newly parts the skin
   std::array<Plane, 12> planes; ///< by line, where it is cut: of the inner cut
   std::array<grid::CutLabel, 12> labels;
   std::array<Plane, 12> skin_planes; ///< of lines that are cut twice: of the outer cut
@@ -37,6 +38,6 @@ struct View {
   Vec3 inside(const Vec3& p) const;
 };
 
-View look_at(const grid::Grid& grid, const grid::Cuts& cuts, grid::CellId c, unsigned new_lines);
+View look_at(const grid::Grid& grid, const grid::Cuts& cuts, grid::CellId c);
 
 } // namespace kerf::surface

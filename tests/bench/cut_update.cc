@@ -4,8 +4,9 @@
 /// (a cell around an edge that is cut in the step): CPU time of one thread, stage by stage the best of several runs.
 
 #include "base/parallel.h"
-#include "cut/at_skin.h"
+#include "cut/add_cuts.h"
 #include "cut/embed.h"
+#include "cut/open_ends.h"
 #include "cut/passed.h"
 #include "cut/pending.h"
 #include "cut/recut.h"
@@ -27,7 +28,7 @@ namespace {
 
 using namespace kerf;
 
-enum Stage { fit, find, wait, place, split, surface_, passed_, n_stages };
+enum Stage { fit, find, add, place, split, surface_, passed_, n_stages };
 using Seconds = std::array<double, n_stages>;
 
 double cpu_seconds() {
@@ -59,6 +60,7 @@ struct Body {
   cut::EdgeBoxes boxes{grid, complex};
   cut::PendingCuts pending = {};
   cut::PassedCells passed = {};
+  cut::OpenEnds open_ends = {};
 
   std::size_t n_bytes() const {
     return grid.n_bytes() + cuts.n_bytes() + complex.n_bytes() + surface.n_bytes() + index.n_bytes() + boxes.n_bytes() +
@@ -75,13 +77,10 @@ Body make_body(const int n) {
         nodes.push_back({i, j, k});
   grid::Grid grid({}, nodes);
   grid::Cuts cuts(grid);
-  std::vector<grid::EdgeId> skin;
   for (const auto e : ids<grid::EdgeId>(grid.n_edges()))
-    if (const auto& [lower, upper] = grid.ends(e); grid.is_material(lower) != grid.is_material(upper)) {
+    if (const auto& [lower, upper] = grid.ends(e); grid.is_material(lower) != grid.is_material(upper))
       cuts.add(grid, {e, 0.5, Vec3::Unit(grid.axis(e)), grid::skin_label});
-      skin.push_back(e);
-    }
-  surface::place(grid, cuts, skin, {});
+  surface::place(grid, cuts, {});
   Body body{std::move(grid), std::move(cuts)};
   for (Points* points : {&body.v, &body.x_before})
     points->reserve(body.x.capacity());
@@ -117,24 +116,19 @@ struct Tally {
   std::size_t n_touched = 0, n_cut = 0;
 };
 
-void take_in(Body& body, const std::vector<grid::EdgeCut>& released, Tally& tally) {
+void take_in(Body& body, const std::vector<grid::EdgeCut>& released, const std::vector<grid::EdgeId>& ended,
+             Tally& tally) {
   Seconds& s = tally.seconds;
   std::vector<grid::EdgeId> edges;
-  timed(s[wait], [&] {
-    for (const grid::EdgeCut& cut : released) {
-      body.cuts.add(body.grid, cut);
-      edges.push_back(cut.edge);
-    }
+  timed(s[add], [&] {
+    edges = cut::add_cuts(body.grid, body.cuts, body.complex, body.x, released, cut::Front::possible);
+    edges.insert(edges.end(), ended.begin(), ended.end());
   });
   timed(s[passed_], [&] {
     for (const grid::EdgeId e : edges)
       body.passed.remove_around(body.grid, e);
   });
-  timed(s[place], [&] {
-    for (const grid::EdgeId e : cut::end_at_skin(body.grid, body.cuts, body.complex, body.x, edges))
-      edges.push_back(e);
-    surface::place(body.grid, body.cuts, edges, {});
-  });
+  timed(s[place], [&] { surface::place(body.grid, body.cuts, {}); });
   const auto change = timed(s[split], [&] {
     auto result = grid::update_complex(body.grid, body.cuts, edges, body.complex);
     for (Points* points : {&body.x, &body.v, &body.x_before})
@@ -143,6 +137,7 @@ void take_in(Body& body, const std::vector<grid::EdgeCut>& released, Tally& tall
   });
   timed(s[surface_],
         [&] { surface::update_surface(body.grid, body.cuts, body.complex, edges, change, body.surface, body.index); });
+  timed(s[add], [&] { body.open_ends.note(body.grid, body.cuts, edges, 1); });
   tally.n_touched += grid::touched_cells(body.grid, edges).size();
   tally.n_cut += edges.size();
 }
@@ -164,16 +159,18 @@ Tally cut_through(const int n, const Motion motion) {
     const auto found = timed(s[find], [&] {
       return cut::cut_edges(path, body.grid, body.cuts, body.complex, body.x_before, body.x, 1, &body.boxes);
     });
+    std::vector<grid::EdgeId> ended;
     timed(s[passed_], [&] {
       std::vector<std::array<Vec3, 3>> strip;
       cut::add_strip(path.lines[0], path.lines[1], strip);
       body.passed.pass(strip, found.cuts, body.grid, body.cuts, body.complex, body.x, body.boxes, 1);
+      ended = body.open_ends.close(strip, body.pending, body.grid, body.cuts, body.complex, body.x, 1);
     });
-    const auto released = timed(s[wait], [&] {
+    const auto released = timed(s[add], [&] {
       body.pending.push(found.cuts);
       return body.pending.release(body.grid, body.cuts);
     });
-    take_in(body, released, tally);
+    take_in(body, released, ended, tally);
     if (motion == Motion::drift)
       body.x_before = body.x;
   }
@@ -201,7 +198,7 @@ void print(const Body& body, const Tally& tally, const char* const motion) {
   for (int stage = find; stage < n_stages; ++stage)
     total += s[stage];
   std::printf("%8zu %6s %8zu %7zu %7.2f %7.2f %7.2f %7.2f %7.2f %7.2f %7.2f %9.2e %11.3e %9.1f\n", body.grid.n_cells(),
-              motion, tally.n_touched, tally.n_cut, us(s[find]), us(s[wait]), us(s[place]), us(s[split]),
+              motion, tally.n_touched, tally.n_cut, us(s[find]), us(s[add]), us(s[place]), us(s[split]),
               us(s[surface_]), us(s[passed_]), us(total), total, static_cast<double>(tally.n_touched) / total,
               1e9 * s[fit] / n_steps / static_cast<double>(body.complex.n_corners()));
 }
@@ -230,7 +227,7 @@ int main(const int argc, char** const argv) {
   set_n_threads(1);
   std::printf("%d runs (first argument); microseconds of one thread a touched cell\n", n_runs);
   std::printf("%8s %6s %8s %7s %7s %7s %7s %7s %7s %7s %7s %9s %11s %9s\n", "cells", "body", "touched", "cut", "find",
-              "wait", "place", "complex", "surface", "passed", "total", "total s", "cells/s", "fit ns/co");
+              "add", "place", "complex", "surface", "passed", "total", "total s", "cells/s", "fit ns/co");
   std::vector<Memory> sizes;
   for (const int n : {17, 28, 46, 64, 80, 100}) {
     const Body body = make_body(n);

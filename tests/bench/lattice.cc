@@ -26,13 +26,10 @@ double cpu_time() {
 
 support::Body cut_block(const int n) {
   support::Body body = support::block({n, n, n}, 0.01);
-  std::vector<grid::EdgeId> edges;
   for (const auto& cut : support::plane_cuts(body, {Vec3::UnitX(), 0.01 * (0.5 * n + 0.75)}))
-    if (body.grid.position(body.grid.ends(cut.edge)[0])[2] > 0.005 * n) {
+    if (body.grid.position(body.grid.ends(cut.edge)[0])[2] > 0.005 * n)
       body.cuts.add(body.grid, cut);
-      edges.push_back(cut.edge);
-    }
-  surface::place(body.grid, body.cuts, edges, {});
+  surface::place(body.grid, body.cuts, {});
   return body;
 }
 

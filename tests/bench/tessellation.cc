@@ -70,12 +70,8 @@ void measure(const geometry::TriangleMesh& mesh, const double h) {
   const cut::Embedding bare = cut::embed(mesh, h, offset);
   const auto runs = material_runs(bare.grid);
   const double gridding = seconds([&] { grid::Grid::from_runs(bare.grid.lattice(), runs); });
-  std::vector<grid::EdgeId> skin;
-  for (const grid::EdgeCut& cut : bare.cuts.all())
-    skin.push_back(cut.edge);
-
   grid::Cuts cuts = bare.cuts;
-  const double placing = seconds([&] { cuts = bare.cuts; }, [&] { surface::place(bare.grid, cuts, skin, {}); });
+  const double placing = seconds([&] { cuts = bare.cuts; }, [&] { surface::place(bare.grid, cuts, {}); });
   grid::Cuts fitted = cuts;
   const double fitting = seconds([&] { fitted = cuts; }, [&] { cut::fit_skin(mesh, bare.grid, fitted); });
   grid::CellComplex complex;

@@ -1,6 +1,7 @@
 #include "tests/compare/grind.h"
 
 #include "grid/complex.h"
+#include "grid/followed.h"
 #include "pba/region.h"
 
 #include <Eigen/Geometry>
@@ -61,9 +62,19 @@ std::vector<bool> pieces_with_nodes(const grid::CellComplex& complex) {
   return has_node;
 }
 
+/// In shape matching a splinter without a node goes with the node that it follows, rigidly: they are one body.
+void join_splinters(const grid::Grid& grid, const grid::CellComplex& complex,
+                    std::vector<std::uint32_t>& corner_pieces) {
+  for (const auto& [copy, node] : grid::followed_nodes(grid, complex))
+    std::replace(corner_pieces.begin(), corner_pieces.end(),
+                 std::uint32_t(corner_pieces[complex.copies[copy].corners[0].value]),
+                 std::uint32_t(corner_pieces[complex.real_corner[node].value]));
+}
+
 class Grinder {
  public:
-  Grinder(const std::string& backend, const unsigned seed) : random_(seed), world_(free_cube(backend)) {
+  Grinder(const std::string& backend, const unsigned seed)
+    : random_(seed), is_lattice_(backend == "lattice"), world_(free_cube(backend)) {
     set_in_motion(body(), Vec3(0.02, 0.01, -0.03), speed);
     at_first_ = sums(body());
   }
@@ -146,8 +157,12 @@ class Grinder {
 
   /// The piece of each particle: of a phyxel, that of the material around it.
   std::vector<std::uint32_t> pieces() {
-    if (body().state.x.size() == body().complex.n_corners())
-      return physics::corner_pieces(body().complex);
+    if (body().state.x.size() == body().complex.n_corners()) {
+      auto piece = physics::corner_pieces(body().complex);
+      if (is_lattice_)
+        join_splinters(body().grid, body().complex, piece);
+      return piece;
+    }
     const grid::Pieces all = grid::pieces(body().complex);
     std::vector<std::uint32_t> piece;
     for (const Vec3& rest : body().physics->rest())
@@ -174,6 +189,7 @@ class Grinder {
   }
 
   std::mt19937 random_;
+  bool is_lattice_;
   World world_;
   double time_ = 0;
   Sums at_first_;

@@ -1,6 +1,7 @@
 /// Cuts that cross each other below the skin, where an edge keeps the first of them; and where cuts alone part the
 /// skin.
 
+#include "cut/at_skin.h"
 #include "tests/cut/patient.h"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 #include "cut/cut_surface.h"
 
 #include "base/error.h"
-#include "cut/at_skin.h"
+#include "cut/add_cuts.h"
 #include "cut/blade.h"
 #include "tests/support/clipped_box.h"
 #include "tests/support/placed.h"
@@ -36,17 +36,9 @@ struct Resting {
   SweepCuts meet(const Shape& shape) const { return cut_edges({"", shape, 1}, body.grid, body.cuts, complex, x); }
   SweepCuts cut(const Shape& shape) {
     SweepCuts found = meet(shape);
-    std::vector<EdgeId> edges;
-    for (const EdgeCut& cut : found.cuts) {
-      body.cuts.add(body.grid, cut);
-      edges.push_back(cut.edge);
-    }
-    if (!has_end({"", shape, 1}))
-      part_skin(body.grid, body.cuts, edges);
-    else
-      for (const EdgeId e : end_at_skin(body.grid, body.cuts, complex, x, edges))
-        edges.push_back(e);
-    surface::place(body.grid, body.cuts, edges, {});
+    const Front front = has_end({"", shape, 1}) ? Front::possible : Front::none;
+    const auto edges = add_cuts(body.grid, body.cuts, complex, x, found.cuts, front);
+    surface::place(body.grid, body.cuts, {});
     complex = grid::build_complex(body.grid, body.cuts);
     x = grid::rest_positions(body.grid, complex);
     return found;

@@ -2,8 +2,9 @@
 
 /// A body that is cut as scenes cut theirs, in steps, while it stands deformed; and a box to cut.
 
-#include "cut/at_skin.h"
+#include "cut/add_cuts.h"
 #include "cut/cut_surface.h"
+#include "cut/open_ends.h"
 #include "cut/pending.h"
 #include "tests/support/placed.h"
 #include "tests/support/same.h"
@@ -44,56 +45,35 @@ struct Patient {
   void deform(const Map& map) { std::transform(x.begin(), x.end(), x.begin(), map); }
 
   void update(const std::vector<EdgeId>& edges) {
-    surface::place(body.grid, body.cuts, edges, {});
+    surface::place(body.grid, body.cuts, {});
     grid::inherit(grid::update_complex(body.grid, body.cuts, edges, complex), x);
   }
 
-  std::vector<EdgeId> add(const std::vector<EdgeCut>& cuts) {
-    std::vector<EdgeId> edges;
-    for (const EdgeCut& cut : cuts) {
-      body.cuts.add(body.grid, cut);
-      edges.push_back(cut.edge);
-    }
-    return edges;
-  }
-
-  /// With ends inside the body, for all that is known.
-  void cut(const std::vector<EdgeCut>& cuts) {
-    std::vector<EdgeId> edges;
-    for (const bool inner : {true, false}) // whether a cut of the skin goes on depends on those below it
-      for (const EdgeCut& cut : cuts)
-        if (support::is_inner(body, cut.edge) == inner && (inner || goes_on(body.grid, body.cuts, complex, x, cut))) {
-          body.cuts.add(body.grid, cut);
-          edges.push_back(cut.edge);
-        }
-    for (const EdgeId e : end_at_skin(body.grid, body.cuts, complex, x, edges))
-      edges.push_back(e);
-    update(edges);
-  }
-
   void cut_through(const std::vector<EdgeCut>& cuts) {
-    std::vector<EdgeId> edges = add(cuts);
-    part_skin(body.grid, body.cuts, edges);
-    update(edges);
+    update(add_cuts(body.grid, body.cuts, complex, x, cuts, Front::none));
   }
   void cut_through(const Shape& shape, const grid::CutLabel label = 1) {
     cut_through(cut_edges(CutSurface{"", shape, label}, body.grid, body.cuts, complex, x).cuts);
   }
 
-  /// The blade's whole motion, from 0 to 1 s.
+  /// The blade's whole motion, from 0 to 1 s, and a step of rest; until nothing waits.
   void pass(const Blade& blade, const int n_steps, const Release release) {
     PendingCuts pending;
-    for (int k = 0; k < n_steps || pending.size() > 0; ++k) {
-      if (k < n_steps) {
-        const BladePath way = path(blade, double(k) / n_steps, double(k + 1) / n_steps);
-        const auto found = cut_edges(way, body.grid, body.cuts, complex, x, x, blade.label).cuts;
-        if (release == Release::at_once)
-          cut(found);
-        else
-          pending.push(found);
-      }
+    OpenEnds ends;
+    for (int k = 0; k <= n_steps || pending.size() > 0; ++k) {
+      std::vector<EdgeCut> found;
+      const double t0 = double(k) / n_steps, t1 = double(k + 1) / n_steps;
+      if (k < n_steps)
+        found = cut_edges(path(blade, t0, t1), body.grid, body.cuts, complex, x, x, blade.label).cuts;
       if (release == Release::queued)
-        cut(pending.release(body.grid, body.cuts));
+        pending.push(found);
+      const auto ended = ends.close(whereabouts(blade, t0, t1), pending, body.grid, body.cuts, complex, x, blade.label);
+      if (release == Release::queued)
+        found = pending.release(body.grid, body.cuts);
+      std::vector<EdgeId> edges = add_cuts(body.grid, body.cuts, complex, x, found, Front::possible);
+      edges.insert(edges.end(), ended.begin(), ended.end());
+      update(edges);
+      ends.note(body.grid, body.cuts, edges, blade.label);
     }
   }
 

@@ -24,10 +24,6 @@ Body make_bar(const double h, const Vec3& offset) {
   cut::Embedding embedding = cut::embed(mesh, h, offset);
   Body bar{std::move(embedding.grid), std::move(embedding.cuts)};
   bar.cut({});
-  std::vector<grid::EdgeId> skin;
-  for (const grid::EdgeCut& c : bar.cuts.all())
-    skin.push_back(c.edge);
-  surface::place(bar.grid, bar.cuts, skin, {});
   return bar;
 }
 

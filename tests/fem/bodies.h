@@ -44,12 +44,9 @@ struct Body {
 
   /// Adds cuts, places the vertices they make and numbers the copies anew.
   void cut(const std::vector<grid::EdgeCut>& added) {
-    std::vector<grid::EdgeId> edges;
-    for (const grid::EdgeCut& c : added) {
+    for (const grid::EdgeCut& c : added)
       cuts.add(grid, c);
-      edges.push_back(c.edge);
-    }
-    surface::place(grid, cuts, edges, {});
+    surface::place(grid, cuts, {});
     complex = grid::build_complex(grid, cuts);
   }
 

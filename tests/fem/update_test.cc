@@ -49,7 +49,7 @@ std::vector<grid::CopyId> cut_some(Body& body, const double probability, Draw& d
       body.cuts.add(body.grid, {e, draw(0.1, 0.9), draw.vector().normalized(), 1});
       edges.push_back(e);
     }
-  surface::place(body.grid, body.cuts, edges, {});
+  surface::place(body.grid, body.cuts, {});
   const auto change = grid::update_complex(body.grid, body.cuts, edges, body.complex);
   return changed_copies(body.grid, body.complex, change, edges);
 }

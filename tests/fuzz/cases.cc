@@ -120,7 +120,7 @@ class Run {
     }
     drain();
     strip_.clear(); // all blades are gone
-    cut(subject_, {}, strip_, tally_);
+    cut(subject_, {}, strip_, pending_, tally_);
     require_untouched_elsewhere();
     require_same_in_any_order();
     outcome_.digest = digest(subject_, outcome_.digest);
@@ -183,7 +183,7 @@ class Run {
       cut(subject_, cuts, front, tally_);
   }
 
-  void cut_swept(const std::vector<grid::EdgeCut>& cuts) { cut(subject_, cuts, strip_, tally_); }
+  void cut_swept(const std::vector<grid::EdgeCut>& cuts) { cut(subject_, cuts, strip_, pending_, tally_); }
 
   void drain() {
     while (pending_.size() > 0) {

@@ -1,7 +1,5 @@
 #include "tests/fuzz/subject.h"
 
-#include "cut/at_skin.h"
-#include "cut/nodes_apart.h"
 #include "tests/fuzz/invariants.h"
 #include "tests/support/placed.h"
 #include "tests/support/same.h"
@@ -88,7 +86,7 @@ void follow_cuts(Subject& subject, const grid::Cuts& cuts, const std::span<const
   tally.n_rinds += cuts.n_cut_twice() - subject.cuts.n_cut_twice();
 
   subject.cuts = cuts;
-  const auto placed = surface::place(grid, subject.cuts, edges, {});
+  const auto placed = surface::place(grid, subject.cuts, {});
   const auto before = subject.complex;
   const auto change = grid::update_complex(grid, subject.cuts, edges, subject.complex);
   const auto parents = all_parents(change);
@@ -118,30 +116,6 @@ bool is_of_skin(const grid::Grid& grid, const grid::EdgeId e) {
 
 bool is_cut_by_blade(const grid::Grid& grid, const grid::Cuts& cuts, const grid::EdgeId e) {
   return cuts.is_cut_twice(e) || (cuts.is_cut(e) && !is_of_skin(grid, e));
-}
-
-/// Adds new cuts to `cuts`, and what they do to the skin, as scene/body.cc does; returns the edges.
-std::vector<grid::EdgeId> add(const Subject& subject, const std::span<const grid::EdgeCut> new_cuts, const Front front,
-                              grid::Cuts& cuts) {
-  const grid::Grid& grid = subject.grid();
-  std::vector<grid::EdgeId> edges;
-  for (const bool of_skin : {false, true}) // whether a cut of the skin goes on depends on those below it
-    for (const auto& cut : new_cuts) {
-      if (is_of_skin(grid, cut.edge) != of_skin)
-        continue;
-      if (of_skin && front == Front::possible && !cut::goes_on(grid, cuts, subject.complex, subject.x, cut))
-        continue;
-      cuts.add(grid, cut);
-      edges.push_back(cut.edge);
-    }
-  if (front == Front::none)
-    cut::part_skin(grid, cuts, edges);
-  else
-    for (const auto e : cut::end_at_skin(grid, cuts, subject.complex, subject.x, edges))
-      edges.push_back(e);
-  for (const auto e : cut::keep_nodes_apart(grid, cuts, edges))
-    edges.push_back(e);
-  return edges;
 }
 
 class Fnv {
@@ -194,21 +168,21 @@ Subject make_subject(const Specimen& specimen, Tally& tally) {
 
 void cut(Subject& subject, const std::span<const grid::EdgeCut> new_cuts, const Front front, Tally& tally) {
   grid::Cuts cuts = subject.cuts;
-  const auto edges = add(subject, new_cuts, front, cuts);
+  const auto edges = cut::add_cuts(subject.grid(), cuts, subject.complex, subject.x, new_cuts, front);
   if (!edges.empty())
     follow_cuts(subject, cuts, edges, tally);
 }
 
 void cut(Subject& subject, const std::span<const grid::EdgeCut> new_cuts,
-         const std::span<const std::array<Vec3, 3>> strip, Tally& tally) {
+         const std::span<const std::array<Vec3, 3>> strip, const cut::PendingCuts& pending, Tally& tally) {
   const grid::Grid& grid = subject.grid();
   grid::Cuts cuts = subject.cuts;
   std::vector<grid::EdgeId> ended;
   for (auto& [label, ends] : subject.open_ends)
-    for (const auto e : ends.close(strip, grid, cuts, subject.complex, subject.x, label))
+    for (const auto e : ends.close(strip, pending, grid, cuts, subject.complex, subject.x, label))
       ended.push_back(e);
   tally.n_ended += ended.size();
-  auto edges = add(subject, new_cuts, Front::possible, cuts);
+  auto edges = cut::add_cuts(grid, cuts, subject.complex, subject.x, new_cuts, Front::possible);
   edges.insert(edges.end(), ended.begin(), ended.end());
   if (edges.empty())
     return;

@@ -2,6 +2,7 @@
 
 /// A body under test: what scene/body.cc keeps of a body, without physics, so that a test can put its corners anywhere.
 
+#include "cut/add_cuts.h"
 #include "cut/cut_surface.h"
 #include "cut/open_ends.h"
 #include "surface/placement.h"
@@ -72,16 +73,16 @@ struct Subject {
 /// At rest; every invariant is checked (invariants.h).
 Subject make_subject(const Specimen& specimen, Tally& tally);
 
-/// Whether cuts may end inside the body.
-enum class Front { none, possible };
+using cut::Front;
 
 /// Cuts these edges at once, and what goes with them at the skin, carries the corners over, and checks every
 /// invariant. Throws Violation.
 void cut(Subject& subject, std::span<const grid::EdgeCut> cuts, Front front, Tally& tally);
 
-/// The same for a step in which blades sweep `strip` (triangles [m]): cuts that it has left come to their end.
+/// The same for a step in which blades sweep `strip` (triangles [m]): cuts that it has left come to their end, but
+/// where others wait.
 void cut(Subject& subject, std::span<const grid::EdgeCut> cuts, std::span<const std::array<Vec3, 3>> strip,
-         Tally& tally);
+         const cut::PendingCuts& pending, Tally& tally);
 
 /// The same with seams that are known: no further edges are cut.
 void cut(Subject& subject, const grid::histories::Step& step, Tally& tally);

@@ -2,7 +2,7 @@
 
 /// A body that is cut again and again, with all that a backend sees of it.
 
-#include "cut/nodes_apart.h"
+#include "cut/add_cuts.h"
 #include "dynamics/explicit_steppers.h"
 #include "physics/physics.h"
 #include "tests/support/placed.h"
@@ -21,17 +21,9 @@ struct GrowingCut {
 
   /// Cuts edges, and lets physics and state follow. Returns what has changed.
   grid::ComplexChange cut(const std::vector<grid::EdgeCut>& cuts, Physics& physics, dynamics::State& state) {
-    std::vector<grid::EdgeId> edges;
-    for (const auto& c : cuts) {
-      body.cuts.add(body.grid, c);
-      edges.push_back(c.edge);
-    }
-    for (const auto e :
-         cut::end_at_skin(body.grid, body.cuts, complex, grid::rest_positions(body.grid, complex), edges))
-      edges.push_back(e);
-    for (const auto e : cut::keep_nodes_apart(body.grid, body.cuts, edges))
-      edges.push_back(e);
-    surface::place(body.grid, body.cuts, edges, {});
+    const auto edges = cut::add_cuts(body.grid, body.cuts, complex, grid::rest_positions(body.grid, complex), cuts,
+                                     cut::Front::possible);
+    surface::place(body.grid, body.cuts, {});
     const auto change = grid::update_complex(body.grid, body.cuts, edges, complex);
     surface::update_surface(body.grid, body.cuts, complex, edges, change, surface, index);
     physics.follow_cut(seen(), {edges, change}, state);

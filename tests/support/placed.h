@@ -2,7 +2,7 @@
 
 /// Embedded bodies with their skin placed, cuts with their vertices placed, and what tests ask of them.
 
-#include "cut/at_skin.h"
+#include "cut/add_cuts.h"
 #include "cut/embed.h"
 #include "cut/fit.h"
 #include "geometry/solid.h"
@@ -24,17 +24,8 @@ inline geometry::TriangleMesh liver_mesh() {
   return geometry::require_solid(geometry::read_mesh(path, 1e-3), path);
 }
 
-/// Places the vertices at cuts that the body holds already.
-inline surface::PlacementCounts place(Body& body, const std::span<const grid::EdgeCut> cuts) {
-  std::vector<grid::EdgeId> edges;
-  for (const auto& cut : cuts)
-    edges.push_back(cut.edge);
-  return surface::place(body.grid, body.cuts, edges, {});
-}
-
 inline Body with_placed_skin(Body body) {
-  const std::vector<grid::EdgeCut> skin(body.cuts.all().begin(), body.cuts.all().end());
-  place(body, skin);
+  surface::place(body.grid, body.cuts, {});
   return body;
 }
 
@@ -50,18 +41,13 @@ inline Body embedded(const geometry::TriangleMesh& mesh, const double h, const V
 inline surface::PlacementCounts cut(Body& body, const std::span<const grid::EdgeCut> cuts) {
   for (const auto& cut : cuts)
     body.cuts.add(body.grid, cut);
-  return place(body, cuts);
+  return surface::place(body.grid, body.cuts, {});
 }
 
 /// All that a surface without an end inside the body cuts.
 inline surface::PlacementCounts cut_through(Body& body, const std::span<const grid::EdgeCut> cuts) {
-  std::vector<grid::EdgeId> edges;
-  for (const auto& cut : cuts) {
-    body.cuts.add(body.grid, cut);
-    edges.push_back(cut.edge);
-  }
-  cut::part_skin(body.grid, body.cuts, edges);
-  return place(body, cuts);
+  cut::add_cuts(body.grid, body.cuts, {}, {}, cuts, cut::Front::none);
+  return surface::place(body.grid, body.cuts, {});
 }
 
 using grid::volume;

@@ -24,7 +24,7 @@ using support::uniform;
 /// The middle of a block: a cell with material all around, its lowest node at (2, 2, 2).
 class Inside : public testing::Test {
  protected:
-  Body body = support::block({4, 4, 4});
+  Body body = support::with_placed_skin(support::block({4, 4, 4}));
   CellId cell = *body.grid.find_cell({2, 2, 2});
 
   EdgeId edge(const int i, const int j, const int k, const int axis) const {
@@ -58,7 +58,7 @@ TEST_F(Inside, OneCutProjectsTheCentres) {
 TEST_F(Inside, ASmoothCutTakesTheMiddleOfTheBezierCurve) {
   // A circle around (0, 2.5): the face's lines y = 2 and y = 3 cut it. Tangents meet at the pole of the chord.
   for (const double radius : {1.5, 2.4, 10.0}) {
-    body = support::block({4, 4, 4});
+    body = support::with_placed_skin(support::block({4, 4, 4}));
     const double x = 2.4, half_chord = 0.5, to_chord = std::sqrt(radius * radius - half_chord * half_chord);
     const Vec3 middle(x - to_chord, 2.5, 2);
     const auto normal = [&](const double y) { return Vec3(to_chord, y - 2.5, 0).normalized(); };
@@ -73,7 +73,7 @@ TEST_F(Inside, TheNormalsSignHasNoMeaning) {
   const Vec3 a = Vec3(1, 0.2, 0).normalized(), b = Vec3(1, -0.1, 0).normalized();
   cut({{edge(2, 2, 2, 0), 0.4, a, 1}, {edge(2, 3, 2, 0), 0.45, b, 1}});
   const Vec3 with = face_point();
-  body = support::block({4, 4, 4});
+  body = support::with_placed_skin(support::block({4, 4, 4}));
   cut({{edge(2, 2, 2, 0), 0.4, -a, 1}, {edge(2, 3, 2, 0), 0.45, b, 1}});
   expect_near(with, face_point());
 }
@@ -92,17 +92,18 @@ TEST_F(Inside, TheSharpAngleDecides) {
     body.cuts.add(body.grid, c);
   // The planes' intersection: from (2.4, 2) along (-sin, cos) to y = 2.5.
   const Vec3 meeting(2.4 - 0.5 * std::tan(lean), 2.5, 2);
-  const std::vector<EdgeId> edges = {cuts[0].edge, cuts[1].edge};
-  place(body.grid, body.cuts, edges, {.sharp_angle = 45});
+  const grid::Cuts unplaced = body.cuts;
+  place(body.grid, body.cuts, {.sharp_angle = 45});
   expect_near(face_point(), 0.5 * meeting + 0.5 * Vec3(2.4, 2.5, 2));
-  place(body.grid, body.cuts, edges, {.sharp_angle = 35});
+  body.cuts = unplaced;
+  place(body.grid, body.cuts, {.sharp_angle = 35});
   expect_near(face_point(), meeting);
 }
 
 TEST_F(Inside, APlaneIsMetExactly) {
   Random random(11);
   for (int i = 0; i < 200; ++i) {
-    body = support::block({4, 4, 4});
+    body = support::with_placed_skin(support::block({4, 4, 4}));
     const Vec3 normal = support::random_direction(random);
     const support::Plane plane{normal, normal.dot(Vec3(2.5, 2.5, 2.5) + 0.3 * support::random_vector(random))};
     auto cuts = support::plane_cuts(body, plane);
@@ -150,7 +151,7 @@ TEST_F(Inside, LaterCutsOfASplitCellStayOnAllPlanes) {
 TEST_F(Inside, ATiltedSecondPlaneIsMetAlongTheFirst) {
   Random random(12);
   for (int i = 0; i < 100; ++i) {
-    body = support::block({4, 4, 4});
+    body = support::with_placed_skin(support::block({4, 4, 4}));
     std::vector<EdgeCut> first;
     for (const EdgeId e : body.grid.edges(cell))
       if (body.grid.axis(e) == 0)
@@ -215,7 +216,7 @@ TEST_F(Figure215, E_ACrossCutTakesTheIntersectionInEitherOrder) {
   const std::vector<EdgeCut> along = {{edge(2, 2, 2, 1), at(n, {2, 2, 2}, 1), n, 2},
                                       {edge(3, 2, 2, 1), at(n, {3, 2, 2}, 1), n, 2}};
   for (const bool turned : {false, true}) {
-    body = support::block({4, 4, 4});
+    body = support::with_placed_skin(support::block({4, 4, 4}));
     cut(turned ? along : across);
     cut(turned ? across : along);
     expect_near(face_point(), {2.5, 2.5, 2});

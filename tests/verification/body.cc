@@ -39,18 +39,14 @@ grid::EdgeCut leave(const grid::Grid& grid, const grid::EdgeId e, const std::vec
   return {e, goes_up ? first : 1 - first, normal, grid::skin_label};
 }
 
-void place(Body& body, const std::span<const grid::EdgeCut> cuts) {
-  std::vector<grid::EdgeId> edges;
-  for (const auto& cut : cuts)
-    edges.push_back(cut.edge);
-  surface::place(body.grid, body.cuts, edges, {});
+void place(Body& body) {
+  surface::place(body.grid, body.cuts, {});
   body.complex = grid::build_complex(body.grid, body.cuts);
 }
 
 Body placed(support::Body&& made) {
   Body body{std::move(made.grid), std::move(made.cuts), {}};
-  const std::vector<grid::EdgeCut> skin(body.cuts.all().begin(), body.cuts.all().end());
-  place(body, skin);
+  place(body);
   return body;
 }
 
@@ -92,7 +88,7 @@ void cut(Body& body, const support::Plane& plane, const std::function<bool(const
   }
   for (const auto& one : added)
     body.cuts.add(body.grid, one);
-  place(body, added);
+  place(body);
 }
 
 Points traction_forces(const Body& body, const std::function<Vec3(const SurfacePoint&)>& traction) {
