@@ -2,6 +2,7 @@
 
 #include "grid/material.h"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
 #include <deal.II/base/quadrature_lib.h>
@@ -40,6 +41,18 @@ void add(Moments& m, const grid::Tetrahedron& t) {
   }
 }
 
+/// Integrals of the products of 1, x, y, xy, z, ..: of which trilinear fields are made.
+using Products = Eigen::Matrix<double, 8, 8>;
+
+Products products(const Moments& m) {
+  const auto power = [](const int a, const int b, const int axis) { return (a >> axis & 1) + (b >> axis & 1); };
+  Products result;
+  for (int a = 0; a < 8; ++a)
+    for (int b = 0; b < 8; ++b)
+      result(a, b) = m[power(a, b, 0) + 3 * power(a, b, 1) + 9 * power(a, b, 2)];
+  return result;
+}
+
 } // namespace
 
 Moments full_cube_moments() {
@@ -59,11 +72,28 @@ Moments octant_moments(const grid::Grid& grid, const grid::Cuts& cuts, const gri
   return m;
 }
 
+Moments without_negative_squares(const Moments& m) {
+  Moments spread = full_cube_moments();
+  for (double& moment : spread)
+    moment *= m[0];
+  using Solver = Eigen::GeneralizedSelfAdjointEigenSolver<Products>;
+  const double least = Solver(products(m), products(spread), Eigen::EigenvaluesOnly).eigenvalues()[0];
+  if (least >= 0)
+    return m;
+  const double part = least / (least - 1); // least (1 - part) + part = 0
+  Moments result;
+  for (int n = 0; n < 27; ++n)
+    result[n] = (1 - part) * m[n] + part * spread[n];
+  return result;
+}
+
 Moments material_moments(const grid::Grid& grid, const grid::Cuts& cuts, const grid::Copy& copy) {
   constexpr double least = 1e-12; // far below any sliver that is material
   Moments m{};
   grid::for_each_tetrahedron(grid, cuts, copy, [&](const grid::Tetrahedron& t, int) { add(m, t); });
-  if (copy.nodes != 0 || m[0] >= least)
+  if (m[0] >= least)
+    return grid::lines_under_skin(grid, cuts, copy) == 0 ? m : without_negative_squares(m);
+  if (copy.nodes != 0)
     return m;
   m = full_cube_moments();
   for (double& moment : m)

@@ -3,6 +3,9 @@
 #include "grid/cube.h"
 #include "tests/fem/bodies.h"
 #include "tests/fem/quadrature.h"
+#include "tests/support/placed.h"
+
+#include <Eigen/Eigenvalues>
 
 #include <gtest/gtest.h>
 
@@ -74,6 +77,88 @@ TEST(Moments, OfOctantsAgreeWithAnotherRule) {
         EXPECT_LT(distance(octant_moments(body.grid, body.cuts, cell, 1u << v), by_quadrature(rule)), 1e-14);
       }
     }
+}
+
+using Products = Eigen::Matrix<double, 8, 8>;
+
+/// Integrals of the products of two shape functions.
+Products products_of_shapes(const Moments& m) {
+  Products result = Products::Zero();
+  for (int a = 0; a < 8; ++a)
+    for (int b = 0; b < 8; ++b)
+      for (int n = 0; n < 27; ++n) {
+        double factor = 1;
+        for (int axis = 0, power = n; axis < 3; ++axis, power /= 3) {
+          const std::array<double, 2> p = (a >> axis & 1) != 0 ? std::array{0.0, 1.0} : std::array{1.0, -1.0},
+                                      q = (b >> axis & 1) != 0 ? std::array{0.0, 1.0} : std::array{1.0, -1.0};
+          factor *= std::array{p[0] * q[0], p[0] * q[1] + p[1] * q[0], p[1] * q[1]}[power % 3];
+        }
+        result(a, b) += factor * m[n];
+      }
+  return result;
+}
+
+double least_square(const Moments& m) {
+  return Eigen::SelfAdjointEigenSolver<Products>(products_of_shapes(m), Eigen::EigenvaluesOnly).eigenvalues()[0];
+}
+
+/// Of the box between two corners.
+Moments of_box(const Vec3& lower, const Vec3& upper) {
+  Moments m;
+  for (int n = 0; n < 27; ++n) {
+    m[n] = 1;
+    for (int axis = 0, power = n; axis < 3; ++axis, power /= 3) {
+      const int k = power % 3 + 1;
+      m[n] *= (std::pow(upper[axis], k) - std::pow(lower[axis], k)) / k;
+    }
+  }
+  return m;
+}
+
+TEST(Moments, LoseNoMoreThanTheirNegativeSquares) {
+  const Moments slab = of_box(Vec3::Zero(), {1, 1, 0.2});
+  EXPECT_EQ(without_negative_squares(slab), slab);
+  // A box less another one that reaches beyond it.
+  const Moments outer = of_box(Vec3::Zero(), {0.6, 1, 1}), inner = of_box({0.4, 0, 0}, {0.9, 1, 0.8});
+  Moments folded;
+  for (int n = 0; n < 27; ++n)
+    folded[n] = outer[n] - inner[n];
+  ASSERT_LT(least_square(folded), -1e-3);
+  const Moments m = without_negative_squares(folded);
+  EXPECT_DOUBLE_EQ(m[0], folded[0]);
+  EXPECT_NEAR(least_square(m), 0, 1e-15);
+}
+
+TEST(Moments, HaveNoNegativeSquaresWhateverIsCutAtTheSkin) {
+  support::Random random(4);
+  int n_folded = 0, n_under_skin = 0;
+  for (int i = 0; i < 15; ++i) {
+    const Vec3 offset = 0.5 * (support::random_direction(random) + Vec3::Ones());
+    auto body = support::embedded(geometry::sphere_mesh(0.4, Vec3::Constant(0.5), 2), 0.15, offset);
+    for (grid::CutLabel label = 1; label <= 3; ++label) {
+      const Vec3 normal = support::random_direction(random);
+      const Vec3 through = Vec3::Constant(0.5) + 0.2 * support::random_vector(random);
+      support::cut_through(body, support::plane_cuts(body, {normal, normal.dot(through)}, label));
+    }
+    const auto complex = grid::build_complex(body.grid, body.cuts);
+    for (const grid::Copy& copy : complex.copies) {
+      const Moments m = material_moments(body.grid, body.cuts, copy);
+      EXPECT_GT(least_square(m), -1e-15);
+      if (grid::lines_under_skin(body.grid, body.cuts, copy) == 0)
+        continue;
+      Moments signed_ = {};
+      grid::for_each_tetrahedron(body.grid, body.cuts, copy, [&](const grid::Tetrahedron& t, int) {
+        const Moments of_tetrahedron = by_quadrature(tetrahedron_rule(t, 5));
+        for (int n = 0; n < 27; ++n)
+          signed_[n] += of_tetrahedron[n];
+      });
+      EXPECT_NEAR(m[0], std::max(signed_[0], 1e-12), 1e-13);
+      ++n_under_skin;
+      n_folded += least_square(signed_) < -1e-10;
+    }
+  }
+  EXPECT_GT(n_under_skin, 500);
+  EXPECT_GT(n_folded, 0);
 }
 
 } // namespace
