@@ -136,7 +136,7 @@ class Ends {
       const int line = static_cast<int>(std::find(edges.begin(), edges.end(), cut.edge) - edges.begin());
       for (int face = 0; face < cube::n_faces; ++face)
         for (const SkinArc& arc : grid::skin_arcs(face, cell.material)) {
-          if (arc.lines[0] != line && arc.lines[1] != line)
+          if ((arc.lines[0] != line && arc.lines[1] != line) || cell.seams[face] == Seam::parted)
             continue;
           const auto way_out = leave(c, face, line, arc, plane);
           if (cut_beside(c, cell, arc, cut.label) != 0 || (way_out && stays_below(c, cell, arc, *way_out)))
