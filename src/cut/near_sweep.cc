@@ -41,7 +41,8 @@ std::vector<Patch> patches(const BladePath& path) {
 
 NearSweep::NearSweep(std::vector<Patch> patches) : patches_(std::move(patches)), tree_(boxes_around(patches_)) {
   for (const Patch& patch : patches_) {
-    axes_.push_back(axes_of(patch));
+    auto& axes = axes_.emplace_back();
+    std::ranges::transform(axes_of(patch), axes.begin(), [&](const Vec3& axis) { return Axis{axis, {patch, axis}}; });
     for (const Vec3& p : patch) {
       reach_.lower = reach_.lower.cwiseMin(p);
       reach_.upper = reach_.upper.cwiseMax(p);
@@ -59,7 +60,7 @@ bool NearSweep::may_be_in(const Box& box) const {
 
 bool NearSweep::may_meet(const std::size_t i, const Box& box) const {
   return std::none_of(axes_[i].begin(), axes_[i].end(),
-                      [&](const Vec3& axis) { return are_apart(patches_[i], box, axis); });
+                      [&](const Axis& a) { return are_apart(a.patch, Interval(box, a.axis), a.axis); });
 }
 
 } // namespace kerf::cut

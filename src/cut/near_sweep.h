@@ -37,6 +37,11 @@ class NearSweep {
   bool may_be_in(const Box& box) const;
 
  private:
+  struct Axis {
+    Vec3 axis;
+    Interval patch;
+  };
+
   /// Most boxes are not: told without a call.
   bool is_in_reach(const Box& box) const {
     for (int axis = 0; axis < 3; ++axis)
@@ -47,7 +52,7 @@ class NearSweep {
   bool may_meet(std::size_t i, const Box& box) const;
 
   std::vector<Patch> patches_;
-  std::vector<std::array<Vec3, 4>> axes_; // by patch: its normal, and at right angles to its first side
+  std::vector<std::array<Axis, 4>> axes_; // by patch: its normal, and at right angles to its first side
   geometry::BoxTree tree_;
   Box reach_{Vec3::Constant(1e300), Vec3::Constant(-1e300)};
 };

@@ -14,20 +14,29 @@ namespace kerf::cut {
 
 namespace {
 
-using Polygon = std::vector<Vec3>;
+/// A triangle that is clipped by the sides of a tetrahedron: convex, so that each side adds a vertex at most.
+struct Polygon {
+  int n = 0;
+  std::array<Vec3, 7> vertices;
+
+  void push_back(const Vec3& p) {
+    if (n < 7) // round-off may make a flat one seem to bend
+      vertices[n++] = p;
+  }
+};
 
 /// The part of a convex polygon above the plane n . p = d.
-void clip(Polygon& polygon, const Vec3& n, const double d) {
+Polygon clipped(const Polygon& polygon, const Vec3& n, const double d) {
   Polygon kept;
-  for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const Vec3 &p = polygon[i], &q = polygon[(i + 1) % polygon.size()];
+  for (int i = 0; i < polygon.n; ++i) {
+    const Vec3 &p = polygon.vertices[i], &q = polygon.vertices[(i + 1) % polygon.n];
     const double a = n.dot(p) - d, b = n.dot(q) - d;
     if (a > 0)
       kept.push_back(p);
     if ((a > 0) != (b > 0))
       kept.push_back(p + a / (a - b) * (q - p));
   }
-  polygon = std::move(kept);
+  return kept;
 }
 
 bool meets(const std::array<Vec3, 3>& triangle, const grid::Tetrahedron& tetrahedron) {
@@ -39,23 +48,29 @@ bool meets(const std::array<Vec3, 3>& triangle, const grid::Tetrahedron& tetrahe
   Polygon polygon;
   for (const Vec3& p : triangle)
     polygon.push_back(p - middle);
-  for (int i = 0; i < 4 && !polygon.empty(); ++i) {
+  for (int i = 0; i < 4 && polygon.n > 0; ++i) {
     const Vec3 &a = v[(i + 1) % 4], &b = v[(i + 2) % 4], &c = v[(i + 3) % 4];
     const Vec3 n = (b - a).cross(c - a);
     const double d = n.dot(a); // the middle is at 0
     if (d == 0)
       return false; // flat
-    clip(polygon, d < 0 ? n : Vec3(-n), -std::abs(d));
+    polygon = clipped(polygon, d < 0 ? n : Vec3(-n), -std::abs(d));
   }
-  return !polygon.empty();
+  return polygon.n > 0;
 }
 
 /// Finds the cells in some blocks that a strip passes.
 class Search {
  public:
-  Search(const std::span<const std::array<Vec3, 3>> strip, const grid::Grid& grid, const grid::Cuts& cuts,
-         const grid::CellComplex& complex, const Points& x, const grid::CutLabel label)
-    : near_(patches(strip)), grid_(grid), cuts_(cuts), complex_(complex), x_(x), label_(label) {}
+  Search(const std::span<const std::array<Vec3, 3>> strip, const std::span<const grid::EdgeCut> found,
+         const grid::Grid& grid, const grid::Cuts& cuts, const grid::CellComplex& complex, const Points& x,
+         const grid::CutLabel label)
+    : near_(patches(strip)), grid_(grid), cuts_(cuts), complex_(complex), x_(x), label_(label) {
+    std::vector<grid::EdgeId> edges;
+    for (const grid::EdgeCut& cut : found)
+      edges.push_back(cut.edge);
+    met_ = grid::touched_cells(grid, edges);
+  }
 
   /// Boxes hold the ends of edges alone; other corners of the cells may lie beside them.
   bool is_near(const EdgeBoxes::Block& block) const {
@@ -63,26 +78,25 @@ class Search {
     return near_.may_be_in({block.box.lower - slack, block.box.upper + slack});
   }
 
-  /// `room`: no corner of the cell lies further from another [m].
-  bool is_near(const grid::CellId cell, const double room) const {
-    const Vec3& corner = x_[complex_.copies[complex_.first_copy[cell]].corners[0].value];
-    return ((near_.reach().lower - corner).array() <= room).all() &&
-           ((corner - near_.reach().upper).array() <= room).all();
-  }
-
-  bool passes(const grid::CellId cell) const {
+  /// `room`: no corner of a copy lies further from the middle between its first and its last one [m]. That is 1.5 of the
+  /// longest edge at most, by any way along three edges.
+  bool passes(const grid::CellId cell, const double room) const {
     for (const grid::CopyId c : complex_.copies_of(cell)) {
       const grid::Copy& copy = complex_.copies[c];
+      const Vec3 middle = 0.5 * (x_[copy.corners[0].value] + x_[copy.corners[7].value]);
+      if (((near_.reach().lower - middle).array() > room).any() ||
+          ((middle - near_.reach().upper).array() > room).any())
+        continue;
       std::array<Vec3, 8> corners;
       for (int v = 0; v < 8; ++v)
         corners[v] = x_[copy.corners[v].value];
       bool found = false;
       near_.for_each(geometry::box_around(corners), [&](const Patch& patch) {
         const std::array<Vec3, 3> triangle = {patch[0], patch[1], patch[2]};
-        found = found || (are_parted(corners, triangle) && passes(copy, corners, triangle));
+        found = found || (are_parted(corners, triangle) && !is_cut_by_label(cell) && passes(copy, corners, triangle));
       });
       if (found)
-        return !is_cut_by_label(cell);
+        return true;
     }
     return false;
   }
@@ -94,7 +108,22 @@ class Search {
     return !are_apart(corners, triangle, normal);
   }
 
+  /// Do the vertices lie on both sides, where heights are trilinear?
+  static bool are_parted(const std::array<double, 8>& heights, const grid::Tetrahedron& tetrahedron) {
+    int n_above = 0;
+    for (const Vec3& p : tetrahedron) {
+      std::array<double, 4> of_x;
+      for (int i = 0; i < 4; ++i)
+        of_x[i] = heights[2 * i] + p[0] * (heights[2 * i + 1] - heights[2 * i]);
+      const double lower = of_x[0] + p[1] * (of_x[1] - of_x[0]), upper = of_x[2] + p[1] * (of_x[3] - of_x[2]);
+      n_above += lower + p[2] * (upper - lower) > 0;
+    }
+    return n_above != 0 && n_above != 4;
+  }
+
   bool is_cut_by_label(const grid::CellId cell) const {
+    if (std::ranges::binary_search(met_, cell, {}, &grid::TouchedCell::cell))
+      return true;
     return std::ranges::any_of(grid_.edges(cell), [&](const grid::EdgeId e) {
       const grid::EdgeCut* const cut = cuts_.find(e);
       return cut && cut->label == label_;
@@ -102,9 +131,13 @@ class Search {
   }
 
   bool passes(const grid::Copy& copy, const std::array<Vec3, 8>& corners, const std::array<Vec3, 3>& triangle) const {
+    const Vec3 normal = (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]);
+    std::array<double, 8> heights;
+    for (int v = 0; v < 8; ++v)
+      heights[v] = normal.dot(corners[v] - triangle[0]);
     bool found = false;
     grid::for_each_tetrahedron(grid_, cuts_, copy, [&](const grid::Tetrahedron& rest, int) {
-      if (found)
+      if (found || !are_parted(heights, rest))
         return;
       grid::Tetrahedron now;
       for (int i = 0; i < 4; ++i) {
@@ -123,6 +156,7 @@ class Search {
   const grid::CellComplex& complex_;
   const Points& x_;
   grid::CutLabel label_;
+  std::vector<grid::TouchedCell> met_; // whose edges are cut now
 };
 
 } // namespace
@@ -132,20 +166,13 @@ void PassedCells::pass(const std::span<const std::array<Vec3, 3>> strip, const s
                        const Points& x, const EdgeBoxes& boxes, const grid::CutLabel label) {
   if (strip.empty())
     return;
-  std::vector<grid::EdgeId> edges;
-  for (const grid::EdgeCut& cut : found)
-    edges.push_back(cut.edge);
-  const auto met = grid::touched_cells(grid, edges);
-  const auto is_met = [&](const grid::CellId c) {
-    return std::ranges::binary_search(met, c, {}, &grid::TouchedCell::cell);
-  };
-  const Search search(strip, grid, cuts, complex, x, label);
+  const Search search(strip, found, grid, cuts, complex, x, label);
   const auto blocks = boxes.blocks([&](const EdgeBoxes::Block& block) { return search.is_near(block); });
   std::vector<std::vector<grid::CellId>> passed(blocks.size());
   parallel_for(blocks.size(), [&](const std::size_t k) {
-    const double room = 4 * boxes.block(blocks[k]).longest;
+    const double room = 2 * boxes.block(blocks[k]).longest;
     boxes.for_each_cell(blocks[k], [&](const grid::CellId c) {
-      if (search.is_near(c, room) && !is_met(c) && search.passes(c))
+      if (search.passes(c, room))
         passed[k].push_back(c);
     });
   });
