@@ -3,6 +3,7 @@
 /// does not meet at a right angle, and move volume from one of its sides to the other.
 
 #include "grid/cube.h"
+#include "tests/cut/patient.h"
 #include "tests/support/placed.h"
 
 #include <gtest/gtest.h>
@@ -58,6 +59,18 @@ std::vector<double> heights(const Body& body, const grid::CutLabel label, const 
 
 constexpr double flat = 1e-12;
 
+void compare(const std::vector<double>& before, const std::vector<double>& after, Flatness& result) {
+  ASSERT_EQ(after.size(), before.size());
+  for (std::size_t v = 0; v < after.size(); ++v) {
+    ++result.n_vertices;
+    if (before[v] < flat) {
+      ++result.n_met;
+      result.worst = std::max(result.worst, after[v]);
+      result.n_moved += after[v] > flat;
+    }
+  }
+}
+
 /// Cuts the body by the planes, and after each one looks at all the earlier ones.
 void cut_one_by_one(Body body, const std::vector<support::Plane>& planes, const Where where, Flatness& result) {
   for (grid::CutLabel k = 0; k < planes.size(); ++k) {
@@ -66,16 +79,7 @@ void cut_one_by_one(Body body, const std::vector<support::Plane>& planes, const 
       before.push_back(heights(body, i + 1, planes[i], where));
     support::cut_through(body, support::plane_cuts(body, planes[k], k + 1));
     for (grid::CutLabel i = 0; i < k; ++i) {
-      const auto after = heights(body, i + 1, planes[i], where);
-      ASSERT_EQ(after.size(), before[i].size());
-      for (std::size_t v = 0; v < after.size(); ++v) {
-        ++result.n_vertices;
-        if (before[i][v] < flat) {
-          ++result.n_met;
-          result.worst = std::max(result.worst, after[v]);
-          result.n_moved += after[v] > flat;
-        }
-      }
+      compare(before[i], heights(body, i + 1, planes[i], where), result);
     }
   }
 }
@@ -126,6 +130,29 @@ TEST(LaterCuts, LeaveEarlierPlanesFlatUnderTheSkin) {
   print("skin and all", all);
   EXPECT_LT(all.n_moved, 1e-4 * all.n_met) << "a vertex leaves its plane only where the skin would fold under it";
   EXPECT_GT(static_cast<double>(all.n_met), 0.95 * static_cast<double>(all.n_vertices));
+}
+
+/// The same by blades, in steps: the skin that a later one parts around cuts of an earlier one leaves them where they are.
+TEST(LaterCuts, OfBladesLeaveEarlierPlanesFlat) {
+  Random random(53);
+  Flatness all;
+  for (int i = 0; i < 60; ++i) {
+    cut::Patient patient{cut::box_body(random)};
+    const Vec3 middle = 0.5 * (cut::box.lower + cut::box.upper) + 0.05 * support::random_vector(random);
+    std::vector<support::Plane> planes = planes_through(random, middle, 2);
+    std::vector<double> before;
+    for (const grid::CutLabel label : {1, 2}) {
+      const cut::Frame frame = cut::across(planes[label - 1].normal, support::uniform(random, 0, 6.3));
+      patient.pass(cut::straight(middle, frame.u, frame.v, 2, 2, label), 1 + i % 20,
+                   i % 2 ? cut::Release::queued : cut::Release::at_once);
+      if (label == 1)
+        before = heights(patient.body, 1, planes[0], Where::everywhere);
+    }
+    compare(before, heights(patient.body, 1, planes[0], Where::everywhere), all);
+  }
+  print("blades", all);
+  EXPECT_GT(all.n_met, 10000u);
+  EXPECT_LT(all.n_moved, 1e-3 * all.n_met) << "a vertex leaves its plane only where the skin would fold under it";
 }
 
 TEST(LaterCuts, MeetWhereTheyCrossInsideTheCell) {
