@@ -26,12 +26,15 @@ OtherSide other_side(const Grid& grid, const grid::Cuts& cuts, const grid::CellI
       continue;
     const Vec3 normal = cuts.find(edges[line])->normal;
     const Vec3 p = grid::edge_point(grid, cuts, edges[line]);
-    unsigned above = 0, below = 0;
-    for (int v = 0; v < cube::n_vertices; ++v) {
-      const double height = normal.dot(grid.position(nodes[v]) - p);
-      above |= unsigned(height > on_the_plane) << v;
-      below |= unsigned(height < -on_the_plane) << v;
-    }
+    const auto& [lower, upper] = cube::line_vertices[line];
+    const bool rises = normal[cube::line_axis(line)] >= 0;
+    unsigned above = 1u << (rises ? upper : lower), below = 1u << (rises ? lower : upper); // however near the cut is
+    for (int v = 0; v < cube::n_vertices; ++v)
+      if (v != lower && v != upper) {
+        const double height = normal.dot(grid.position(nodes[v]) - p);
+        above |= unsigned(height > on_the_plane) << v;
+        below |= unsigned(height < -on_the_plane) << v;
+      }
     for (int v = 0; v < cube::n_vertices; ++v)
       result[v] |= (above >> v & 1) != 0 ? below : (below >> v & 1) != 0 ? above : 0;
   }
