@@ -45,7 +45,7 @@ bool is_held(const grid::Grid& grid, const grid::Cuts& cuts, const grid::EdgeId 
   return false;
 }
 
-/// Is any of the triangles within a cell's width of the cell?
+/// Is any of the triangles within a cell's width of a copy?
 bool is_near(const std::span<const std::array<Vec3, 3>> blade, const grid::Copy& copy, const Points& x) {
   Vec3 middle = Vec3::Zero();
   for (const grid::CornerId corner : copy.corners)
@@ -95,7 +95,12 @@ std::vector<grid::EdgeId> OpenEnds::close(const std::span<const std::array<Vec3,
                                           const Points& x, const grid::CutLabel label) {
   std::vector<grid::EdgeId> closed;
   const auto may_go_on = [&](const grid::CellId c) {
-    return is_near(blade, complex.copies[complex.first_copy[c]], x) || wait_near(pending, grid, c);
+    if (wait_near(pending, grid, c))
+      return true;
+    for (const grid::CopyId copy : complex.copies_of(c))
+      if (is_near(blade, complex.copies[copy], x))
+        return true;
+    return false;
   };
   std::erase_if(faces_, [&](const Face& f) {
     const grid::CellCuts cell = grid::cuts_of(grid, cuts, f.cell);

@@ -32,7 +32,7 @@ class CellRim {
   }
 
   std::optional<RimVertex> place() {
-    const Vec3 p = view_.inside(rim_in_fan(plane_, std::span(rim_.begin(), rim_.end()), skin_.p, spokes()));
+    const Vec3 p = view_.inside(rim_in_fan(plane_, rim_[0], rim_[1], skin_.p, spokes()));
     skin_.lines = lines_beside_corner();
     skin_.has_rim = true;
     const Vec3 q = p + volume_move(p);

@@ -65,11 +65,9 @@ double part_before(const Vec3& from, const Vec3& to, const std::array<Vec3, 3>& 
   return along >= 0 && b >= 0 && c >= 0 && b + c <= 1 ? std::min(along, 1.0) : 1;
 }
 
-Vec3 rim_in_fan(const Plane& plane, const std::span<const Vec3> rim, const Vec3& centre,
+Vec3 rim_in_fan(const Plane& plane, const Vec3& start, const Vec3& end, const Vec3& centre,
                 const std::span<const Vec3> spoke_ends) {
   const double at_centre = height(plane, centre);
-  const Vec3 on_plane = centre - at_centre * plane.normal;
-  const Vec3 start = rim.front(), end = rim.size() > 1 ? rim[1] : on_plane;
   const Vec3 along = end - start;
   constexpr double straight = 1e-9; // of the rim's length
   double largest = straight * along.norm();

@@ -20,9 +20,10 @@ struct RimPoint {
 /// The plane on the line first - corner - second.
 RimPoint meet_line(const Plane& plane, const Vec3& first, const Vec3& corner, const Vec3& second);
 
-/// The vertex in a cell of a rim that passes through two points, or through one and ends in the cell: where it bends
-/// most as it crosses the spokes from the fan's centre; halfway where it is straight.
-Vec3 rim_in_fan(const Plane& plane, std::span<const Vec3> rim, const Vec3& centre, std::span<const Vec3> spoke_ends);
+/// The vertex in a cell of a rim from one point to another: where it bends most as it crosses the spokes from the fan's
+/// centre; halfway where it is straight.
+Vec3 rim_in_fan(const Plane& plane, const Vec3& start, const Vec3& end, const Vec3& centre,
+                std::span<const Vec3> spoke_ends);
 
 /// How much of the way from one point to another, in [0, 1], lies before the line first - corner - second, all in a
 /// plane with this normal's axis.

@@ -109,28 +109,23 @@ TEST(Rim, PartOfAWayBeforeATriangle) {
 }
 
 /// Four spokes to the middles of the sides of a square [-1, 1]^2, whose centre is lifted.
-Vec3 rim_of_tent(const double lift, const Plane& plane, const std::vector<Vec3>& rim) {
+Vec3 rim_of_tent(const double lift, const Plane& plane, const std::array<Vec3, 2>& rim) {
   const std::vector<Vec3> ends = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}};
-  return rim_in_fan(plane, rim, {0, 0, lift}, ends);
+  return rim_in_fan(plane, rim[0], rim[1], {0, 0, lift}, ends);
 }
 
 TEST(Rim, IsStraightInAFlatFan) {
-  const Vec3 p = rim_of_tent(0, {{0.5, 0, 0}, Vec3::UnitX()}, {{0.5, -1, 0}, {0.5, 1, 0}});
+  const Vec3 p = rim_of_tent(0, {{0.5, 0, 0}, Vec3::UnitX()}, {Vec3{0.5, -1, 0}, {0.5, 1, 0}});
   EXPECT_LT((p - Vec3(0.5, 0, 0)).norm(), 1e-15);
 }
 
 TEST(Rim, BendsWhereItCrossesASpoke) {
-  const Vec3 on_spoke = rim_of_tent(0.8, {{0.25, 0, 0}, Vec3::UnitX()}, {{0.25, -1, 0}, {0.25, 1, 0}});
+  const Vec3 on_spoke = rim_of_tent(0.8, {{0.25, 0, 0}, Vec3::UnitX()}, {Vec3{0.25, -1, 0}, {0.25, 1, 0}});
   EXPECT_LT((on_spoke - Vec3(0.25, 0, 0.6)).norm(), 1e-15);
   // Two spokes are crossed: (0.8, 0) at height 0.2 * lift and (0, 0.4) at 0.6 * lift, which is farther from the chord.
   const Vec3 n = Vec3(1, 2, 0).normalized();
-  const Vec3 higher = rim_of_tent(0.8, {{0.8, 0, 0}, n}, {{1, -0.1, 0}, {-0.4, 0.6, 0}});
+  const Vec3 higher = rim_of_tent(0.8, {{0.8, 0, 0}, n}, {Vec3{1, -0.1, 0}, {-0.4, 0.6, 0}});
   EXPECT_LT((higher - Vec3(0, 0.4, 0.48)).norm(), 1e-15);
-}
-
-TEST(Rim, OfAFrontEndsBelowTheCentre) {
-  const Vec3 p = rim_of_tent(0, {{0.1, 0, 0}, Vec3::UnitX()}, {{0.1, -1, 0}});
-  EXPECT_LT((p - Vec3(0.1, -0.5, 0)).norm(), 1e-15) << "halfway to the centre's foot on the plane";
 }
 
 using TrianglesOfCells = std::map<std::uint32_t, std::vector<std::array<Vec3, 3>>>;
