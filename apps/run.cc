@@ -46,16 +46,19 @@ void print_cutting(const scene::World& world) {
     print_cut(world, blade.label, "blade " + blade.name, "Check its key frames");
   for (const auto& [surface, step] : world.cut_surfaces)
     print_cut(world, surface.label, "cut surface " + surface.name, "Check its place and time");
-  std::size_t n_double = 0, n_waiting = 0, n_passed = 0;
+  std::size_t n_double = 0, n_waiting = 0, n_passed = 0, n_tips = 0;
   for (const scene::Body& body : world.bodies)
     if (body.cutting) {
       n_double += body.cutting->n_double_crossings;
       n_waiting += body.cutting->pending.size();
+      n_tips += body.cutting->n_tips;
       for (const cut::PassedCells& passed : body.cutting->passed)
         n_passed += passed.cells().size();
     }
   if (n_double + n_waiting > 0)
     std::printf("  %zu edges crossed twice by one cut and left whole, %zu cuts still waiting\n", n_double, n_waiting);
+  if (n_tips > 0)
+    std::printf("  %zu tips of the skin left whole: no other edge holds what was cut off there\n", n_tips);
   if (n_passed > 0)
     std::printf("  %zu cells passed without a cut: what ends inside a cell is not resolved\n", n_passed);
 }

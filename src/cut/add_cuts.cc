@@ -4,25 +4,37 @@
 
 namespace kerf::cut {
 
-std::vector<grid::EdgeId> add_cuts(const grid::Grid& grid, grid::Cuts& cuts, const grid::CellComplex& complex,
-                                   const Points& x, const std::span<const grid::EdgeCut> found, const Front front) {
-  std::vector<grid::EdgeId> edges;
-  for (const bool of_skin : {false, true}) // whether a cut of the skin goes on depends on those below it
-    for (const grid::EdgeCut& cut : found) {
-      if (cuts.is_cut(cut.edge) != of_skin || !cuts.can_be_cut(grid, cut.edge))
-        continue;
-      if (of_skin && front == Front::possible && !goes_on(grid, cuts, complex, x, cut))
-        continue;
-      cuts.add(grid, cut);
-      edges.push_back(cut.edge);
-    }
+AddedCuts add_cuts(const grid::Grid& grid, grid::Cuts& cuts, const grid::CellComplex& complex, const Points& x,
+                   const std::span<const grid::EdgeCut> found, const Front front) {
+  AddedCuts added;
+  std::vector<grid::EdgeId>& edges = added.edges;
+  const auto add = [&](const grid::EdgeCut& cut) {
+    if (!cuts.can_be_cut(grid, cut.edge))
+      return;
+    cuts.add(grid, cut);
+    edges.push_back(cut.edge);
+  };
+  std::vector<grid::EdgeCut> of_skin; // whether they go on depends on those below
+  for (const grid::EdgeCut& cut : found)
+    if (front == Front::possible && cuts.is_cut(cut.edge) && cuts.can_be_cut(grid, cut.edge))
+      of_skin.push_back(cut);
+    else
+      add(cut);
   if (front == Front::none) {
     part_skin(grid, cuts, edges);
-    return edges;
+    return added;
   }
+  for (bool any = true; any;) { // and on each other, whatever their order
+    const auto go_on = cuts_that_go_on(grid, cuts, complex, x, edges, of_skin);
+    any = !go_on.empty();
+    for (const grid::EdgeCut& cut : go_on)
+      add(cut);
+    std::erase_if(of_skin, [&](const grid::EdgeCut& cut) { return cuts.is_cut_twice(cut.edge); });
+  }
+  added.n_tips = of_skin.size();
   const auto more = end_at_skin(grid, cuts, complex, x, edges);
   edges.insert(edges.end(), more.begin(), more.end());
-  return edges;
+  return added;
 }
 
 } // namespace kerf::cut

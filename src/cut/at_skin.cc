@@ -1,5 +1,6 @@
 #include "cut/at_skin.h"
 
+#include "cut/part_face.h"
 #include "grid/touched.h"
 
 #include <Eigen/Geometry>
@@ -117,16 +118,16 @@ class CrossedAgain {
   std::function<bool(EdgeId)> is_own_;
 };
 
-/// Follows the cuts of edges through the faces of the skin.
-class Ends {
+/// Where the planes of new cuts go in the faces of the skin.
+class Ways {
  public:
-  Ends(const grid::Grid& grid, grid::Cuts& cuts, const grid::CellComplex& complex, const Points& x,
+  Ways(const grid::Grid& grid, const grid::Cuts& cuts, const grid::CellComplex& complex, const Points& x,
        const std::span<const EdgeId> new_edges)
     : grid_(grid), cuts_(cuts), complex_(complex), x_(x), new_(new_edges.begin(), new_edges.end()) {
     std::sort(new_.begin(), new_.end());
   }
 
-  bool goes_on(const grid::EdgeCut& cut) {
+  bool goes_on(const grid::EdgeCut& cut) const {
     const Here plane = here(cut.edge, cut);
     for (const CellId c : grid_.cells(cut.edge)) {
       if (!c.valid())
@@ -136,7 +137,7 @@ class Ends {
       const int line = static_cast<int>(std::find(edges.begin(), edges.end(), cut.edge) - edges.begin());
       for (int face = 0; face < cube::n_faces; ++face)
         for (const SkinArc& arc : grid::skin_arcs(face, cell.material)) {
-          if ((arc.lines[0] != line && arc.lines[1] != line) || cell.seams[face] == Seam::parted)
+          if ((arc.lines[0] != line && arc.lines[1] != line) || !may_be_whole(cell, face, arc, new_lines(c)))
             continue;
           const auto way_out = leave(c, face, line, arc, plane);
           if (cut_beside(c, cell, arc, cut.label) != 0 || (way_out && stays_below(c, cell, arc, *way_out)))
@@ -146,20 +147,9 @@ class Ends {
     return false;
   }
 
-  std::vector<EdgeId> run() {
-    const std::vector<EdgeId> given = new_;
-    for (const EdgeId e : given)
-      follow(e);
-    for (std::size_t i = 0; i < along_.size(); ++i) // they cut no further edges
-      follow(along_[i]);
-    part_passed();
-    part_crossed();
-    std::vector<EdgeId> result = along_;
-    result.insert(result.end(), parted_.begin(), parted_.end());
-    return result;
-  }
+ protected:
+  static constexpr double margin = 10 * grid::min_edge_parameter;
 
- private:
   /// The plane of a cut as the body stands now.
   struct Here {
     Vec3 point, normal;
@@ -176,31 +166,6 @@ class Ends {
     return lines;
   }
 
-  void follow(const EdgeId e) {
-    const grid::EdgeCut cut = *cuts_.find(e);
-    std::optional<Here> plane; // most edges have no skin around them
-    std::vector<FaceId> done;
-    for (const CellId c : grid_.cells(e)) {
-      if (!c.valid() || !has_skin(c))
-        continue;
-      if (!plane)
-        plane = here(e, cut);
-      const auto edges = grid_.edges(c);
-      const auto faces = grid_.faces(c);
-      const int line = static_cast<int>(std::find(edges.begin(), edges.end(), e) - edges.begin());
-      for (int face = 0; face < cube::n_faces; ++face)
-        if (std::ranges::find(cube::face_lines[face], line) != cube::face_lines[face].end() &&
-            std::find(done.begin(), done.end(), faces[face]) == done.end()) {
-          done.push_back(faces[face]);
-          follow_in(c, face, line, cut, *plane);
-        }
-    }
-  }
-
-  bool has_skin(const CellId c) const {
-    return std::ranges::any_of(grid_.nodes(c), [&](const grid::NodeId n) { return !grid_.is_material(n); });
-  }
-
   Here here(const EdgeId e, const grid::EdgeCut& cut) const {
     const EdgeEnds ends = ends_of(grid_, cuts_, complex_, e);
     const Vec3 &lower = x_[ends.corners[0].value], &upper = x_[ends.corners[1].value];
@@ -208,24 +173,6 @@ class Ends {
     Mat3 cofactors; // F^-T, but for a factor
     cofactors << F.col(1).cross(F.col(2)), F.col(2).cross(F.col(0)), F.col(0).cross(F.col(1));
     return {lower + cut.t * (upper - lower), cofactors * cut.normal};
-  }
-
-  /// Through a face of a cell, from one of its lines.
-  void follow_in(const CellId c, const int face, const int line, const grid::EdgeCut& cut, const Here& plane) {
-    const CellCuts cell = grid::cuts_of(grid_, cuts_, c);
-    for (const SkinArc& arc : grid::skin_arcs(face, cell.material)) {
-      if (!(CellCuts::beside(arc) >> line & 1) || !may_be_whole(cell, face, arc, new_lines(c)))
-        continue;
-      const unsigned by_label = cut_beside(c, cell, arc, cut.label);
-      const auto way_out = std::popcount(by_label) == 1 ? leave(c, face, line, arc, plane) : std::nullopt;
-      const bool stays = std::popcount(by_label) == 2 || (way_out && stays_below(c, cell, arc, *way_out));
-      if (!stays)
-        part(c, face);
-      else if (!way_out || is_between_nodes(cell, line) || !(cell.skin >> way_out->line & 1))
-        cuts_.set_seam(grid_.faces(c)[face], Seam::whole); // else it is, unsaid
-      if (stays && way_out && is_between_nodes(cell, line))
-        cut_along(c, cell, way_out->line, way_out->t, plane, cut.label);
-    }
   }
 
   /// Where a plane leaves a face.
@@ -273,26 +220,90 @@ class Ends {
     return grid_.is_material(grid_.ends(e)[0]) ? way_out.t < skin - margin : way_out.t > skin + margin;
   }
 
+  const grid::Grid& grid_;
+  const grid::Cuts& cuts_;
+  const grid::CellComplex& complex_;
+  const Points& x_;
+  std::vector<EdgeId> new_; // ascending
+};
+
+/// Follows the cuts of edges through the faces of the skin.
+class Ends : private Ways {
+ public:
+  Ends(const grid::Grid& grid, grid::Cuts& cuts, const grid::CellComplex& complex, const Points& x,
+       const std::span<const EdgeId> new_edges)
+    : Ways(grid, cuts, complex, x, new_edges), changing_(cuts) {}
+
+  std::vector<EdgeId> run() {
+    const std::vector<EdgeId> given = new_;
+    for (const EdgeId e : given)
+      follow(e);
+    for (std::size_t i = 0; i < along_.size(); ++i) // they cut no further edges
+      follow(along_[i]);
+    part_passed();
+    part_crossed();
+    std::vector<EdgeId> result = along_;
+    result.insert(result.end(), parted_.begin(), parted_.end());
+    return result;
+  }
+
+ private:
+  void follow(const EdgeId e) {
+    const grid::EdgeCut cut = *cuts_.find(e);
+    std::optional<Here> plane; // most edges have no skin around them
+    std::vector<FaceId> done;
+    for (const CellId c : grid_.cells(e)) {
+      if (!c.valid() || !has_skin(c))
+        continue;
+      if (!plane)
+        plane = here(e, cut);
+      const auto edges = grid_.edges(c);
+      const auto faces = grid_.faces(c);
+      const int line = static_cast<int>(std::find(edges.begin(), edges.end(), e) - edges.begin());
+      for (int face = 0; face < cube::n_faces; ++face)
+        if (std::ranges::find(cube::face_lines[face], line) != cube::face_lines[face].end() &&
+            std::find(done.begin(), done.end(), faces[face]) == done.end()) {
+          done.push_back(faces[face]);
+          follow_in(c, face, line, cut, *plane);
+        }
+    }
+  }
+
+  bool has_skin(const CellId c) const {
+    return std::ranges::any_of(grid_.nodes(c), [&](const grid::NodeId n) { return !grid_.is_material(n); });
+  }
+
+  /// Through a face of a cell, from one of its lines.
+  void follow_in(const CellId c, const int face, const int line, const grid::EdgeCut& cut, const Here& plane) {
+    const CellCuts cell = grid::cuts_of(grid_, cuts_, c);
+    for (const SkinArc& arc : grid::skin_arcs(face, cell.material)) {
+      if (!(CellCuts::beside(arc) >> line & 1) || !may_be_whole(cell, face, arc, new_lines(c)))
+        continue;
+      const unsigned by_label = cut_beside(c, cell, arc, cut.label);
+      const auto way_out = std::popcount(by_label) == 1 ? leave(c, face, line, arc, plane) : std::nullopt;
+      const bool stays = std::popcount(by_label) == 2 || (way_out && stays_below(c, cell, arc, *way_out));
+      if (!stays)
+        part(c, face);
+      else if (!way_out || is_between_nodes(cell, line) || !(cell.skin >> way_out->line & 1))
+        changing_.set_seam(grid_.faces(c)[face], Seam::whole); // else it is, unsaid
+      if (stays && way_out && is_between_nodes(cell, line))
+        cut_along(c, cell, way_out->line, way_out->t, plane, cut.label);
+    }
+  }
+
   void cut_along(const CellId c, const CellCuts& cell, const int line, const double t, const Here& plane,
                  const grid::CutLabel label) {
     if (!((cell.skin & ~cell.twice) >> line & 1))
       return;
     const EdgeId e = grid_.edges(c)[line];
-    cuts_.add(grid_, {e, t, pulled_back(grid_, complex_, x_, e, t, plane.normal), label});
+    changing_.add(grid_, {e, t, pulled_back(grid_, complex_, x_, e, t, plane.normal), label});
     along_.push_back(e);
     new_.insert(std::lower_bound(new_.begin(), new_.end(), e), e);
   }
 
   void part(const CellId c, const int face) {
-    const FaceId f = grid_.faces(c)[face];
-    if (cuts_.seam(f) == Seam::parted)
-      return;
-    cuts_.set_seam(f, Seam::parted);
-    const CellCuts cell = grid::cuts_of(grid_, cuts_, c);
-    const auto edges = grid_.edges(c);
-    for (const int line : cube::face_lines[face])
-      if (cell.blades() >> line & 1) // around others there may be cells of the skin that no blade has cut: they stay
-        parted_.push_back(edges[line]);
+    if (cuts_.seam(grid_.faces(c)[face]) != Seam::parted)
+      part_face(grid_, changing_, c, face, parted_);
   }
 
   /// Where a blade has cut below one end of an arc, and elsewhere beside the node at its other end without cutting that
@@ -356,13 +367,7 @@ class Ends {
     return (height_a < 0) == ((at_a.dot(at_b) < 0 ? -height_b : height_b) < 0);
   }
 
-  static constexpr double margin = 10 * grid::min_edge_parameter;
-
-  const grid::Grid& grid_;
-  grid::Cuts& cuts_;
-  const grid::CellComplex& complex_;
-  const Points& x_;
-  std::vector<EdgeId> new_;    // ascending
+  grid::Cuts& changing_;
   std::vector<EdgeId> along_;  // that were cut along with them
   std::vector<EdgeId> parted_; // cut edges at faces whose skin is parted
 };
@@ -393,21 +398,23 @@ void part_skin(const grid::Grid& grid, grid::Cuts& cuts, std::vector<grid::EdgeI
     }
   }
   for (const auto& [c, new_lines] : touched)
-    again.for_each_parted(RestPlane(grid, cuts, c, new_lines), c, [&](const CellId other, const int face) {
-      cuts.set_seam(grid.faces(other)[face], Seam::parted);
-      const unsigned blades = grid::cuts_of(grid, cuts, other).blades();
-      for (const int line : cube::face_lines[face])
-        if (blades >> line & 1)
-          parted.push_back(grid.edges(other)[line]);
-    });
+    again.for_each_parted(RestPlane(grid, cuts, c, new_lines), c,
+                          [&](const CellId other, const int face) { part_face(grid, cuts, other, face, parted); });
   std::sort(parted.begin(), parted.end());
   parted.erase(std::unique(parted.begin(), parted.end()), parted.end());
   std::set_difference(parted.begin(), parted.end(), own.begin(), own.end(), std::back_inserter(new_edges));
 }
 
-bool goes_on(const grid::Grid& grid, grid::Cuts& cuts, const grid::CellComplex& complex, const Points& x,
-             const grid::EdgeCut& cut) {
-  return Ends(grid, cuts, complex, x, {}).goes_on(cut);
+std::vector<grid::EdgeCut> cuts_that_go_on(const grid::Grid& grid, const grid::Cuts& cuts,
+                                           const grid::CellComplex& complex, const Points& x,
+                                           const std::span<const grid::EdgeId> new_edges,
+                                           const std::span<const grid::EdgeCut> of_skin) {
+  const Ways ways(grid, cuts, complex, x, new_edges);
+  std::vector<grid::EdgeCut> result;
+  for (const grid::EdgeCut& cut : of_skin)
+    if (ways.goes_on(cut))
+      result.push_back(cut);
+  return result;
 }
 
 std::vector<grid::EdgeId> end_at_skin(const grid::Grid& grid, grid::Cuts& cuts, const grid::CellComplex& complex,

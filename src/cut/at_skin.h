@@ -21,10 +21,13 @@ namespace kerf::cut {
 /// were cut before at faces whose skin is parted now.
 void part_skin(const grid::Grid& grid, grid::Cuts& cuts, std::vector<grid::EdgeId>& new_edges);
 
-/// Does the cut of an edge of the skin by a blade go on below the skin, in any face around it, when the corners are
-/// at `x`? What is cut off a tip of the skin alone is lost: a blade that passes along an edge would leave dust.
-bool goes_on(const grid::Grid& grid, grid::Cuts& cuts, const grid::CellComplex& complex, const Points& x,
-             const grid::EdgeCut& cut);
+/// Of cuts of edges of the skin by a blade, those that go on below the skin, in any face around them that can hold what
+/// they cut off, when the corners are at `x`; `cuts` holds `new_edges` of the same step already. What is cut off a tip
+/// of the skin alone is lost: a blade that passes along an edge would leave dust.
+std::vector<grid::EdgeCut> cuts_that_go_on(const grid::Grid& grid, const grid::Cuts& cuts,
+                                           const grid::CellComplex& complex, const Points& x,
+                                           std::span<const grid::EdgeId> new_edges,
+                                           std::span<const grid::EdgeCut> of_skin);
 
 /// The same as part_skin for cuts of blades, which have ends, when the corners are at `x`; `complex` is that from
 /// before the cuts. Cuts edges of the skin along with them. Returns those, and edges that were cut before at faces

@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <utility>
 
 namespace kerf::cut {
 namespace {
@@ -64,32 +63,9 @@ std::vector<double> breaks(const Blade& blade, const double t0, const double t1)
   return times;
 }
 
-/// Times at which the strip has vertices.
-std::vector<double> strip_times(const Blade& blade, const double t0, const double t1) {
-  const auto ends = breaks(blade, t0, t1);
-  std::vector<double> times = {t0};
-  for (std::size_t k = 0; k + 1 < ends.size(); ++k) {
-    const int n = std::max(1, static_cast<int>(std::ceil(turn(blade, ends[k], ends[k + 1]) / max_turn - 1e-9)));
-    for (int i = 1; i < n; ++i)
-      times.push_back(ends[k] + (ends[k + 1] - ends[k]) * i / n);
-    times.push_back(ends[k + 1]);
-  }
-  return times;
-}
-
-/// When the blade cuts in a step, from first to last [s]; empty if it does not. Between the key frames of a hinge the
-/// angle is linear, so it falls between all of two of them or not at all.
-std::optional<std::pair<double, double>> cutting_time(const Blade& blade, const double t0, const double t1) {
-  if (!blade.hinge)
-    return std::pair(t0, t1);
-  std::optional<std::pair<double, double>> time;
-  const auto& angles = blade.hinge->angles;
-  for (std::size_t k = 0; k + 1 < angles.size(); ++k) {
-    const double from = std::max(t0, angles[k].time), to = std::min(t1, angles[k + 1].time);
-    if (from < to && std::abs(angles[k + 1].angle) < std::abs(angles[k].angle))
-      time = {time ? time->first : from, to};
-  }
-  return time;
+/// Does the blade cut between two times without a key frame in between? On a hinge only while its angle falls.
+bool cuts_between(const Blade& blade, const double t0, const double t1) {
+  return !blade.hinge || std::abs(hinge_angle(*blade.hinge, t1)) < std::abs(hinge_angle(*blade.hinge, t0));
 }
 
 void check_edge(const Blade& blade) {
@@ -151,12 +127,23 @@ Points world_points(const Blade& blade, const double t) {
   return points;
 }
 
-BladePath path(const Blade& blade, const double t0, const double t1) {
-  BladePath result;
-  const auto time = cutting_time(blade, t0, t1);
-  for (const double t : time ? strip_times(blade, time->first, time->second) : std::vector{t1}) {
-    result.fractions.push_back((t - t0) / (t1 - t0));
-    result.lines.push_back(world_points(blade, t));
+std::vector<BladePath> paths(const Blade& blade, const double t0, const double t1) {
+  std::vector<BladePath> result;
+  if (!(t0 < t1))
+    return result;
+  const auto times = breaks(blade, t0, t1);
+  for (std::size_t k = 0; k + 1 < times.size(); ++k) {
+    const double from = times[k], to = times[k + 1];
+    if (!cuts_between(blade, from, to))
+      continue;
+    const int n = std::max(1, static_cast<int>(std::ceil(turn(blade, from, to) / max_turn - 1e-9)));
+    BladePath path;
+    for (int i = 0; i <= n; ++i) {
+      const double t = i < n ? from + (to - from) * i / n : to;
+      path.fractions.push_back((t - t0) / (t1 - t0));
+      path.lines.push_back(world_points(blade, t));
+    }
+    result.push_back(std::move(path));
   }
   return result;
 }
@@ -172,11 +159,9 @@ void add_strip(const Points& before, const Points& after, std::vector<std::array
 
 std::vector<std::array<Vec3, 3>> sweep(const Blade& blade, const double t0, const double t1) {
   std::vector<std::array<Vec3, 3>> strip;
-  if (!(t0 < t1))
-    return strip;
-  const BladePath places = path(blade, t0, t1);
-  for (std::size_t k = 1; k < places.lines.size(); ++k)
-    add_strip(places.lines[k - 1], places.lines[k], strip);
+  for (const BladePath& path : paths(blade, t0, t1))
+    for (std::size_t k = 1; k < path.lines.size(); ++k)
+      add_strip(path.lines[k - 1], path.lines[k], strip);
   return strip;
 }
 

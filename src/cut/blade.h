@@ -52,13 +52,15 @@ Pose pose(const Blade& blade, double t);
 /// The cutting edge at time t [s], world frame [m].
 Points world_points(const Blade& blade, double t);
 
-/// Where the cutting edge stands at successive moments of a step: first at its start, last at its end; on a hinge, from
-/// where it begins to close in this step to where it last does. A single place, if it does not: that sweeps nothing.
+/// Where the cutting edge stands at successive moments of a step.
 struct BladePath {
   std::vector<double> fractions; ///< of the step, from 0 to 1
   std::vector<Points> lines;     ///< world frame [m]
 };
-BladePath path(const Blade& blade, double t0, double t1);
+
+/// The paths on which the blade cuts in a step, in order: from key frame to key frame, so that a blade that turns back
+/// cuts on its way there; on a hinge, those on which it closes.
+std::vector<BladePath> paths(const Blade& blade, double t0, double t1);
 
 /// The triangles between two successive places of the cutting edge; none when they are the same.
 void add_strip(const Points& before, const Points& after, std::vector<std::array<Vec3, 3>>& strip);

@@ -5,9 +5,13 @@
 #include "cut/target.h"
 #include "geometry/box_tree.h"
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <numbers>
 #include <type_traits>
 
 namespace kerf::cut {
@@ -185,8 +189,31 @@ void check(const CutSurface& surface) {
   std::visit([](const auto& shape) { check_shape(shape); }, surface.shape);
 }
 
-bool has_end(const CutSurface& surface) {
-  return std::holds_alternative<Disc>(surface.shape) || std::holds_alternative<geometry::TriangleMesh>(surface.shape);
+std::vector<std::array<Vec3, 3>> rim(const CutSurface& surface) {
+  std::vector<std::array<Vec3, 3>> result;
+  if (const Disc* const disc = std::get_if<Disc>(&surface.shape)) {
+    constexpr int n = 64;
+    const Vec3 u = disc->radius * disc->normal.unitOrthogonal(), v = disc->normal.cross(u);
+    const auto at = [&](const int i) -> Vec3 {
+      const double angle = 2 * std::numbers::pi * i / n;
+      return disc->centre + std::cos(angle) * u + std::sin(angle) * v;
+    };
+    for (int i = 0; i < n; ++i)
+      result.push_back({at(i), at(i + 1), at(i + 1)});
+  }
+  if (const geometry::TriangleMesh* const mesh = std::get_if<geometry::TriangleMesh>(&surface.shape)) {
+    std::map<std::pair<std::uint32_t, std::uint32_t>, bool> is_odd;
+    for (const auto& triangle : mesh->triangles)
+      for (int i = 0; i < 3; ++i) {
+        const std::uint32_t a = triangle[i], b = triangle[(i + 1) % 3];
+        bool& odd = is_odd[std::minmax(a, b)];
+        odd = !odd;
+      }
+    for (const auto& [edge, odd] : is_odd)
+      if (odd)
+        result.push_back({mesh->vertices[edge.first], mesh->vertices[edge.second], mesh->vertices[edge.second]});
+  }
+  return result;
 }
 
 SweepCuts cut_edges(const CutSurface& surface, const grid::Grid& grid, const grid::Cuts& cuts,

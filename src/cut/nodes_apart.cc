@@ -1,5 +1,6 @@
 #include "cut/nodes_apart.h"
 
+#include "cut/part_face.h"
 #include "grid/parts.h"
 
 #include <bit>
@@ -96,20 +97,14 @@ std::vector<int> joining_faces(const Grid& grid, const grid::Cuts& cuts, const g
 
 } // namespace
 
-bool joins_nodes(const Grid& grid, const grid::Cuts& cuts, const grid::CellId c) {
+bool must_be_parted(const Grid& grid, const grid::Cuts& cuts, const grid::CellId c) {
   return !joining_faces(grid, cuts, c, grid::cuts_of(grid, cuts, c)).empty();
 }
 
 std::vector<grid::EdgeId> keep_nodes_apart(const Grid& grid, grid::Cuts& cuts, const grid::CellId c) {
   std::vector<grid::EdgeId> parted;
-  const CellCuts cell = grid::cuts_of(grid, cuts, c);
-  for (const int face : joining_faces(grid, cuts, c, cell)) {
-    cuts.set_seam(grid.faces(c)[face], grid::Seam::parted);
-    const auto edges = grid.edges(c);
-    for (const int line : cube::face_lines[face])
-      if (cell.blades() >> line & 1)
-        parted.push_back(edges[line]);
-  }
+  for (const int face : joining_faces(grid, cuts, c, grid::cuts_of(grid, cuts, c)))
+    part_face(grid, cuts, c, face, parted);
   return parted;
 }
 

@@ -9,9 +9,9 @@
 
 namespace kerf::cut {
 
-/// Does the skin of a cell hold nodes together that no edges of the cell join, and that lie on two sides of a plane
-/// along which a blade has cut in it?
-bool joins_nodes(const grid::Grid& grid, const grid::Cuts& cuts, grid::CellId c);
+/// Does the skin of a cell beside blades' cuts hold nodes together that no edges of the cell join, and that lie on two
+/// sides of a plane along which a blade has cut in it?
+bool must_be_parted(const grid::Grid& grid, const grid::Cuts& cuts, grid::CellId c);
 
 /// Parts the skin of the cell's faces that do: first where a cut may still go on, then between rinds, then anywhere, no
 /// more than needed. Returns cut edges at those faces.

@@ -1,6 +1,7 @@
 #include "cut/open_ends.h"
 
 #include "cut/nodes_apart.h"
+#include "cut/part_face.h"
 #include "geometry/triangle.h"
 #include "grid/touched.h"
 
@@ -25,6 +26,15 @@ bool is_open(const grid::Grid& grid, const grid::Cuts& cuts, const grid::CellId 
     if (n % 2 != 0 && n_others == 0 && cell.is_whole(face, arc))
       return true;
   }
+  return false;
+}
+
+bool is_cut_by(const grid::Grid& grid, const grid::Cuts& cuts, const grid::CellId c, const grid::CellCuts& cell,
+               const grid::CutLabel label) {
+  const auto edges = grid.edges(c);
+  for (unsigned left = cell.blades(); left != 0; left &= left - 1)
+    if (cuts.find(edges[std::countr_zero(left)])->label == label)
+      return true;
   return false;
 }
 
@@ -83,7 +93,7 @@ void OpenEnds::note(const grid::Grid& grid, const grid::Cuts& cuts, const std::s
     for (int face = 0; cell.skin != 0 && face < cube::n_faces; ++face)
       if (is_open(grid, cuts, touched.cell, cell, face, label))
         faces_.push_back({touched.cell, face});
-    if (joins_nodes(grid, cuts, touched.cell))
+    if (is_cut_by(grid, cuts, touched.cell, cell, label) && must_be_parted(grid, cuts, touched.cell))
       cells_.push_back(touched.cell);
   }
   sort_unique(faces_);
@@ -102,31 +112,35 @@ std::vector<grid::EdgeId> OpenEnds::close(const std::span<const std::array<Vec3,
         return true;
     return false;
   };
-  std::erase_if(faces_, [&](const Face& f) {
+  std::vector<Face> faces;
+  for (const Face& f : faces_) {
     const grid::CellCuts cell = grid::cuts_of(grid, cuts, f.cell);
     if (!is_open(grid, cuts, f.cell, cell, f.face, label))
-      return true;
-    if (may_go_on(f.cell))
-      return false;
+      continue;
+    if (may_go_on(f.cell)) {
+      faces.push_back(f);
+      continue;
+    }
     const auto edges = grid.edges(f.cell);
-    for (const int line : cube::face_lines[f.face])
-      if ((cell.twice >> line & 1) != 0 && !is_held(grid, cuts, edges[line], label))
-        return true; // the last that holds the rind
-    cuts.set_seam(grid.faces(f.cell)[f.face], grid::Seam::parted);
-    for (const int line : cube::face_lines[f.face])
-      if (cell.blades() >> line & 1)
-        closed.push_back(edges[line]);
-    return true;
-  });
-  std::erase_if(cells_, [&](const grid::CellId c) {
-    if (!joins_nodes(grid, cuts, c))
-      return true;
-    if (may_go_on(c))
-      return false;
-    for (const grid::EdgeId e : keep_nodes_apart(grid, cuts, c))
-      closed.push_back(e);
-    return true;
-  });
+    const bool is_last_hold = std::ranges::any_of(cube::face_lines[f.face], [&](const int line) {
+      return (cell.twice >> line & 1) != 0 && !is_held(grid, cuts, edges[line], label);
+    });
+    if (!is_last_hold) // of a rind
+      part_face(grid, cuts, f.cell, f.face, closed);
+  }
+  faces_ = std::move(faces);
+  std::vector<grid::CellId> cells;
+  for (const grid::CellId c : cells_) {
+    if (!must_be_parted(grid, cuts, c))
+      continue;
+    if (may_go_on(c)) {
+      cells.push_back(c);
+      continue;
+    }
+    const auto parted = keep_nodes_apart(grid, cuts, c);
+    closed.insert(closed.end(), parted.begin(), parted.end());
+  }
+  cells_ = std::move(cells);
   return closed;
 }
 

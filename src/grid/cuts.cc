@@ -61,8 +61,8 @@ unsigned Cuts::configuration(const Grid& grid, const CellId c) const {
 std::size_t Cuts::n_bytes() const {
   return edge_cut_.n_bytes() + outer_cut_.n_bytes() + seam_.n_bytes() + face_point_.n_bytes() +
          face_skin_point_.n_bytes() + cell_point_.n_bytes() + cell_skin_point_.n_bytes() +
-         cuts_.capacity() * sizeof(EdgeCut) + points_.capacity() * sizeof(Vec3) +
-         skin_points_.capacity() * sizeof(SkinPoint);
+         newly_parted_.capacity() * sizeof(FaceId) + cuts_.capacity() * sizeof(EdgeCut) +
+         points_.capacity() * sizeof(Vec3) + skin_points_.capacity() * sizeof(SkinPoint);
 }
 
 void Cuts::set(std::uint32_t& index, const Vec3& p) {

@@ -45,7 +45,7 @@ struct SkinPoint {
   Vec3 p = Vec3::Zero(); ///< [m]
   /// Bits of the lines of the skin to which it belongs: of the cell, or by their place in the face (cube::face_lines).
   std::uint16_t lines = all;
-  bool has_rim = false; ///< the vertex of the cuts lies on a rim, for good
+  bool has_rim = false; ///< the vertex of the cuts lies on a rim: later cuts leave it, but where it would fold the skin
 };
 
 class Cuts {

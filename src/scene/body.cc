@@ -44,12 +44,13 @@ void build_surface(Body& body) {
 /// Adds cuts to the body, and counts them; returns the edges at which something has changed.
 std::vector<grid::EdgeId> add_cuts(Body& body, const std::vector<grid::EdgeCut>& cuts, const cut::Front front) {
   const std::size_t n_before = body.cuts.all().size();
-  const auto edges = cut::add_cuts(body.grid, body.cuts, body.complex, corners(body), cuts, front);
+  const cut::AddedCuts added = cut::add_cuts(body.grid, body.cuts, body.complex, corners(body), cuts, front);
+  body.cutting->n_tips += added.n_tips;
   for (const grid::EdgeCut& cut : body.cuts.all().subspan(n_before)) {
     ++body.cutting->n_cut_edges[cut.label - 1];
     body.cutting->passed[cut.label - 1].remove_around(body.grid, cut.edge);
   }
-  return edges;
+  return added.edges;
 }
 
 /// Returns what has changed, for the physics.
@@ -65,17 +66,24 @@ grid::ComplexChange update_topology(Body& body, const std::vector<grid::EdgeId>&
   return change;
 }
 
-/// Puts what a blade cuts between two times to what waits, and counts what the grid cannot resolve of it. Returns
-/// edges at faces where its cuts have come to an end.
-std::vector<grid::EdgeId> meet(Body& body, const cut::Blade& blade, const double t0, const double t1) {
+/// Puts what a blade cuts between two times to what waits, and counts what the grid cannot resolve of it.
+void meet(Body& body, const cut::Blade& blade, const double t0, const double t1) {
   Cutting& cutting = *body.cutting;
-  const auto found = cut::cut_edges(cut::path(blade, t0, t1), body.grid, body.cuts, body.complex, cutting.x_before,
-                                    corners(body), blade.label, &*cutting.boxes);
-  cutting.pending.push(found.cuts);
-  cutting.n_double_crossings += found.n_double_crossings;
-  const auto strip = cut::sweep(blade, t0, t1);
-  cutting.passed[blade.label - 1].pass(strip, found.cuts, body.grid, body.cuts, body.complex, corners(body),
-                                       *cutting.boxes, blade.label);
+  std::vector<grid::EdgeCut> cuts;
+  for (const cut::BladePath& path : cut::paths(blade, t0, t1)) {
+    const auto found = cut::cut_edges(path, body.grid, body.cuts, body.complex, cutting.x_before, corners(body),
+                                      blade.label, &*cutting.boxes);
+    cuts.insert(cuts.end(), found.cuts.begin(), found.cuts.end());
+    cutting.n_double_crossings += found.n_double_crossings;
+  }
+  cutting.pending.push(cuts);
+  cutting.passed[blade.label - 1].pass(cut::sweep(blade, t0, t1), cuts, body.grid, body.cuts, body.complex,
+                                       corners(body), *cutting.boxes, blade.label);
+}
+
+/// Ends the cuts of a blade where it has gone. Returns edges at faces whose skin is parted so.
+std::vector<grid::EdgeId> end_cuts(Body& body, const cut::Blade& blade, const double t0, const double t1) {
+  Cutting& cutting = *body.cutting;
   return cutting.open_ends[blade.label - 1].close(cut::whereabouts(blade, t0, t1), cutting.pending, body.grid,
                                                   body.cuts, body.complex, corners(body), blade.label);
 }
@@ -130,7 +138,9 @@ void recut(Body& body, const std::span<const cut::Blade> blades, const double t0
     if (!blades.empty())
       cutting.boxes->fit(cutting.x_before, corners(body));
     for (const cut::Blade& blade : blades)
-      for (const grid::EdgeId e : meet(body, blade, t0, t1))
+      meet(body, blade, t0, t1);
+    for (const cut::Blade& blade : blades)
+      for (const grid::EdgeId e : end_cuts(body, blade, t0, t1))
         ended.push_back(e);
     released = cutting.pending.release(body.grid, body.cuts);
     cutting.x_before = corners(body); // not after the cut: where corners jump then, the blade meets them on their way
@@ -148,7 +158,15 @@ void cut_at_once(Body& body, const cut::CutSurface& surface, Timings& timings) {
     found = cut::cut_edges(surface, body.grid, body.cuts, body.complex, corners(body), &*body.cutting->boxes);
   }
   body.cutting->n_double_crossings += found.n_double_crossings;
-  make_cuts(body, found.cuts, {}, cut::has_end(surface) ? cut::Front::possible : cut::Front::none, timings);
+  const auto rim = cut::rim(surface);
+  const auto edges = make_cuts(body, found.cuts, {}, rim.empty() ? cut::Front::none : cut::Front::possible, timings);
+  if (rim.empty())
+    return;
+  cut::OpenEnds ends;
+  ends.note(body.grid, body.cuts, edges, surface.label);
+  const auto ended =
+    ends.close(rim, body.cutting->pending, body.grid, body.cuts, body.complex, corners(body), surface.label);
+  make_cuts(body, {}, ended, cut::Front::possible, timings);
 }
 
 void follow(Body& body) {

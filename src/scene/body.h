@@ -66,6 +66,7 @@ struct Cutting {
   Points x_before;                      ///< where the corners were when the blades were met last [m]
   std::vector<std::size_t> n_cut_edges; ///< by label, from 1: the blades, then the cut surfaces
   std::size_t n_double_crossings = 0;   ///< edges that one cut crossed an even number of times: left uncut
+  std::size_t n_tips = 0;               ///< edges of the skin whose cuts would have cut a tip off alone: left uncut
 };
 
 struct Body {

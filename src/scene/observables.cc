@@ -200,6 +200,9 @@ const std::vector<Observable>& body_observables() {
      [](const Body& b) { return b.cutting ? count(b.cutting->pending.size()) : 0.0; }},
     {"double crossings", "1", "grid edges that one sweep or cut surface crossed an even number of times, left uncut",
      [](const Body& b) { return b.cutting ? count(b.cutting->n_double_crossings) : 0.0; }},
+    {"tips left whole", "1",
+     "grid edges cut between skin and last node where nothing else holds what is cut off, left uncut",
+     [](const Body& b) { return b.cutting ? count(b.cutting->n_tips) : 0.0; }},
     {"cells passed uncut", "1",
      "cells whose material a blade passed through without cutting one of their edges, so far (cut/passed.h)",
      [](const Body& b) {

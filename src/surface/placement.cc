@@ -93,19 +93,27 @@ class Placer {
         const FaceId f = faces[face];
         const bool first_seen = (face & 1) == 1 || !grid_.cells(f)[0].valid(); // else done from the cell below
         const bool has_changed = (new_lines & cube::lines_of_face[face]) != 0 || (view.parted_faces >> face & 1) != 0;
-        if (has_changed && first_seen)
+        if (has_changed && first_seen) {
           cuts_.set_point(f, place_face(view, face));
+          count_held();
+        }
       }
       const Vec3 before = grid::cell_point(grid_, cuts_, c);
       cuts_.set_point(c, place_cell(view));
       if (view.now.has_two_points())
         unfold(view, before);
+      count_held();
     }
     cuts_.settle();
     return counts_;
   }
 
  private:
+  void count_held() {
+    counts_.n_clamped += is_held_;
+    is_held_ = false;
+  }
+
   /// Those around new cuts, and beside newly parted faces; ascending.
   std::vector<CellId> changed_cells() const {
     std::vector<EdgeId> edges;
@@ -181,10 +189,11 @@ class Placer {
                                              view.skin_at(arc.lines[1]), normal));
     const Vec3 q = inside(site, hold_below_skin(from, p, part));
     const grid::SkinPoint& skin = *cuts_.skin_point(f);
-    for (const Vec3& candidate : {q, Vec3(grid::face_point(grid_, cuts_, f))})
-      if (!is_folded(view, face, candidate, skin))
-        return candidate;
-    return skin.p;
+    if (!is_folded(view, face, q, skin))
+      return q;
+    is_held_ = true;
+    const Vec3 before = grid::face_point(grid_, cuts_, f);
+    return is_folded(view, face, before, skin) ? skin.p : before;
   }
 
   Vec3 place_cell(const View& view) {
@@ -197,8 +206,9 @@ class Placer {
       return p; // an earlier rim stays
     if (n_old <= n_before && rim_passes(grid_, cuts_, view)) {
       const auto on_rim = surface::place_on_rim(grid_, cuts_, view);
-      ++(on_rim ? counts_.n_placed : counts_.n_clamped);
+      is_held_ |= !on_rim;
       if (on_rim) {
+        ++counts_.n_placed;
         cuts_.set_skin_point(view.cell, on_rim->skin);
         return on_rim->p;
       }
@@ -220,7 +230,7 @@ class Placer {
       if (is_folded(grid_, cuts_, view)) {
         cuts_.set_point(view.cell, p);
         cuts_.set_skin_point(view.cell, {of_skin});
-        counts_.n_clamped += &p == &before;
+        is_held_ = true;
       }
   }
 
@@ -235,7 +245,7 @@ class Placer {
     constexpr double inside = 0.9;
     if (part >= 1)
       return p;
-    ++counts_.n_clamped;
+    is_held_ = true;
     return from + inside * part * (p - from);
   }
 
@@ -276,11 +286,13 @@ class Placer {
     of_skin.lines &= static_cast<std::uint16_t>(~(1u << cube::place_in_face(face, arc.lines[1 - rim.side_of_corner])));
     of_skin.has_rim = true;
     ++counts_.n_placed;
-    counts_.n_clamped += !rim.is_met;
+    is_held_ |= !rim.is_met;
     const Vec3 p = along_skin(view, cube::face_axis(face), rim.p, of_skin.p);
     constexpr double little = 0.02;
-    if (is_folded(view, face, p, of_skin, little))
+    if (is_folded(view, face, p, of_skin, little)) {
+      is_held_ = true;
       return of_skin.p;
+    }
     cuts_.set_skin_point(f, of_skin);
     return p;
   }
@@ -374,7 +386,7 @@ class Placer {
     for (const Vec3& move : moves) {
       if (part_inside(site, p, move) == 1)
         return p + move;
-      counts_.n_clamped += &move == moves.begin();
+      is_held_ = true;
     }
     return p + part_inside(site, p, moves.back()) * moves.back();
   }
@@ -402,6 +414,7 @@ class Placer {
   Joint join_;
   double threshold_;
   PlacementCounts counts_;
+  bool is_held_ = false; ///< whether the vertex that is placed now was held back
 };
 
 } // namespace

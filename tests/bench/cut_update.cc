@@ -121,7 +121,7 @@ void take_in(Body& body, const std::vector<grid::EdgeCut>& released, const std::
   Seconds& s = tally.seconds;
   std::vector<grid::EdgeId> edges;
   timed(s[add], [&] {
-    edges = cut::add_cuts(body.grid, body.cuts, body.complex, body.x, released, cut::Front::possible);
+    edges = cut::add_cuts(body.grid, body.cuts, body.complex, body.x, released, cut::Front::possible).edges;
     edges.insert(edges.end(), ended.begin(), ended.end());
   });
   timed(s[passed_], [&] {

@@ -36,8 +36,8 @@ struct Resting {
   SweepCuts meet(const Shape& shape) const { return cut_edges({"", shape, 1}, body.grid, body.cuts, complex, x); }
   SweepCuts cut(const Shape& shape) {
     SweepCuts found = meet(shape);
-    const Front front = has_end({"", shape, 1}) ? Front::possible : Front::none;
-    const auto edges = add_cuts(body.grid, body.cuts, complex, x, found.cuts, front);
+    const Front front = rim({"", shape, 1}).empty() ? Front::none : Front::possible;
+    add_cuts(body.grid, body.cuts, complex, x, found.cuts, front);
     surface::place(body.grid, body.cuts, {});
     complex = grid::build_complex(body.grid, body.cuts);
     x = grid::rest_positions(body.grid, complex);

@@ -19,6 +19,13 @@ Blade turning_blade() {
           .key_frames = {{0, {0, 0, 0.05}, {0, 0, 0}}, {1, {0, 0, 0}, {0, 0, 20}}}};
 }
 
+/// Of a blade that has no key frame within the step.
+BladePath only_path(const Blade& blade, const double t0, const double t1) {
+  const auto all = paths(blade, t0, t1);
+  EXPECT_EQ(all.size(), 1u);
+  return all.at(0);
+}
+
 class MovingEdge : public testing::Test {
  protected:
   Vec3 random_point(const double reach) {
@@ -32,7 +39,7 @@ class MovingEdge : public testing::Test {
 
 TEST_F(MovingEdge, AtRestIsCrossedLikeByTheStrip) {
   const Blade blade = turning_blade();
-  const BladePath whole = path(blade, 0, 1);
+  const BladePath whole = only_path(blade, 0, 1);
   const auto strip = sweep(blade, 0, 1);
   std::size_t n_met = 0;
   for (int n = 0; n < 2000; ++n) {
@@ -50,7 +57,7 @@ TEST_F(MovingEdge, IsMetInRelativeMotion) {
   const Blade blade{.name = "knife",
                     .edge = {{0, -1, 0}, {0, 1, 0}},
                     .key_frames = {{0, {0, 0, 0}, Vec3::Zero()}, {1, {1, 0, 0}, Vec3::Zero()}}};
-  const BladePath step = path(blade, 0, 1);
+  const BladePath step = only_path(blade, 0, 1);
   const Segment before = {Vec3(0.5, 0, -1), Vec3(0.5, 0, 3)};
   const auto moved = [&](const Vec3& by) { return Segment{before[0] + by, before[1] + by}; };
   EXPECT_EQ(meet(step, before, before).n_crossings, 1u);
@@ -79,7 +86,7 @@ TEST_F(MovingEdge, ALoopIsMetEvenly) {
         now[i] = random_point(0.1);
       Blade falling = blade;
       falling.key_frames = {{0, {0, 0, 0.3}, {0, 0, 0}}, {1, {0, 0, -0.3}, {0, 0, 20}}};
-      const BladePath part = path(falling, step / 8.0, (step + 1) / 8.0);
+      const BladePath part = only_path(falling, step / 8.0, (step + 1) / 8.0);
       for (int i = 0; i < 4; ++i)
         sums[i] += meet(part, {before[i], before[(i + 1) % 4]}, {now[i], now[(i + 1) % 4]}).n_crossings;
       before = now;
@@ -98,7 +105,7 @@ TEST_F(MovingEdge, TheNormalIsThatOfThePlaceThatIsMet) {
     const Vec3 place = random_point(1), half = 0.02 * random_point(1);
     const Vec3 middle = pose(blade, 0.5 + 0.45 * place[0])({0.35 * place[1], 0.02, 0});
     const Vec3 p = middle - half, q = middle + half;
-    const Verdict verdict = meet(path(blade, 0, 1), {p, q}, {p, q});
+    const Verdict verdict = meet(only_path(blade, 0, 1), {p, q}, {p, q});
     if (verdict.n_crossings != 1)
       continue;
     ++n_met;

@@ -39,17 +39,17 @@ class ThreeNodes : public testing::Test {
 
 TEST_F(ThreeNodes, StayTogetherOnOneSideOfAPlane) {
   cut({1, 1, 0}, {1, 1, 0});
-  EXPECT_FALSE(joins_nodes(body.grid, body.cuts, cell));
+  EXPECT_FALSE(must_be_parted(body.grid, body.cuts, cell));
   EXPECT_TRUE(keep_nodes_apart(body.grid, body.cuts, cell).empty());
   EXPECT_EQ(body.cuts.seam(face), Seam::whole);
 }
 
 TEST_F(ThreeNodes, AreKeptApartAcrossAPlane) {
   cut({1, 0, 0}, {0, 1, 0});
-  EXPECT_TRUE(joins_nodes(body.grid, body.cuts, cell));
+  EXPECT_TRUE(must_be_parted(body.grid, body.cuts, cell));
   EXPECT_EQ(keep_nodes_apart(body.grid, body.cuts, cell).size(), 2u);
   EXPECT_EQ(body.cuts.seam(face), Seam::parted);
-  EXPECT_FALSE(joins_nodes(body.grid, body.cuts, cell));
+  EXPECT_FALSE(must_be_parted(body.grid, body.cuts, cell));
 }
 
 /// Only once the blade is more than a cell away, and no cut waits beside it.
@@ -100,7 +100,7 @@ TEST(NodesApart, AfterAnyCutsAndSeams) {
       std::vector<Seam> before;
       for (const FaceId f : faces)
         before.push_back(body.cuts.seam(f));
-      n_joined += joins_nodes(body.grid, body.cuts, c);
+      n_joined += must_be_parted(body.grid, body.cuts, c);
       keep_nodes_apart(body.grid, body.cuts, c);
       const grid::CellCuts cell = grid::cuts_of(body.grid, body.cuts, c);
       const auto nodes = body.grid.nodes(c);
@@ -116,7 +116,7 @@ TEST(NodesApart, AfterAnyCutsAndSeams) {
           ++n_parted;
           grid::Cuts less = body.cuts;
           less.set_seam(faces[k], before[k]);
-          EXPECT_TRUE(joins_nodes(body.grid, less, c)) << "face " << k << " is parted in vain";
+          EXPECT_TRUE(must_be_parted(body.grid, less, c)) << "face " << k << " is parted in vain";
         }
     }
   }

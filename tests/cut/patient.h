@@ -50,7 +50,7 @@ struct Patient {
   }
 
   void cut_through(const std::vector<EdgeCut>& cuts) {
-    update(add_cuts(body.grid, body.cuts, complex, x, cuts, Front::none));
+    update(add_cuts(body.grid, body.cuts, complex, x, cuts, Front::none).edges);
   }
   void cut_through(const Shape& shape, const grid::CutLabel label = 1) {
     cut_through(cut_edges(CutSurface{"", shape, label}, body.grid, body.cuts, complex, x).cuts);
@@ -63,14 +63,15 @@ struct Patient {
     for (int k = 0; k <= n_steps || pending.size() > 0; ++k) {
       std::vector<EdgeCut> found;
       const double t0 = double(k) / n_steps, t1 = double(k + 1) / n_steps;
-      if (k < n_steps)
-        found = cut_edges(path(blade, t0, t1), body.grid, body.cuts, complex, x, x, blade.label).cuts;
+      for (const BladePath& path : paths(blade, t0, t1))
+        for (const EdgeCut& cut : cut_edges(path, body.grid, body.cuts, complex, x, x, blade.label).cuts)
+          found.push_back(cut);
       if (release == Release::queued)
         pending.push(found);
       const auto ended = ends.close(whereabouts(blade, t0, t1), pending, body.grid, body.cuts, complex, x, blade.label);
       if (release == Release::queued)
         found = pending.release(body.grid, body.cuts);
-      std::vector<EdgeId> edges = add_cuts(body.grid, body.cuts, complex, x, found, Front::possible);
+      std::vector<EdgeId> edges = add_cuts(body.grid, body.cuts, complex, x, found, Front::possible).edges;
       edges.insert(edges.end(), ended.begin(), ended.end());
       update(edges);
       ends.note(body.grid, body.cuts, edges, blade.label);

@@ -103,14 +103,28 @@ TEST(Scissors, CutOnlyWhileTheyClose) {
   EXPECT_TRUE(sweep(blade, 0, 1).empty()) << "carried along, open";
   EXPECT_TRUE(sweep(blade, 3, 4).empty()) << "opens";
   EXPECT_TRUE(sweep(blade, 4, 5).empty()) << "carried along";
-  const BladePath resting = path(blade, 3, 4);
-  ASSERT_EQ(resting.lines.size(), 1u);
-  EXPECT_EQ(resting.lines[0], world_points(blade, 4));
-  const BladePath closing = path(blade, 0.5, 3.5);
-  EXPECT_EQ(closing.lines.front(), world_points(blade, 1));
-  EXPECT_EQ(closing.lines.back(), world_points(blade, 3));
-  EXPECT_NEAR(closing.fractions.front(), 0.5 / 3, 1e-15);
-  EXPECT_NEAR(closing.fractions.back(), 2.5 / 3, 1e-15);
+  EXPECT_TRUE(paths(blade, 3, 4).empty());
+  const auto closing = paths(blade, 0.5, 3.5); // the whole has a key frame at 2 s
+  ASSERT_EQ(closing.size(), 2u);
+  EXPECT_EQ(closing[0].lines.front(), world_points(blade, 1));
+  EXPECT_EQ(closing[0].lines.back(), world_points(blade, 2));
+  EXPECT_EQ(closing[1].lines.front(), world_points(blade, 2));
+  EXPECT_EQ(closing[1].lines.back(), world_points(blade, 3));
+  EXPECT_NEAR(closing[0].fractions.front(), 0.5 / 3, 1e-15);
+  EXPECT_NEAR(closing[0].fractions.back(), 1.5 / 3, 1e-15);
+  EXPECT_NEAR(closing[1].fractions.front(), 1.5 / 3, 1e-15);
+  EXPECT_NEAR(closing[1].fractions.back(), 2.5 / 3, 1e-15);
+}
+
+/// What they sweep as they close does not depend on what else they do in the step.
+TEST(Scissors, CutEachTimeTheyCloseInAStep) {
+  Scissors scissors = resting_scissors();
+  scissors.openings = {{0, 80}, {1, 0}, {2, 80}, {3, 20}};
+  const Blade blade = blades(scissors, 1)[0];
+  const auto closing = paths(blade, 0, 3);
+  ASSERT_EQ(closing.size(), 2u);
+  EXPECT_EQ(closing[0].lines, paths(blade, 0, 1).at(0).lines);
+  EXPECT_EQ(closing[1].lines, paths(blade, 2, 3).at(0).lines);
 }
 
 TEST(Scissors, CheckNamesWhatIsWrong) {

@@ -120,7 +120,7 @@ class Run {
     }
     drain();
     strip_.clear(); // all blades are gone
-    cut(subject_, {}, strip_, pending_, tally_);
+    cut(subject_, {}, strip_, label_, pending_, tally_);
     require_untouched_elsewhere();
     require_same_in_any_order();
     outcome_.digest = digest(subject_, outcome_.digest);
@@ -146,6 +146,7 @@ class Run {
     tally_.n_idle_sweeps += found.cuts.empty();
     last_ = swept;
     strip_ = strip_of(swept.sweep);
+    label_ = static_cast<grid::CutLabel>(number + 1);
     if (release_ == Release::at_once || std::holds_alternative<cut::CutSurface>(swept.sweep)) {
       cut_at_once(found.cuts, swept.sweep);
       if (plane && is_first)
@@ -178,12 +179,12 @@ class Run {
 
   void cut_at_once(const std::vector<grid::EdgeCut>& cuts, const Sweep& sweep) {
     const auto* const surface = std::get_if<cut::CutSurface>(&sweep);
-    const Front front = surface && !cut::has_end(*surface) ? Front::none : Front::possible;
+    const Front front = surface && cut::rim(*surface).empty() ? Front::none : Front::possible;
     if (!cuts.empty())
       cut(subject_, cuts, front, tally_);
   }
 
-  void cut_swept(const std::vector<grid::EdgeCut>& cuts) { cut(subject_, cuts, strip_, pending_, tally_); }
+  void cut_swept(const std::vector<grid::EdgeCut>& cuts) { cut(subject_, cuts, strip_, label_, pending_, tally_); }
 
   void drain() {
     while (pending_.size() > 0) {
@@ -225,7 +226,8 @@ class Run {
   Outcome& outcome_;
   cut::PendingCuts pending_;
   std::optional<NamedSweep> last_;
-  Soup strip_; // what is swept now
+  Soup strip_;               // what is swept now
+  grid::CutLabel label_ = 0; // of the strip
 };
 
 } // namespace

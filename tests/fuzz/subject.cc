@@ -168,21 +168,24 @@ Subject make_subject(const Specimen& specimen, Tally& tally) {
 
 void cut(Subject& subject, const std::span<const grid::EdgeCut> new_cuts, const Front front, Tally& tally) {
   grid::Cuts cuts = subject.cuts;
-  const auto edges = cut::add_cuts(subject.grid(), cuts, subject.complex, subject.x, new_cuts, front);
+  const auto edges = cut::add_cuts(subject.grid(), cuts, subject.complex, subject.x, new_cuts, front).edges;
   if (!edges.empty())
     follow_cuts(subject, cuts, edges, tally);
 }
 
 void cut(Subject& subject, const std::span<const grid::EdgeCut> new_cuts,
-         const std::span<const std::array<Vec3, 3>> strip, const cut::PendingCuts& pending, Tally& tally) {
+         const std::span<const std::array<Vec3, 3>> strip, const grid::CutLabel of_strip,
+         const cut::PendingCuts& pending, Tally& tally) {
   const grid::Grid& grid = subject.grid();
   grid::Cuts cuts = subject.cuts;
   std::vector<grid::EdgeId> ended;
+  constexpr std::span<const std::array<Vec3, 3>> gone;
   for (auto& [label, ends] : subject.open_ends)
-    for (const auto e : ends.close(strip, pending, grid, cuts, subject.complex, subject.x, label))
+    for (const auto e :
+         ends.close(label == of_strip ? strip : gone, pending, grid, cuts, subject.complex, subject.x, label))
       ended.push_back(e);
   tally.n_ended += ended.size();
-  auto edges = cut::add_cuts(grid, cuts, subject.complex, subject.x, new_cuts, Front::possible);
+  auto edges = cut::add_cuts(grid, cuts, subject.complex, subject.x, new_cuts, Front::possible).edges;
   edges.insert(edges.end(), ended.begin(), ended.end());
   if (edges.empty())
     return;

@@ -79,10 +79,10 @@ using cut::Front;
 /// invariant. Throws Violation.
 void cut(Subject& subject, std::span<const grid::EdgeCut> cuts, Front front, Tally& tally);
 
-/// The same for a step in which blades sweep `strip` (triangles [m]): cuts that it has left come to their end, but
-/// where others wait.
+/// The same for a step in which the blade with this label sweeps `strip` (triangles [m]) and all others have gone: cuts
+/// that a blade has left come to their end, but where others wait.
 void cut(Subject& subject, std::span<const grid::EdgeCut> cuts, std::span<const std::array<Vec3, 3>> strip,
-         const cut::PendingCuts& pending, Tally& tally);
+         grid::CutLabel label, const cut::PendingCuts& pending, Tally& tally);
 
 /// The same with seams that are known: no further edges are cut.
 void cut(Subject& subject, const grid::histories::Step& step, Tally& tally);

@@ -139,7 +139,13 @@ class Draw {
                                   uniform(random_, 0, 80) * support::random_direction(random_)});
     cut::check(blade);
     const double start = uniform(random_, -0.5, 0.2);
-    return cut::path(blade, start, start + uniform(random_, 0.1, 2));
+    cut::BladePath whole; // a blade that turns back crosses some edges twice
+    for (const cut::BladePath& path : cut::paths(blade, start, start + uniform(random_, 0.1, 2))) {
+      const std::size_t n_shared = whole.lines.empty() ? 0 : 1;
+      whole.fractions.insert(whole.fractions.end(), path.fractions.begin() + n_shared, path.fractions.end());
+      whole.lines.insert(whole.lines.end(), path.lines.begin() + n_shared, path.lines.end());
+    }
+    return whole;
   }
 
   Soup soup() {

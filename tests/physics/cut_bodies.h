@@ -21,8 +21,9 @@ struct GrowingCut {
 
   /// Cuts edges, and lets physics and state follow. Returns what has changed.
   grid::ComplexChange cut(const std::vector<grid::EdgeCut>& cuts, Physics& physics, dynamics::State& state) {
-    const auto edges = cut::add_cuts(body.grid, body.cuts, complex, grid::rest_positions(body.grid, complex), cuts,
-                                     cut::Front::possible);
+    const auto edges =
+      cut::add_cuts(body.grid, body.cuts, complex, grid::rest_positions(body.grid, complex), cuts, cut::Front::possible)
+        .edges;
     surface::place(body.grid, body.cuts, {});
     const auto change = grid::update_complex(body.grid, body.cuts, edges, complex);
     surface::update_surface(body.grid, body.cuts, complex, edges, change, surface, index);
