@@ -186,11 +186,11 @@ void Parameters::choice(const std::string& name, std::string& field, const std::
 }
 
 void Parameters::vector(const std::string& name, Vec3& field, const std::string& text) {
-  add(name, field, vector_text(field), "must be three numbers x, y, z", text, parse_vector);
+  add(name, field, vector_text(field), "must be three numbers x, y, z, all finite", text, parse_vector);
 }
 
 void Parameters::points(const std::string& name, Points& field, const std::string& text) {
-  add(name, field, joined(field, "; ", vector_text), "must be points x, y, z; x, y, z", text, parse_points);
+  add(name, field, joined(field, "; ", vector_text), "must be points x, y, z; x, y, z, all finite", text, parse_points);
 }
 
 void Parameters::numbers(const std::string& name, std::vector<double>& field, const Range& range,

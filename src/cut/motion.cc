@@ -45,8 +45,8 @@ Vec3 position(const Frames frames, const double t) {
 }
 
 [[noreturn]] void refuse(const std::string& tool, const std::string& value, const std::string& rule,
-                         const std::string& remedy) {
-  throw ParameterError(Complaint{.path = tool + "/Key frames", .value = value, .rule = rule, .remedy = remedy});
+                         const std::string& remedy, const std::string& what = "Key frames") {
+  throw ParameterError(Complaint{.path = tool + '/' + what, .value = value, .rule = rule, .remedy = remedy});
 }
 
 void check_pair(const KeyFrame& before, const KeyFrame& after, const std::string& tool) {
@@ -56,7 +56,7 @@ void check_pair(const KeyFrame& before, const KeyFrame& after, const std::string
   if (quaternion(before.rotation).dot(quaternion(after.rotation)) < 1e-9)
     refuse(tool, "rotation at " + to_text(after.time) + " s",
            "must be turned by less than 180 degrees from the key frame before it",
-           "Add a key frame between them, to say which way it turns");
+           "Add a key frame between them, to say which way it turns", "Rotations");
 }
 
 } // namespace

@@ -26,7 +26,7 @@ struct Pose {
 };
 
 /// Throws ParameterError at the path "TOOL/Key frames": no key frames, times that do not increase, numbers that are not
-/// finite, key frames in a row that turn by 180 degrees or more (which way would be ambiguous).
+/// finite; at "TOOL/Rotations": key frames in a row that turn by 180 degrees or more (which way would be ambiguous).
 void check_key_frames(std::span<const KeyFrame> frames, const std::string& tool);
 
 /// Where the tool is at time t [s]. Here and below, check_key_frames() must accept the key frames.

@@ -59,14 +59,16 @@ Element make_element(const Moments& moments, const double h, const material::Ela
                      const ElementOptions& options) {
   Element element;
   element.volume = moments[0] * h * h * h;
-  fill_mass(element, moments, material.density * h * h * h);
+  const Moments positive = without_negative_squares(moments);
+  fill_mass(element, positive, material.density * h * h * h);
   spread_mass(element, options.mass_spread);
 
   const Centred stiff = centred(topped_up(moments, options.sliver_floor));
   element.centroid = stiff.centroid;
   element.stiff_volume = stiff.volume * h * h * h;
   element.gradient = mean_gradients(stiff);
-  Matrix24 K = hourglass_stiffness(stiff, material, options.strain);
+  // The mean gradient is that of the material as it is: so affine motions meet exact forces.
+  Matrix24 K = hourglass_stiffness(centred(topped_up(positive, options.sliver_floor)), material, options.strain);
   if (options.part == Part::whole)
     K += mean_stiffness(stiff.volume, element.gradient, material);
   Eigen::Map<Matrix24>(element.stiffness.data()) = 0.5 * h * (K + K.transpose());

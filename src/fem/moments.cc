@@ -2,6 +2,7 @@
 
 #include "grid/material.h"
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
@@ -73,6 +74,8 @@ Moments octant_moments(const grid::Grid& grid, const grid::Cuts& cuts, const gri
 }
 
 Moments without_negative_squares(const Moments& m) {
+  if (Eigen::LLT<Products>(products(m)).info() == Eigen::Success)
+    return m; // all but slivers and folds
   Moments spread = full_cube_moments();
   for (double& moment : spread)
     moment *= m[0];
@@ -91,9 +94,7 @@ Moments material_moments(const grid::Grid& grid, const grid::Cuts& cuts, const g
   constexpr double least = 1e-12; // far below any sliver that is material
   Moments m{};
   grid::for_each_tetrahedron(grid, cuts, copy, [&](const grid::Tetrahedron& t, int) { add(m, t); });
-  if (m[0] >= least)
-    return grid::lines_under_skin(grid, cuts, copy) == 0 ? m : without_negative_squares(m);
-  if (copy.nodes != 0)
+  if (copy.nodes != 0 || m[0] >= least)
     return m;
   m = full_cube_moments();
   for (double& moment : m)

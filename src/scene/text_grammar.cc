@@ -129,7 +129,7 @@ class Checker {
     if (rule.empty() || (it->required && key.value.empty())) // a missing key, told as such
       return;
     const auto word = nearest(key.value, it->words);
-    const std::string example = it->check(it->fallback).empty() ? " (default " + it->fallback + ")" : "";
+    const std::string example = !it->fallback.empty() && it->check(it->fallback).empty() ? " (default " + it->fallback + ")" : "";
     throw error(key.origin, path + "/" + key.name, key.value, rule,
                 word ? "Did you mean '" + *word + "'?" : it->text + example);
   }

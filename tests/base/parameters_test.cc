@@ -111,9 +111,9 @@ TEST_F(ParametersTest, BadWordsAndListsBreakTheirRule) {
   for (const std::string value : {"", "octant", "full", "octants, full cube"})
     EXPECT_EQ(assign("Volume", value), "must be one of octants, full cube") << value;
   for (const std::string value : {"", "1, 2", "1, 2, 3, 4", "1 2 3", "1, 2, nan", "1, 2, "})
-    EXPECT_EQ(assign("Force [N]", value), "must be three numbers x, y, z") << value;
+    EXPECT_EQ(assign("Force [N]", value), "must be three numbers x, y, z, all finite") << value;
   for (const std::string value : {"1, 2", "1, 2, 3;", "1, 2, 3; 4, 5", ";"})
-    EXPECT_EQ(assign("Path [m]", value), "must be points x, y, z; x, y, z") << value;
+    EXPECT_EQ(assign("Path [m]", value), "must be points x, y, z; x, y, z, all finite") << value;
   for (const std::string value : {"0", "0.5, 1.1", "0.5;0.6", ","})
     EXPECT_EQ(assign("Ratios [1]", value), "must be numbers separated by commas, each > 0 and <= 1") << value;
   EXPECT_EQ(fields.force, Vec3(0, 0, -9.81));

@@ -64,6 +64,9 @@ TEST_F(ThreeNodes, AreKeptApartOnceTheBladeHasGone) {
     const std::array<Vec3, 3> triangle = {blade, blade + Vec3::UnitX(), blade + Vec3::UnitY()};
     return ends.close(std::span(&triangle, 1), pending, body.grid, body.cuts, complex, x, 1).size();
   };
+  OpenEnds of_another;
+  of_another.note(body.grid, body.cuts, std::vector{along_x, along_y}, 2);
+  EXPECT_EQ(of_another.size(), 0u) << "a blade that has not cut here ends nothing";
   EXPECT_EQ(close({1, 1, 1.5}), 0u);
   pending.push(std::vector<grid::EdgeCut>{{*body.grid.find_edge({2, 1, 1}, 0), 0.1, Vec3::UnitX(), 1}});
   EXPECT_EQ(close({9, 9, 9}), 0u);

@@ -134,6 +134,29 @@ TEST(ScissorsScene, RefusesWhatAreNoScissors) {
   expect_refused(section("Scissors shears", keys), {"Times [s] = '1, 0'", "times must increase"});
 }
 
+TEST(BladeScene, RefusesWhatIsNoBlade) {
+  const std::vector<std::string> keys = {"Edge [m] = -0.2, 0, 0; 0.2, 0, 0", "Times [s] = 0, 0.02, 0.05",
+                                         "Positions [m] = 0, 0, 0.2; 0, 0, 0; 0, 0, -0.2",
+                                         "Rotations [degrees] = 0, 0, 0; 0, 0, 10; 0, 0, 20"};
+  EXPECT_EQ(world_of(cube_scene() + section("Blade knife", keys)).blades.size(), 1u);
+  const auto refuse = [&](const std::string& key, const std::string& value, const std::vector<std::string>& words) {
+    SCOPED_TRACE(key + " = " + value);
+    auto all = words;
+    all.insert(all.end(), {"scene.prm:", "Blade knife/" + key + " = '" + value + "'"});
+    expect_refused(section("Blade knife", with(keys, key, value)), all);
+  };
+  refuse("Edge [m]", "0, 0, 0", {"at least two points", "Write the ends"});
+  refuse("Edge [m]", "0, 0, 0; 0, 0, 0", {"must differ from the point before it", "Remove it"});
+  refuse("Edge [m]", "0, 0, 0; 1, 0, 0; 1, 0, 0; 2, 0, 0", {"must differ from the point before it", "Remove it"});
+  refuse("Edge [m]", "nan, 0, 0; 1, 0, 0", {"must be points x, y, z; x, y, z, all finite"});
+  refuse("Edge [m]", "0, 0; 1, 0", {"must be points x, y, z; x, y, z, all finite"});
+  refuse("Times [s]", "0, 0.05, 0.02", {"times must increase", "Sort"});
+  refuse("Times [s]", "0, 0.02, 0.02", {"times must increase", "remove repeated times"});
+  refuse("Positions [m]", "0, 0, 0.2; 0, 0, 0", {"as many as Times [s], which are 3"});
+  refuse("Positions [m]", "0, 0, 0.2; 0, 0, 0; inf, 0, 0", {"all finite"});
+  refuse("Rotations [degrees]", "0, 0, 0; 0, 0, 10; 0, 0, 195", {"less than 180 degrees", "Add a key frame"});
+}
+
 TEST(CurvedBlade, IsWrittenAsArcs) {
   const std::vector<std::string> keys = {"Edge [m] = -0.07, 0, 0; 0, 0, -0.07; 0.07, 0, 0", "Edge form = arcs",
                                          "Times [s] = 0, 0.05", "Positions [m] = 0, -0.15, 0.1; 0, 0.15, 0.1"};
@@ -291,7 +314,7 @@ TEST(Forceps, SayWhatIsWrong) {
   refuse("Release time [s]", "0.01", {"Release time [s] = '0.01'", "at least a step after Grip time [s]"});
   refuse("Times [s]", "0, 0.02, 0.01", {"Times [s] = '0, 0.02, 0.01'", "times must increase", "Sort"});
   refuse("Times [s]", "0, 0.02", {"Positions [m]", "as many as Times [s], which are 2"});
-  refuse("Rotations [degrees]", "0, 0, 0; 0, 0, 190; 0, 0, 0", {"Times [s]", "less than 180 degrees"});
+  refuse("Rotations [degrees]", "0, 0, 0; 0, 0, 190; 0, 0, 0", {"Rotations [degrees] = '0, 0, 0; 0, 0, 190; 0, 0, 0'", "less than 180 degrees"});
 }
 
 } // namespace
