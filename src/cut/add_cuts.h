@@ -21,7 +21,8 @@ struct AddedCuts {
 };
 
 /// Adds cuts that were found when the corners were at `x` [m], one a corner of `complex`, which does not know them yet;
-/// without a front neither is asked for. What can be cut no more is left out, and so are tips of the skin (cuts_that_go_on()).
+/// without a front neither is asked for. What can be cut no more is left out, and so are tips of the skin
+/// (cuts_that_go_on()).
 AddedCuts add_cuts(const grid::Grid& grid, grid::Cuts& cuts, const grid::CellComplex& complex, const Points& x,
                    std::span<const grid::EdgeCut> found, Front front);
 

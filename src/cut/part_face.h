@@ -8,8 +8,8 @@
 
 namespace kerf::cut {
 
-/// Parts the skin of a cell's face, and adds the edges of the face that blades have cut; around others there may be cells
-/// of the skin that no blade has cut: they stay as they are.
+/// Parts the skin of a cell's face, and adds the edges of the face that blades have cut; around others there may be
+/// cells of the skin that no blade has cut: they stay as they are.
 void part_face(const grid::Grid& grid, grid::Cuts& cuts, grid::CellId c, int face, std::vector<grid::EdgeId>& edges);
 
 } // namespace kerf::cut

@@ -1,13 +1,17 @@
 #pragma once
 
-/// Which uncut edges a sweep meets in the current configuration (thesis §2.3.3).
+/// Which edges that can be cut a sweep meets in the current configuration (thesis §2.3.3).
 ///
 /// Method: an uncut edge between two material nodes is one current segment, from the real corner of its lower node to
-/// that of its upper node. It is cut when an odd number of the sweep's triangles cross it, by the exact predicates of
-/// geometry/predicates.h; boxes keep most pairs away from them. The normal is pulled back to rest (target.h).
+/// that of its upper node; an edge of the skin that no blade has cut is the one from its material node to the skin,
+/// among the corners of that node's copy. It is cut when an odd number of the sweep's triangles cross it, by the exact
+/// predicates of geometry/predicates.h; boxes keep most pairs away from them. The normal is pulled back to rest
+/// (target.h).
 ///
-/// Who cuts a body often keeps boxes around its edges (edge_boxes.h) and hands them over, fitted to the corners' places:
-/// then the time goes with the area that is cut. Without them every edge is looked at. The result is the same, bit by bit.
+/// Who cuts a body often keeps boxes around its edges (edge_boxes.h) and hands them over, fitted to the corners'
+/// places: then the time goes with the area that is cut. Without them every edge is looked at. The result is the same,
+/// bit by bit, but for edges of the skin that reach further from their block than four times the longest edge of the
+/// body.
 ///
 /// A body that moves is met in relative motion (moving_edge.h): what a blade sweeps in successive steps leaves no gap
 /// for an edge to slip through, and material that moves through a resting blade is cut.
