@@ -156,6 +156,32 @@ TEST(CutSurfaceScene, AMeshThroughItselfCutsWhereItCrossesOddly) {
   EXPECT_NEAR(value(body, "mass"), 8, 1e-11);
 }
 
+/// Open sheets that reach beyond the cube on all sides, waved and tilted so that they pass the skin between its edges: no
+/// bridge is left. A sheet that ends inside parts nothing.
+TEST(CutSurfaceScene, AnOpenMeshThroughTheBodyPartsIt) {
+  const auto sheet = [](const double reach, const double amplitude, const double tilt, const double height) {
+    constexpr int n = 24;
+    geometry::TriangleMesh mesh;
+    for (int j = 0; j <= n; ++j)
+      for (int i = 0; i <= n; ++i) {
+        const double x = -0.3 + (0.3 + reach) * i / n, y = -0.3 + 0.6 * j / n;
+        mesh.vertices.emplace_back(x, y, height + tilt * x + amplitude * std::sin(40 * x) * std::cos(30 * y));
+      }
+    for (std::uint32_t j = 0; j < n; ++j)
+      for (std::uint32_t i = 0; i < n; ++i) {
+        const std::uint32_t a = i + (n + 1) * j, b = a + n + 1;
+        mesh.triangles.push_back({a, a + 1, b});
+        mesh.triangles.push_back({a + 1, b + 1, b});
+      }
+    return mesh;
+  };
+  for (int i = 0; i < 12; ++i) {
+    const double amplitude = 0.004 * i, tilt = 0.05 * (i % 5), height = 0.013 * (i - 6);
+    EXPECT_EQ(value(cut_by(sheet(0.3, amplitude, tilt, height)).bodies[0], "pieces"), 2) << i;
+    EXPECT_EQ(value(cut_by(sheet(0.02, amplitude, tilt, height)).bodies[0], "pieces"), 1) << i;
+  }
+}
+
 TEST(CutSurfaceScene, AMeshThatLiesOnItselfTwiceCutsNothing) {
   const auto box = geometry::box_mesh(Vec3::Constant(-0.065), Vec3::Constant(0.026));
   const World world = cut_by(geometry::together(box, box));
