@@ -10,7 +10,8 @@
 ///
 /// An edge that another surface has cut keeps that cut when it is crossed again (grid/cuts.h), so that beside such
 /// edges none may tell of the later cut. There the plane of what it cuts in the same cell does, in that cell and
-/// around the edges that it crosses again: it parts the skin of a face where its arc ends on different sides.
+/// around the edges that it crosses again, up to two cells away: it parts the skin of a face where its arc ends on
+/// different sides.
 
 #include "cut/target.h"
 

@@ -8,6 +8,8 @@
 
 #include <bit>
 #include <iostream>
+#include <map>
+#include <optional>
 
 namespace kerf::cut {
 namespace {
@@ -90,6 +92,65 @@ TEST(AtSkin, TheOrderOfTwoCutsThatCrossDoesNotMatter) {
   EXPECT_EQ(wrong.whole, 0);
   EXPECT_EQ(wrong.parted, 0);
   EXPECT_GT(wrong.n, 10000);
+}
+
+/// For each material node the lowest one of its piece.
+std::vector<std::uint32_t> partition(const Patient& patient) {
+  const grid::Grid& grid = patient.body.grid;
+  const auto pieces = grid::pieces(patient.complex);
+  std::map<std::uint32_t, std::uint32_t> first;
+  std::vector<std::uint32_t> result(grid.n_nodes(), grid::NodeId::no_value);
+  for (const auto c : ids<grid::CopyId>(patient.complex.n_copies())) {
+    const grid::Copy& copy = patient.complex.copies[c];
+    for (int v = 0; v < grid::cube::n_vertices; ++v)
+      if (copy.nodes >> v & 1)
+        result[grid.nodes(copy.cell)[v].value] = pieces.piece[c];
+  }
+  for (std::uint32_t n = 0; n < result.size(); ++n)
+    if (result[n] != grid::NodeId::no_value)
+      result[n] = first.try_emplace(result[n], n).first->second;
+  return result;
+}
+
+/// Three planes through a body, in all six orders, by blades and at once: the same nodes hang together.
+TEST(AtSkin, TheOrderOfThreeCutsLeavesTheSameNodesTogether) {
+  Random random(110);
+  int n_bodies = 0, n_other = 0;
+  std::size_t most_pieces = 0;
+  for (int i = 0; i < 60; ++i) {
+    const Body body = i % 2 ? box_body(random)
+                            : support::embedded(geometry::sphere_mesh(0.4, Vec3::Zero(), 4), h, random_offset(random));
+    const Vec3 middle = i % 2 ? Vec3(0.5 * (box.lower + box.upper)) : Vec3::Zero();
+    std::array<Vec3, 3> normals, through;
+    for (int k = 0; k < 3; ++k) {
+      normals[k] = random_direction(random);
+      through[k] = middle + 0.1 * support::random_vector(random);
+    }
+    std::array<int, 3> order = {0, 1, 2};
+    std::optional<std::vector<std::uint32_t>> expected;
+    do
+      for (const bool at_once : {true, false}) {
+        Patient patient{body};
+        for (const int k : order) {
+          const auto label = static_cast<grid::CutLabel>(k + 1);
+          const Frame frame = across(normals[k], 0.1 * i);
+          if (at_once)
+            patient.cut_through(Plane{through[k], normals[k]}, label);
+          else
+            patient.pass(straight(through[k], frame.u, frame.v, 2, 2, label), 1 + i % 7,
+                         i % 3 ? Release::queued : Release::at_once);
+        }
+        const auto found = partition(patient);
+        most_pieces = std::max<std::size_t>(most_pieces, patient.volumes().size());
+        ++n_bodies;
+        if (!expected)
+          expected = found;
+        n_other += found != *expected;
+      }
+    while (std::next_permutation(order.begin(), order.end()));
+  }
+  std::cout << n_bodies << " bodies, up to " << most_pieces << " pieces; " << n_other << " with other nodes together\n";
+  EXPECT_EQ(n_other, 0);
 }
 
 /// Of edges cut at random, where no other surface has cut: the skin of an arc is parted by an odd number.
