@@ -69,6 +69,15 @@ void compare(Study& study, const Patient& passed, const Slice& slice) {
   }
 }
 
+void expect_the_plane(const Study& study) {
+  std::cout << study << '\n';
+  EXPECT_EQ(study.n_other_count, 0);
+  EXPECT_GT(study.n_exact, 120);
+  EXPECT_LT(study.worst_exact, 1e-12);
+  EXPECT_LT(study.worst_other, 1e-12);
+  EXPECT_LT(study.worst_total, 1e-12);
+}
+
 class Passes : public testing::TestWithParam<Release> {};
 
 /// In 1 to 150 steps, at every tilt: what the plane at once gives, exact where that is.
@@ -82,12 +91,7 @@ TEST_P(Passes, OfAFlatBladeAreThePlane) {
     patient.pass(straight(slice.through, frame.u, frame.v, 2, 2), steps(i), GetParam());
     compare(study, patient, slice);
   }
-  std::cout << study << '\n';
-  EXPECT_EQ(study.n_other_count, 0);
-  EXPECT_GT(study.n_exact, 120);
-  EXPECT_LT(study.worst_exact, 1e-12);
-  EXPECT_LT(study.worst_other, 1e-12);
-  EXPECT_LT(study.worst_total, 1e-12);
+  expect_the_plane(study);
 }
 
 /// An affine map takes the plane to a plane.
@@ -105,12 +109,7 @@ TEST_P(Passes, AreTheSameInABodyThatIsStretchedAndSheared) {
     patient.pass(straight(map(slice.through), frame.u, frame.v, 4, 4), steps(i), GetParam());
     compare(study, patient, slice);
   }
-  std::cout << study << '\n';
-  EXPECT_EQ(study.n_other_count, 0);
-  EXPECT_GT(study.n_exact, 120);
-  EXPECT_LT(study.worst_exact, 1e-12);
-  EXPECT_LT(study.worst_other, 1e-12);
-  EXPECT_LT(study.worst_total, 1e-12);
+  expect_the_plane(study);
 }
 
 constexpr double radius = 0.41;
