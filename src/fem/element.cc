@@ -44,15 +44,6 @@ void fill_mass(Element& element, const Moments& moments, const double mass_of_cu
   }
 }
 
-/// The moments of what carries stiffness.
-Moments topped_up(Moments moments, const double sliver_floor) {
-  const double missing = std::max(0.0, sliver_floor - moments[0]);
-  const Moments full = full_cube_moments();
-  for (int n = 0; n < 27; ++n)
-    moments[n] += missing * full[n];
-  return moments;
-}
-
 } // namespace
 
 Element make_element(const Moments& moments, const double h, const material::Elastic& material,
@@ -61,28 +52,18 @@ Element make_element(const Moments& moments, const double h, const material::Ela
   element.volume = moments[0] * h * h * h;
   const Moments positive = without_negative_squares(moments);
   fill_mass(element, positive, material.density * h * h * h);
-  spread_mass(element, options.mass_spread);
 
-  const Centred stiff = centred(topped_up(moments, options.sliver_floor));
-  element.centroid = stiff.centroid;
-  element.stiff_volume = stiff.volume * h * h * h;
-  element.gradient = mean_gradients(stiff);
+  const Centred as_it_lies = centred(moments);
+  element.centroid = as_it_lies.centroid;
+  element.gradient = mean_gradients(as_it_lies);
   // The mean gradient is that of the material as it is: so affine motions meet exact forces.
-  Matrix24 K = hourglass_stiffness(centred(topped_up(positive, options.sliver_floor)), material, options.strain);
+  Matrix24 K = hourglass_stiffness(centred(positive), material, options.strain);
   if (options.part == Part::whole)
-    K += mean_stiffness(stiff.volume, element.gradient, material);
+    K += mean_stiffness(as_it_lies.volume, element.gradient, material);
   Eigen::Map<Matrix24>(element.stiffness.data()) = 0.5 * h * (K + K.transpose());
   for (Vec3& gradient : element.gradient)
     gradient /= h;
   return element;
-}
-
-void spread_mass(Element& element, const double part) {
-  double total = 0;
-  for (const double m : element.mass)
-    total += m;
-  for (double& m : element.mass)
-    m += part * (total / 8 - m);
 }
 
 } // namespace kerf::fem

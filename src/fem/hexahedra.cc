@@ -25,7 +25,7 @@ ElementTableOptions table_options(const HexahedraOptions& options) {
   const bool is_hookean = options.material.law == "small strain" || options.material.law == "corotational";
   return {options.material,
           options.boundary,
-          {options.strain, is_hookean ? Part::whole : Part::hourglass, options.sliver_floor, options.mass_spread}};
+          {options.strain, is_hookean ? Part::whole : Part::hourglass}};
 }
 
 /// The 3 x 3 block A : (. b_c^T) b_a of a law's tangent.
@@ -44,18 +44,31 @@ Hexahedra::Hexahedra(const grid::Grid& grid, const grid::Cuts& cuts, const grid:
   : h_(grid.h()),
     law_(material::law_of(options.material)),
     frame_(frame_of(law_)),
+    inertia_(options.inertia),
     elements_(grid, cuts, complex, table_options(options)),
-    incidence_(complex) {
-  std::vector<std::uint32_t> all(complex.n_corners());
-  std::iota(all.begin(), all.end(), 0);
-  sum_mass(all);
+    incidence_(complex),
+    ghost_penalty_(options.ghost_penalty, options.material, grid.h()) {
+  std::vector<std::uint32_t> corners(complex.n_corners());
+  std::iota(corners.begin(), corners.end(), 0);
+  std::vector<grid::CopyId> copies;
+  copies.reserve(complex.n_copies());
+  for (const auto c : ids<grid::CopyId>(complex.n_copies()))
+    copies.push_back(c);
+  follow(grid, complex, copies, corners);
   linearise(grid::rest_positions(grid, complex));
 }
 
 void Hexahedra::update(const grid::Grid& grid, const grid::Cuts& cuts, const grid::CellComplex& complex,
                        const std::span<const grid::CopyId> changed) {
   elements_.update(grid, cuts, complex, changed);
-  sum_mass(incidence_.update(complex, changed));
+  follow(grid, complex, changed, incidence_.update(complex, changed));
+}
+
+void Hexahedra::follow(const grid::Grid& grid, const grid::CellComplex& complex,
+                       const std::span<const grid::CopyId> changed, const std::span<const std::uint32_t> corners) {
+  sum_mass(corners);
+  ghost_penalty_.update(
+    grid, complex, changed, [this](const std::size_t copy) { return fill(copy); }, mass_);
 }
 
 void Hexahedra::sum_mass(const std::span<const std::uint32_t> corners) {
@@ -112,10 +125,10 @@ double Hexahedra::energy(const Points& x) const {
       double& energy = energies.data()[e];
       energy = 0.5 * state.u.dot(Eigen::Map<const Matrix24>(elements_[e].stiffness.data()) * state.u);
       if (!is_hookean())
-        energy += elements_[e].stiff_volume * std::visit([&](const auto& law) { return law.energy(state.F); }, law_);
+        energy += elements_[e].volume * std::visit([&](const auto& law) { return law.energy(state.F); }, law_);
     },
     worth_elements);
-  return std::accumulate(energies.data(), energies.data() + n_elements(), 0.0);
+  return std::accumulate(energies.data(), energies.data() + n_elements(), ghost_penalty_.energy(x));
 }
 
 void Hexahedra::force(const Points& x, Points& forces) const {
@@ -130,11 +143,12 @@ void Hexahedra::force(const Points& x, Points& forces) const {
         return;
       const Mat3 P = std::visit([&](const auto& law) { return Mat3(law.stress(state.F)); }, law_);
       for (int a = 0; a < 8; ++a)
-        f.segment<3>(3 * a) -= elements_[e].stiff_volume * P * elements_[e].gradient[a];
+        f.segment<3>(3 * a) -= elements_[e].volume * P * elements_[e].gradient[a];
     },
     worth_elements);
   forces.resize(mass_.size());
   gather(values.data(), forces[0].data());
+  ghost_penalty_.add_force(x, forces);
 }
 
 void Hexahedra::linearise(const Points& x) {
@@ -148,7 +162,7 @@ void Hexahedra::linearise(const Points& x) {
         frame_ == Frame::turning ? material::rotation_of(F) : Mat3(Mat3::Identity());
       if (!is_hookean())
         Eigen::Map<Tangent>(tangents_.data() + 81 * e) =
-          elements_[e].stiff_volume *
+          elements_[e].volume *
           std::visit([&](const auto& law) { return Tangent(law.positive_tangent(F)); }, law_);
     },
     worth_elements);
@@ -174,14 +188,16 @@ void Hexahedra::apply_stiffness(const std::span<const double> p, const std::span
                },
                worth_elements / block);
   gather(values.data(), y.data());
+  ghost_penalty_.add_product(p, y);
 }
 
 void Hexahedra::stiffness_diagonal(std::vector<Mat3>& blocks) const {
   blocks.resize(mass_.size());
+  const std::vector<double> penalty = ghost_penalty_.diagonal(mass_.size());
   parallel_for(
     mass_.size(),
     [&](const std::size_t corner) {
-      Mat3 sum = Mat3::Zero();
+      Mat3 sum = penalty[corner] * Mat3::Identity();
       for (const auto user : incidence_.users(corner)) {
         const std::size_t e = user / 8;
         const int a = user % 8;
@@ -208,12 +224,18 @@ Matrix24 Hexahedra::element_matrix(const std::size_t copy, const Points& x, cons
     [&](const auto& law) { return Tangent(is_exact ? law.tangent(state.F) : law.positive_tangent(state.F)); }, law_);
   for (int a = 0; a < 8; ++a)
     for (int c = 0; c < 8; ++c)
-      K.block<3, 3>(3 * a, 3 * c) += element.stiff_volume * tangent_block(A, element.gradient[a], element.gradient[c]);
+      K.block<3, 3>(3 * a, 3 * c) += element.volume * tangent_block(A, element.gradient[a], element.gradient[c]);
   return K;
 }
 
 Eigen::SparseMatrix<double> Hexahedra::stiffness_matrix(const Points& x, const dynamics::Tangent kind) const {
-  return assemble(incidence_, [&](const std::size_t copy) { return element_matrix(copy, x, kind); });
+  std::vector<Eigen::Triplet<double>> penalty;
+  ghost_penalty_.add_entries(penalty);
+  const auto n = static_cast<Eigen::Index>(3 * mass_.size());
+  Eigen::SparseMatrix<double> K(n, n);
+  K.setFromTriplets(penalty.begin(), penalty.end());
+  K += assemble(incidence_, [&](const std::size_t copy) { return element_matrix(copy, x, kind); });
+  return K;
 }
 
 void Hexahedra::apply_mass(const std::span<const double> p, const std::span<double> y) const {

@@ -20,6 +20,7 @@
 
 #include "dynamics/model.h"
 #include "fem/element_table.h"
+#include "fem/ghost_penalty.h"
 #include "fem/incidence.h"
 #include "fem/scratch.h"
 #include "fem/turned.h"
@@ -27,12 +28,19 @@
 
 namespace kerf::fem {
 
+/// What integrators get as the mass of a corner.
+enum class Inertia {
+  lumped,  ///< density times the integral of its shape function
+  extended ///< of that, a part goes to corners that only near-empty copies know (ghost_penalty.h): what explicit
+           ///< integrators need
+};
+
 struct HexahedraOptions {
   material::Elastic material; ///< and its law
   Boundary boundary = Boundary::octants;
   Strain strain = Strain::trilinear;
-  double sliver_floor = 1e-3; ///< make_element [1]
-  double mass_spread = 0;     ///< spread_mass [1]
+  Inertia inertia = Inertia::lumped;
+  GhostPenaltyOptions ghost_penalty = {};
 };
 
 class Hexahedra : public dynamics::ElasticModel, public dynamics::StiffnessMatrix {
@@ -45,7 +53,9 @@ class Hexahedra : public dynamics::ElasticModel, public dynamics::StiffnessMatri
   void update(const grid::Grid& grid, const grid::Cuts& cuts, const grid::CellComplex& complex,
               std::span<const grid::CopyId> changed);
 
-  std::span<const double> lumped_mass() const override { return mass_; }
+  std::span<const double> lumped_mass() const override {
+    return inertia_ == Inertia::lumped ? mass_ : ghost_penalty_.extended_mass();
+  }
   double energy(const Points& x) const override;
   void force(const Points& x, Points& forces) const override;
   void linearise(const Points& x) override;
@@ -53,7 +63,7 @@ class Hexahedra : public dynamics::ElasticModel, public dynamics::StiffnessMatri
   void stiffness_diagonal(std::vector<Mat3>& blocks) const override;
   Eigen::SparseMatrix<double> stiffness_matrix(const Points& x, dynamics::Tangent kind) const override;
 
-  /// y = M p with the consistent mass, whose rows sum to the lumped one where nothing is spread [kg].
+  /// y = M p with the consistent mass, whose rows sum to the lumped one [kg].
   void apply_mass(std::span<const double> p, std::span<double> y) const;
 
   /// Volume of the material that the elements integrate over [m^3].
@@ -66,12 +76,17 @@ class Hexahedra : public dynamics::ElasticModel, public dynamics::StiffnessMatri
   const material::AnyLaw& law() const { return law_; }
   const Element& element(const std::size_t copy) const { return elements_[copy]; }
   const Incidence& incidence() const { return incidence_; }
+  const GhostPenalty& ghost_penalty() const { return ghost_penalty_; }
   /// Mean deformation gradient of a copy [1].
   Mat3 deformation_gradient(std::size_t copy, const Points& x) const;
 
  private:
   bool is_hookean() const { return frame_ == Frame::fixed || std::holds_alternative<material::Corotational>(law_); }
+  void follow(const grid::Grid& grid, const grid::CellComplex& complex, std::span<const grid::CopyId> changed,
+              std::span<const std::uint32_t> corners);
   void sum_mass(std::span<const std::uint32_t> corners);
+  /// Part of its cube that a copy's material is [1].
+  double fill(const std::size_t copy) const { return elements_[copy].volume / (h_ * h_ * h_); }
   std::array<Vec3, 8> corners_of(std::size_t copy, const Points& x) const;
   Turned turned_element(std::size_t copy, const Points& x) const;
   Matrix24 element_matrix(std::size_t copy, const Points& x, dynamics::Tangent kind) const;
@@ -81,8 +96,10 @@ class Hexahedra : public dynamics::ElasticModel, public dynamics::StiffnessMatri
   double h_;
   material::AnyLaw law_;
   Frame frame_;
+  Inertia inertia_;
   ElementTable elements_;
   Incidence incidence_;
+  GhostPenalty ghost_penalty_;
   std::vector<double> mass_;
   std::vector<double> rotations_; // 9 a copy, at the linearisation point
   std::vector<double> tangents_;  // 81 a copy, times its volume; none where the law is Hooke's

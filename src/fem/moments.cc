@@ -91,10 +91,10 @@ Moments without_negative_squares(const Moments& m) {
 }
 
 Moments material_moments(const grid::Grid& grid, const grid::Cuts& cuts, const grid::Copy& copy) {
-  constexpr double least = 1e-12; // far below any sliver that is material
+  constexpr double least = 1e-12; // far below what counts
   Moments m{};
   grid::for_each_tetrahedron(grid, cuts, copy, [&](const grid::Tetrahedron& t, int) { add(m, t); });
-  if (copy.nodes != 0 || m[0] >= least)
+  if (m[0] >= least)
     return m;
   m = full_cube_moments();
   for (double& moment : m)

@@ -21,8 +21,8 @@ Moments octant_moments(const grid::Grid& grid, const grid::Cuts& cuts, grid::Cel
 /// which no trilinear field has a negative square. What lies under a skin that is bent within a cell is a difference of
 /// volumes (grid/material.h): it may be no distribution of material at all, and an element of it would gain energy.
 Moments without_negative_squares(const Moments& m);
-/// Moments of all material of a copy; of rinds alone 1e-12 of a cube at least, for where the skin is bent they may
-/// vanish.
+/// Moments of all material of a copy. Material of less than 1e-12 of a cube counts as that much, spread over the whole
+/// cube: for where the skin is bent, the volume of rinds may vanish.
 Moments material_moments(const grid::Grid& grid, const grid::Cuts& cuts, const grid::Copy& copy);
 
 } // namespace kerf::fem

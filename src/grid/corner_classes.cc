@@ -6,27 +6,6 @@
 
 namespace kerf::grid {
 
-namespace {
-
-constexpr std::array<unsigned, 3> lower_face = {cube::face_mask(0), cube::face_mask(2), cube::face_mask(4)};
-
-/// Bits of the rinds in the lower face along an axis, of those in the face that it is glued to: the upper one of the
-/// cell below.
-constexpr unsigned seen_from_above(const int axis, const unsigned rinds_below) {
-  unsigned rinds = 0;
-  for (int i = 0; i < 4; ++i)
-    rinds |= (rinds_below >> cube::face_lines[2 * axis + 1][i] & 1) << cube::face_lines[2 * axis][i];
-  return rinds;
-}
-
-/// Do two copies have material in common on the face between them?
-bool are_glued(const Part& below, const Part& above, const int axis) {
-  return (below.nodes >> (1 << axis) & above.nodes & lower_face[axis]) != 0 ||
-         (below.rinds != 0 && above.rinds != 0 && (seen_from_above(axis, below.rinds) & above.rinds) != 0);
-}
-
-} // namespace
-
 void CellsAround::complete(const Grid& grid) {
   // Once along each axis finds all eight, where all are there; else a gap may make the way longer.
   for (std::size_t n_before = 0, n = 1; n_before < n && n < 8;) {

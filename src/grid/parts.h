@@ -4,6 +4,7 @@
 /// joined by uncut edges; and where a blade has cut, the skin of a face that is whole (Seam) joins what lies under the
 /// two ends of its arc: there a rind, where the edge is cut twice, else the material node.
 
+#include "grid/cube.h"
 #include "grid/cuts.h"
 #include "grid/skin_arcs.h"
 
@@ -56,5 +57,19 @@ struct Parts {
 Parts parts_of(const CellCuts& cell);
 /// Of one face of the cell.
 Parts parts_of(const CellCuts& cell, int face);
+
+/// Have two parts of cells that share a face, one below and one above it along an axis, material in common there: a
+/// node, or a rind?
+constexpr bool are_glued(const Part& below, const Part& above, const int axis) {
+  constexpr std::array<unsigned, 3> lower_face = {cube::face_mask(0), cube::face_mask(2), cube::face_mask(4)};
+  if ((below.nodes >> (1 << axis) & above.nodes & lower_face[axis]) != 0)
+    return true;
+  if (below.rinds == 0 || above.rinds == 0)
+    return false;
+  for (int i = 0; i < 4; ++i)
+    if ((below.rinds >> cube::face_lines[2 * axis + 1][i] & above.rinds >> cube::face_lines[2 * axis][i] & 1) != 0)
+      return true;
+  return false;
+}
 
 } // namespace kerf::grid

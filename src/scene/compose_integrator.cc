@@ -22,31 +22,27 @@ struct Implicit {
 /// `make` gets the model, and the integrator's own settings.
 template <class Fields, class Make>
 Implicit implicit(const Section& body, const std::string& section, const int order, const Make& make) {
-  const auto parameters = read_if_written<ImplicitParameters<Fields>>(body, section);
-  return {{[=](ElasticModel& model, const PiecesOfParticles&) -> Stepper { return make(model, parameters.integrator); },
-           parameters.sliver_floor, 0},
-          order};
+  const auto parameters = read_if_written<Fields>(body, section);
+  return {{[=](ElasticModel& model, const PiecesOfParticles&) -> Stepper { return make(model, parameters); }}, order};
 }
 
 template <class Explicit>
 Integrator explicit_integrator(const Section& body, const std::string& section) {
-  const auto parameters = read_if_written<ExplicitIntegratorParameters>(body, section);
-  const auto options = parameters.integrator.options();
-  return {[=](ElasticModel& model, const PiecesOfParticles&) { return std::make_unique<Explicit>(model, options); }, 0,
-          parameters.mass_spread};
+  const auto options = read_if_written<dynamics::ExplicitParameters>(body, section).options();
+  return {[=](ElasticModel& model, const PiecesOfParticles&) { return std::make_unique<Explicit>(model, options); },
+          fem::Inertia::extended};
 }
 
 Integrator quasi_static(const Section& body) {
-  const auto parameters = read_if_written<ImplicitParameters<QuasiStaticSceneParameters>>(body, "Quasi-static");
-  auto options = parameters.integrator.statics.options();
+  const auto parameters = read_if_written<QuasiStaticSceneParameters>(body, "Quasi-static");
+  auto options = parameters.statics.options();
   options.free_modes =
-    parameters.integrator.free_modes == "allow" ? dynamics::FreeModes::allow : dynamics::FreeModes::refuse;
+    parameters.free_modes == "allow" ? dynamics::FreeModes::allow : dynamics::FreeModes::refuse;
   return {[=](ElasticModel& model, const PiecesOfParticles& pieces) {
             auto with_pieces = options;
             with_pieces.piece = pieces();
             return std::make_unique<dynamics::QuasiStatic>(model, with_pieces);
-          },
-          parameters.sliver_floor, 0};
+          }};
 }
 
 Implicit implicit_integrator(const Section& body, const std::string& name) {

@@ -2,16 +2,16 @@
 
 /// Integrators by name.
 
+#include "fem/hexahedra.h"
 #include "physics/physics.h"
 #include "scene/composing.h"
 
 namespace kerf::scene {
 
-/// An integrator, and what it needs of elements.
+/// An integrator, and what mass it needs of elements.
 struct Integrator {
   physics::StepperMaker make;
-  double sliver_floor = 0; ///< [1]
-  double mass_spread = 0;  ///< [1]
+  fem::Inertia inertia = fem::Inertia::lumped;
 };
 
 /// The integrator `name` with the settings of its section and of `Adaptive step` inside the body's section.

@@ -289,8 +289,8 @@ void require_sound_loads(const Section& section, const double end_time, const Bo
 }
 
 void require_static_answer(const Section& section, const Body& body) {
-  const auto parameters = read_if_written<ImplicitParameters<QuasiStaticSceneParameters>>(section, "Quasi-static");
-  if (parameters.integrator.free_modes == "allow")
+  const auto parameters = read_if_written<QuasiStaticSceneParameters>(section, "Quasi-static");
+  if (parameters.free_modes == "allow")
     return;
   const bool are_corners = body.physics->rest().size() == body.complex.n_corners();
   const auto pieces = are_corners ? physics::corner_pieces(body.complex) : std::vector<std::uint32_t>();

@@ -24,8 +24,7 @@ PhysicsMaker make_elements(const Section& section, const BodyParameters& paramet
     .material = read_if_written<material::Elastic>(section, "Material"),
     .boundary = boundary_named(parameters.integration),
     .strain = parameters.element == "enhanced" ? fem::Strain::enhanced : fem::Strain::trilinear,
-    .sliver_floor = integrator.sliver_floor,
-    .mass_spread = integrator.mass_spread};
+    .inertia = integrator.inertia};
   return [=](const CutBody& body) {
     return std::make_unique<physics::Elements>(
       body, [=](const CutBody& b) { return std::make_unique<fem::Hexahedra>(b.grid, b.cuts, b.complex, options); },

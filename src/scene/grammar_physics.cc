@@ -32,21 +32,16 @@ void LatticeParameters::describe(Parameters& p) {
 
 std::vector<SectionKind> physics_kinds() {
   const std::string settings = "Settings of that integrator.";
-  using Implicit = ImplicitParameters<dynamics::NewtonParameters>;
   return {
-    {"Implicit Euler", Occurrence::once, settings, keys_of<Implicit>(), {}},
-    {"BDF2", Occurrence::once, settings, keys_of<ImplicitParameters<ConvergedNewtonParameters>>(), {}},
-    {"Newmark", Occurrence::once, settings, keys_of<ImplicitParameters<dynamics::NewmarkParameters>>(), {}},
-    {"Generalised alpha",
-     Occurrence::once,
-     settings,
-     keys_of<ImplicitParameters<dynamics::GeneralisedAlphaParameters>>(),
-     {}},
-    {"Quasi-static", Occurrence::once, settings, keys_of<ImplicitParameters<QuasiStaticSceneParameters>>(), {}},
-    {"Symplectic Euler", Occurrence::once, settings, keys_of<ExplicitIntegratorParameters>(), {}},
-    {"Velocity Verlet", Occurrence::once, settings, keys_of<ExplicitIntegratorParameters>(), {}},
-    {"Explicit Euler", Occurrence::once, settings, keys_of<ExplicitIntegratorParameters>(), {}},
-    {"Midpoint Runge-Kutta", Occurrence::once, settings, keys_of<ExplicitIntegratorParameters>(), {}},
+    {"Implicit Euler", Occurrence::once, settings, keys_of<dynamics::NewtonParameters>(), {}},
+    {"BDF2", Occurrence::once, settings, keys_of<ConvergedNewtonParameters>(), {}},
+    {"Newmark", Occurrence::once, settings, keys_of<dynamics::NewmarkParameters>(), {}},
+    {"Generalised alpha", Occurrence::once, settings, keys_of<dynamics::GeneralisedAlphaParameters>(), {}},
+    {"Quasi-static", Occurrence::once, settings, keys_of<QuasiStaticSceneParameters>(), {}},
+    {"Symplectic Euler", Occurrence::once, settings, keys_of<dynamics::ExplicitParameters>(), {}},
+    {"Velocity Verlet", Occurrence::once, settings, keys_of<dynamics::ExplicitParameters>(), {}},
+    {"Explicit Euler", Occurrence::once, settings, keys_of<dynamics::ExplicitParameters>(), {}},
+    {"Midpoint Runge-Kutta", Occurrence::once, settings, keys_of<dynamics::ExplicitParameters>(), {}},
     {"Adaptive step",
      Occurrence::once,
      "Divides the steps of an implicit integrator until their error is small. Without this section steps are whole.",

@@ -21,32 +21,6 @@ struct ConvergedNewtonParameters {
   void describe(Parameters& p) { newton.describe(p); }
 };
 
-/// Settings of an integrator, and what elements must be for it. One struct for each group of integrators that have the
-/// same keys; each integrator has a section of its name.
-template <class Fields>
-struct ImplicitParameters {
-  Fields integrator;
-  double sliver_floor = 1e-3; ///< [1]
-
-  void describe(Parameters& p) {
-    integrator.describe(p);
-    p.number("Sliver floor [1]", sliver_floor, {.min = 0, .max = 1},
-             "Elements: a copy that holds less than this part of its cube gets the stiffness of this part.");
-  }
-};
-
-struct ExplicitIntegratorParameters {
-  dynamics::ExplicitParameters integrator;
-  double mass_spread = 0.2; ///< [1]
-
-  void describe(Parameters& p) {
-    integrator.describe(p);
-    p.number("Mass spread [1]", mass_spread, {.min = 0, .max = 1},
-             "Elements: part of each cell's mass that its corners share evenly; bounds the frequency of slivers, and "
-             "with it the stable time step.");
-  }
-};
-
 struct QuasiStaticSceneParameters {
   dynamics::QuasiStaticParameters statics;
   std::string free_modes = "refuse";

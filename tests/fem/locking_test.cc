@@ -34,7 +34,7 @@ enum class End {
 double cantilever(const int n_over_height, const double nu, const Strain strain, const End end) {
   const auto mesh = geometry::box_mesh(Vec3(0, -0.1, -0.1), Vec3(1, 0.1, 0.1));
   const Body body = make_embedded(mesh, 0.2 / n_over_height, Vec3::Zero());
-  const Hexahedra model = make_model(body, {.material = with_ratio(nu), .strain = strain, .sliver_floor = 1e-9});
+  const Hexahedra model = make_model(body, {.material = with_ratio(nu), .strain = strain});
   const Points rest = body.rest();
   Points f = end_traction(body, 0, end == End::guided ? Vec3(0, 0, 9810) : Vec3(0, 0, 0));
   for (std::size_t c = 0; c < f.size(); ++c)
@@ -60,7 +60,7 @@ double cooks_trapezium(const int n_over_height, const double nu, const Strain st
     if (v[0] > 1)
       v[1] = v[1] > 1 ? 60 : 44;
   const Body body = make_embedded(mesh, h, Vec3(0, 0.37, 0.5));
-  const Hexahedra model = make_model(body, {.material = with_ratio(nu), .strain = strain, .sliver_floor = 1e-6});
+  const Hexahedra model = make_model(body, {.material = with_ratio(nu), .strain = strain});
   const Points rest = body.rest();
   const Points shear = end_traction(body, 0, Vec3(0, 1, 0));
   const double total = std::accumulate(shear.begin(), shear.end(), Vec3(Vec3::Zero()))[1];

@@ -19,7 +19,7 @@ Mat3 stress(const Hexahedra& model, const Mat3& F) {
 }
 
 HexahedraOptions options_of(const std::string& law, const Strain strain) {
-  return {.material = with_law(rubber, law), .strain = strain, .sliver_floor = 0};
+  return {.material = with_law(rubber, law), .strain = strain};
 }
 
 /// Forces that hold the body in x = F X.

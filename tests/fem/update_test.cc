@@ -56,11 +56,12 @@ std::vector<grid::CopyId> cut_some(Body& body, const double probability, Draw& d
 
 TEST(Update, IsBuildingAnewBitByBit) {
   for (const Boundary boundary : {Boundary::octants, Boundary::volume_fraction, Boundary::full_cube})
-    for (const std::string& law : {all_laws[1], all_laws[3]}) {
+    for (const auto& [law, inertia] :
+         {std::pair(all_laws[1], Inertia::extended), std::pair(all_laws[3], Inertia::lumped)}) {
       Draw draw(90);
       Body body = make_block({3, 3, 3}, 0.2, draw, {0.3, 0.7});
       const HexahedraOptions options{
-        .material = with_law(rubber, law), .boundary = boundary, .strain = Strain::enhanced, .mass_spread = 0.1};
+        .material = with_law(rubber, law), .boundary = boundary, .strain = Strain::enhanced, .inertia = inertia};
       Hexahedra model = make_model(body, options);
       for (int step = 0; step < 6; ++step) {
         const auto changed = cut_some(body, 0.08, draw);

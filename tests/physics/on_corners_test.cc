@@ -13,7 +13,7 @@ support::Body whole_block() { return support::block({5, 4, 4}, 0.1); }
 
 std::unique_ptr<fem::Hexahedra> make_elements(const CutBody& b, const fem::Strain strain) {
   return std::make_unique<fem::Hexahedra>(b.grid, b.cuts, b.complex,
-                                          fem::HexahedraOptions{.material = {}, .strain = strain, .mass_spread = 0.2});
+                                          fem::HexahedraOptions{.material = {}, .strain = strain});
 }
 
 /// Cuts at random, batch by batch, and asks that forces, energy and mass are those of a model made of the body now.

@@ -14,7 +14,7 @@ namespace {
 constexpr double end_tolerance = 1e-9; // [m]
 
 fem::HexahedraOptions options_of(const BeamModel& model, const double E, const double nu) {
-  return hooke(E, nu, model.strain, model.boundary, model.sliver_floor);
+  return hooke(E, nu, model.strain, model.boundary, model.ghost_weight);
 }
 
 dynamics::Support clamp(const Points& rest) {

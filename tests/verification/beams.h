@@ -12,7 +12,7 @@ namespace kerf::verification {
 struct BeamModel {
   fem::Strain strain = fem::Strain::enhanced;
   fem::Boundary boundary = fem::Boundary::octants;
-  double sliver_floor = 1e-3;
+  double ghost_weight = fem::GhostPenaltyOptions().weight;
   double poissons_ratio = 0.3; ///< of heavy_cantilever [1]
 };
 

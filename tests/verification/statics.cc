@@ -66,11 +66,11 @@ std::vector<dynamics::Support> hold_rigid_motion(const Points& rest) {
 }
 
 fem::HexahedraOptions hooke(const double youngs_modulus, const double nu, const fem::Strain strain,
-                            const fem::Boundary boundary, const double sliver_floor) {
+                            const fem::Boundary boundary, const double ghost_weight) {
   return {.material = {.density = 1000, .youngs_modulus = youngs_modulus, .poissons_ratio = nu, .law = "small strain"},
           .boundary = boundary,
           .strain = strain,
-          .sliver_floor = sliver_floor};
+          .ghost_penalty = {.weight = ghost_weight}};
 }
 
 } // namespace kerf::verification

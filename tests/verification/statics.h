@@ -66,6 +66,6 @@ Points displacements(const Body& body, fem::Hexahedra& model, Points forces, std
 std::vector<dynamics::Support> hold_rigid_motion(const Points& rest);
 
 fem::HexahedraOptions hooke(double youngs_modulus, double nu, fem::Strain strain = fem::Strain::enhanced,
-                            fem::Boundary boundary = fem::Boundary::octants, double sliver_floor = 1e-3);
+                            fem::Boundary boundary = fem::Boundary::octants, double ghost_weight = fem::GhostPenaltyOptions().weight);
 
 } // namespace kerf::verification
