@@ -18,9 +18,9 @@ struct Drawn {
   bool is_free = false;
 };
 
-/// Its own weight strains the body by 1 to 30 %, were it as long as its box.
+/// Its own weight strains the body by 1 to 15 %, were it a column as long as its box.
 double random_extent(const double youngs_modulus, Chance& chance) {
-  const double load = chance.log_between(0.01, 0.3);
+  const double load = chance.log_between(0.01, 0.15);
   return std::min(load * youngs_modulus / (density * gravity), chance.log_between(0.05, 1));
 }
 
@@ -49,7 +49,7 @@ Drawn draw(const Solid& solid, const Size& size, Chance& chance) {
   return drawn;
 }
 
-/// What lies deepest in a random direction: a tenth to a quarter of the skin.
+/// What lies deepest in a random direction: a tenth to a third of the skin.
 std::string support(const Target& target, Chance& chance) {
   const Vec3 normal = chance.direction();
   std::vector<double> depth;
@@ -57,15 +57,15 @@ std::string support(const Target& target, Chance& chance) {
     depth.push_back(p.dot(normal));
   std::sort(depth.begin(), depth.end());
   const auto n = static_cast<double>(depth.size());
-  const double level = depth[static_cast<std::size_t>(chance.between(0.1, 0.25) * n)] + 0.5 * target.cell;
+  const double level = depth[static_cast<std::size_t>(chance.between(0.1, 0.33) * n)] + 0.5 * target.cell;
   return section("Support held", {"Region = half space", "Plane normal [1] = " + text(normal),
                                   "Plane point [m] = " + text(Vec3(level * normal))});
 }
 
-std::string body(const Drawn& drawn, const Kind& kind, Chance& chance) {
+std::vector<std::string> body(const Drawn& drawn, const Kind& kind, Chance& chance) {
   const Target& target = drawn.target;
   std::vector<std::string> lines = {
-    "Mesh = " + target.mesh, "Mesh unit [m] = " + target.unit, "Cube edge [m] = " + to_text(target.cell),
+    "Mesh = " + target.mesh, "Mesh unit [m] = " + target.unit,
     "Lattice offset [1] = " + text(Vec3(chance.between(0, 1), chance.between(0, 1), chance.between(0, 1)))};
   std::vector<std::string> material = {"Density [kg/m^3] = " + to_text(density),
                                        "Young's modulus [Pa] = " + to_text(drawn.youngs_modulus),
@@ -77,7 +77,7 @@ std::string body(const Drawn& drawn, const Kind& kind, Chance& chance) {
     lines.push_back(section("Damping", {"Mass damping [1/s] = " + to_text(drawn.mass_damping)}));
   if (!drawn.is_free)
     lines.push_back(support(target, chance));
-  return section("Body solid", lines);
+  return lines;
 }
 
 std::vector<Stroke> strokes(const Target& target, Chance& chance) {
@@ -112,23 +112,35 @@ const Kind& kind_named(const std::string& name) {
   throw std::out_of_range("no kind of physics is called " + name);
 }
 
+std::string text(const Scene& scene) {
+  std::vector<std::string> body = scene.body;
+  body.push_back("Cube edge [m] = " + to_text(scene.cell));
+  std::string all = section("Time", {"Time step [s] = " + to_text(scene.dt),
+                                     "End time [s] = " + to_text(scene.n_steps * scene.dt)}) +
+                    section("Gravity", {"Acceleration [m/s^2] = " + text(scene.gravity)}) +
+                    section("Body solid", body);
+  for (const std::string& one : scene.sections)
+    all += one;
+  return all + section("Observables", {"Names = missing energy, work of the cut, elastic energy, kinetic energy, "
+                                       "volume, rest volume, pieces"});
+}
+
 Scene random_scene(const Solid& solid, const Kind& kind, const unsigned seed, const Size& size) {
   Chance chance(solid.name, seed);
   const Drawn drawn = draw(solid, size, chance);
   const Target& target = drawn.target;
-  Scene scene{.gravity = gravity, .extent = 2 * target.radius, .wave_speed = std::sqrt(drawn.youngs_modulus / density)};
-  scene.text = section("Time", {"Time step [s] = " + to_text(target.dt),
-                                "End time [s] = " + to_text(target.n_steps * target.dt)}) +
-               section("Gravity", {"Acceleration [m/s^2] = " + text(Vec3(gravity * drawn.down))}) +
-               body(drawn, kind, chance);
-  scene.story = drawn.is_free ? "free;" : "held;";
+  Scene scene{.dt = target.dt,
+              .n_steps = target.n_steps,
+              .cell = target.cell,
+              .gravity = gravity * drawn.down,
+              .body = body(drawn, kind, chance),
+              .story = drawn.is_free ? "free;" : "held;",
+              .extent = 2 * target.radius,
+              .wave_speed = std::sqrt(drawn.youngs_modulus / density)};
   for (const Stroke& stroke : strokes(target, chance)) {
-    scene.text += stroke.text;
+    scene.sections.insert(scene.sections.end(), stroke.sections.begin(), stroke.sections.end());
     scene.story += ' ' + stroke.tool;
-    scene.blade_speed = std::max(scene.blade_speed, stroke.speed);
   }
-  scene.text += section("Observables", {"Names = missing energy, work of the cut, elastic energy, kinetic energy, "
-                                        "volume, rest volume, pieces"});
   return scene;
 }
 

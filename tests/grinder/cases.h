@@ -21,19 +21,25 @@ const Kind& kind_named(const std::string& name);
 
 /// How large the cases are.
 struct Size {
-  double least_cells = 300, most_cells = 3000; ///< in a body, about
+  double least_cells = 300, most_cells = 1500; ///< in a body, about
   int least_steps = 20, most_steps = 40;
 };
 
-/// A scene and what it may lead to.
+/// A scene in parts, so that it can be made smaller.
 struct Scene {
-  std::string text = {};
-  std::string story = {};        ///< in a few words
-  double gravity = 0;       ///< [m/s^2]
-  double extent = 0;        ///< diagonal of the body's bounding box [m]
-  double wave_speed = 0;    ///< sqrt(E / density) [m/s]
-  double blade_speed = 0;   ///< the fastest [m/s]
+  double dt = 0; ///< [s]
+  int n_steps = 0;
+  double cell = 0;                        ///< edge of the cubes [m]
+  Vec3 gravity = Vec3::Zero();            ///< [m/s^2]
+  std::vector<std::string> body = {};     ///< lines of its section, but for the cubes
+  std::vector<std::string> sections = {}; ///< of its tools
+  std::string story = {};                 ///< in a few words
+  double extent = 0;                      ///< diagonal of the body's bounding box [m]
+  double wave_speed = 0;                  ///< sqrt(E / density) [m/s]
 };
+
+/// As `kerf run` reads it.
+std::string text(const Scene& scene);
 
 /// The strokes and all else follow from solid, seed and size; every kind of physics gets the same.
 Scene random_scene(const Solid& solid, const Kind& kind, unsigned seed, const Size& size);

@@ -1,6 +1,7 @@
 #include "tests/grinder/grinder.h"
 
 #include "base/error.h"
+#include "base/parameters.h"
 #include "scene/compose.h"
 #include "scene/run.h"
 
@@ -12,18 +13,26 @@ namespace kerf::grinder {
 
 namespace {
 
-void run(scene::World& world, const Scene& scene, Outcome& outcome) {
+void run(scene::World& world, const Scene& scene, const Until until, Outcome& outcome) {
   const scene::Body& body = world.bodies.at(0);
   Watch watch(scene, body);
   Timings timings;
-  for (int step = 1; step <= world.n_steps && !outcome.failure; ++step) {
+  const auto is_over = [&] {
+    return outcome.failure && (until == Until::first_failure || outcome.failure->is_final);
+  };
+  for (int step = 1; step <= world.n_steps && !is_over(); ++step) {
+    std::optional<Failure> failure;
     try {
       scene::advance(world, step, timings);
-      outcome.failure = watch.after_step(body, step, world.time_step);
+      failure = watch.after_step(body, step, world.time_step);
     } catch (const Error& error) {
-      outcome.failure = Failure{"stopped", step, error.what()};
+      failure = Failure{"stopped", step, error.what(), true};
     }
     outcome.n_steps = step;
+    if (!outcome.failure)
+      outcome.failure = failure;
+    else if (failure)
+      outcome.failure->is_final = failure->is_final;
   }
   outcome.figures = watch.figures();
   outcome.n_cells = body.grid.n_cells();
@@ -38,17 +47,51 @@ std::string name_of(const Case& one) {
   return one.solid->name + ':' + one.kind->name + ':' + std::to_string(one.seed);
 }
 
-Outcome run(const Scene& scene) {
+Outcome run(const Scene& scene, const std::vector<std::string>& changes, const Until until) {
   Outcome outcome;
   std::optional<scene::World> world;
   try {
-    world = scene::compose(scene::scan_scene_text(scene.text, "scene.prm", {}));
+    world = scene::compose(scene::scan_scene_text(text(scene), "scene.prm", changes));
   } catch (const Error& error) {
     outcome.refused = error.what();
     return outcome;
   }
-  run(*world, scene, outcome);
+  run(*world, scene, until, outcome);
   return outcome;
+}
+
+namespace {
+
+/// The scene that a change leads to, up to its failure; nothing when that is not the same.
+std::optional<Scene> still_failing(Scene scene, const std::vector<std::string>& changes, const std::string& reason) {
+  const Outcome outcome = run(scene, changes, Until::first_failure);
+  if (!outcome.failure || outcome.failure->reason != reason)
+    return {};
+  scene.n_steps = outcome.failure->step;
+  return scene;
+}
+
+} // namespace
+
+Scene shrunk(const Scene& scene, const std::vector<std::string>& changes, const std::string& reason) {
+  Scene least = still_failing(scene, changes, reason).value_or(scene);
+  const auto try_out = [&](const Scene& smaller) {
+    const auto failing = still_failing(smaller, changes, reason);
+    least = failing.value_or(least);
+    return failing.has_value();
+  };
+  for (std::size_t i = least.sections.size(); i-- > 0;) {
+    Scene smaller = least;
+    smaller.sections.erase(smaller.sections.begin() + static_cast<std::ptrdiff_t>(i));
+    try_out(smaller);
+  }
+  for (const double factor : {2.0, 1.5, 1.2, 1.07})
+    for (bool is_smaller = true; is_smaller;) {
+      Scene smaller = least;
+      smaller.cell *= factor;
+      is_smaller = try_out(smaller);
+    }
+  return least;
 }
 
 void Harvest::add(const Case& one, const Scene& scene, const Outcome& outcome) {
@@ -73,13 +116,13 @@ void Harvest::add(const Case& one, const Scene& scene, const Outcome& outcome) {
   failures_.push_back(name_of(one) + ": " + outcome.failure->reason + " in step " +
                       std::to_string(outcome.failure->step) + ": " + outcome.failure->words + "; " +
                       std::to_string(outcome.n_cells) + " cells, " + std::to_string(outcome.n_pieces) + " pieces; " +
-                      scene.story);
+                      scene.story + "; at most " + to_text(outcome.figures.fastest) + " m/s");
   if (folder_.empty())
     return;
   std::filesystem::create_directories(folder_);
   std::string file = name_of(one) + ".prm";
   std::replace(file.begin(), file.end(), ':', '.');
-  std::ofstream(folder_ / file) << "# " << failures_.back() << '\n' << scene.text;
+  std::ofstream(folder_ / file) << "# " << failures_.back() << '\n' << text(scene);
   std::ofstream(folder_ / "failures.txt", std::ios::app) << failures_.back() << '\n';
 }
 

@@ -26,8 +26,13 @@ struct Outcome {
   std::size_t n_cells = 0, n_pieces = 0;
 };
 
-/// Runs a scene to its end or its first failure.
-Outcome run(const Scene& scene);
+enum class Until { first_failure, end };
+
+/// Runs a scene with some keys changed ("Section/Key=value"); past its first failure only to see how far it goes.
+Outcome run(const Scene& scene, const std::vector<std::string>& changes, Until until);
+
+/// The smallest scene found that fails with the same reason: fewer tools, fewer steps, larger cubes.
+Scene shrunk(const Scene& scene, const std::vector<std::string>& changes, const std::string& reason);
 
 /// What many cases came to.
 class Harvest {

@@ -5,6 +5,7 @@
 ///   KERF_GRINDER_MESHES=folder ./kerf test -L long -R Grinder
 ///
 /// KERF_GRINDER_CASES: how many (1000). KERF_GRINDER_FIRST_SEED: another choice of them. KERF_GRINDER_KINDS: only kinds of physics whose name holds this.
+/// KERF_GRINDER_SET: keys of every scene that are set otherwise, as `kerf run --set` does, separated by semicolons.
 /// KERF_GRINDER_FAILURES: a folder for the scenes of cases that fail, which `kerf run` repeats. One case again:
 ///
 ///   KERF_GRINDER_CASE=mesh:kind:seed build/release/tests/test_grinder --gtest_filter=Grinder.Repeat
@@ -16,6 +17,7 @@
 #include <chrono>
 #include <cstdlib>
 #include <iostream>
+#include <sstream>
 
 namespace kerf::grinder {
 namespace {
@@ -26,6 +28,15 @@ std::string setting(const char* name, const std::string& otherwise) {
 }
 
 std::filesystem::path mesh_folder() { return setting("KERF_GRINDER_MESHES", KERF_SOURCE_DIR "/params/meshes"); }
+
+/// "Section/Key=value;Section/Key=value"
+std::vector<std::string> changes() {
+  std::vector<std::string> all;
+  std::istringstream text(setting("KERF_GRINDER_SET", ""));
+  for (std::string one; std::getline(text, one, ';');)
+    all.push_back(one);
+  return all;
+}
 
 std::vector<const Kind*> wanted_kinds() {
   std::vector<const Kind*> wanted;
@@ -48,7 +59,7 @@ void grind(const Solids& solids, const std::size_t n_cases, const Size& size, Ha
     std::cout << name_of(one) << std::flush;
     const Scene scene = random_scene(*one.solid, *one.kind, one.seed, size);
     const auto start = std::chrono::steady_clock::now();
-    const Outcome outcome = run(scene);
+    const Outcome outcome = run(scene, changes(), Until::end);
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     std::cout << ' ' << outcome.n_cells << " cells, " << outcome.n_steps << " steps, " << seconds << " s: "
               << (outcome.refused ? "refused" : outcome.failure ? outcome.failure->reason : "well") << ", "
@@ -82,20 +93,22 @@ TEST(Grinder, Long) {
 
 /// "mesh:kind:seed"
 TEST(Grinder, Repeat) {
-  const std::string text = setting("KERF_GRINDER_CASE", "");
-  if (text.empty())
+  const std::string name = setting("KERF_GRINDER_CASE", "");
+  if (name.empty())
     GTEST_SKIP() << "KERF_GRINDER_CASE names no case";
-  const std::size_t first = text.find(':'), last = text.rfind(':');
+  const std::size_t first = name.find(':'), last = name.rfind(':');
   const Solids solids = solids_in(mesh_folder());
   for (const Solid& solid : solids.usable)
-    if (solid.name == text.substr(0, first)) {
-      const Case one{&solid, &kind_named(text.substr(first + 1, last - first - 1)),
-                     static_cast<unsigned>(std::stoul(text.substr(last + 1)))};
+    if (solid.name == name.substr(0, first)) {
+      const Case one{&solid, &kind_named(name.substr(first + 1, last - first - 1)),
+                     static_cast<unsigned>(std::stoul(name.substr(last + 1)))};
       const Scene scene = random_scene(solid, *one.kind, one.seed, {});
-      const Outcome outcome = run(scene);
-      std::cout << scene.text;
-      Harvest harvest("");
+      const Outcome outcome = run(scene, changes(), Until::end);
+      Harvest harvest(setting("KERF_GRINDER_FAILURES", ""));
       harvest.add(one, scene, outcome);
+      std::cout << text(scene);
+      if (outcome.failure)
+        std::cout << "smallest:\n" << text(shrunk(scene, changes(), outcome.failure->reason));
       report(solids, harvest);
     }
 }

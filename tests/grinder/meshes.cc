@@ -3,7 +3,11 @@
 #include "base/error.h"
 #include "geometry/solid.h"
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
+#include <cmath>
+#include <random>
 
 namespace kerf::grinder {
 
@@ -23,17 +27,29 @@ std::vector<std::filesystem::path> files_in(const std::filesystem::path& folder)
   return paths;
 }
 
-Points every_nth(const Points& points, const std::size_t n_wanted) {
-  Points some;
-  for (std::size_t i = 0; i < points.size(); i += 1 + points.size() / n_wanted)
-    some.push_back(points[i]);
-  return some;
+/// Evenly over the area, at random places of a fixed seed.
+Points points_on(const geometry::TriangleMesh& mesh, const std::size_t n) {
+  std::vector<double> area;
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    const auto [a, b, c] = geometry::corners(mesh, i);
+    area.push_back((b - a).cross(c - a).norm());
+  }
+  std::mt19937 random(1);
+  std::discrete_distribution<std::size_t> triangle(area.begin(), area.end());
+  std::uniform_real_distribution<double> uniform(0, 1);
+  Points points;
+  while (points.size() < n) {
+    const auto [a, b, c] = geometry::corners(mesh, triangle(random));
+    const double r = std::sqrt(uniform(random)), s = uniform(random);
+    points.push_back((1 - r) * a + r * (1 - s) * b + r * s * c);
+  }
+  return points;
 }
 
 Solid solid(const std::filesystem::path& path) {
   const auto mesh = geometry::require_solid(geometry::read_mesh(path.string(), 1), path.string());
   return {path.stem().string(), path, geometry::volume(mesh), geometry::bounding_box(mesh),
-          every_nth(mesh.vertices, 200)};
+          points_on(mesh, 500)};
 }
 
 } // namespace

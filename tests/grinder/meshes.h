@@ -15,7 +15,7 @@ struct Solid {
   std::filesystem::path path;
   double volume = 0; ///< in units of the file, cubed
   Box box;           ///< in units of the file
-  Points skin;       ///< some of its vertices, in units of the file: places worth a stroke
+  Points skin;       ///< points on it, evenly over its area, in units of the file
 };
 
 struct Solids {

@@ -20,9 +20,8 @@ Vec3 place_in(const Target& target, Chance& chance) {
 
 /// Where a straight stroke begins and ends, and when.
 struct Way {
-  Vec3 from, to;      ///< of a body that has not moved [m]
-  double begin, end;  ///< [s]
-  double speed() const { return (to - from).norm() / (end - begin); }
+  Vec3 from, to;     ///< of a body that has not moved [m]
+  double begin, end; ///< [s]
 };
 
 /// A stroke takes from one step to half of the run.
@@ -63,8 +62,7 @@ Points straight_edge(const Target& target, const Vec3& along, Chance& chance) {
 Stroke straight(const Target& target, Chance& chance, const std::string& name) {
   const Vec3 direction = chance.direction();
   const Way way = random_way(target, place_in(target, chance), direction, chance);
-  return {"straight", blade(target, name, straight_edge(target, chance.across(direction), chance), way), way.speed(),
-          way.begin};
+  return {"straight", {blade(target, name, straight_edge(target, chance.across(direction), chance), way)}};
 }
 
 /// Two blades through one place.
@@ -73,9 +71,8 @@ Stroke crossing(const Target& target, Chance& chance, const std::string& name) {
   const Vec3 second = chance.happens(0.5) ? direction : chance.across(along);
   const Way a = random_way(target, place, direction, chance), b = random_way(target, place, second, chance);
   return {"crossing",
-          blade(target, name + "-first", straight_edge(target, along, chance), a) +
-            blade(target, name + "-second", straight_edge(target, direction.cross(along), chance), b),
-          std::max(a.speed(), b.speed()), std::min(a.begin, b.begin)};
+          {blade(target, name + "-first", straight_edge(target, along, chance), a),
+           blade(target, name + "-second", straight_edge(target, direction.cross(along), chance), b)}};
 }
 
 /// Up to two whole waves, in the plane across its way or any other.
@@ -95,7 +92,7 @@ Points curved_edge(const Target& target, const Vec3& direction, Chance& chance) 
 Stroke curved(const Target& target, Chance& chance, const std::string& name) {
   const Vec3 direction = chance.direction();
   const Way way = random_way(target, place_in(target, chance), direction, chance);
-  return {"curved", blade(target, name, curved_edge(target, direction, chance), way), way.speed(), way.begin};
+  return {"curved", {blade(target, name, curved_edge(target, direction, chance), way)}};
 }
 
 /// A blade that turns as it goes; only in bodies that do not fall, where two key frames are enough.
@@ -109,8 +106,7 @@ Stroke turning(const Target& target, Chance& chance, const std::string& name) {
   auto lines = motion(target, way);
   lines.push_back("Edge [m] = " + text(edge));
   lines.push_back("Rotations [degrees] = " + text(Points{Vec3::Zero(), angle * chance.direction()}));
-  const double turning_speed = edge[1].norm() * std::abs(angle) * pi / 180 / (way.end - way.begin);
-  return {"turning", section("Blade " + name, lines), way.speed() + turning_speed, way.begin};
+  return {"turning", {section("Blade " + name, lines)}};
 }
 
 Stroke scissors(const Target& target, Chance& chance, const std::string& name) {
@@ -126,19 +122,14 @@ Stroke scissors(const Target& target, Chance& chance, const std::string& name) {
         "Opening times [s] = " + text(std::vector{way.begin, way.end}),
         "Openings [degrees] = " + text(std::vector{opening, 0.0})})
     lines.push_back(line);
-  return {"scissors", section("Scissors " + name, lines), length * opening * pi / 360 / (way.end - way.begin),
-          way.begin};
+  return {"scissors", {section("Scissors " + name, lines)}};
 }
 
 /// Blades that fly in together from all sides.
 Stroke several(const Target& target, Chance& chance, const std::string& name) {
   Stroke all = straight(target, chance, name + "-first");
-  for (const char* const other : {"-second", "-third", "-fourth"}) {
-    const Stroke one = straight(target, chance, name + other);
-    all.text += one.text;
-    all.speed = std::max(all.speed, one.speed);
-    all.least_time = std::min(all.least_time, one.least_time);
-  }
+  for (const char* const other : {"-second", "-third", "-fourth"})
+    all.sections.push_back(straight(target, chance, name + other).sections.front());
   all.tool = "several";
   return all;
 }
@@ -161,7 +152,7 @@ std::vector<std::string> shape_keys(const Target& target, const Vec3& place, Cha
 
 /// One to three surfaces, each at its time.
 Stroke surfaces(const Target& target, Chance& chance, const std::string& name) {
-  Stroke all{.tool = "surfaces", .least_time = target.n_steps * target.dt};
+  Stroke all{"surfaces", {}};
   const int n = chance.number(1, 3);
   for (int i = 0; i < n; ++i) {
     const double time = chance.number(0, target.n_steps * 2 / 3) * target.dt;
@@ -170,8 +161,7 @@ Stroke surfaces(const Target& target, Chance& chance, const std::string& name) {
     std::vector<std::string> lines = shape_keys(target, place, chance, shape);
     lines.push_back("Shape = " + shape);
     lines.push_back("Time [s] = " + to_text(time));
-    all.text += section("Cut surface " + name + "-" + std::to_string(i), lines);
-    all.least_time = std::min(all.least_time, time);
+    all.sections.push_back(section("Cut surface " + name + "-" + std::to_string(i), lines));
   }
   return all;
 }
@@ -179,14 +169,14 @@ Stroke surfaces(const Target& target, Chance& chance, const std::string& name) {
 } // namespace
 
 Stroke dice(const Target& target, const double n_cells, const double time) {
-  Stroke all{.tool = "dice", .least_time = time};
+  Stroke all{"dice", {}};
   int number = 0;
   for (int axis = 0; axis < 3; ++axis)
     for (double s = -target.radius; s < target.radius; s += n_cells * target.cell) {
       const Vec3 place = target.centre + s * Vec3::Unit(axis) + 0.5 * time * time * target.fall;
-      all.text += section("Cut surface dice-" + std::to_string(++number),
-                          {"Shape = plane", "Point [m] = " + text(place),
-                           "Normal [1] = " + text(Vec3(Vec3::Unit(axis))), "Time [s] = " + to_text(time)});
+      all.sections.push_back(section("Cut surface dice-" + std::to_string(++number),
+                                     {"Shape = plane", "Point [m] = " + text(place),
+                                      "Normal [1] = " + text(Vec3(Vec3::Unit(axis))), "Time [s] = " + to_text(time)}));
     }
   return all;
 }

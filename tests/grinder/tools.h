@@ -20,10 +20,8 @@ struct Target {
 
 /// What a stroke adds to a scene.
 struct Stroke {
-  std::string tool = {}; ///< "scissors"
-  std::string text = {}; ///< sections of the scene
-  double speed = 0;      ///< of the fastest point of its edges, relative to the fall, at most [m/s]
-  double least_time = 0; ///< when it begins [s]
+  std::string tool;                  ///< "scissors"
+  std::vector<std::string> sections; ///< of the scene, one a blade or surface
 };
 
 /// A stroke of a random tool.

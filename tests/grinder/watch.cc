@@ -34,8 +34,9 @@ Watch::Watch(const Scene& scene, const scene::Body& body)
 /// in, or where stress waves of its own weight meet by g L / c each. Blades give no momentum to what they cut.
 std::optional<Failure> Watch::watch_speeds(const scene::Body& body, const Look& look, const int step,
                                            const double time) {
-  const double recoil = scene_.gravity * scene_.extent / scene_.wave_speed;
-  const double limit = 2 * (scene_.gravity * time + recoil), usual = scene_.gravity * time + recoil;
+  const double gravity = scene_.gravity.norm();
+  const double recoil = gravity * scene_.extent / scene_.wave_speed;
+  const double limit = 2 * (gravity * time + recoil), usual = gravity * time + recoil;
   std::optional<Failure> failure;
   for (const PieceLook& piece : look.pieces) {
     const auto tell = [&](const std::string& reason, const double most) {
@@ -86,7 +87,7 @@ std::optional<Failure> Watch::watch_energy(const Look& look, const int step, con
   work_of_cut_ = look.work_of_cut;
   gained_ += gained;
   gained_by_cuts_ += by_cut;
-  const double least = mass_ * scene_.gravity * scene_.gravity * dt * dt; // what the first step of a fall turns over
+  const double least = mass_ * scene_.gravity.squaredNorm() * dt * dt; // what the first step of a fall turns over
   turnover_ = std::max({turnover_, least, look.kinetic + look.elastic, std::abs(look.gravity - start_gravity_)});
   figures_.energy = std::max(figures_.energy, gained_ / turnover_ / most_energy_gained);
   figures_.cut_energy = std::max(figures_.cut_energy, gained_by_cuts_ / turnover_ / most_cut_energy);
@@ -110,7 +111,7 @@ std::optional<Failure> Watch::watch_pieces(const scene::Body& body, const Look& 
 std::optional<Failure> Watch::after_step(const scene::Body& body, const int step, const double dt) {
   const Look look = look_at(body);
   if (!look.is_finite)
-    return Failure{"NaN", step, "a number that is none"};
+    return Failure{"NaN", step, "a number that is none", true};
   for (const auto& failure :
        {watch_speeds(body, look, step, step * dt), watch_shapes(body, look, step), watch_energy(look, step, dt),
         watch_pieces(body, look, step)})

@@ -15,6 +15,7 @@ struct Failure {
   std::string reason; ///< "runaway", "outlier", "volume", "drawn out", "energy", "cut energy", "NaN", "pieces", "stopped"
   int step = 0;
   std::string words;
+  bool is_final = false; ///< nothing can go on from there
 };
 
 /// The largest of each figure so far, over what is allowed: 1 fails.
