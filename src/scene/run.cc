@@ -64,6 +64,8 @@ void cut(World& world, const int step, Timings& seconds) {
   }
 }
 
+} // namespace
+
 void advance(World& world, const int step, Timings& seconds) {
   const double dt = world.time_step, t1 = step * dt;
   cut(world, step, seconds);
@@ -88,8 +90,6 @@ void advance(World& world, const int step, Timings& seconds) {
     follow(body);
   }
 }
-
-} // namespace
 
 Timings run(World& world, Recorder& recorder, Progress& progress) {
   Timings seconds = world.setup_seconds, total;

@@ -1,0 +1,148 @@
+#include "tests/grinder/grinder.h"
+
+#include "base/error.h"
+#include "base/parameters.h"
+#include "scene/compose.h"
+#include "scene/run.h"
+
+#include <algorithm>
+#include <fstream>
+#include <sstream>
+
+namespace kerf::grinder {
+
+namespace {
+
+void run(scene::World& world, const Scene& scene, const Until until, Outcome& outcome) {
+  const scene::Body& body = world.bodies.at(0);
+  Watch watch(scene, body);
+  Timings timings;
+  const auto is_over = [&] {
+    return outcome.failure && (until == Until::first_failure || outcome.failure->is_final);
+  };
+  for (int step = 1; step <= world.n_steps && !is_over(); ++step) {
+    std::optional<Failure> failure;
+    try {
+      scene::advance(world, step, timings);
+      failure = watch.after_step(body, step, world.time_step);
+    } catch (const Error& error) {
+      failure = Failure{"stopped", step, error.what(), true};
+    }
+    outcome.n_steps = step;
+    if (!outcome.failure)
+      outcome.failure = failure;
+    else if (failure)
+      outcome.failure->is_final = failure->is_final;
+  }
+  outcome.figures = watch.figures();
+  outcome.n_cells = body.grid.n_cells();
+  outcome.n_pieces = grid::n_pieces(body.complex);
+}
+
+std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
+
+} // namespace
+
+std::string name_of(const Case& one) {
+  return one.solid->name + ':' + one.kind->name + ':' + std::to_string(one.seed);
+}
+
+Outcome run(const Scene& scene, const std::vector<std::string>& changes, const Until until) {
+  Outcome outcome;
+  std::optional<scene::World> world;
+  try {
+    world = scene::compose(scene::scan_scene_text(text(scene), "scene.prm", changes));
+  } catch (const Error& error) {
+    outcome.refused = error.what();
+    return outcome;
+  }
+  run(*world, scene, until, outcome);
+  return outcome;
+}
+
+namespace {
+
+/// The scene that a change leads to, up to its failure; nothing when that is not the same.
+std::optional<Scene> still_failing(Scene scene, const std::vector<std::string>& changes, const std::string& reason) {
+  const Outcome outcome = run(scene, changes, Until::first_failure);
+  if (!outcome.failure || outcome.failure->reason != reason)
+    return {};
+  scene.n_steps = outcome.failure->step;
+  return scene;
+}
+
+} // namespace
+
+Scene shrunk(const Scene& scene, const std::vector<std::string>& changes, const std::string& reason) {
+  Scene least = still_failing(scene, changes, reason).value_or(scene);
+  const auto try_out = [&](const Scene& smaller) {
+    const auto failing = still_failing(smaller, changes, reason);
+    least = failing.value_or(least);
+    return failing.has_value();
+  };
+  for (std::size_t i = least.sections.size(); i-- > 0;) {
+    Scene smaller = least;
+    smaller.sections.erase(smaller.sections.begin() + static_cast<std::ptrdiff_t>(i));
+    try_out(smaller);
+  }
+  for (const double factor : {2.0, 1.5, 1.2, 1.07})
+    for (bool is_smaller = true; is_smaller;) {
+      Scene smaller = least;
+      smaller.cell *= factor;
+      is_smaller = try_out(smaller);
+    }
+  return least;
+}
+
+void Harvest::add(const Case& one, const Scene& scene, const Outcome& outcome) {
+  ++n_cases_;
+  auto& counts = counts_[one.kind->name];
+  ++counts["cases"];
+  if (outcome.refused) {
+    ++n_refused_;
+    ++counts["refused"];
+    refusals_.push_back(name_of(one) + ": " + first_line(*outcome.refused));
+    return;
+  }
+  Figures& most = healthy_[one.kind->name];
+  if (!outcome.failure) {
+    const Figures& f = outcome.figures;
+    most = {std::max(most.fastest, f.fastest), std::max(most.runaway, f.runaway), std::max(most.outlier, f.outlier),
+            std::max(most.volume, f.volume),   std::max(most.reach, f.reach),     std::max(most.energy, f.energy),
+            std::max(most.cut_energy, f.cut_energy)};
+    return;
+  }
+  ++counts[outcome.failure->reason];
+  failures_.push_back(name_of(one) + ": " + outcome.failure->reason + " in step " +
+                      std::to_string(outcome.failure->step) + ": " + outcome.failure->words + "; " +
+                      std::to_string(outcome.n_cells) + " cells, " + std::to_string(outcome.n_pieces) + " pieces; " +
+                      scene.story + "; at most " + to_text(outcome.figures.fastest) + " m/s");
+  if (folder_.empty())
+    return;
+  std::filesystem::create_directories(folder_);
+  std::string file = name_of(one) + ".prm";
+  std::replace(file.begin(), file.end(), ':', '.');
+  std::ofstream(folder_ / file) << "# " << failures_.back() << '\n' << text(scene);
+  std::ofstream(folder_ / "failures.txt", std::ios::app) << failures_.back() << '\n';
+}
+
+std::string Harvest::summary() const {
+  std::ostringstream out;
+  for (const auto& [kind, counts] : counts_) {
+    out << kind << ':';
+    for (const auto& [reason, n] : counts)
+      out << ' ' << n << ' ' << reason << ';';
+    if (const auto it = healthy_.find(kind); it != healthy_.end()) {
+      const Figures& f = it->second;
+      out << " of those that passed, the largest over what is allowed: speed " << f.runaway << ", outlier " << f.outlier
+          << ", volume " << f.volume << ", reach " << f.reach << ", energy " << f.energy << ", of cuts "
+          << f.cut_energy;
+    }
+    out << '\n';
+  }
+  for (const std::string& refusal : refusals_)
+    out << "refused: " << refusal << '\n';
+  return out.str();
+}
+
+} // namespace kerf::grinder

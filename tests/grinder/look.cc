@@ -1,0 +1,130 @@
+#include "tests/grinder/look.h"
+
+#include "base/parameters.h"
+#include "pba/region.h"
+#include "scene/observables.h"
+#include "tests/grinder/draw.h"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace kerf::grinder {
+
+namespace {
+
+double observed(const scene::Body& body, const std::string& name) { return scene::find_observable(name)->value(body); }
+
+bool particles_are_corners(const scene::Body& body) { return body.state.x.size() == body.complex.n_corners(); }
+
+std::vector<std::uint32_t> pieces_of_particles(const scene::Body& body, const grid::Pieces& pieces) {
+  if (particles_are_corners(body))
+    return physics::corner_pieces(body.complex);
+  std::vector<std::uint32_t> piece;
+  for (const Vec3& rest : body.physics->rest())
+    piece.push_back(pieces.piece[pba::copy_around(body.grid, body.cuts, body.complex, rest)]);
+  return piece;
+}
+
+bool is_finite(const scene::Body& body) {
+  double sum = 0;
+  for (const Points* points : {&body.state.x, &body.state.v, &scene::corners(body), &body.positions})
+    for (const Vec3& p : *points)
+      sum += p.sum();
+  return std::isfinite(sum);
+}
+
+void look_at_speeds(const scene::Body& body, const grid::Pieces& pieces, std::vector<PieceLook>& looks) {
+  const auto piece = pieces_of_particles(body, pieces);
+  std::vector<std::vector<double>> speeds(looks.size());
+  for (std::size_t i = 0; i < piece.size(); ++i) {
+    PieceLook& look = looks[piece[i]];
+    const double speed = body.state.v[i].norm();
+    speeds[piece[i]].push_back(speed);
+    if (speed >= look.fastest) {
+      look.fastest = speed;
+      look.who = i;
+    }
+  }
+  for (std::size_t p = 0; p < looks.size(); ++p) {
+    looks[p].n_particles = speeds[p].size();
+    if (speeds[p].empty())
+      continue;
+    const auto at = speeds[p].begin() + static_cast<std::ptrdiff_t>(0.99 * static_cast<double>(speeds[p].size() - 1));
+    std::nth_element(speeds[p].begin(), at, speeds[p].end());
+    looks[p].ordinary = *at;
+  }
+}
+
+/// Six times the volume of a triangle's cone from `origin`.
+double cone(const Points& x, const Triangle& t, const Vec3& origin) {
+  return (x[t[0]] - origin).dot((x[t[1]] - origin).cross(x[t[2]] - origin));
+}
+
+/// Volumes and reaches, both about the mean of a piece's vertices, which keeps splinters exact.
+void look_at_surface(const scene::Body& body, const grid::Pieces& pieces, std::vector<PieceLook>& looks) {
+  const surface::Surface& surface = body.surface;
+  const Points* const both[] = {&surface.rest, &body.positions};
+  for (int now = 0; now < 2; ++now) {
+    const Points& x = *both[now];
+    Points mean(looks.size(), Vec3::Zero());
+    std::vector<double> n(looks.size(), 0);
+    const auto piece_of = [&](const std::size_t i) { return pieces.piece[surface.copies[i]]; };
+    for (std::size_t i = 0; i < surface.triangles.size(); ++i)
+      for (const std::uint32_t v : surface.triangles[i]) {
+        mean[piece_of(i)] += x[v];
+        ++n[piece_of(i)];
+      }
+    for (std::size_t p = 0; p < looks.size(); ++p)
+      mean[p] /= std::max(n[p], 1.0);
+    for (std::size_t i = 0; i < surface.triangles.size(); ++i) {
+      PieceLook& look = looks[piece_of(i)];
+      const Vec3& middle = mean[piece_of(i)];
+      (now ? look.volume : look.rest_volume) += cone(x, surface.triangles[i], middle) / 6;
+      double& reach = now ? look.reach : look.rest_reach;
+      for (const std::uint32_t v : surface.triangles[i])
+        reach = std::max(reach, (x[v] - middle).norm());
+    }
+  }
+}
+
+} // namespace
+
+Look look_at(const scene::Body& body) {
+  Look look{.is_finite = is_finite(body)};
+  if (!look.is_finite)
+    return look;
+  const grid::Pieces pieces = grid::pieces(body.complex);
+  look.pieces.resize(pieces.n_pieces);
+  look_at_speeds(body, pieces, look.pieces);
+  look_at_surface(body, pieces, look.pieces);
+  look.kinetic = observed(body, "kinetic energy");
+  look.elastic = observed(body, "elastic energy");
+  look.gravity = observed(body, "gravity energy");
+  look.missing = observed(body, "missing energy");
+  look.work_of_cut = observed(body, "work of the cut");
+  return look;
+}
+
+std::string about_particle(const scene::Body& body, const std::size_t particle) {
+  const Vec3& rest = body.physics->rest()[particle];
+  const double h = body.grid.h(), mass = body.physics->model().lumped_mass()[particle];
+  std::string words = "at rest at " + text(rest) + " m, of mass " + to_text(mass / (body.density * h * h * h)) +
+                      " cubes";
+  if (!particles_are_corners(body))
+    return words;
+  words += ", known to copies with";
+  for (const auto c : ids<grid::CopyId>(body.complex.n_copies())) {
+    const grid::Copy& copy = body.complex.copies[c];
+    for (const grid::CornerId corner : copy.corners)
+      if (corner.value == particle)
+        words += " [" + std::to_string(std::popcount(copy.nodes)) + " nodes, " +
+                 std::to_string(std::popcount(copy.rinds)) + " rinds]";
+  }
+  const grid::CornerId real = body.complex.real_corner[body.complex.node[grid::CornerId(particle)]];
+  return words + (real.value == particle ? ", real" : ", virtual");
+}
+
+} // namespace kerf::grinder

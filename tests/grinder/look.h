@@ -1,0 +1,31 @@
+#pragma once
+
+/// What the grinder asks of a body, whatever its physics. All that knows how a body keeps it is in look.cc.
+
+#include "scene/body.h"
+
+namespace kerf::grinder {
+
+/// One piece: what the copies hold together.
+struct PieceLook {
+  std::size_t n_particles = 0;
+  double fastest = 0;    ///< particle [m/s]
+  double ordinary = 0;   ///< 99th percentile of the speeds [m/s]
+  std::size_t who = 0;   ///< the fastest
+  double rest_volume = 0, volume = 0; ///< that the surface encloses [m^3]
+  double rest_reach = 0, reach = 0;   ///< of its farthest surface vertex from the mean of all [m]
+};
+
+struct Look {
+  bool is_finite = true;
+  std::vector<PieceLook> pieces = {};
+  double kinetic = 0, elastic = 0, gravity = 0; ///< [J]
+  double missing = 0, work_of_cut = 0;          ///< as observables say [J]
+};
+
+Look look_at(const scene::Body& body);
+
+/// A particle in words: its place at rest, its mass, the copies that know it.
+std::string about_particle(const scene::Body& body, std::size_t particle);
+
+} // namespace kerf::grinder

@@ -1,0 +1,123 @@
+#include "tests/grinder/watch.h"
+
+#include "base/parameters.h"
+#include "scene/observables.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace kerf::grinder {
+
+namespace {
+
+/// A piece needs that many particles for a percentile to say anything.
+constexpr std::size_t least_for_percentile = 100;
+constexpr double most_over_ordinary = 10;   // speed over the 99th percentile [1]
+constexpr double most_volume_change = 0.3;  // [1]
+constexpr double most_reach = 3;            // over that at rest [1]
+constexpr double most_energy_gained = 0.01; // of what has been turned over [1]
+constexpr double most_cut_energy = 0.1;     // the same [1]
+
+std::string percent(const double part) { return to_text(std::round(1000 * part) / 10) + " %"; }
+
+} // namespace
+
+Watch::Watch(const Scene& scene, const scene::Body& body)
+  : scene_(scene),
+    mass_(scene::find_observable("mass")->value(body)),
+    start_gravity_(scene::find_observable("gravity energy")->value(body)),
+    n_pieces_(grid::n_pieces(body.complex)),
+    n_recuts_(body.n_recuts) {}
+
+/// What falls has g t. What has sagged and is let go recoils: by no more than g t again, as no more momentum has come
+/// in, or where stress waves of its own weight meet by g L / c each. Blades give no momentum to what they cut.
+std::optional<Failure> Watch::watch_speeds(const scene::Body& body, const Look& look, const int step,
+                                           const double time) {
+  const double gravity = scene_.gravity.norm();
+  const double recoil = gravity * scene_.extent / scene_.wave_speed;
+  const double limit = 2 * (gravity * time + recoil), usual = gravity * time + recoil;
+  std::optional<Failure> failure;
+  for (const PieceLook& piece : look.pieces) {
+    const auto tell = [&](const std::string& reason, const double most) {
+      if (!failure)
+        failure = {reason, step,
+                   to_text(piece.fastest) + " m/s where " + to_text(most) + " are allowed, 99th percentile of " +
+                     std::to_string(piece.n_particles) + " in its piece " + to_text(piece.ordinary) + " m/s; " +
+                     about_particle(body, piece.who)};
+    };
+    figures_.fastest = std::max(figures_.fastest, piece.fastest);
+    figures_.runaway = std::max(figures_.runaway, piece.fastest / limit);
+    if (piece.fastest > limit)
+      tell("runaway", limit);
+    if (piece.n_particles < least_for_percentile || piece.fastest < usual)
+      continue;
+    const double outlier = piece.fastest / (most_over_ordinary * piece.ordinary);
+    figures_.outlier = std::max(figures_.outlier, outlier);
+    if (outlier > 1)
+      tell("outlier", usual);
+  }
+  return failure;
+}
+
+std::optional<Failure> Watch::watch_shapes(const scene::Body& body, const Look& look, const int step) {
+  const double h = body.grid.h(), least_volume = 1e-9 * h * h * h;
+  std::optional<Failure> failure;
+  for (const PieceLook& piece : look.pieces) {
+    if (piece.rest_volume < least_volume)
+      continue;
+    const double change = piece.volume / piece.rest_volume - 1, reach = piece.reach / piece.rest_reach;
+    figures_.volume = std::max(figures_.volume, std::abs(change) / most_volume_change);
+    figures_.reach = std::max(figures_.reach, reach / most_reach);
+    const std::string size = " of a piece of " + to_text(piece.rest_volume / (h * h * h)) + " cubes at rest, " +
+                             std::to_string(piece.n_particles) + " particles";
+    if (!failure && std::abs(change) > most_volume_change)
+      failure = {"volume", step, percent(change) + size};
+    if (!failure && reach > most_reach)
+      failure = {"drawn out", step, "reach " + to_text(reach) + " times that" + size};
+  }
+  return failure;
+}
+
+/// A step of an implicit integrator may lose energy and never gains any that no load gave; what steps gain is summed,
+/// so that losses elsewhere hide nothing.
+std::optional<Failure> Watch::watch_energy(const Look& look, const int step, const double dt) {
+  const double gained = std::max(missing_ - look.missing, 0.0), by_cut = std::max(look.work_of_cut - work_of_cut_, 0.0);
+  missing_ = look.missing;
+  work_of_cut_ = look.work_of_cut;
+  gained_ += gained;
+  gained_by_cuts_ += by_cut;
+  const double least = mass_ * scene_.gravity.squaredNorm() * dt * dt; // what the first step of a fall turns over
+  turnover_ = std::max({turnover_, least, look.kinetic + look.elastic, std::abs(look.gravity - start_gravity_)});
+  figures_.energy = std::max(figures_.energy, gained_ / turnover_ / most_energy_gained);
+  figures_.cut_energy = std::max(figures_.cut_energy, gained_by_cuts_ / turnover_ / most_cut_energy);
+  const std::string of = " of the " + to_text(turnover_) + " J that were turned over";
+  if (gained_ > most_energy_gained * turnover_)
+    return Failure{"energy", step, "steps gained " + percent(gained_ / turnover_) + of};
+  if (gained_by_cuts_ > most_cut_energy * turnover_)
+    return Failure{"cut energy", step, "cuts gave " + percent(gained_by_cuts_ / turnover_) + of};
+  return {};
+}
+
+/// Only a cut makes pieces, and none takes one away.
+std::optional<Failure> Watch::watch_pieces(const scene::Body& body, const Look& look, const int step) {
+  const std::size_t n_before = std::exchange(n_pieces_, look.pieces.size());
+  const bool was_cut = std::exchange(n_recuts_, body.n_recuts) != body.n_recuts;
+  if (n_pieces_ < n_before || (n_pieces_ > n_before && !was_cut))
+    return Failure{"pieces", step, std::to_string(n_before) + " have become " + std::to_string(n_pieces_)};
+  return {};
+}
+
+std::optional<Failure> Watch::after_step(const scene::Body& body, const int step, const double dt) {
+  const Look look = look_at(body);
+  if (!look.is_finite)
+    return Failure{"NaN", step, "a number that is none", true};
+  for (const auto& failure :
+       {watch_speeds(body, look, step, step * dt), watch_shapes(body, look, step), watch_energy(look, step, dt),
+        watch_pieces(body, look, step)})
+    if (failure)
+      return failure;
+  return {};
+}
+
+} // namespace kerf::grinder
