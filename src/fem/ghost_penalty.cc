@@ -46,7 +46,7 @@ void GhostPenalty::update(const grid::Grid& grid, const grid::CellComplex& compl
   if (options_.weight == 0)
     return;
   const Marked has_changed(changed, complex.n_copies());
-  std::erase_if(faces_, [&](const GhostFace& face) { return has_changed(face.lower) || has_changed(face.upper); });
+  std::erase_if(known_, [&](const GhostFace& face) { return has_changed(face.lower) || has_changed(face.upper); });
   std::vector<GhostFace> found;
   for (const CopyId c : changed)
     for (int axis = 0; axis < 3; ++axis) {
@@ -62,9 +62,10 @@ void GhostPenalty::update(const grid::Grid& grid, const grid::CellComplex& compl
                   found.end());
     }
   std::sort(found.begin(), found.end(), comes_before);
-  const auto n_kept = static_cast<std::ptrdiff_t>(faces_.size());
-  faces_.insert(faces_.end(), found.begin(), found.end());
-  std::inplace_merge(faces_.begin(), faces_.begin() + n_kept, faces_.end(), comes_before);
+  const auto n_kept = static_cast<std::ptrdiff_t>(known_.size());
+  known_.insert(known_.end(), found.begin(), found.end());
+  std::inplace_merge(known_.begin(), known_.begin() + n_kept, known_.end(), comes_before);
+  choose_faces(complex.n_copies());
   extend_mass(mass);
   weigh_faces();
 }
@@ -78,10 +79,13 @@ void GhostPenalty::add_faces_above(const grid::Grid& grid, const grid::CellCompl
     return;
   for (const CopyId upper : complex.copies_of(cell)) {
     const grid::Copy& above = complex.copies[upper];
-    const double needed = need(std::min(fill(lower.value), fill(upper.value)));
+    const double below_needs = need(fill(lower.value)), above_needs = need(fill(upper.value)),
+                 needed = std::max(below_needs, above_needs);
     if (needed == 0 || !grid::are_glued(below.part(), above.part(), axis))
       continue;
-    GhostFace face{lower, upper, static_cast<std::uint8_t>(axis), needed, {}, {}, {}, 0};
+    GhostFace face{lower, upper, static_cast<std::uint8_t>(axis), needed, {}, {}, {}, {}, 0};
+    if (below_needs == 0 || above_needs == 0)
+      face.well_filled = below_needs == 0 ? lower : upper;
     for (int i = 0; i < 4; ++i) {
       const int v = grid::cube::face_vertices[2 * axis][i], w = v | 1 << axis;
       face.a[i] = below.corners[v].value;
@@ -90,6 +94,35 @@ void GhostPenalty::add_faces_above(const grid::Grid& grid, const grid::CellCompl
     }
     faces.push_back(face);
   }
+}
+
+/// Distances by sweeps over the faces, there and back: in as many as the farthest way changes its direction.
+void GhostPenalty::choose_faces(const std::size_t n_copies) {
+  constexpr std::uint8_t far = 9;
+  std::vector<std::uint8_t> distance(n_copies, far);
+  bool has_changed = false;
+  const auto relax = [&](const GhostFace& face) {
+    std::uint8_t &p = distance[face.lower.value], &q = distance[face.upper.value];
+    for (auto* const one : {&p, &q}) {
+      const std::uint8_t other = one == &p ? q : p;
+      if (*one > other + 1) {
+        *one = static_cast<std::uint8_t>(other + 1);
+        has_changed = true;
+      }
+    }
+  };
+  for (const GhostFace& face : known_)
+    if (face.well_filled.valid())
+      distance[face.well_filled.value] = 0;
+  do {
+    has_changed = false;
+    std::for_each(known_.begin(), known_.end(), relax);
+    std::for_each(known_.rbegin(), known_.rend(), relax);
+  } while (has_changed);
+  faces_.clear();
+  for (const GhostFace& face : known_)
+    if (const auto p = distance[face.lower.value], q = distance[face.upper.value]; p != q || p == far)
+      faces_.push_back(face);
 }
 
 void GhostPenalty::extend_mass(const std::span<const double> mass) {

@@ -15,8 +15,11 @@
 ///     k = weight mu h need min(1, m / m_ref) / 4,    need = max(0, 1 - f / well_filled),
 ///
 /// f that of the emptier one of the two, m the least mass (below) of the twelve corners: weight mu h times the integral
-/// over the face of the squared jump of the normal derivative, with the face's mass matrix lumped. So near-empty copies
-/// extend their neighbours, over as many faces as there are between them and a well-filled copy of their piece.
+/// over the face of the squared jump of the normal derivative, with the face's mass matrix lumped. Penalties stand where
+/// they are needed: a copy's distance is 0 where it is well-filled, else one face more than that of its nearest glued
+/// neighbour; near-empty copies extend their neighbours of less distance, and faces between copies of the same distance
+/// have no penalty. (One there would stiffen the bending of a skin along which they lie.) Beyond a distance of 8, in
+/// sheets much thinner than a cube, all faces have one.
 ///
 /// The mass that k is measured by, and that explicit integrators take, is the lumped one, extended in the same way: along
 /// each of these lines the corner c gets d of the mass of b,
@@ -53,12 +56,13 @@ struct GhostPenaltyOptions {
   double well_filled = 0.25; ///< part of its cube from which on a copy holds its corners by itself [1]
 };
 
-/// A face between two glued copies that has a penalty.
+/// A face between two glued copies, one of them near-empty.
 struct GhostFace {
   grid::CopyId lower, upper;
   std::uint8_t axis;
   double need;                          ///< in (0, 1] [1]
   std::array<std::uint32_t, 4> a, b, c; ///< corners of the four lines across it: below, in, and above the face
+  grid::CopyId well_filled;             ///< of the two copies; invalid: neither
   double stiffness = 0;                 ///< k [N/m]
 };
 
@@ -72,7 +76,7 @@ class GhostPenalty {
   void update(const grid::Grid& grid, const grid::CellComplex& complex, std::span<const grid::CopyId> changed,
               const std::function<double(std::size_t copy)>& fill, std::span<const double> mass);
 
-  /// In the order of their lower copies, axes, and upper copies.
+  /// Those that have a penalty, in the order of their lower copies, axes, and upper copies.
   std::span<const GhostFace> faces() const { return faces_; }
   /// Of each corner, extended to the corners of near-empty copies [kg].
   const std::vector<double>& extended_mass() const { return extended_mass_; }
@@ -92,12 +96,14 @@ class GhostPenalty {
   void add_faces_above(const grid::Grid& grid, const grid::CellComplex& complex, grid::CopyId lower, int axis,
                        const std::function<double(std::size_t copy)>& fill, std::vector<GhostFace>& faces) const;
 
+  void choose_faces(std::size_t n_copies);
   void extend_mass(std::span<const double> mass);
   void weigh_faces();
 
   GhostPenaltyOptions options_;
   double stiffness_of_cube_, mass_of_cube_; // mu h [N/m], density h^3 [kg]
-  std::vector<GhostFace> faces_;
+  std::vector<GhostFace> known_; // all between a near-empty copy and one that it is glued to
+  std::vector<GhostFace> faces_; // those of them that have a penalty
   std::vector<double> extended_mass_;
 };
 

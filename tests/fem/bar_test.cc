@@ -97,7 +97,7 @@ TEST(Bar, NearEmptyLayersChangeNothing) {
   const double without = static_tip(0.05, Vec3::Zero(), {.material = rubber});
   for (const double depth : {1e-12, 1e-6, 1e-3}) {
     const double change = static_tip(0.05, Vec3(0, depth, depth), {.material = rubber}) / without - 1;
-    EXPECT_LT(std::abs(change), 2 * depth + 1e-6) << depth;
+    EXPECT_LT(std::abs(change), 2 * depth + 3e-6) << depth;
     RecordProperty("depth_" + std::to_string(depth), std::to_string(100 * change) + "_percent");
   }
 }

@@ -103,14 +103,20 @@ TEST(GhostPenalty, ExtendedMassKeepsTheTotalAndItsCentre) {
 
 /// Only what holds hardly any material has a penalty.
 TEST(GhostPenalty, WellFilledCopiesHaveNone) {
-  Draw draw(9);
-  Body body = make_block({4, 4, 4}, 1, draw, {0.7, 0.7}); // edges of the box fill 0.49, its corners 0.34
-  EXPECT_TRUE(make_model(body, {.material = rubber}).ghost_penalty().faces().empty());
-  cut_plane(body, 0, 2, 0.1);
-  const Hexahedra model = make_model(body, {.material = rubber});
-  ASSERT_FALSE(model.ghost_penalty().faces().empty());
-  for (const GhostFace& face : model.ghost_penalty().faces())
-    EXPECT_LT(std::min(model.element(face.lower.value).volume, model.element(face.upper.value).volume), 0.25);
+  const auto model_of_block = [](const double depth) {
+    const auto body = support::make_body({Vec3::Zero(), 1}, support::block_nodes({4, 4, 4}),
+                                         [&](const grid::Grid& grid, const grid::EdgeId e) {
+                                           const bool is_upper = grid.is_material(grid.ends(e)[0]);
+                                           return grid::EdgeCut{e, is_upper ? depth : 1 - depth,
+                                                                Vec3::Unit(grid.axis(e)), grid::skin_label};
+                                         });
+    return Hexahedra(body.grid, body.cuts, grid::build_complex(body.grid, body.cuts), {.material = rubber});
+  };
+  EXPECT_TRUE(model_of_block(0.9).ghost_penalty().faces().empty());
+  const Hexahedra shallow = model_of_block(0.1);
+  ASSERT_FALSE(shallow.ghost_penalty().faces().empty());
+  for (const GhostFace& face : shallow.ghost_penalty().faces())
+    EXPECT_LT(std::min(shallow.element(face.lower.value).volume, shallow.element(face.upper.value).volume), 0.25);
 }
 
 struct Spectra {
@@ -193,9 +199,12 @@ const std::vector<Family> families = {
      return body;
    }},
   {"rinds",
-   [](const double t) { // a lid of rinds alone, t / 2 thick
-     auto body = support::block({3, 3, 3});
-     cut_by_plane(body, {0.02, 0.01, 1}, {2, 2, 3.5}, -0.1 - 0.4 * (1 - t), 1);
+   [](const double t) { // under the skin a plane leaves a flap of rinds alone, t / 2 thick, that hangs at one side
+     auto body = support::block({4, 3, 3});
+     const Vec3 normal = Vec3(0.02, 0.01, 1) / std::sqrt(1.0005);
+     for (const auto& cut : support::plane_cuts(body, {normal, normal.dot(Vec3(2, 2, 3.5)) - 0.4 * t - 1e-3}))
+       if (body.grid.position(body.grid.ends(cut.edge)[0])[0] < 2.5)
+         body.cuts.add(body.grid, cut);
      return body;
    }}};
 
