@@ -2,6 +2,7 @@
 
 #include "fem/ghost_penalty.h"
 
+#include "cut/at_skin.h"
 #include "dynamics/state.h"
 #include "surface/placement.h"
 #include "tests/fem/models.h"
@@ -104,12 +105,13 @@ TEST(GhostPenalty, ExtendedMassKeepsTheTotalAndItsCentre) {
 /// Only what holds hardly any material has a penalty.
 TEST(GhostPenalty, WellFilledCopiesHaveNone) {
   const auto model_of_block = [](const double depth) {
-    const auto body = support::make_body({Vec3::Zero(), 1}, support::block_nodes({4, 4, 4}),
-                                         [&](const grid::Grid& grid, const grid::EdgeId e) {
-                                           const bool is_upper = grid.is_material(grid.ends(e)[0]);
-                                           return grid::EdgeCut{e, is_upper ? depth : 1 - depth,
-                                                                Vec3::Unit(grid.axis(e)), grid::skin_label};
-                                         });
+    auto body = support::make_body({Vec3::Zero(), 1}, support::block_nodes({4, 4, 4}),
+                                   [&](const grid::Grid& grid, const grid::EdgeId e) {
+                                     const bool is_upper = grid.is_material(grid.ends(e)[0]);
+                                     return grid::EdgeCut{e, is_upper ? depth : 1 - depth, Vec3::Unit(grid.axis(e)),
+                                                          grid::skin_label};
+                                   });
+    surface::place(body.grid, body.cuts, {});
     return Hexahedra(body.grid, body.cuts, grid::build_complex(body.grid, body.cuts), {.material = rubber});
   };
   EXPECT_TRUE(model_of_block(0.9).ghost_penalty().faces().empty());
@@ -202,9 +204,13 @@ const std::vector<Family> families = {
    [](const double t) { // under the skin a plane leaves a flap of rinds alone, t / 2 thick, that hangs at one side
      auto body = support::block({4, 3, 3});
      const Vec3 normal = Vec3(0.02, 0.01, 1) / std::sqrt(1.0005);
+     std::vector<grid::EdgeId> edges;
      for (const auto& cut : support::plane_cuts(body, {normal, normal.dot(Vec3(2, 2, 3.5)) - 0.4 * t - 1e-3}))
-       if (body.grid.position(body.grid.ends(cut.edge)[0])[0] < 2.5)
+       if (body.grid.position(body.grid.ends(cut.edge)[0])[0] < 2.5) {
          body.cuts.add(body.grid, cut);
+         edges.push_back(cut.edge);
+       }
+     cut::part_skin(body.grid, body.cuts, edges);
      return body;
    }}};
 
