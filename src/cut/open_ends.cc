@@ -3,7 +3,6 @@
 #include "cut/nodes_apart.h"
 #include "cut/part_face.h"
 #include "geometry/triangle.h"
-#include "grid/touched.h"
 
 #include <algorithm>
 #include <bit>
@@ -86,15 +85,15 @@ void sort_unique(std::vector<T>& items) {
 
 } // namespace
 
-void OpenEnds::note(const grid::Grid& grid, const grid::Cuts& cuts, const std::span<const grid::EdgeId> edges,
+void OpenEnds::note(const grid::Grid& grid, const grid::Cuts& cuts, const std::span<const grid::CellId> cells,
                     const grid::CutLabel label) {
-  for (const grid::TouchedCell& touched : grid::touched_cells(grid, edges)) {
-    const grid::CellCuts cell = grid::cuts_of(grid, cuts, touched.cell);
+  for (const grid::CellId c : cells) {
+    const grid::CellCuts cell = grid::cuts_of(grid, cuts, c);
     for (int face = 0; cell.skin != 0 && face < cube::n_faces; ++face)
-      if (is_open(grid, cuts, touched.cell, cell, face, label))
-        faces_.push_back({touched.cell, face});
-    if (is_cut_by(grid, cuts, touched.cell, cell, label) && must_be_parted(grid, cuts, touched.cell))
-      cells_.push_back(touched.cell);
+      if (is_open(grid, cuts, c, cell, face, label))
+        faces_.push_back({c, face});
+    if (is_cut_by(grid, cuts, c, cell, label) && must_be_parted(grid, cuts, c))
+      cells_.push_back(c);
   }
   sort_unique(faces_);
   sort_unique(cells_);

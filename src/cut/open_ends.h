@@ -15,8 +15,8 @@ namespace kerf::cut {
 
 class OpenEnds {
  public:
-  /// Notes them at edges that the blade with this label has cut.
-  void note(const grid::Grid& grid, const grid::Cuts& cuts, std::span<const grid::EdgeId> edges, grid::CutLabel label);
+  /// Notes them in cells in which the blade with this label has cut.
+  void note(const grid::Grid& grid, const grid::Cuts& cuts, std::span<const grid::CellId> cells, grid::CutLabel label);
 
   /// Parts the skin of those that are more than a cell away from where the blade is in this step (whereabouts();
   /// triangles [m], world frame), when the corners are at `x`, and from cuts that wait; forgets those where the cut has

@@ -6,20 +6,6 @@
 
 namespace kerf::fem {
 
-std::vector<grid::CopyId> changed_copies(const grid::Grid& grid, const grid::CellComplex& complex,
-                                         const grid::ComplexChange& change,
-                                         const std::span<const grid::EdgeId> new_edges) {
-  std::vector<grid::CopyId> changed = change.copies;
-  for (const auto edge : new_edges)
-    for (const auto cell : grid.cells(edge))
-      if (cell.valid())
-        for (const auto copy : complex.copies_of(cell))
-          changed.push_back(copy);
-  std::sort(changed.begin(), changed.end());
-  changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
-  return changed;
-}
-
 ElementTable::ElementTable(const grid::Grid& grid, const grid::Cuts& cuts, const grid::CellComplex& complex,
                            const ElementTableOptions& options)
   : h_(grid.h()), options_(options) {

@@ -17,11 +17,6 @@ enum class Boundary {
   full_cube        ///< as a full cube, as is common: doubles mass and stiffness along a cut
 };
 
-/// The copies whose element a cut has changed: new ones, those with other corners, and all in cells with a newly cut
-/// edge, whose material has another shape. Ascending.
-std::vector<grid::CopyId> changed_copies(const grid::Grid& grid, const grid::CellComplex& complex,
-                                         const grid::ComplexChange& change, std::span<const grid::EdgeId> new_edges);
-
 struct ElementTableOptions {
   material::Elastic material;
   Boundary boundary = Boundary::octants;

@@ -40,7 +40,7 @@ class Hexahedra : public dynamics::ElasticModel, public dynamics::StiffnessMatri
   Hexahedra(const grid::Grid& grid, const grid::Cuts& cuts, const grid::CellComplex& complex,
             const HexahedraOptions& options);
 
-  /// Follows a cut. `changed`: what changed_copies() says. All else stays as it is; the outcome is that of building
+  /// Follows a cut. `changed`: what grid::CutChange::reshaped says. All else stays as it is; the outcome is that of building
   /// anew, bit by bit. The linearisation is lost.
   void update(const grid::Grid& grid, const grid::Cuts& cuts, const grid::CellComplex& complex,
               std::span<const grid::CopyId> changed);

@@ -139,15 +139,27 @@ void make_corners(const Grid& grid, const std::vector<CutCell>& cut_cells, CellC
     worth);
 }
 
+void sort_unique(std::vector<CopyId>& copies) {
+  std::sort(copies.begin(), copies.end());
+  copies.erase(std::unique(copies.begin(), copies.end()), copies.end());
+}
+
 /// Splits copies and renames corners around new cut edges.
 class Update {
  public:
   Update(const Grid& grid, const Cuts& cuts, CellComplex& complex)
-    : grid_(grid), cuts_(cuts), complex_(complex), change_{complex.n_copies(), complex.n_corners(), {}, {}} {}
+    : grid_(grid), cuts_(cuts), complex_(complex) {
+    change_.n_copies_before = complex.n_copies();
+    change_.n_corners_before = complex.n_corners();
+  }
 
-  ComplexChange run(const std::span<const EdgeId> new_edges) {
-    for (const TouchedCell& touched : touched_cells(grid_, new_edges))
+  CutChange run(std::vector<EdgeId> new_edges) {
+    change_.edges = std::move(new_edges);
+    change_.parted.assign(cuts_.newly_parted().begin(), cuts_.newly_parted().end());
+    for (const TouchedCell& touched : touched_cells(grid_, change_.edges)) {
+      change_.cells.push_back(touched.cell);
       split(touched.cell);
+    }
     std::sort(slots_.begin(), slots_.end());
     for (auto slot = slots_.begin(); slot != slots_.end();) {
       const NodeId node = slot->node;
@@ -157,8 +169,12 @@ class Update {
       cells.complete(grid_);
       rename(node, CornerClasses(complex_, cells));
     }
-    std::sort(change_.copies.begin(), change_.copies.end());
-    change_.copies.erase(std::unique(change_.copies.begin(), change_.copies.end()), change_.copies.end());
+    sort_unique(change_.copies);
+    change_.reshaped = change_.copies;
+    for (const CellId cell : change_.cells)
+      for (const CopyId c : complex_.copies_of(cell))
+        change_.reshaped.push_back(c);
+    sort_unique(change_.reshaped);
     return std::move(change_);
   }
 
@@ -275,7 +291,7 @@ class Update {
   const Grid& grid_;
   const Cuts& cuts_;
   CellComplex& complex_;
-  ComplexChange change_;
+  CutChange change_;
   std::vector<Slot> slots_; // of the cells that split
 };
 
@@ -308,9 +324,8 @@ CellComplex build_complex(const Grid& grid, const Cuts& cuts) {
   return complex;
 }
 
-ComplexChange update_complex(const Grid& grid, const Cuts& cuts, const std::span<const EdgeId> new_edges,
-                             CellComplex& complex) {
-  return Update(grid, cuts, complex).run(new_edges);
+CutChange update_complex(const Grid& grid, const Cuts& cuts, std::vector<EdgeId> new_edges, CellComplex& complex) {
+  return Update(grid, cuts, complex).run(std::move(new_edges));
 }
 
 Pieces pieces(const CellComplex& complex) {

@@ -82,8 +82,10 @@ class Placer {
       join_(placement.sharp_angle * std::numbers::pi / 180),
       threshold_(std::tan(0.5 * placement.sharp_angle * std::numbers::pi / 180)) {}
 
-  PlacementCounts run() {
-    for (const CellId c : changed_cells()) {
+  PlacementCounts run() { return run(changed_cells()); }
+  /// `cells` ascending: all around new cuts, and beside newly parted faces that blades have cut.
+  PlacementCounts run(const std::span<const CellId> cells) {
+    for (const CellId c : cells) {
       const View view = look_at(grid_, cuts_, c);
       const unsigned new_lines = view.now.cut & ~view.old;
       if (new_lines == 0 && view.parted_faces == 0)
@@ -421,6 +423,10 @@ class Placer {
 
 PlacementCounts place(const Grid& grid, Cuts& cuts, const Placement& placement) {
   return Placer(grid, cuts, placement).run();
+}
+
+PlacementCounts place(const Grid& grid, Cuts& cuts, const grid::CutChange& change, const Placement& placement) {
+  return Placer(grid, cuts, placement).run(change.cells);
 }
 
 } // namespace kerf::surface

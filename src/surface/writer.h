@@ -352,21 +352,21 @@ class Writer {
 
   /// Writes a vertex at rest position p whose weights go to the corners in `support` (bits) of the copy.
   void set(std::uint32_t& id, const Vec3& p, const Vec3& xi, const CopyId copy, const unsigned support) {
-    Weights& w = surface_.weights;
+    Interpolation& w = surface_.weights;
     if (id == unset) {
       id = static_cast<std::uint32_t>(surface_.rest.size());
       surface_.rest.push_back(p);
-      w.row_start.push_back(w.row_start.back() + static_cast<std::uint32_t>(std::bitset<8>(support).count()));
-      w.corners.resize(w.row_start.back());
-      w.values.resize(w.row_start.back());
+      w.start.push_back(w.start.back() + static_cast<std::uint32_t>(std::bitset<8>(support).count()));
+      w.corners.resize(w.start.back());
+      w.values.resize(w.start.back());
     } else
       surface_.rest[id] = p;
     const auto factors = shape_factors(xi, support);
     const auto& corners = complex_.copies[copy].corners;
-    std::uint32_t entry = w.row_start[id];
+    std::uint32_t entry = w.start[id];
     for (unsigned left = support; left != 0; left &= left - 1, ++entry) {
       const int v = std::countr_zero(left);
-      w.corners[entry] = corners[v];
+      w.corners[entry] = corners[v].value;
       w.values[entry] = factors[0][v & 1] * factors[1][v >> 1 & 1] * factors[2][v >> 2 & 1];
     }
   }

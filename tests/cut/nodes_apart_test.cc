@@ -5,6 +5,7 @@
 
 #include "cut/open_ends.h"
 #include "grid/parts.h"
+#include "grid/touched.h"
 #include "tests/grid/histories.h"
 
 #include <gtest/gtest.h>
@@ -57,15 +58,18 @@ TEST_F(ThreeNodes, AreKeptApartOnceTheBladeHasGone) {
   const grid::CellComplex complex = grid::build_complex(body.grid, body.cuts);
   const Points x = grid::rest_positions(body.grid, complex);
   cut({1, 0, 0}, {0, 1, 0});
+  std::vector<CellId> cells;
+  for (const auto& touched : grid::touched_cells(body.grid, std::vector{along_x, along_y}))
+    cells.push_back(touched.cell);
   OpenEnds ends;
-  ends.note(body.grid, body.cuts, std::vector{along_x, along_y}, 1);
+  ends.note(body.grid, body.cuts, cells, 1);
   PendingCuts pending;
   const auto close = [&](const Vec3& blade) {
     const std::array<Vec3, 3> triangle = {blade, blade + Vec3::UnitX(), blade + Vec3::UnitY()};
     return ends.close(std::span(&triangle, 1), pending, body.grid, body.cuts, complex, x, 1).size();
   };
   OpenEnds of_another;
-  of_another.note(body.grid, body.cuts, std::vector{along_x, along_y}, 2);
+  of_another.note(body.grid, body.cuts, cells, 2);
   EXPECT_EQ(of_another.size(), 0u) << "a blade that has not cut here ends nothing";
   EXPECT_EQ(close({1, 1, 1.5}), 0u);
   pending.push(std::vector<grid::EdgeCut>{{*body.grid.find_edge({2, 1, 1}, 0), 0.1, Vec3::UnitX(), 1}});

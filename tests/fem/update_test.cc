@@ -50,8 +50,7 @@ std::vector<grid::CopyId> cut_some(Body& body, const double probability, Draw& d
       edges.push_back(e);
     }
   surface::place(body.grid, body.cuts, {});
-  const auto change = grid::update_complex(body.grid, body.cuts, edges, body.complex);
-  return changed_copies(body.grid, body.complex, change, edges);
+  return grid::update_complex(body.grid, body.cuts, edges, body.complex).reshaped;
 }
 
 TEST(Update, IsBuildingAnewBitByBit) {
@@ -107,8 +106,8 @@ TEST(Update, ChangesFewElements) {
   Body body = make_block({8, 8, 8}, 0.1, draw, {0.5, 0.5});
   const auto edge = inner_edges(body)[100];
   body.cuts.add(body.grid, {edge, 0.5, Vec3::UnitX(), 1});
-  const auto change = grid::update_complex(body.grid, body.cuts, {&edge, 1}, body.complex);
-  EXPECT_EQ(changed_copies(body.grid, body.complex, change, {&edge, 1}).size(), 4u);
+  const auto change = grid::update_complex(body.grid, body.cuts, {edge}, body.complex);
+  EXPECT_EQ(change.reshaped.size(), 4u);
 }
 
 TEST(Update, CountsElementsOfTheirOwn) {

@@ -263,7 +263,7 @@ void require_sound_parents(const CellComplex& before, const CellComplex& after,
   }
 }
 
-void require_sound_change(const CellComplex& before, const CellComplex& after, const grid::ComplexChange& change) {
+void require_sound_change(const CellComplex& before, const CellComplex& after, const grid::CutChange& change) {
   if (change.n_copies_before != before.n_copies() || change.n_corners_before != before.n_corners() ||
       change.parents.size() != after.n_corners() - before.n_corners())
     complain("a change does not say how large the complex was");
@@ -309,7 +309,7 @@ void require_sound_weights(const grid::Grid& grid, const CellComplex& complex, c
     reach = std::max(reach, p.norm());
   for (std::size_t i = 0; i < surface.rest.size(); ++i) {
     double sum = 0;
-    for (auto k = surface.weights.row_start[i]; k < surface.weights.row_start[i + 1]; ++k)
+    for (auto k = surface.weights.start[i]; k < surface.weights.start[i + 1]; ++k)
       sum += surface.weights.values[k];
     if (!(std::abs(sum - 1) < 1e-14))
       complain("a row of W sums to 1 + " + number(sum - 1));
@@ -345,7 +345,7 @@ CellVolumes require_sound_volumes(const grid::Grid& grid, const grid::Cuts& cuts
 }
 
 void require_kept_volumes(const Subject& subject, Tally& tally) {
-  const CellComplex& complex = subject.complex;
+  const CellComplex& complex = subject.solid.complex;
   const grid::Pieces pieces = grid::pieces(complex);
   std::vector<double> by_tetrahedra(pieces.n_pieces, 0.0);
   const double cube = std::pow(subject.grid().h(), 3);
@@ -388,9 +388,9 @@ Table<CornerId, double> corner_masses(const grid::Grid& grid, const grid::Cuts& 
 }
 
 void require_sound(const Subject& subject, Tally& tally) {
-  require_sound_complex(subject.grid(), subject.cuts, subject.specimen.arcs, subject.complex);
+  require_sound_complex(subject.grid(), subject.solid.cuts, subject.specimen.arcs, subject.solid.complex);
   require_closed(subject.surface);
-  require_sound_weights(subject.grid(), subject.complex, subject.surface);
+  require_sound_weights(subject.grid(), subject.solid.complex, subject.surface);
   require_kept_volumes(subject, tally);
 }
 

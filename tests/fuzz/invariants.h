@@ -31,7 +31,7 @@ void require_sound_parents(const grid::CellComplex& before, const grid::CellComp
 
 /// What an update does not name as changed is as it was.
 void require_sound_change(const grid::CellComplex& before, const grid::CellComplex& after,
-                          const grid::ComplexChange& change);
+                          const grid::CutChange& change);
 
 /// Each directed edge is met once each way, and no triangle holds a vertex twice.
 void require_closed(const surface::Surface& surface);

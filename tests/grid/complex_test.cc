@@ -164,7 +164,7 @@ CopyId copy_before(const Body& body, const CellComplex& before, const Copy& copy
 
 /// One parent a corner, an instance of the same node, whichever copy is asked; real stays real; pieces only split; what
 /// is not named as changed has not.
-void expect_change(const Body& body, const CellComplex& before, const CellComplex& after, const ComplexChange& change) {
+void expect_change(const Body& body, const CellComplex& before, const CellComplex& after, const CutChange& change) {
   ASSERT_EQ(change.n_copies_before, before.n_copies());
   ASSERT_EQ(change.n_corners_before, before.n_corners());
   ASSERT_EQ(change.parents.size(), after.n_corners() - before.n_corners());
@@ -208,7 +208,7 @@ void expect_updates(Random& random, Body body, const Plan& plan, const std::size
   for (const histories::Step& step : histories::dealt(random, body, plan, n_steps)) {
     histories::apply(step, body);
     const CellComplex before = complex;
-    const ComplexChange change = update_complex(body.grid, body.cuts, step.edges, complex);
+    const CutChange change = update_complex(body.grid, body.cuts, step.edges, complex);
     expect_change(body, before, complex, change);
     expect_consistent(body, complex);
     expect_same(complex, build_complex(body.grid, body.cuts));
@@ -362,7 +362,7 @@ TEST(Complex, GivesARindThatIsCutOffCopiesOfItsOwn) {
   const auto face = [&](const int cell, const int local) { return body.grid.faces(around[cell])[local]; };
   body.cuts.add(body.grid, {edge, 0.2, Vec3::UnitX(), 1});
   const auto expect = [&](const std::size_t n_copies, const std::size_t n_corners, const std::uint32_t n_pieces) {
-    update_complex(body.grid, body.cuts, std::array{edge}, complex);
+    update_complex(body.grid, body.cuts, {edge}, complex);
     EXPECT_EQ(complex.n_copies(), n_copies);
     EXPECT_EQ(complex.n_corners(), n_corners);
     EXPECT_EQ(grid::n_pieces(complex), n_pieces);
@@ -386,13 +386,13 @@ TEST(Complex, RefusesCutsThatJoin) {
   const FaceId face = body.grid.faces(*body.grid.find_cell({1, 1, 1}))[4];
   CellComplex complex = build_complex(body.grid, body.cuts);
   body.cuts.add(body.grid, {inner, 0.5, Vec3::UnitX(), 1});
-  update_complex(body.grid, body.cuts, std::array{inner}, complex);
+  update_complex(body.grid, body.cuts, {inner}, complex);
   ASSERT_EQ(grid::n_pieces(complex), 2u);
   body.cuts.set_seam(face, Seam::whole);
   CellComplex joined = complex;
-  EXPECT_THROW(update_complex(body.grid, body.cuts, std::array{edge}, joined), std::logic_error);
+  EXPECT_THROW(update_complex(body.grid, body.cuts, {edge}, joined), std::logic_error);
   body.cuts.set_seam(face, Seam::parted);
-  EXPECT_NO_THROW(update_complex(body.grid, body.cuts, std::array{edge}, complex));
+  EXPECT_NO_THROW(update_complex(body.grid, body.cuts, {edge}, complex));
 }
 
 /// Does a part hold what was in several?

@@ -2,7 +2,7 @@
 
 /// Embedded bodies with their skin placed, cuts with their vertices placed, and what tests ask of them.
 
-#include "cut/add_cuts.h"
+#include "cut/cutter.h"
 #include "cut/embed.h"
 #include "cut/fit.h"
 #include "geometry/solid.h"
@@ -46,8 +46,11 @@ inline surface::PlacementCounts cut(Body& body, const std::span<const grid::Edge
 
 /// All that a surface without an end inside the body cuts.
 inline surface::PlacementCounts cut_through(Body& body, const std::span<const grid::EdgeCut> cuts) {
-  cut::add_cuts(body.grid, body.cuts, {}, {}, cuts, cut::Front::none);
-  return surface::place(body.grid, body.cuts, {});
+  body.complex = grid::build_complex(body.grid, body.cuts);
+  const Points x = grid::rest_positions(body.grid, body.complex);
+  cut::Cutter cutter(9);
+  cutter.begin(body, x);
+  return surface::place(body.grid, body.cuts, cutter.cut(body, cuts, cut::Front::none, x), {});
 }
 
 using grid::volume;

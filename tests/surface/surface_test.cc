@@ -105,16 +105,16 @@ void expect_two_sides(const Cut& cut) {
 
 /// Rows sum to one, reproduce the rest positions, and ask only corners of the copies that the vertex bounds.
 void expect_weights(const Cut& cut) {
-  const Weights& w = cut.surface.weights;
-  ASSERT_EQ(w.n_rows(), cut.surface.rest.size());
-  ASSERT_EQ(w.row_start.back(), w.corners.size());
-  ASSERT_EQ(w.row_start.back(), w.values.size());
+  const Interpolation& w = cut.surface.weights;
+  ASSERT_EQ(w.n_points(), cut.surface.rest.size());
+  ASSERT_EQ(w.start.back(), w.corners.size());
+  ASSERT_EQ(w.start.back(), w.values.size());
   Points rest;
   follow(cut.surface, grid::rest_positions(cut.body.grid, cut.complex), rest);
   const double h = cut.body.grid.h();
-  for (std::size_t i = 0; i < w.n_rows(); ++i) {
+  for (std::size_t i = 0; i < w.n_points(); ++i) {
     double sum = 0, least = 1;
-    for (auto k = w.row_start[i]; k < w.row_start[i + 1]; ++k) {
+    for (auto k = w.start[i]; k < w.start[i + 1]; ++k) {
       sum += w.values[k];
       least = std::min(least, w.values[k]);
     }
@@ -126,8 +126,8 @@ void expect_weights(const Cut& cut) {
   for (std::size_t i = 0; i < cut.surface.triangles.size(); ++i) {
     const auto& corners = cut.complex.copies[cut.surface.copies[i]].corners;
     for (const auto v : cut.surface.triangles[i])
-      for (auto k = w.row_start[v]; k < w.row_start[v + 1]; ++k)
-        ASSERT_NE(std::find(corners.begin(), corners.end(), w.corners[k]), corners.end());
+      for (auto k = w.start[v]; k < w.start[v + 1]; ++k)
+        ASSERT_NE(std::find(corners.begin(), corners.end(), grid::CornerId(w.corners[k])), corners.end());
   }
 }
 
@@ -246,7 +246,7 @@ struct Updated {
     for (const auto& cut : cuts)
       edges.push_back(cut.edge);
     const auto change = grid::update_complex(body.grid, body.cuts, edges, complex);
-    update_surface(body.grid, body.cuts, complex, edges, change, surface, index);
+    update_surface(body.grid, body.cuts, complex, change, surface, index);
   }
 };
 
