@@ -39,23 +39,21 @@ Mat3 tangent_block(const Eigen::Ref<const Tangent>& A, const Vec3& b_a, const Ve
 
 } // namespace
 
-Hexahedra::Hexahedra(const grid::Grid& grid, const grid::Cuts& cuts, const grid::CellComplex& complex,
-                     const HexahedraOptions& options)
-  : h_(grid.h()),
+Hexahedra::Hexahedra(const grid::Solid& solid, const HexahedraOptions& options)
+  : h_(solid.grid.h()),
     law_(material::law_of(options.material)),
     frame_(frame_of(law_)),
-    elements_(grid, cuts, complex, table_options(options)),
-    incidence_(complex) {
-  std::vector<std::uint32_t> all(complex.n_corners());
+    elements_(solid, table_options(options)),
+    incidence_(solid.complex) {
+  std::vector<std::uint32_t> all(solid.complex.n_corners());
   std::iota(all.begin(), all.end(), 0);
   sum_mass(all);
-  linearise(grid::rest_positions(grid, complex));
+  linearise(grid::rest_positions(solid));
 }
 
-void Hexahedra::update(const grid::Grid& grid, const grid::Cuts& cuts, const grid::CellComplex& complex,
-                       const std::span<const grid::CopyId> changed) {
-  elements_.update(grid, cuts, complex, changed);
-  sum_mass(incidence_.update(complex, changed));
+void Hexahedra::update(const grid::Solid& solid, const std::span<const grid::CopyId> changed) {
+  elements_.update(solid, changed);
+  sum_mass(incidence_.update(solid.complex, changed));
 }
 
 void Hexahedra::sum_mass(const std::span<const std::uint32_t> corners) {

@@ -37,13 +37,11 @@ struct HexahedraOptions {
 
 class Hexahedra : public dynamics::ElasticModel, public dynamics::StiffnessMatrix {
  public:
-  Hexahedra(const grid::Grid& grid, const grid::Cuts& cuts, const grid::CellComplex& complex,
-            const HexahedraOptions& options);
+  Hexahedra(const grid::Solid& solid, const HexahedraOptions& options);
 
   /// Follows a cut. `changed`: what grid::CutChange::reshaped says. All else stays as it is; the outcome is that of building
   /// anew, bit by bit. The linearisation is lost.
-  void update(const grid::Grid& grid, const grid::Cuts& cuts, const grid::CellComplex& complex,
-              std::span<const grid::CopyId> changed);
+  void update(const grid::Solid& solid, std::span<const grid::CopyId> changed);
 
   std::span<const double> lumped_mass() const override { return mass_; }
   double energy(const Points& x) const override;

@@ -70,8 +70,8 @@ struct CellComplex {
   std::size_t n_bytes() const;
 };
 
-/// Copies are ordered by cell, then as their parts are (parts.h); corners by node.
-CellComplex build_complex(const Grid& grid, const Cuts& cuts);
+/// Of what is cut. Copies are ordered by cell, then as their parts are (parts.h); corners by node.
+CellComplex build_complex(const Solid& solid);
 
 /// What a cut has done to a body. Placement, surface and physics follow it by this, and look for nothing themselves.
 struct CutChange {
@@ -87,11 +87,11 @@ struct CutChange {
   bool any() const { return !edges.empty(); }
 };
 
-/// Brings a complex up to date with edges that `cuts` holds, but did not when it was built or updated last (an edge may
-/// be named again: where the skin of a face at it is now said to be parted). What it costs depends on the new edges
+/// Brings the complex up to date with edges that are cut, but were not when it was built or updated last (an edge may be
+/// named again: where the skin of a face at it is now said to be parted). What it costs depends on the new edges
 /// alone. Throws std::logic_error, and leaves the complex of no use, where the skin of a face now joins what was
 /// parted.
-CutChange update_complex(const Grid& grid, const Cuts& cuts, std::vector<EdgeId> new_edges, CellComplex& complex);
+CutChange update_complex(Solid& solid, std::vector<EdgeId> new_edges);
 
 /// Appends for each new corner what its parent has.
 template <class T>
@@ -111,6 +111,6 @@ Pieces pieces(const CellComplex& complex);
 inline std::uint32_t n_pieces(const CellComplex& complex) { return pieces(complex).n_pieces; }
 
 /// Rest positions of the corners [m].
-Points rest_positions(const Grid& grid, const CellComplex& complex);
+Points rest_positions(const Solid& solid);
 
 } // namespace kerf::grid

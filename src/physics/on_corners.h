@@ -20,7 +20,7 @@ class OnCorners : public Physics {
   OnCorners(const CutBody& body, ModelMaker make_model, IntegratorMaker make_integrator)
     : make_model_(std::move(make_model)),
       make_integrator_(std::move(make_integrator)),
-      rest_(grid::rest_positions(body.solid.grid, body.solid.complex)),
+      rest_(grid::rest_positions(body.solid)),
       model_(make_model_(body)) {
     make_stepper(body);
   }
@@ -66,7 +66,7 @@ class OnCorners : public Physics {
 /// Elements are brought up to date where the cut is, and stay elsewhere.
 template <>
 inline void OnCorners<fem::Hexahedra>::follow_cut_with_model(const CutBody& body, const grid::CutChange& change) {
-  model_->update(body.solid.grid, body.solid.cuts, body.solid.complex, change.reshaped);
+  model_->update(body.solid, change.reshaped);
 }
 
 using Elements = OnCorners<fem::Hexahedra>;

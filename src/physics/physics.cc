@@ -1,7 +1,7 @@
 #include "physics/physics.h"
 
+#include "grid/locate.h"
 #include "grid/shape.h"
-#include "pba/region.h"
 
 namespace kerf::physics {
 
@@ -18,20 +18,9 @@ std::vector<std::uint32_t> corner_pieces(const grid::CellComplex& complex) {
   return pieces;
 }
 
-grid::CopyId copy_at(const CutBody& body, const Vec3& rest) {
-  const double reach = 1e-6 * body.solid.grid.h(); // what lies on the skin belongs to the body
-  const auto copy_around = [&](const Vec3& p) {
-    return pba::copy_around(body.solid.grid, body.solid.cuts, body.solid.complex, p);
-  };
-  grid::CopyId copy = copy_around(rest);
-  for (int corner = 0; corner < 8 && !copy.valid(); ++corner)
-    copy = copy_around(rest + reach * Vec3(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1));
-  return copy;
-}
-
 Interpolation body_point(const CutBody& body, const Vec3& rest) {
   Interpolation point;
-  const grid::CopyId c = copy_at(body, rest);
+  const grid::CopyId c = grid::copy_at(body.solid, rest);
   if (!c.valid())
     return point;
   const grid::Copy& copy = body.solid.complex.copies[c];

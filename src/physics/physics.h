@@ -59,9 +59,6 @@ dynamics::State state_at_rest(const Physics& physics);
 /// The piece of each corner.
 std::vector<std::uint32_t> corner_pieces(const grid::CellComplex& complex);
 
-/// The copy whose material holds a rest point [m], or has it on its skin; invalid elsewhere.
-grid::CopyId copy_at(const CutBody& body, const Vec3& rest);
-
 /// A rest point [m] as a point that follows corners; no point where the body has no material.
 Interpolation body_point(const CutBody& body, const Vec3& rest);
 

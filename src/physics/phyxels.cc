@@ -1,6 +1,7 @@
 #include "physics/phyxels.h"
 
 #include "base/union_find.h"
+#include "grid/locate.h"
 
 #include <Eigen/Eigenvalues>
 
@@ -56,8 +57,7 @@ bool Phyxels::ByCoordinates::operator()(const Face& a, const Face& b) const {
 Phyxels::Phyxels(const CutBody& body, const PhyxelsOptions& options, StepperMaker make_stepper)
   : options_(options),
     make_stepper_(std::move(make_stepper)),
-    model_(pba::fill(body.solid.grid, body.solid.cuts, body.solid.complex, options.phyxels), options.material,
-           options.model),
+    model_(pba::fill(body.solid, options.phyxels), options.material, options.model),
     node_pairs_(pba::find_node_pairs(body.solid.grid, model_.phyxels())) {
   const auto& neighbours = model_.neighbours();
   sights_of_phyxels_ = pba::clear_sights(rest(), rest(), neighbours.pairs);
@@ -97,7 +97,7 @@ void Phyxels::add_faces(const surface::Surface& surface, const bool of_skin) {
 }
 
 void Phyxels::find_pieces(const CutBody& body) {
-  copies_ = pba::copies_around(body.solid.grid, body.solid.cuts, body.solid.complex, rest());
+  copies_ = grid::copies_around(body.solid, rest());
   phyxel_pieces_ = pba::phyxel_pieces(body.solid.complex, copies_);
   node_pieces_ = pba::node_pieces(body.solid.complex, node_pairs_);
 }
@@ -135,7 +135,7 @@ void Phyxels::build_map(const CutBody& body) {
     find_pieces(body);
   std::vector<pba::Sight> parted = sights_of_nodes_;
   pba::part(node_pairs_.pairs, node_pieces_, phyxel_pieces_, parted);
-  map_ = pba::build_corner_map(body.solid.grid, body.solid.complex, model_.phyxels(), copies_, node_pairs_, parted);
+  map_ = pba::build_corner_map(body.solid, model_.phyxels(), copies_, node_pairs_, parted);
   parted = sights_of_phyxels_;
   pba::part(model_.neighbours().pairs, phyxel_pieces_, phyxel_pieces_, parted);
   model_.update(parted);

@@ -1,6 +1,7 @@
 #include "scene/body.h"
 
 #include "cut/fit.h"
+#include "grid/locate.h"
 
 namespace kerf::scene {
 
@@ -31,7 +32,7 @@ void make_loads(Body& body) {
     body.first_load.push_back(body.loads.acting.size());
   }
   for (Probe& probe : body.probes)
-    probe.copy = physics::copy_at(seen(body), probe.rest);
+    probe.copy = grid::copy_at(body.solid, probe.rest);
 }
 
 /// Takes a cut into placement, surface, physics and loads.
@@ -40,11 +41,10 @@ void follow_cut(Body& body, const grid::CutChange& change, Timings& timings) {
     return;
   {
     const ScopedTimer timer(timings, "topology");
-    const auto placed = surface::place(body.solid.grid, body.solid.cuts, change, body.placement);
+    const auto placed = surface::place(body.solid, change, body.placement);
     body.placed.n_placed += placed.n_placed;
     body.placed.n_clamped += placed.n_clamped;
-    surface::update_surface(body.solid.grid, body.solid.cuts, body.solid.complex, change, body.surface,
-                            body.surface_index);
+    surface::update_surface(body.solid, change, body.surface, body.surface_index);
     ++body.n_recuts;
   }
   const ScopedTimer timer(timings, "assemble");
@@ -68,11 +68,10 @@ void start(Body& body, const geometry::TriangleMesh& mesh, const PhysicsMaker& m
   {
     const ScopedTimer timer(timings, "topology");
     grid::Solid& solid = body.solid;
-    body.placed = surface::place(solid.grid, solid.cuts, body.placement);
-    cut::fit_skin(mesh, solid.grid, solid.cuts);
-    solid.complex = grid::build_complex(solid.grid, solid.cuts);
-    body.surface = body.cutter ? surface::build_surface(solid.grid, solid.cuts, solid.complex, body.surface_index)
-                               : surface::build_surface(solid.grid, solid.cuts, solid.complex);
+    body.placed = surface::place(solid, body.placement);
+    cut::fit_skin(mesh, solid);
+    solid.complex = grid::build_complex(solid);
+    body.surface = body.cutter ? surface::build_surface(solid, body.surface_index) : surface::build_surface(solid);
   }
   body.first_volume = surface::enclosed_volume(body.surface.rest, body.surface.triangles);
   {

@@ -70,7 +70,7 @@ Body compose_body(const Section& section, const GravityParameters* gravity, cons
     const ScopedTimer timer(world.setup_seconds, "cut");
     return embed_mesh(section, parameters, mesh);
   }();
-  Body body{section.name(), {std::move(embedding.grid), std::move(embedding.cuts)}};
+  Body body{section.name(), std::move(embedding.solid)};
   body.placement.sharp_angle = parameters.sharp_angle;
   body.mesh_volume = geometry::volume(mesh);
   body.n_thin_walls = embedding.n_thin_walls;

@@ -28,8 +28,7 @@ PhysicsMaker make_elements(const Section& section, const BodyParameters& paramet
     .mass_spread = integrator.mass_spread};
   return [=](const CutBody& body) {
     return std::make_unique<physics::Elements>(
-      body, [=](const CutBody& b) { return std::make_unique<fem::Hexahedra>(b.solid.grid, b.solid.cuts, b.solid.complex, options); },
-      integrator.make);
+      body, [=](const CutBody& b) { return std::make_unique<fem::Hexahedra>(b.solid, options); }, integrator.make);
   };
 }
 
@@ -41,7 +40,7 @@ PhysicsMaker make_springs(const Section& section, const BodyParameters& paramete
       body,
       [=](const CutBody& b) {
         return std::make_unique<spring::MassSpring>(
-          b.solid.grid, b.solid.cuts, b.solid.complex, spring::MassSpringOptions{material.density, material.youngs_modulus});
+          b.solid, spring::MassSpringOptions{material.density, material.youngs_modulus});
       },
       integrator.make);
   };
@@ -101,7 +100,7 @@ PhysicsMaker make_lattice(const Section& section, const BodyParameters& paramete
   const lattice::MatchingOptions options = matching_options(section, lattice, parameters.cube_edge, dt);
   return [=](const CutBody& body) {
     return std::make_unique<physics::ShapeMatching>(
-      body, [=](const CutBody& b) { return std::make_unique<lattice::Matching>(b.solid.grid, b.solid.cuts, b.solid.complex, options); },
+      body, [=](const CutBody& b) { return std::make_unique<lattice::Matching>(b.solid, options); },
       [=](lattice::Matching& model, const physics::PiecesOfParticles&) {
         return std::make_unique<lattice::ShapeMatching>(model, lattice.region_damping);
       });

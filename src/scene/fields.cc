@@ -35,7 +35,7 @@ void append(const Mat3& tensor, std::vector<double>& values) {
 }
 
 std::vector<double> displacements(const Body& body) {
-  const Points rest = grid::rest_positions(body.solid.grid, body.solid.complex);
+  const Points rest = grid::rest_positions(body.solid);
   std::vector<double> values;
   for (std::size_t c = 0; c < rest.size(); ++c)
     for (int axis = 0; axis < 3; ++axis)

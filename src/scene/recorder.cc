@@ -68,7 +68,7 @@ output::Complex to_record(const Body& body) {
     record.nodes.push_back(copy.nodes);
     record.rinds.push_back(copy.rinds);
   }
-  record.rest_positions = grid::rest_positions(body.solid.grid, body.solid.complex);
+  record.rest_positions = grid::rest_positions(body.solid);
   return record;
 }
 

@@ -50,26 +50,25 @@ std::size_t SurfaceIndex::n_bytes() const {
          bytes(first_triangle) + bytes(centres.items());
 }
 
-Surface build_surface(const Grid& grid, const Cuts& cuts, const CellComplex& complex) {
+Surface build_surface(const Solid& solid) {
   SurfaceIndex index;
-  return build_surface(grid, cuts, complex, index);
+  return build_surface(solid, index);
 }
 
-Surface build_surface(const Grid& grid, const Cuts& cuts, const CellComplex& complex, SurfaceIndex& index) {
+Surface build_surface(const Solid& solid, SurfaceIndex& index) {
   Surface surface;
   index = {};
-  index.first_face_vertex = index.first_sheet_vertex = grid::SparseIndex<FaceId>(grid.n_faces());
-  index.centres.reserve(complex.copies.items().capacity());
-  Writer writer(grid, cuts, complex, surface, index, Known::kept);
+  index.first_face_vertex = index.first_sheet_vertex = grid::SparseIndex<FaceId>(solid.grid.n_faces());
+  index.centres.reserve(solid.complex.copies.items().capacity());
+  Writer writer(solid, surface, index, Known::kept);
   reserve_vertices(surface);
   writer.write_all();
   return surface;
 }
 
-void update_surface(const Grid& grid, const Cuts& cuts, const CellComplex& complex,
-                    const grid::CutChange& change, Surface& surface, SurfaceIndex& index) {
-  Writer writer(grid, cuts, complex, surface, index, Known::renewed);
-  for (const CellId cell : cells_of(change, complex))
+void update_surface(const Solid& solid, const grid::CutChange& change, Surface& surface, SurfaceIndex& index) {
+  Writer writer(solid, surface, index, Known::renewed);
+  for (const CellId cell : cells_of(change, solid.complex))
     writer.write(cell);
 }
 

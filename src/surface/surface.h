@@ -17,7 +17,7 @@
 /// triangles. The order of vertices depends on the sequence of cuts, the surface does not.
 
 #include "base/interpolation.h"
-#include "grid/complex.h"
+#include "grid/solid.h"
 
 #include <unordered_map>
 
@@ -51,16 +51,14 @@ struct SurfaceIndex {
   std::size_t n_bytes() const;
 };
 
-Surface build_surface(const grid::Grid& grid, const grid::Cuts& cuts, const grid::CellComplex& complex);
+Surface build_surface(const grid::Solid& solid);
 
 /// The same, for a surface that will be updated.
-Surface build_surface(const grid::Grid& grid, const grid::Cuts& cuts, const grid::CellComplex& complex,
-                      SurfaceIndex& index);
+Surface build_surface(const grid::Solid& solid, SurfaceIndex& index);
 
 /// Brings surface and index up to date with a cut whose vertices have been placed; of earlier ones they know. The cost
 /// depends on the new edges alone.
-void update_surface(const grid::Grid& grid, const grid::Cuts& cuts, const grid::CellComplex& complex,
-                    const grid::CutChange& change, Surface& surface, SurfaceIndex& index);
+void update_surface(const grid::Solid& solid, const grid::CutChange& change, Surface& surface, SurfaceIndex& index);
 
 /// x_surface = W x_corners [m].
 void follow(const Surface& surface, const Points& corners, Points& positions);

@@ -8,6 +8,7 @@
 #include "cut/cutter.h"
 #include "surface/placement.h"
 #include "surface/surface.h"
+#include "tests/support/bodies.h"
 
 #include <Eigen/Geometry>
 
@@ -49,8 +50,8 @@ enum class Motion { none, drift };
 struct Body {
   grid::Solid solid;
   surface::SurfaceIndex index = {};
-  surface::Surface surface = surface::build_surface(solid.grid, solid.cuts, solid.complex, index);
-  Points x = grid::rest_positions(solid.grid, solid.complex), v = x;
+  surface::Surface surface = surface::build_surface(solid, index);
+  Points x = grid::rest_positions(solid), v = x;
   cut::Cutter cutter{1};
 
   std::size_t n_bytes() const {
@@ -71,9 +72,9 @@ Body make_body(const int n) {
   for (const auto e : ids<grid::EdgeId>(grid.n_edges()))
     if (const auto& [lower, upper] = grid.ends(e); grid.is_material(lower) != grid.is_material(upper))
       cuts.add(grid, {e, 0.5, Vec3::Unit(grid.axis(e)), grid::skin_label});
-  surface::place(grid, cuts, {});
-  auto complex = grid::build_complex(grid, cuts);
-  Body body{{std::move(grid), std::move(cuts), std::move(complex)}};
+  grid::Solid solid{std::move(grid), std::move(cuts)};
+  surface::place(solid, {});
+  Body body{support::with_copies(std::move(solid))};
   body.v.reserve(body.x.capacity());
   body.cutter.begin(body.solid, body.x);
   return body;
@@ -111,26 +112,26 @@ struct Tally {
 Tally cut_through(const int n, const Motion motion) {
   Body body = make_body(n);
   const cut::Blade blade = make_blade(n, motion);
-  auto& [grid, cuts, complex] = body.solid;
-  cut::EdgeBoxes boxes(grid, complex);
+  grid::Solid& solid = body.solid;
+  cut::EdgeBoxes boxes(solid);
   Tally tally;
   Seconds& s = tally.seconds;
   for (int step = 1; step <= n_steps; ++step) {
     if (motion == Motion::drift)
       for (std::size_t i = 0; i < body.x.size(); ++i)
-        body.x[i] = place_at(motion, step, grid.position(complex.node[grid::CornerId(i)]));
+        body.x[i] = place_at(motion, step, solid.grid.position(solid.complex.node[grid::CornerId(i)]));
     double fitting = 0;
     timed(fitting, [&] { boxes.fit(body.cutter.stands_at(), body.x); });
     const auto change =
-      timed(s[cut_], [&] { return body.cutter.step(body.solid, std::span(&blade, 1), step - 1, step, body.x); });
+      timed(s[cut_], [&] { return body.cutter.step(solid, std::span(&blade, 1), step - 1, step, body.x); });
     s[fit] += fitting;
     s[cut_] -= fitting;
     timed(s[cut_], [&] {
       for (Points* points : {&body.x, &body.v})
         grid::inherit(change, *points);
     });
-    timed(s[place], [&] { surface::place(grid, cuts, change, {}); });
-    timed(s[surface_], [&] { surface::update_surface(grid, cuts, complex, change, body.surface, body.index); });
+    timed(s[place], [&] { surface::place(solid, change, {}); });
+    timed(s[surface_], [&] { surface::update_surface(solid, change, body.surface, body.index); });
     tally.n_touched += change.cells.size();
     tally.n_cut += change.edges.size();
   }

@@ -63,12 +63,11 @@ std::vector<bool> pieces_with_nodes(const grid::CellComplex& complex) {
 }
 
 /// In shape matching a splinter without a node goes with the node that it follows, rigidly: they are one body.
-void join_splinters(const grid::Grid& grid, const grid::CellComplex& complex,
-                    std::vector<std::uint32_t>& corner_pieces) {
-  for (const auto& [copy, node] : grid::followed_nodes(grid, complex))
+void join_splinters(const grid::Solid& solid, std::vector<std::uint32_t>& corner_pieces) {
+  for (const auto& [copy, node] : grid::followed_nodes(solid))
     std::replace(corner_pieces.begin(), corner_pieces.end(),
-                 std::uint32_t(corner_pieces[complex.copies[copy].corners[0].value]),
-                 std::uint32_t(corner_pieces[complex.real_corner[node].value]));
+                 std::uint32_t(corner_pieces[solid.complex.copies[copy].corners[0].value]),
+                 std::uint32_t(corner_pieces[solid.complex.real_corner[node].value]));
 }
 
 class Grinder {
@@ -160,13 +159,13 @@ class Grinder {
     if (body().state.x.size() == body().solid.complex.n_corners()) {
       auto piece = physics::corner_pieces(body().solid.complex);
       if (is_lattice_)
-        join_splinters(body().solid.grid, body().solid.complex, piece);
+        join_splinters(body().solid, piece);
       return piece;
     }
     const grid::Pieces all = grid::pieces(body().solid.complex);
     std::vector<std::uint32_t> piece;
     for (const Vec3& rest : body().physics->rest())
-      piece.push_back(all.piece[pba::copy_around(body().solid.grid, body().solid.cuts, body().solid.complex, rest)]);
+      piece.push_back(all.piece[grid::copy_around(body().solid, rest)]);
     return piece;
   }
 

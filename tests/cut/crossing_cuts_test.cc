@@ -167,10 +167,10 @@ TEST(PartSkin, GoesByParity) {
         edges.push_back(e);
       }
     const std::vector<EdgeId> given = edges;
-    part_skin(body.grid, body.cuts, edges);
+    part_skin(body, edges);
     EXPECT_EQ(edges, given) << "no face is parted that has no new cut";
     for (const auto c : ids<grid::CellId>(body.grid.n_cells())) {
-      const grid::CellCuts cell = grid::cuts_of(body.grid, body.cuts, c);
+      const grid::CellCuts cell = grid::cuts_of(body, c);
       for (int face = 0; face < grid::cube::n_faces; ++face) {
         bool is_cut = false, is_odd = false;
         for (const grid::SkinArc& arc : grid::skin_arcs(face, cell.material)) {

@@ -35,19 +35,19 @@ struct Resting {
   Cutter cutter{1};
 
   Resting(Body whole) : body(std::move(whole)) {
-    body.complex = grid::build_complex(body.grid, body.cuts);
-    x = grid::rest_positions(body.grid, body.complex);
+    body.complex = grid::build_complex(body);
+    x = grid::rest_positions(body);
     cutter.begin(body, x);
   }
 
-  SweepCuts meet(const Shape& shape) const { return cut_edges({"", shape, 1}, body.grid, body.cuts, body.complex, x); }
+  SweepCuts meet(const Shape& shape) const { return cut_edges({"", shape, 1}, body, x); }
   SweepCuts cut(const Shape& shape) {
     SweepCuts found = meet(shape);
-    surface::place(body.grid, body.cuts, cutter.at_once(body, {"", shape, 1}, x), {});
-    x = grid::rest_positions(body.grid, body.complex);
+    surface::place(body, cutter.at_once(body, {"", shape, 1}, x), {});
+    x = grid::rest_positions(body);
     return found;
   }
-  surface::Surface surface() const { return surface::build_surface(body.grid, body.cuts, body.complex); }
+  surface::Surface surface() const { return surface::build_surface(body); }
   std::vector<double> volumes() const {
     auto volumes = surface::piece_volumes(surface(), body.complex);
     std::sort(volumes.begin(), volumes.end());
@@ -143,7 +143,7 @@ TEST(CutSurface, ClosedShapesCutTheBorderOfASetOfNodes) {
         const auto is_end_inside = [&](const grid::NodeId n,
                                        const double beyond) { // the skin's, where the node is empty
           const Vec3 p = body.body.grid.position(n);
-          const Vec3 skin = grid::edge_skin_point(body.body.grid, body.body.cuts, e);
+          const Vec3 skin = grid::edge_skin_point(body.body, e);
           return is_inside(body.body.grid.is_material(n) ? p : Vec3(skin + beyond * (p - skin)));
         };
         const auto is_parted = [&](const double beyond) {
@@ -277,8 +277,7 @@ TEST(CutSurface, ABigSquareAndABladeCutLikeThePlane) {
     Blade blade{.name = "", .edge = {point - u - v, point + u - v}, .key_frames = {{0, Vec3::Zero(), Vec3::Zero()}}};
     blade.key_frames.push_back({1, 2 * v, Vec3::Zero()});
     check(blade);
-    expect_same(cut_edges(sweep(blade, 0, 1), body.body.grid, body.body.cuts, body.body.complex, body.x, 1).cuts,
-                plane);
+    expect_same(cut_edges(sweep(blade, 0, 1), body.body, body.x, 1).cuts, plane);
   }
 }
 

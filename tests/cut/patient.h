@@ -36,14 +36,14 @@ struct Patient {
   Points x;
 
   explicit Patient(Body whole) : body(std::move(whole)) {
-    body.complex = grid::build_complex(body.grid, body.cuts);
-    x = grid::rest_positions(body.grid, body.complex);
+    body.complex = grid::build_complex(body);
+    x = grid::rest_positions(body);
   }
 
   void deform(const Map& map) { std::transform(x.begin(), x.end(), x.begin(), map); }
 
   void follow(const grid::CutChange& change) {
-    surface::place(body.grid, body.cuts, change, {});
+    surface::place(body, change, {});
     grid::inherit(change, x);
   }
 
@@ -66,13 +66,11 @@ struct Patient {
   }
 
   /// Is the complex, which each cut has brought up to date, the one that all cuts make?
-  bool is_as_built() const {
-    return support::renaming(body.complex, grid::build_complex(body.grid, body.cuts)).has_value();
-  }
+  bool is_as_built() const { return support::renaming(body.complex, grid::build_complex(body)).has_value(); }
 
   /// Of each piece, ascending [m^3].
   std::vector<double> volumes() const {
-    auto volumes = surface::piece_volumes(surface::build_surface(body.grid, body.cuts, body.complex), body.complex);
+    auto volumes = surface::piece_volumes(surface::build_surface(body), body.complex);
     std::sort(volumes.begin(), volumes.end());
     return volumes;
   }

@@ -29,7 +29,7 @@ std::vector<Element> skin_elements(const double t, const double spread) {
   const Body body = make_block({2, 2, 2}, 1, draw, {t, t});
   std::vector<Element> elements;
   for (const grid::Copy& copy : body.complex.copies) {
-    elements.push_back(make_element(material_moments(body.grid, body.cuts, copy), 1, rubber, {.sliver_floor = 0}));
+    elements.push_back(make_element(material_moments(body, copy), 1, rubber, {.sliver_floor = 0}));
     spread_mass(elements.back(), spread);
   }
   return elements;

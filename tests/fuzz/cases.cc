@@ -15,7 +15,7 @@ namespace kerf::fuzz {
 
 namespace {
 
-/// How what a sweep cuts is released: at most two edges of a cell at once as in scene/body.cc, one release a sweep;
+/// How what a sweep cuts is released: at most two edges of a cell at once as in scenes, one release a sweep;
 /// the same, but until nothing waits; or all of it at once.
 enum class Release { one, drained, at_once };
 
@@ -66,8 +66,7 @@ double height(const cut::Plane& plane, const Vec3& p) { return plane.normal.dot(
 /// Each cut lies where the plane meets the current edge.
 void require_on_plane(const Subject& subject, const cut::Plane& plane, const std::vector<grid::EdgeCut>& found) {
   for (const auto& cut : found) {
-    const auto [lower, upper] =
-      cut::ends_of(subject.grid(), subject.solid.cuts, subject.solid.complex, cut.edge).corners;
+    const auto [lower, upper] = cut::ends_of(subject.solid, cut.edge).corners;
     const Vec3 &p = subject.x[lower.value], &q = subject.x[upper.value];
     const double off = std::abs(height(plane, p + cut.t * (q - p)));
     if (!(off < 1e-13 * (p.norm() + q.norm() + plane.point.norm())))
@@ -213,8 +212,7 @@ class Run {
   /// The ledger was kept up to date in the cells around new cuts alone.
   void require_untouched_elsewhere() const {
     for (const auto c : ids<grid::CellId>(subject_.grid().n_cells()))
-      if (require_sound_volumes(subject_.grid(), subject_.solid.cuts, subject_.solid.complex, c, tally_) !=
-          subject_.volumes[c])
+      if (require_sound_volumes(subject_.solid, c, tally_) != subject_.volumes[c])
         throw Violation("cell " + std::to_string(c.value) + " changed without a cut");
   }
 

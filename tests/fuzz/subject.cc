@@ -58,11 +58,11 @@ Table<CornerId, CornerId> all_parents(const grid::CutChange& change) {
 
 /// Updated is built anew.
 void require_as_built(const Subject& subject) {
-  const auto complex = grid::build_complex(subject.grid(), subject.solid.cuts);
-  const auto names = support::renaming(subject.solid.complex, complex);
+  const grid::Solid built = support::with_copies(subject.solid);
+  const auto names = support::renaming(subject.solid.complex, built.complex);
   if (!names)
     throw Violation("the updated complex is not the one that is built");
-  if (!support::is_same(subject.surface, surface::build_surface(subject.grid(), subject.solid.cuts, complex), *names))
+  if (!support::is_same(subject.surface, surface::build_surface(built), *names))
     throw Violation("the updated surface is not the one that is built");
 }
 
@@ -73,20 +73,19 @@ void follow_cut(Subject& subject, const grid::Solid& before, const grid::CutChan
   tally.n_cut_edges += solid.cuts.all().size() - before.cuts.all().size();
   tally.n_rinds += solid.cuts.n_cut_twice() - before.cuts.n_cut_twice();
 
-  const auto placed = surface::place(solid.grid, solid.cuts, change, {});
+  const auto placed = surface::place(solid, change, {});
   const auto parents = all_parents(change);
   require_sound_change(before.complex, solid.complex, change);
   require_sound_parents(before.complex, solid.complex, parents);
-  surface::update_surface(solid.grid, solid.cuts, solid.complex, change, subject.surface, subject.index);
+  surface::update_surface(solid, change, subject.surface, subject.index);
   require_as_built(subject);
   grid::inherit(change, subject.x);
 
   for (const CellId c : change.cells)
-    subject.volumes[c] = require_sound_volumes(solid.grid, solid.cuts, solid.complex, c, tally);
+    subject.volumes[c] = require_sound_volumes(solid, c, tally);
   measure_skin_cells(subject, change.cells, tally);
   require_sound(subject, tally);
-  require_inherited(corner_masses(before.grid, before.cuts, before.complex, keeping),
-                    corner_masses(solid.grid, solid.cuts, solid.complex, keeping), parents, tally);
+  require_inherited(corner_masses(before, keeping), corner_masses(solid, keeping), parents, tally);
 
   ++tally.n_releases;
   tally.n_placed += placed.n_placed;
@@ -99,8 +98,8 @@ bool is_of_skin(const grid::Grid& grid, const grid::EdgeId e) {
   return grid.is_material(lower) != grid.is_material(upper);
 }
 
-bool is_cut_by_blade(const grid::Grid& grid, const grid::Cuts& cuts, const grid::EdgeId e) {
-  return cuts.is_cut_twice(e) || (cuts.is_cut(e) && !is_of_skin(grid, e));
+bool is_cut_by_blade(const grid::Solid& solid, const grid::EdgeId e) {
+  return solid.cuts.is_cut_twice(e) || (solid.cuts.is_cut(e) && !is_of_skin(solid.grid, e));
 }
 
 class Fnv {
@@ -126,9 +125,8 @@ class Fnv {
 } // namespace
 
 Subject make_subject(const Specimen& specimen, Tally& tally) {
-  grid::Solid solid = specimen.body;
-  solid.complex = grid::build_complex(solid.grid, solid.cuts);
-  cut::EdgeBoxes boxes(solid.grid, solid.complex);
+  grid::Solid solid = support::with_copies(specimen.body);
+  cut::EdgeBoxes boxes(solid);
   Subject subject{.specimen = specimen,
                   .solid = std::move(solid),
                   .surface = {},
@@ -138,12 +136,11 @@ Subject make_subject(const Specimen& specimen, Tally& tally) {
                   .x = {},
                   .volumes = {},
                   .first_volumes = {}};
-  const auto& [grid, cuts, complex] = subject.solid;
-  subject.surface = surface::build_surface(grid, cuts, complex, subject.index);
-  subject.x = grid::rest_positions(grid, complex);
+  subject.surface = surface::build_surface(subject.solid, subject.index);
+  subject.x = grid::rest_positions(subject.solid);
   subject.volume = surface::enclosed_volume(subject.surface.rest, subject.surface.triangles);
-  for (const CellId c : ids<CellId>(grid.n_cells())) {
-    subject.volumes.push_back(require_sound_volumes(grid, cuts, complex, c, tally));
+  for (const CellId c : ids<CellId>(subject.grid().n_cells())) {
+    subject.volumes.push_back(require_sound_volumes(subject.solid, c, tally));
     subject.first_volumes.push_back(subject.volumes[c].sum());
   }
   require_sound(subject, tally);
@@ -169,10 +166,10 @@ void cut(Subject& subject, const grid::histories::Step& step, Tally& tally) {
     for (const auto& [face, seam] : step.seams) {
       cuts.set_seam(face, seam);
       for (const auto e : grid::histories::edges_of(grid, face))
-        if (seam == grid::Seam::parted && is_cut_by_blade(grid, cuts, e))
+        if (seam == grid::Seam::parted && is_cut_by_blade(of.solid, e))
           edges.push_back(e);
     }
-    return grid::update_complex(grid, cuts, edges, complex);
+    return grid::update_complex(of.solid, edges);
   };
   cut(subject, make, tally);
 }

@@ -371,12 +371,11 @@ cut::SweepCuts meet(const Subject& subject, const Sweep& sweep, const grid::CutL
     if constexpr (std::is_same_v<By, cut::CutSurface>) {
       cut::CutSurface labelled = by;
       labelled.label = label;
-      return cut::cut_edges(labelled, subject.grid(), subject.solid.cuts, subject.solid.complex, subject.x, boxes);
+      return cut::cut_edges(labelled, subject.solid, subject.x, boxes);
     } else if constexpr (std::is_same_v<By, cut::BladePath>) {
-      return cut::cut_edges(by, subject.grid(), subject.solid.cuts, subject.solid.complex, subject.cutter.stands_at(),
-                            subject.x, label, boxes);
+      return cut::cut_edges(by, subject.solid, subject.cutter.stands_at(), subject.x, label, boxes);
     } else {
-      return cut::cut_edges(by, subject.grid(), subject.solid.cuts, subject.solid.complex, subject.x, label, boxes);
+      return cut::cut_edges(by, subject.solid, subject.x, label, boxes);
     }
   };
   return std::visit(met, sweep);

@@ -16,19 +16,19 @@ struct GrowingCut {
   cut::Cutter cutter{9};
 
   explicit GrowingCut(const support::Body& whole) : body(support::with_placed_skin(whole)) {
-    body.complex = grid::build_complex(body.grid, body.cuts);
-    surface = surface::build_surface(body.grid, body.cuts, body.complex, index);
+    body.complex = grid::build_complex(body);
+    surface = surface::build_surface(body, index);
     cutter.begin(body, rest());
   }
 
   CutBody seen() const { return {body, surface}; }
-  Points rest() const { return grid::rest_positions(body.grid, body.complex); }
+  Points rest() const { return grid::rest_positions(body); }
 
   /// Cuts edges, and lets physics and state follow. Returns what has changed.
   grid::CutChange cut(const std::vector<grid::EdgeCut>& cuts, Physics& physics, dynamics::State& state) {
     const auto change = cutter.cut(body, cuts, cut::Front::possible, rest());
-    surface::place(body.grid, body.cuts, change, {});
-    surface::update_surface(body.grid, body.cuts, body.complex, change, surface, index);
+    surface::place(body, change, {});
+    surface::update_surface(body, change, surface, index);
     physics.follow_cut(seen(), change, state);
     return change;
   }

@@ -12,7 +12,7 @@ namespace {
 support::Body whole_block() { return support::block({5, 4, 4}, 0.1); }
 
 std::unique_ptr<fem::Hexahedra> make_elements(const CutBody& b, const fem::Strain strain) {
-  return std::make_unique<fem::Hexahedra>(b.solid.grid, b.solid.cuts, b.solid.complex,
+  return std::make_unique<fem::Hexahedra>(b.solid,
                                           fem::HexahedraOptions{.material = {}, .strain = strain, .mass_spread = 0.2});
 }
 
@@ -27,7 +27,7 @@ void expect_as_made_anew(const Make& make, const typename Corners::IntegratorMak
     block.cut(support::random_cuts(random, block.body, 0.12), physics, state);
     const auto anew = make(block.seen());
     const std::size_t n = block.body.complex.n_corners();
-    ASSERT_EQ(physics.rest(), grid::rest_positions(block.body.grid, block.body.complex));
+    ASSERT_EQ(physics.rest(), grid::rest_positions(block.body));
     ASSERT_EQ(physics.model().lumped_mass().size(), n);
     Points x = physics.rest();
     const Points noise = random_points(n, random);
@@ -51,19 +51,13 @@ TEST(OnCorners, ElementsAfterCutsAreThoseMadeAnew) {
 
 TEST(OnCorners, SpringsAfterCutsAreThoseMadeAnew) {
   expect_as_made_anew<Springs>(
-    [](const CutBody& b) {
-      return std::make_unique<spring::MassSpring>(b.solid.grid, b.solid.cuts, b.solid.complex,
-                                                  spring::MassSpringOptions{});
-    },
+    [](const CutBody& b) { return std::make_unique<spring::MassSpring>(b.solid, spring::MassSpringOptions{}); },
     verlet);
 }
 
 TEST(OnCorners, ShapeMatchingAfterCutsIsThatMadeAnew) {
   expect_as_made_anew<ShapeMatching>(
-    [](const CutBody& b) {
-      return std::make_unique<lattice::Matching>(b.solid.grid, b.solid.cuts, b.solid.complex,
-                                                 lattice::MatchingOptions{});
-    },
+    [](const CutBody& b) { return std::make_unique<lattice::Matching>(b.solid, lattice::MatchingOptions{}); },
     [](lattice::Matching& model, const PiecesOfParticles&) {
       return std::make_unique<lattice::ShapeMatching>(model, 0);
     });

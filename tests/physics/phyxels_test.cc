@@ -101,7 +101,7 @@ TEST(Phyxels, PiecesThatStayWholeKeepABond) {
   dynamics::State state = state_at_rest(physics);
   for (int batch = 0; batch < 5; ++batch)
     block.cut(support::random_cuts(random, block.body, 0.15), physics, state);
-  const auto copies = pba::copies_around(block.body.grid, block.body.cuts, block.body.complex, physics.rest());
+  const auto copies = grid::copies_around(block.body, physics.rest());
   const auto pieces = pba::phyxel_pieces(block.body.complex, copies);
   const pba::PhyxelModel& model = physics.model();
   const auto& pairs = model.neighbours().pairs;
@@ -148,7 +148,7 @@ TEST(Phyxels, LinearMotionMovesCornersLinearly) {
     state.x[i] = G * physics.rest()[i] + shift;
   const auto expect_linear = [&] {
     physics.follow(state);
-    const Points rest = grid::rest_positions(block.body.grid, block.body.complex);
+    const Points rest = grid::rest_positions(block.body);
     ASSERT_EQ(physics.corners(state).size(), rest.size());
     std::size_t n_known = 0;
     for (std::size_t c = 0; c < rest.size(); ++c)
@@ -175,8 +175,7 @@ TEST(Phyxels, PiecesPartAtOnce) {
   EXPECT_EQ(physics.n_waiting(), 0u);
   block.cut(support::plane_cuts(block.body, middle), physics, state);
   EXPECT_GT(physics.n_waiting(), 100u);
-  const auto piece = pba::phyxel_pieces(
-    block.body.complex, pba::copies_around(block.body.grid, block.body.cuts, block.body.complex, physics.rest()));
+  const auto piece = pba::phyxel_pieces(block.body.complex, grid::copies_around(block.body, physics.rest()));
   std::size_t n_across = 0, n_beside = 0;
   const auto& pairs = physics.model().neighbours().pairs;
   for (std::size_t p = 0; p < pairs.size(); ++p) {
@@ -200,7 +199,7 @@ TEST(Phyxels, PiecesPartAtOnce) {
   state.x = x;
   physics.follow(state);
   const auto pieces = corner_pieces(block.body.complex);
-  const Points rest = grid::rest_positions(block.body.grid, block.body.complex);
+  const Points rest = grid::rest_positions(block.body);
   for (std::size_t c = 0; c < rest.size(); ++c)
     EXPECT_LT((physics.corners(state)[c] - rest[c] - (pieces[c] == 1 ? away : Vec3(Vec3::Zero()))).norm(), 1e-9);
 }

@@ -36,7 +36,7 @@ TEST(BackendScene, WhatIsCutOffFallsFreely) {
     const Body& body = cube.body();
     const auto pieces = physics::corner_pieces(body.solid.complex);
     const Points& x = corners(body);
-    const Points rest = grid::rest_positions(body.solid.grid, body.solid.complex);
+    const Points rest = grid::rest_positions(body.solid);
     std::map<std::uint32_t, std::pair<double, double>> fall; // of each piece: least and most
     for (std::size_t c = 0; c < x.size(); ++c) {
       const double way = rest[c][2] - x[c][2];

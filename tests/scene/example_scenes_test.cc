@@ -84,8 +84,7 @@ std::size_t n_edges_met(const cut::Blade& blade, const World& world) {
   for (int step = 1; step <= world.n_steps; ++step) {
     const auto strip = cut::sweep(blade, (step - 1) * world.time_step, step * world.time_step);
     for (const Body& body : world.bodies)
-      n += cut::cut_edges(strip, body.solid.grid, body.solid.cuts, body.solid.complex, body.state.x, blade.label)
-             .cuts.size();
+      n += cut::cut_edges(strip, body.solid, body.state.x, blade.label).cuts.size();
   }
   return n;
 }

@@ -14,6 +14,12 @@ using Random = std::mt19937;
 
 using Body = grid::Solid;
 
+/// With its copies, which are those of its cuts.
+inline Body with_copies(Body body) {
+  body.complex = grid::build_complex(body);
+  return body;
+}
+
 inline double uniform(Random& random, const double from, const double to) {
   return std::uniform_real_distribution<double>(from, to)(random);
 }
