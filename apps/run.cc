@@ -15,7 +15,7 @@ void print_body(const scene::Body& body) {
   const double volume = surface::enclosed_volume(body.positions, body.surface.triangles);
   const double rest = surface::enclosed_volume(body.surface.rest, body.surface.triangles);
   std::printf("body %s: %zu cells, %zu copies, %u pieces, %zu surface triangles\n", body.name.c_str(),
-              body.grid.n_cells(), body.complex.n_copies(), grid::n_pieces(body.complex),
+              body.solid.grid.n_cells(), body.solid.complex.n_copies(), grid::n_pieces(body.solid.complex),
               body.surface.triangles.size());
   std::printf("  volume: mesh %.6e m^3; grid %+.3f %%; cuts changed the rest volume by %+.2e; deformed now %+.3f %%\n",
               body.mesh_volume, 100 * (body.first_volume / body.mesh_volume - 1), rest / body.first_volume - 1,
@@ -36,7 +36,7 @@ void print_cut(const scene::World& world, const grid::CutLabel label, const std:
                const std::string& remedy) {
   std::size_t n = 0;
   for (const scene::Body& body : world.bodies)
-    n += body.cutting->n_cut_edges[label - 1];
+    n += body.cutter->counts().n_cut_edges[label - 1];
   std::printf("%s: cut %zu grid edges%s\n", what.c_str(), n,
               n == 0 ? (": it never met a body. " + remedy).c_str() : "");
 }
@@ -48,12 +48,11 @@ void print_cutting(const scene::World& world) {
     print_cut(world, surface.label, "cut surface " + surface.name, "Check its place and time");
   std::size_t n_double = 0, n_waiting = 0, n_passed = 0, n_tips = 0;
   for (const scene::Body& body : world.bodies)
-    if (body.cutting) {
-      n_double += body.cutting->n_double_crossings;
-      n_waiting += body.cutting->pending.size();
-      n_tips += body.cutting->n_tips;
-      for (const cut::PassedCells& passed : body.cutting->passed)
-        n_passed += passed.cells().size();
+    if (body.cutter) {
+      n_double += body.cutter->counts().n_double_crossings;
+      n_waiting += body.cutter->n_waiting();
+      n_tips += body.cutter->counts().n_tips;
+      n_passed += body.cutter->n_passed_cells();
     }
   if (n_double + n_waiting > 0)
     std::printf("  %zu edges crossed twice by one cut and left whole, %zu cuts still waiting\n", n_double, n_waiting);

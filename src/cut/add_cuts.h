@@ -3,7 +3,7 @@
 /// Takes found cuts into a body: the edges, and what they do to its skin. The one way for blades and surfaces, whoever
 /// cuts.
 
-#include "grid/complex.h"
+#include "grid/solid.h"
 
 #include <span>
 #include <vector>
@@ -23,7 +23,6 @@ struct AddedCuts {
 /// Adds cuts that were found when the corners were at `x` [m], one a corner of `complex`, which does not know them yet;
 /// without a front neither is asked for. What can be cut no more is left out, and so are tips of the skin
 /// (cuts_that_go_on()).
-AddedCuts add_cuts(const grid::Grid& grid, grid::Cuts& cuts, const grid::CellComplex& complex, const Points& x,
-                   std::span<const grid::EdgeCut> found, Front front);
+AddedCuts add_cuts(grid::Solid& solid, const Points& x, std::span<const grid::EdgeCut> found, Front front);
 
 } // namespace kerf::cut

@@ -37,13 +37,13 @@ bool is_between_nodes(const CellCuts& cell, const int line) {
 /// The mean plane of the inner cuts of some lines of a cell, in the rest configuration.
 class RestPlane {
  public:
-  RestPlane(const grid::Grid& grid, const grid::Cuts& cuts, const CellId c, const unsigned lines) {
-    const auto edges = grid.edges(c);
+  RestPlane(const grid::Solid& solid, const CellId c, const unsigned lines) {
+    const auto edges = solid.grid.edges(c);
     Vec3 sum = Vec3::Zero();
     for (unsigned left = lines; left != 0; left &= left - 1) {
       const EdgeId e = edges[std::countr_zero(left)];
-      const Vec3& normal = cuts.find(e)->normal;
-      sum += grid::edge_point(grid, cuts, e);
+      const Vec3& normal = solid.cuts.find(e)->normal;
+      sum += grid::edge_point(solid, e);
       normal_ += normal_.dot(normal) < 0 ? Vec3(-normal) : normal;
     }
     point_ = sum / std::popcount(lines);
@@ -63,11 +63,11 @@ class RestPlane {
 class CrossedAgain {
  public:
   /// `is_own` says of an edge that is cut whether the surface has cut it.
-  CrossedAgain(const grid::Grid& grid, const grid::Cuts& cuts, std::function<bool(EdgeId)> is_own)
-    : grid_(grid), cuts_(cuts), is_own_(std::move(is_own)) {}
+  CrossedAgain(const grid::Solid& solid, std::function<bool(EdgeId)> is_own)
+    : solid_(solid), is_own_(std::move(is_own)) {}
 
   bool is_beside_others(const CellId c, const CellCuts& cell, const SkinArc& arc) const {
-    const auto edges = grid_.edges(c);
+    const auto edges = solid_.grid.edges(c);
     unsigned lines = cell.blades() & CellCuts::beside(arc);
     for (; lines != 0; lines &= lines - 1)
       if (!is_own_(edges[std::countr_zero(lines)]))
@@ -75,9 +75,9 @@ class CrossedAgain {
     return false;
   }
   bool parts(const RestPlane& plane, const CellId c, const SkinArc& arc) const {
-    const auto edges = grid_.edges(c);
-    return plane.parts(grid::edge_skin_point(grid_, cuts_, edges[arc.lines[0]]),
-                       grid::edge_skin_point(grid_, cuts_, edges[arc.lines[1]]));
+    const auto edges = solid_.grid.edges(c);
+    return plane.parts(grid::edge_skin_point(solid_, edges[arc.lines[0]]),
+                       grid::edge_skin_point(solid_, edges[arc.lines[1]]));
   }
 
   /// Calls part(cell, face) where the plane of what has been cut in a cell parts skin that is whole beside edges of
@@ -91,14 +91,14 @@ class CrossedAgain {
       const std::size_t end = seen.size();
       for (; begin < end; ++begin) {
         const CellId at = seen[begin];
-        const CellCuts cell = grid::cuts_of(grid_, cuts_, at);
+        const CellCuts cell = grid::cuts_of(solid_, at);
         for_each_parted_in(plane, at, cell, part);
         if (ring == n_rings)
           continue;
-        const auto edges = grid_.edges(at);
+        const auto edges = solid_.grid.edges(at);
         for (unsigned lines = cell.blades(); lines != 0; lines &= lines - 1)
           if (const EdgeId e = edges[std::countr_zero(lines)]; !is_own_(e) && crosses(plane, e))
-            for (const CellId other : grid_.cells(e))
+            for (const CellId other : solid_.grid.cells(e))
               if (other.valid() && std::find(seen.begin(), seen.end(), other) == seen.end())
                 seen.push_back(other);
       }
@@ -117,32 +117,30 @@ class CrossedAgain {
   /// Does it cross the edge in the body?
   bool crosses(const RestPlane& plane, const EdgeId e) const {
     const auto end = [&](const grid::NodeId n) {
-      return grid_.is_material(n) ? grid_.position(n) : grid::edge_skin_point(grid_, cuts_, e);
+      return solid_.grid.is_material(n) ? solid_.grid.position(n) : grid::edge_skin_point(solid_, e);
     };
-    return plane.parts(end(grid_.ends(e)[0]), end(grid_.ends(e)[1]));
+    return plane.parts(end(solid_.grid.ends(e)[0]), end(solid_.grid.ends(e)[1]));
   }
 
-  const grid::Grid& grid_;
-  const grid::Cuts& cuts_;
+  const grid::Solid& solid_;
   std::function<bool(EdgeId)> is_own_;
 };
 
 /// Where the planes of new cuts go in the faces of the skin.
 class Ways {
  public:
-  Ways(const grid::Grid& grid, const grid::Cuts& cuts, const grid::CellComplex& complex, const Points& x,
-       const std::span<const EdgeId> new_edges)
-    : grid_(grid), cuts_(cuts), complex_(complex), x_(x), new_(new_edges.begin(), new_edges.end()) {
+  Ways(const grid::Solid& solid, const Points& x, const std::span<const EdgeId> new_edges)
+    : solid_(solid), x_(x), new_(new_edges.begin(), new_edges.end()) {
     std::sort(new_.begin(), new_.end());
   }
 
   bool goes_on(const grid::EdgeCut& cut) const {
     const Here plane = here(cut.edge, cut);
-    for (const CellId c : grid_.cells(cut.edge)) {
+    for (const CellId c : solid_.grid.cells(cut.edge)) {
       if (!c.valid())
         continue;
-      const CellCuts cell = grid::cuts_of(grid_, cuts_, c);
-      const auto edges = grid_.edges(c);
+      const CellCuts cell = grid::cuts_of(solid_, c);
+      const auto edges = solid_.grid.edges(c);
       const int line = static_cast<int>(std::find(edges.begin(), edges.end(), cut.edge) - edges.begin());
       for (int face = 0; face < cube::n_faces; ++face)
         for (const SkinArc& arc : grid::skin_arcs(face, cell.material)) {
@@ -169,16 +167,16 @@ class Ways {
 
   unsigned new_lines(const CellId c) const {
     unsigned lines = 0;
-    const auto edges = grid_.edges(c);
+    const auto edges = solid_.grid.edges(c);
     for (int line = 0; line < cube::n_lines; ++line)
       lines |= unsigned(is_new(edges[line])) << line;
     return lines;
   }
 
   Here here(const EdgeId e, const grid::EdgeCut& cut) const {
-    const EdgeEnds ends = ends_of(grid_, cuts_, complex_, e);
+    const EdgeEnds ends = ends_of(solid_, e);
     const Vec3 &lower = x_[ends.corners[0].value], &upper = x_[ends.corners[1].value];
-    const Mat3 F = gradient_on(grid_, complex_, x_, e, cut.t);
+    const Mat3 F = gradient_on(solid_, x_, e, cut.t);
     Mat3 cofactors; // F^-T, but for a factor
     cofactors << F.col(1).cross(F.col(2)), F.col(2).cross(F.col(0)), F.col(0).cross(F.col(1));
     return {lower + cut.t * (upper - lower), cofactors * cut.normal};
@@ -193,17 +191,17 @@ class Ways {
   /// The lines beside an arc that a blade has cut.
   unsigned cut_beside(const CellId c, const CellCuts& cell, const SkinArc& arc, const grid::CutLabel label) const {
     unsigned lines = 0;
-    const auto edges = grid_.edges(c);
+    const auto edges = solid_.grid.edges(c);
     for (int line = 0; line < cube::n_lines; ++line)
       if (cell.blades() & CellCuts::beside(arc) & 1u << line)
-        lines |= unsigned(cuts_.find(edges[line])->label == label) << line;
+        lines |= unsigned(solid_.cuts.find(edges[line])->label == label) << line;
     return lines;
   }
 
   /// Nothing where the plane crosses all lines of a face that is warped.
   std::optional<WayOut> leave(const CellId c, const int face, const int from, const SkinArc& arc,
                               const Here& plane) const {
-    const grid::Copy& copy = complex_.copies[complex_.copy_at(c, arc.vertices[0])];
+    const grid::Copy& copy = solid_.complex.copies[solid_.complex.copy_at(c, arc.vertices[0])];
     const auto height = [&](const int v) { return plane.height(x_[copy.corners[v].value]); };
     std::optional<WayOut> found;
     for (const int line : cube::face_lines[face]) {
@@ -224,14 +222,12 @@ class Ways {
       return false;
     if (!(cell.skin >> way_out.line & 1))
       return true;
-    const EdgeId e = grid_.edges(c)[way_out.line];
-    const double skin = cuts_.find_outer(e)->t;
-    return grid_.is_material(grid_.ends(e)[0]) ? way_out.t < skin - margin : way_out.t > skin + margin;
+    const EdgeId e = solid_.grid.edges(c)[way_out.line];
+    const double skin = solid_.cuts.find_outer(e)->t;
+    return solid_.grid.is_material(solid_.grid.ends(e)[0]) ? way_out.t < skin - margin : way_out.t > skin + margin;
   }
 
-  const grid::Grid& grid_;
-  const grid::Cuts& cuts_;
-  const grid::CellComplex& complex_;
+  const grid::Solid& solid_;
   const Points& x_;
   std::vector<EdgeId> new_; // ascending
 };
@@ -239,9 +235,8 @@ class Ways {
 /// Follows the cuts of edges through the faces of the skin.
 class Ends : private Ways {
  public:
-  Ends(const grid::Grid& grid, grid::Cuts& cuts, const grid::CellComplex& complex, const Points& x,
-       const std::span<const EdgeId> new_edges)
-    : Ways(grid, cuts, complex, x, new_edges), changing_(cuts) {}
+  Ends(grid::Solid& solid, const Points& x, const std::span<const EdgeId> new_edges)
+    : Ways(solid, x, new_edges), changing_(solid) {}
 
   std::vector<EdgeId> run() {
     const std::vector<EdgeId> given = new_;
@@ -258,16 +253,16 @@ class Ends : private Ways {
 
  private:
   void follow(const EdgeId e) {
-    const grid::EdgeCut cut = *cuts_.find(e);
+    const grid::EdgeCut cut = *solid_.cuts.find(e);
     std::optional<Here> plane; // most edges have no skin around them
     std::vector<FaceId> done;
-    for (const CellId c : grid_.cells(e)) {
+    for (const CellId c : solid_.grid.cells(e)) {
       if (!c.valid() || !has_skin(c))
         continue;
       if (!plane)
         plane = here(e, cut);
-      const auto edges = grid_.edges(c);
-      const auto faces = grid_.faces(c);
+      const auto edges = solid_.grid.edges(c);
+      const auto faces = solid_.grid.faces(c);
       const int line = static_cast<int>(std::find(edges.begin(), edges.end(), e) - edges.begin());
       for (int face = 0; face < cube::n_faces; ++face)
         if (std::ranges::find(cube::face_lines[face], line) != cube::face_lines[face].end() &&
@@ -279,12 +274,12 @@ class Ends : private Ways {
   }
 
   bool has_skin(const CellId c) const {
-    return std::ranges::any_of(grid_.nodes(c), [&](const grid::NodeId n) { return !grid_.is_material(n); });
+    return std::ranges::any_of(solid_.grid.nodes(c), [&](const grid::NodeId n) { return !solid_.grid.is_material(n); });
   }
 
   /// Through a face of a cell, from one of its lines.
   void follow_in(const CellId c, const int face, const int line, const grid::EdgeCut& cut, const Here& plane) {
-    const CellCuts cell = grid::cuts_of(grid_, cuts_, c);
+    const CellCuts cell = grid::cuts_of(solid_, c);
     for (const SkinArc& arc : grid::skin_arcs(face, cell.material)) {
       if (!(CellCuts::beside(arc) >> line & 1) || !may_be_whole(cell, face, arc, new_lines(c)))
         continue;
@@ -294,7 +289,7 @@ class Ends : private Ways {
       if (!stays)
         part(c, face);
       else if (!way_out || is_between_nodes(cell, line) || !(cell.skin >> way_out->line & 1))
-        changing_.set_seam(grid_.faces(c)[face], Seam::whole); // else it is, unsaid
+        changing_.cuts.set_seam(solid_.grid.faces(c)[face], Seam::whole); // else it is, unsaid
       if (stays && way_out && is_between_nodes(cell, line))
         cut_along(c, cell, way_out->line, way_out->t, plane, cut.label);
     }
@@ -304,27 +299,27 @@ class Ends : private Ways {
                  const grid::CutLabel label) {
     if (!((cell.skin & ~cell.twice) >> line & 1))
       return;
-    const EdgeId e = grid_.edges(c)[line];
-    changing_.add(grid_, {e, t, pulled_back(grid_, complex_, x_, e, t, plane.normal), label});
+    const EdgeId e = solid_.grid.edges(c)[line];
+    changing_.cuts.add(solid_.grid, {e, t, pulled_back(solid_, x_, e, t, plane.normal), label});
     along_.push_back(e);
     new_.insert(std::lower_bound(new_.begin(), new_.end(), e), e);
   }
 
   void part(const CellId c, const int face) {
-    if (cuts_.seam(grid_.faces(c)[face]) != Seam::parted)
-      part_face(grid_, changing_, c, face, parted_);
+    if (solid_.cuts.seam(solid_.grid.faces(c)[face]) != Seam::parted)
+      part_face(changing_, c, face, parted_);
   }
 
   /// Where a blade has cut below one end of an arc, and elsewhere beside the node at its other end without cutting that
   /// off, it has passed between the two, though the plane of the first cut does not say so. Where the second cut has
   /// that node, or the skin beside it, on its other side, the blade has yet to come to the edges between.
   void part_passed() {
-    for (const auto& [c, lines] : grid::touched_cells(grid_, new_)) {
-      const CellCuts cell = grid::cuts_of(grid_, cuts_, c);
+    for (const auto& [c, lines] : grid::touched_cells(solid_.grid, new_)) {
+      const CellCuts cell = grid::cuts_of(solid_, c);
       if (cell.twice == 0)
         continue;
-      const auto edges = grid_.edges(c);
-      const auto nodes = grid_.nodes(c);
+      const auto edges = solid_.grid.edges(c);
+      const auto nodes = solid_.grid.nodes(c);
       for (int face = 0; face < cube::n_faces; ++face)
         for (const SkinArc& arc : grid::skin_arcs(face, cell.material))
           for (const int end : {0, 1}) {
@@ -332,13 +327,13 @@ class Ends : private Ways {
             if ((cell.cut & arc.inner) != 0 || cell.seams[face] == Seam::parted || !(cell.twice >> cut_off & 1) ||
                 (cell.twice >> kept & 1))
               continue;
-            const grid::CutLabel label = cuts_.find(edges[cut_off])->label;
+            const grid::CutLabel label = solid_.cuts.find(edges[cut_off])->label;
             const int out = cube::line_at(arc.vertices[1 - end], cube::face_axis(face));
-            if (!is_between_nodes(cell, out) || cuts_.find(edges[out])->label != label)
+            if (!is_between_nodes(cell, out) || solid_.cuts.find(edges[out])->label != label)
               continue;
             const grid::NodeId node = nodes[arc.vertices[1 - end]];
-            const bool passes_skin = RestPlane(grid_, cuts_, c, 1u << out)
-                                       .parts(grid_.position(node), grid::edge_skin_point(grid_, cuts_, edges[kept]));
+            const bool passes_skin = RestPlane(solid_, c, 1u << out)
+                                       .parts(solid_.grid.position(node), grid::edge_skin_point(solid_, edges[kept]));
             if (!passes_skin && are_on_one_side(nodes[arc.vertices[end]], edges[cut_off], node, edges[out]))
               part(c, face);
           }
@@ -347,13 +342,13 @@ class Ends : private Ways {
 
   /// By blades that have met the cuts of others.
   void part_crossed() {
-    for (const auto& [c, lines] : grid::touched_cells(grid_, new_))
+    for (const auto& [c, lines] : grid::touched_cells(solid_.grid, new_))
       for (unsigned left = lines; left != 0;) {
-        const grid::CutLabel label = cuts_.find(grid_.edges(c)[std::countr_zero(left)])->label;
+        const grid::CutLabel label = solid_.cuts.find(solid_.grid.edges(c)[std::countr_zero(left)])->label;
         const unsigned of_label = left & with_label(c, label);
         left &= ~of_label;
-        const CrossedAgain again(grid_, cuts_, [&](const EdgeId e) { return cuts_.find(e)->label == label; });
-        again.for_each_parted(RestPlane(grid_, cuts_, c, of_label), c,
+        const CrossedAgain again(solid_, [&](const EdgeId e) { return solid_.cuts.find(e)->label == label; });
+        again.for_each_parted(RestPlane(solid_, c, of_label), c,
                               [&](const CellId other, const int face) { part(other, face); });
       }
   }
@@ -361,39 +356,39 @@ class Ends : private Ways {
   /// The lines whose inner cut has a label.
   unsigned with_label(const CellId c, const grid::CutLabel label) const {
     unsigned lines = 0;
-    const auto edges = grid_.edges(c);
+    const auto edges = solid_.grid.edges(c);
     for (int line = 0; line < cube::n_lines; ++line)
-      if (const grid::EdgeCut* const cut = cuts_.find(edges[line]))
+      if (const grid::EdgeCut* const cut = solid_.cuts.find(edges[line]))
         lines |= unsigned(cut->label == label) << line;
     return lines;
   }
 
   /// Of one surface that has cut an edge of each of two nodes, in the rest configuration.
   bool are_on_one_side(const grid::NodeId a, const EdgeId of_a, const grid::NodeId b, const EdgeId of_b) const {
-    const Vec3 &at_a = cuts_.find(of_a)->normal, &at_b = cuts_.find(of_b)->normal;
-    const double height_a = at_a.dot(grid_.position(a) - grid::edge_point(grid_, cuts_, of_a));
-    const double height_b = at_b.dot(grid_.position(b) - grid::edge_point(grid_, cuts_, of_b));
+    const Vec3 &at_a = solid_.cuts.find(of_a)->normal, &at_b = solid_.cuts.find(of_b)->normal;
+    const double height_a = at_a.dot(solid_.grid.position(a) - grid::edge_point(solid_, of_a));
+    const double height_b = at_b.dot(solid_.grid.position(b) - grid::edge_point(solid_, of_b));
     return (height_a < 0) == ((at_a.dot(at_b) < 0 ? -height_b : height_b) < 0);
   }
 
-  grid::Cuts& changing_;
+  grid::Solid& changing_;
   std::vector<EdgeId> along_;  // that were cut along with them
   std::vector<EdgeId> parted_; // cut edges at faces whose skin is parted
 };
 
 } // namespace
 
-void part_skin(const grid::Grid& grid, grid::Cuts& cuts, std::vector<grid::EdgeId>& new_edges) {
+void part_skin(grid::Solid& solid, std::vector<grid::EdgeId>& new_edges) {
   std::vector<EdgeId> own = new_edges, parted;
   std::sort(own.begin(), own.end());
-  const CrossedAgain again(grid, cuts, [&](const EdgeId e) { return std::binary_search(own.begin(), own.end(), e); });
-  const auto touched = grid::touched_cells(grid, new_edges);
+  const CrossedAgain again(solid, [&](const EdgeId e) { return std::binary_search(own.begin(), own.end(), e); });
+  const auto touched = grid::touched_cells(solid.grid, new_edges);
   for (const auto& [c, new_lines] : touched) {
-    const CellCuts cell = grid::cuts_of(grid, cuts, c);
+    const CellCuts cell = grid::cuts_of(solid, c);
     if (cell.skin == 0)
       continue;
-    const auto faces = grid.faces(c);
-    const RestPlane plane(grid, cuts, c, new_lines);
+    const auto faces = solid.grid.faces(c);
+    const RestPlane plane(solid, c, new_lines);
     for (int face = 0; face < cube::n_faces; ++face) {
       bool is_cut = false, leaves = false;
       for (const SkinArc& arc : grid::skin_arcs(face, cell.material)) {
@@ -403,22 +398,21 @@ void part_skin(const grid::Grid& grid, grid::Cuts& cuts, std::vector<grid::EdgeI
                   (again.is_beside_others(c, cell, arc) ? again.parts(plane, c, arc) : std::popcount(lines) % 2 != 0);
       }
       if (is_cut)
-        cuts.set_seam(faces[face], leaves ? Seam::parted : Seam::whole);
+        solid.cuts.set_seam(faces[face], leaves ? Seam::parted : Seam::whole);
     }
   }
   for (const auto& [c, new_lines] : touched)
-    again.for_each_parted(RestPlane(grid, cuts, c, new_lines), c,
-                          [&](const CellId other, const int face) { part_face(grid, cuts, other, face, parted); });
+    again.for_each_parted(RestPlane(solid, c, new_lines), c,
+                          [&](const CellId other, const int face) { part_face(solid, other, face, parted); });
   std::sort(parted.begin(), parted.end());
   parted.erase(std::unique(parted.begin(), parted.end()), parted.end());
   std::set_difference(parted.begin(), parted.end(), own.begin(), own.end(), std::back_inserter(new_edges));
 }
 
-std::vector<grid::EdgeCut> cuts_that_go_on(const grid::Grid& grid, const grid::Cuts& cuts,
-                                           const grid::CellComplex& complex, const Points& x,
+std::vector<grid::EdgeCut> cuts_that_go_on(const grid::Solid& solid, const Points& x,
                                            const std::span<const grid::EdgeId> new_edges,
                                            const std::span<const grid::EdgeCut> of_skin) {
-  const Ways ways(grid, cuts, complex, x, new_edges);
+  const Ways ways(solid, x, new_edges);
   std::vector<grid::EdgeCut> result;
   for (const grid::EdgeCut& cut : of_skin)
     if (ways.goes_on(cut))
@@ -426,9 +420,9 @@ std::vector<grid::EdgeCut> cuts_that_go_on(const grid::Grid& grid, const grid::C
   return result;
 }
 
-std::vector<grid::EdgeId> end_at_skin(const grid::Grid& grid, grid::Cuts& cuts, const grid::CellComplex& complex,
-                                      const Points& x, const std::span<const grid::EdgeId> new_edges) {
-  return Ends(grid, cuts, complex, x, new_edges).run();
+std::vector<grid::EdgeId> end_at_skin(grid::Solid& solid, const Points& x,
+                                      const std::span<const grid::EdgeId> new_edges) {
+  return Ends(solid, x, new_edges).run();
 }
 
 } // namespace kerf::cut

@@ -20,20 +20,18 @@ namespace kerf::cut {
 /// Says what new cuts, which `cuts` holds already, do to the skin, where they are all that a surface without an end
 /// inside the body cuts: in a face that they cut an odd number of times they leave through the skin. Adds edges that
 /// were cut before at faces whose skin is parted now.
-void part_skin(const grid::Grid& grid, grid::Cuts& cuts, std::vector<grid::EdgeId>& new_edges);
+void part_skin(grid::Solid& solid, std::vector<grid::EdgeId>& new_edges);
 
 /// Of cuts of edges of the skin by a blade, those that go on below the skin, in any face around them that can hold what
 /// they cut off, when the corners are at `x`; `cuts` holds `new_edges` of the same step already. What is cut off a tip
 /// of the skin alone is lost: a blade that passes along an edge would leave dust.
-std::vector<grid::EdgeCut> cuts_that_go_on(const grid::Grid& grid, const grid::Cuts& cuts,
-                                           const grid::CellComplex& complex, const Points& x,
+std::vector<grid::EdgeCut> cuts_that_go_on(const grid::Solid& solid, const Points& x,
                                            std::span<const grid::EdgeId> new_edges,
                                            std::span<const grid::EdgeCut> of_skin);
 
 /// The same as part_skin for cuts of blades, which have ends, when the corners are at `x`; `complex` is that from
 /// before the cuts. Cuts edges of the skin along with them. Returns those, and edges that were cut before at faces
 /// whose skin is parted now.
-std::vector<grid::EdgeId> end_at_skin(const grid::Grid& grid, grid::Cuts& cuts, const grid::CellComplex& complex,
-                                      const Points& x, std::span<const grid::EdgeId> new_edges);
+std::vector<grid::EdgeId> end_at_skin(grid::Solid& solid, const Points& x, std::span<const grid::EdgeId> new_edges);
 
 } // namespace kerf::cut

@@ -216,13 +216,13 @@ std::vector<std::array<Vec3, 3>> rim(const CutSurface& surface) {
   return result;
 }
 
-SweepCuts cut_edges(const CutSurface& surface, const grid::Grid& grid, const grid::Cuts& cuts,
-                    const grid::CellComplex& complex, const Points& x, const EdgeBoxes* const boxes) {
+SweepCuts cut_edges(const CutSurface& surface, const grid::Solid& solid, const Points& x,
+                    const EdgeBoxes* const boxes) {
   const auto cut_by = [&](const auto& shape) {
     if constexpr (std::is_same_v<decltype(shape), const geometry::TriangleMesh&>) {
-      return cut_edges(triangles_of(shape), grid, cuts, complex, x, surface.label, boxes);
+      return cut_edges(triangles_of(shape), solid, x, surface.label, boxes);
     } else {
-      const Target target(grid, cuts, complex, x, x, boxes);
+      const Target target(solid, x, x, boxes);
       return target.cut(surface.label, {Box(), [&](const Box& box) { return near(shape, box); }},
                         [&](const grid::EdgeId edge) { return meet(shape, target.segment(edge)); });
     }

@@ -65,7 +65,7 @@ std::vector<std::array<Vec3, 3>> rim(const CutSurface& surface);
 /// The edges that the surface cuts when the corners are at `x` [m, world frame, one a corner]; check() must accept the
 /// surface. `boxes`, fitted to x, spare it edges that are far away; null for none. Throws NumericalError when a corner
 /// is not at a finite position.
-SweepCuts cut_edges(const CutSurface& surface, const grid::Grid& grid, const grid::Cuts& cuts,
-                    const grid::CellComplex& complex, const Points& x, const EdgeBoxes* boxes = nullptr);
+SweepCuts cut_edges(const CutSurface& surface, const grid::Solid& solid, const Points& x,
+                    const EdgeBoxes* boxes = nullptr);
 
 } // namespace kerf::cut

@@ -78,12 +78,12 @@ grid::NodeId lowest_material_node(const grid::Grid& grid, const grid::CellId cel
 
 } // namespace
 
-EdgeBoxes::EdgeBoxes(const grid::Grid& grid, const grid::CellComplex& complex) {
-  const Nodes nodes = list_nodes(grid);
+EdgeBoxes::EdgeBoxes(const grid::Solid& solid) {
+  const Nodes nodes = list_nodes(solid.grid);
   starts_.resize(nodes.start.size());
-  list_rows(grid, complex, nodes);
-  list_cells(grid, nodes);
-  list_skin(grid, complex, nodes);
+  list_rows(solid, nodes);
+  list_cells(solid.grid, nodes);
+  list_skin(solid, nodes);
   levels_.emplace_back(n_blocks());
   while (levels_.back().size() > 1)
     levels_.emplace_back((levels_.back().size() + n_children - 1) / n_children);
@@ -105,7 +105,7 @@ EdgeBoxes::Nodes EdgeBoxes::list_nodes(const grid::Grid& grid) {
   return nodes;
 }
 
-void EdgeBoxes::list_rows(const grid::Grid& grid, const grid::CellComplex& complex, const Nodes& nodes) {
+void EdgeBoxes::list_rows(const grid::Solid& solid, const Nodes& nodes) {
   rows_.reserve(nodes.all.size() / 2);
   const auto follows = [](const std::uint32_t corner, const std::uint32_t first, const std::uint32_t n) {
     return first == none ? corner == none : corner == first + n;
@@ -117,14 +117,14 @@ void EdgeBoxes::list_rows(const grid::Grid& grid, const grid::CellComplex& compl
   for (std::uint32_t block = 0; block < n_blocks(); ++block) {
     starts_[block].row = static_cast<std::uint32_t>(rows_.size());
     for (std::uint32_t i = nodes.start[block]; i < nodes.start[block + 1]; ++i) {
-      Row row{.first = complex.real_corner[nodes.all[i]].value,
+      Row row{.first = solid.complex.real_corner[nodes.all[i]].value,
               .x_end = none,
               .upper = {none, none},
               .block = block,
               .leaves = {}};
       for (int axis = 0; axis < 3; ++axis)
-        if (const grid::NodeId upper = upper_end(grid, nodes.all[i], axis); upper.valid()) {
-          (axis == 0 ? row.x_end : row.upper[axis - 1]) = complex.real_corner[upper].value;
+        if (const grid::NodeId upper = upper_end(solid.grid, nodes.all[i], axis); upper.valid()) {
+          (axis == 0 ? row.x_end : row.upper[axis - 1]) = solid.complex.real_corner[upper].value;
           if (axis > 0)
             row.leaves[axis - 1] = nodes.block[upper] != block;
         }
@@ -139,7 +139,7 @@ void EdgeBoxes::list_rows(const grid::Grid& grid, const grid::CellComplex& compl
   rows_.shrink_to_fit();
   std::vector<std::uint32_t> slabs(n_blocks()); // by block
   for (std::uint32_t block = 0; block < n_blocks(); ++block)
-    slabs[block] = static_cast<std::uint32_t>(grid.index(nodes.all[nodes.start[block]])[2] >> brick_bits);
+    slabs[block] = static_cast<std::uint32_t>(solid.grid.index(nodes.all[nodes.start[block]])[2] >> brick_bits);
   sort_rows(slabs);
 }
 
@@ -171,12 +171,12 @@ void EdgeBoxes::list_cells(const grid::Grid& grid, const Nodes& nodes) {
     cells_[next[block_of(c)]++] = c;
 }
 
-void EdgeBoxes::list_skin(const grid::Grid& grid, const grid::CellComplex& complex, const Nodes& nodes) {
+void EdgeBoxes::list_skin(const grid::Solid& solid, const Nodes& nodes) {
   const auto material_end = [&](const grid::EdgeId e) {
-    const auto& [lower, upper] = grid.ends(e);
-    return grid.is_material(lower) ? lower : upper;
+    const auto& [lower, upper] = solid.grid.ends(e);
+    return solid.grid.is_material(lower) ? lower : upper;
   };
-  const auto edges = grid.skin_edges();
+  const auto edges = solid.grid.skin_edges();
   for (const grid::EdgeId e : edges)
     ++starts_[nodes.block[material_end(e)] + 1].skin;
   for (std::size_t k = 1; k < starts_.size(); ++k)
@@ -185,7 +185,7 @@ void EdgeBoxes::list_skin(const grid::Grid& grid, const grid::CellComplex& compl
   std::vector<std::uint32_t> next(n_blocks());
   std::transform(starts_.begin(), starts_.end() - 1, next.begin(), [](const Start& start) { return start.skin; });
   for (const grid::EdgeId e : edges)
-    skin_[next[nodes.block[material_end(e)]]++] = {e, complex.real_corner[material_end(e)]};
+    skin_[next[nodes.block[material_end(e)]]++] = {e, solid.complex.real_corner[material_end(e)]};
 }
 
 void EdgeBoxes::fit(const Points& x_before, const Points& x) {

@@ -10,7 +10,7 @@
 ///
 /// Limit: where a brick's pieces have come apart, its box reaches from one to the other.
 
-#include "grid/complex.h"
+#include "grid/solid.h"
 
 #include <functional>
 
@@ -24,7 +24,7 @@ class EdgeBoxes {
     double longest = 0; ///< of them, now [m]
   };
 
-  EdgeBoxes(const grid::Grid& grid, const grid::CellComplex& complex);
+  EdgeBoxes(const grid::Solid& solid);
 
   /// For corners that stand at `x` [m]. Throws NumericalError when one is not at a finite position.
   void fit(const Points& x) { fit(x, x); }
@@ -109,9 +109,9 @@ class EdgeBoxes {
     Table<grid::NodeId, std::uint32_t> block;
   };
   static Nodes list_nodes(const grid::Grid& grid);
-  void list_rows(const grid::Grid& grid, const grid::CellComplex& complex, const Nodes& nodes);
+  void list_rows(const grid::Solid& solid, const Nodes& nodes);
   void list_cells(const grid::Grid& grid, const Nodes& nodes);
-  void list_skin(const grid::Grid& grid, const grid::CellComplex& complex, const Nodes& nodes);
+  void list_skin(const grid::Solid& solid, const Nodes& nodes);
   void sort_rows(const std::vector<std::uint32_t>& slabs);
   template <class N>
   void take_in(const Row& row, N n, const Points& x_before, const Points& x);

@@ -252,7 +252,7 @@ class Skin {
   /// Walks through the edges between a material and an empty node and the crossings, both sorted: every such edge is
   /// crossed an odd number of times, and no other.
   void add(const std::vector<Crossing>& crossings) {
-    const grid::Grid& grid = result_.grid;
+    const grid::Grid& grid = result_.solid.grid;
     auto next = crossings.begin();
     const std::vector<grid::EdgeId> edges = grid.skin_edges();
     cuts_.reserve(edges.size());
@@ -271,9 +271,9 @@ class Skin {
 
   void finish() {
     find_normals();
-    result_.cuts.reserve(cuts_.size() + cuts_.size() / 8); // some room for blades
+    result_.solid.cuts.reserve(cuts_.size() + cuts_.size() / 8); // some room for blades
     for (const grid::EdgeCut& cut : cuts_)
-      result_.cuts.add(result_.grid, cut);
+      result_.solid.cuts.add(result_.solid.grid, cut);
     result_.n_lost_components = std::count(is_lost_.begin(), is_lost_.end(), 1);
   }
 
@@ -290,8 +290,8 @@ class Skin {
       const Place last = end_of_edge(next, end);
       if ((last - next) % 2 != 0)
         throw std::logic_error("embed: lines along different axes disagree on a node; the mesh is not closed");
-      const auto lower = result_.grid.find_node(edge_of(next->edge).lower);
-      ++(lower && result_.grid.is_material(*lower) ? result_.n_thin_gaps : result_.n_thin_walls);
+      const auto lower = result_.solid.grid.find_node(edge_of(next->edge).lower);
+      ++(lower && result_.solid.grid.is_material(*lower) ? result_.n_thin_gaps : result_.n_thin_walls);
       next = last;
     }
     return next;
@@ -300,7 +300,7 @@ class Skin {
   void add_cut(const grid::EdgeId edge, const std::span<const Crossing> of_edge) {
     if (of_edge.size() > 1)
       ++result_.n_triple_crossings;
-    const grid::Grid& grid = result_.grid;
+    const grid::Grid& grid = result_.solid.grid;
     const Crossing& kept = grid.is_material(grid.ends(edge)[0]) ? of_edge.front() : of_edge.back();
     is_lost_[shell_[kept.triangle]] = 0;
     cuts_.push_back({edge, kept.t, Vec3::Zero(), grid::skin_label});
@@ -308,7 +308,7 @@ class Skin {
   }
 
   void find_normals() {
-    const grid::Grid& grid = result_.grid;
+    const grid::Grid& grid = result_.solid.grid;
     const geometry::LocalNormals normals(mesh_);
     parallel_ranges(cuts_.size(), 2, [&](const std::size_t begin, const std::size_t end) {
       constexpr double smoothing = 0.4; // of a cube edge: what is finer than the grid is noise to it
@@ -346,7 +346,7 @@ Embedding embed(const geometry::TriangleMesh& mesh, const double h, const Vec3& 
 
   grid::Grid grid = grid::Grid::from_runs(lattice, material);
   grid::Cuts cuts(grid);
-  Embedding result{std::move(grid), std::move(cuts)};
+  Embedding result{{std::move(grid), std::move(cuts)}};
   Skin skin(mesh, result);
   skin.add(crossings);
   skin.finish();

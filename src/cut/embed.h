@@ -15,16 +15,14 @@
 /// counted, by edges, and not repaired.
 
 #include "geometry/triangle_mesh.h"
-#include "grid/cuts.h"
-#include "grid/grid.h"
+#include "grid/solid.h"
 
 namespace kerf::cut {
 
 struct Embedding {
-  grid::Grid grid;
-  grid::Cuts cuts;                    ///< the skin: every edge between a material and an empty node
-  std::size_t n_thin_walls = 0;       ///< edges with both ends empty that the mesh crosses 2, 4, ... times: left uncut
-  std::size_t n_thin_gaps = 0;        ///< edges with both ends material that it crosses so: left uncut
+  grid::Solid solid;            ///< cut by the skin: every edge between a material and an empty node; no copies yet
+  std::size_t n_thin_walls = 0; ///< edges with both ends empty that the mesh crosses 2, 4, ... times: left uncut
+  std::size_t n_thin_gaps = 0;  ///< edges with both ends material that it crosses so: left uncut
   std::size_t n_triple_crossings = 0; ///< edges crossed 3, 5, ... times: cut nearest to their material end only
   std::size_t n_lost_components = 0;  ///< connected shells of the mesh that cut no edge
 };

@@ -15,7 +15,7 @@
 namespace kerf::cut {
 
 namespace cube = grid::cube;
-using grid::Grid;
+using grid::Solid;
 
 namespace {
 
@@ -62,22 +62,21 @@ constexpr std::array<std::uint16_t, 256> lines_up_from = [] {
 /// for them, used again from cell to cell.
 class CellFitter {
  public:
-  CellFitter(const Grid& grid, grid::Cuts& cuts, const CellTriangles& triangles, const std::size_t place,
-             const grid::TouchedCell& touched, std::vector<TriangleGroup>& groups)
-    : grid_(grid),
-      cuts_(cuts),
+  CellFitter(Solid& solid, const CellTriangles& triangles, const std::size_t place, const grid::TouchedCell& touched,
+             std::vector<TriangleGroup>& groups)
+    : solid_(solid),
       triangles_(triangles),
       near_(triangles.of(place)),
       groups_(groups),
       cell_(touched.cell),
       cut_lines_(touched.lines),
-      lower_(grid.origin(touched.cell)),
-      faces_(grid.faces(touched.cell)) {
+      lower_(solid.grid.origin(touched.cell)),
+      faces_(solid.grid.faces(touched.cell)) {
     triangles.prefetch(place + 1);
-    const auto nodes = grid.nodes(cell_);
+    const auto nodes = solid.grid.nodes(cell_);
     unsigned material = 0;
     for (int v = 0; v < cube::n_vertices; ++v)
-      material |= unsigned(grid.is_material(nodes[v])) << v;
+      material |= unsigned(solid.grid.is_material(nodes[v])) << v;
     leave_upwards_ = lines_up_from[material];
     groups_.resize((near_.size() + TriangleGroup::most - 1) / TriangleGroup::most);
     for (TriangleGroup& group : groups_)
@@ -89,37 +88,38 @@ class CellFitter {
   void fit_faces() {
     for (int face = 0; face < cube::n_faces; ++face) {
       const grid::FaceId f = faces_[face];
-      const Vec3* const p = cuts_.point(f);
-      const bool first_seen = (face & 1) == 1 || !p || !grid_.cells(f)[0].valid(); // else done from the cell below
+      const Vec3* const p = solid_.cuts.point(f);
+      const bool first_seen =
+        (face & 1) == 1 || !p || !solid_.grid.cells(f)[0].valid(); // else done from the cell below
       if (!first_seen || !p)
         continue;
       if (const auto q = fit(*p, outward_direction(cube::face_lines[face]), cube::face_axis(face)))
-        cuts_.set_point(f, *q);
+        solid_.cuts.set_point(f, *q);
     }
   }
 
   /// Are the cells below, those that are stored, `first` or later ones?
   bool lies_above(const grid::CellId first) const {
     for (int face = 0; face < cube::n_faces; face += 2)
-      if (const grid::CellId below = grid_.cells(faces_[face])[0]; below.valid() && below < first)
+      if (const grid::CellId below = solid_.grid.cells(faces_[face])[0]; below.valid() && below < first)
         return false;
     return true;
   }
 
   /// After all its faces, also those done from the cells below.
   void fit_centre() {
-    if (lies_on_mesh(*cuts_.point(cell_)))
+    if (lies_on_mesh(*solid_.cuts.point(cell_)))
       return;
     Vec3 sum = Vec3::Zero();
     int n = 0;
     for (const grid::FaceId f : faces_)
-      if (const Vec3* q = cuts_.point(f)) {
+      if (const Vec3* q = solid_.cuts.point(f)) {
         sum += *q;
         ++n;
       }
     constexpr std::array<int, 12> lines = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11};
     if (const auto q = fit(sum / n, outward_direction(lines), no_axis))
-      cuts_.set_point(cell_, *q);
+      solid_.cuts.set_point(cell_, *q);
   }
 
  private:
@@ -139,7 +139,7 @@ class CellFitter {
 
   /// `height` is the triangle's of p.
   bool lies_on(const Vec3& p, const FlatTriangle& triangle, const double height) const {
-    const double tolerance = on_mesh * grid_.h();
+    const double tolerance = on_mesh * solid_.grid.h();
     if (height * height > 4 * tolerance * tolerance * triangle.normal.squaredNorm())
       return false; // the plane alone is too far away
     return (geometry::closest_point(p, triangle.corners) - p).squaredNorm() < tolerance * tolerance;
@@ -153,7 +153,7 @@ class CellFitter {
     Reach reach = reach_inside(p, direction, normal);
     for (std::size_t first = 0; first < near_.size(); first += TriangleGroup::most) {
       const TriangleGroup& group = groups_[first / TriangleGroup::most];
-      const double room = 2 * grid_.h(), near_plane = 2 * on_mesh * grid_.h();
+      const double room = 2 * solid_.grid.h(), near_plane = 2 * on_mesh * solid_.grid.h();
       for (std::uint32_t bits = group.which_may_meet(p, direction, room, near_plane); bits != 0; bits &= bits - 1) {
         const FlatTriangle& triangle = triangles_[near_[first + std::countr_zero(bits)]];
         const double height = triangle.height(p);
@@ -188,13 +188,13 @@ class CellFitter {
 
   /// What lies inside the cell, and a little more: round-off decides nothing.
   Reach reach_inside(const Vec3& p, const Vec3& direction, const int normal) const {
-    const double slack = 1e-6 * grid_.h();
-    Reach reach = {-2 * grid_.h(), 2 * grid_.h()}; // longer than any way through the cell
+    const double slack = 1e-6 * solid_.grid.h();
+    Reach reach = {-2 * solid_.grid.h(), 2 * solid_.grid.h()}; // longer than any way through the cell
     for (int axis = 0; axis < 3; ++axis) {
       if (axis == normal || direction[axis] == 0)
         continue;
       const double slowness = 1 / direction[axis];
-      const double a = (lower_[axis] - p[axis]) * slowness, b = a + grid_.h() * slowness;
+      const double a = (lower_[axis] - p[axis]) * slowness, b = a + solid_.grid.h() * slowness;
       reach = {std::max(reach.from, std::min(a, b) - slack), std::min(reach.to, std::max(a, b) + slack)};
     }
     return reach;
@@ -209,17 +209,16 @@ class CellFitter {
   }
 
   bool is_inside(const Vec3& p, const int normal) const {
-    const double margin = grid::min_edge_parameter * grid_.h();
+    const double margin = grid::min_edge_parameter * solid_.grid.h();
     for (int axis = 0; axis < 3; ++axis) {
       const double local = p[axis] - lower_[axis];
-      if (axis != normal && (local < margin || local > grid_.h() - margin))
+      if (axis != normal && (local < margin || local > solid_.grid.h() - margin))
         return false;
     }
     return true;
   }
 
-  const Grid& grid_;
-  grid::Cuts& cuts_;
+  Solid& solid_;
   const CellTriangles& triangles_;
   std::span<const std::uint32_t> near_;
   std::vector<TriangleGroup>& groups_; // of them
@@ -232,16 +231,16 @@ class CellFitter {
 
 } // namespace
 
-void fit_skin(const geometry::TriangleMesh& mesh, const Grid& grid, grid::Cuts& cuts) {
-  const auto cells = grid::touched_cells(grid, cut_edges_of(cuts));
-  const CellTriangles triangles(mesh, grid, cells);
+void fit_skin(const geometry::TriangleMesh& mesh, Solid& solid) {
+  const auto cells = grid::touched_cells(solid.grid, cut_edges_of(solid.cuts));
+  const CellTriangles triangles(mesh, solid.grid, cells);
   // Every vertex that is moved exists already, so each cell and face writes its own place. A centre waits for the faces
   // that other threads may be at: those of cells below that come before the range.
   std::vector<std::uint8_t> waits(cells.size(), 0);
   parallel_ranges(cells.size(), 2, [&](const std::size_t begin, const std::size_t end) {
     std::vector<TriangleGroup> groups;
     for (std::size_t i = begin; i < end; ++i) {
-      CellFitter fitter(grid, cuts, triangles, i, cells[i], groups);
+      CellFitter fitter(solid, triangles, i, cells[i], groups);
       fitter.fit_faces();
       waits[i] = begin > 0 && !fitter.lies_above(cells[begin].cell);
       if (!waits[i])
@@ -252,7 +251,7 @@ void fit_skin(const geometry::TriangleMesh& mesh, const Grid& grid, grid::Cuts& 
     std::vector<TriangleGroup> groups;
     for (std::size_t i = begin; i < end; ++i)
       if (waits[i])
-        CellFitter(grid, cuts, triangles, i, cells[i], groups).fit_centre();
+        CellFitter(solid, triangles, i, cells[i], groups).fit_centre();
   });
 }
 

@@ -8,11 +8,11 @@
 /// beside walls thinner than a cell, it goes to the nearest point of the mesh there.
 
 #include "geometry/triangle_mesh.h"
-#include "grid/cuts.h"
+#include "grid/solid.h"
 
 namespace kerf::cut {
 
 /// `cuts` holds the skin alone, placed (surface/placement.h).
-void fit_skin(const geometry::TriangleMesh& mesh, const grid::Grid& grid, grid::Cuts& cuts);
+void fit_skin(const geometry::TriangleMesh& mesh, grid::Solid& solid);
 
 } // namespace kerf::cut

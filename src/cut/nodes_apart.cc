@@ -9,7 +9,7 @@ namespace kerf::cut {
 
 namespace cube = grid::cube;
 using grid::CellCuts;
-using grid::Grid;
+using grid::Solid;
 
 namespace {
 
@@ -17,22 +17,22 @@ namespace {
 /// cell.
 using OtherSide = std::array<unsigned, cube::n_vertices>;
 
-OtherSide other_side(const Grid& grid, const grid::Cuts& cuts, const grid::CellId c, const CellCuts& cell) {
-  const double on_the_plane = 2 * grid::min_edge_parameter * grid.h();
-  const auto nodes = grid.nodes(c);
-  const auto edges = grid.edges(c);
+OtherSide other_side(const Solid& solid, const grid::CellId c, const CellCuts& cell) {
+  const double on_the_plane = 2 * grid::min_edge_parameter * solid.grid.h();
+  const auto nodes = solid.grid.nodes(c);
+  const auto edges = solid.grid.edges(c);
   OtherSide result{};
   for (int line = 0; line < cube::n_lines; ++line) {
     if ((cell.blades() >> line & 1) == 0)
       continue;
-    const Vec3 normal = cuts.find(edges[line])->normal;
-    const Vec3 p = grid::edge_point(grid, cuts, edges[line]);
+    const Vec3 normal = solid.cuts.find(edges[line])->normal;
+    const Vec3 p = grid::edge_point(solid, edges[line]);
     const auto& [lower, upper] = cube::line_vertices[line];
     const bool rises = normal[cube::line_axis(line)] >= 0;
     unsigned above = 1u << (rises ? upper : lower), below = 1u << (rises ? lower : upper); // however near the cut is
     for (int v = 0; v < cube::n_vertices; ++v)
       if (v != lower && v != upper) {
-        const double height = normal.dot(grid.position(nodes[v]) - p);
+        const double height = normal.dot(solid.grid.position(nodes[v]) - p);
         above |= unsigned(height > on_the_plane) << v;
         below |= unsigned(height < -on_the_plane) << v;
       }
@@ -89,22 +89,22 @@ std::vector<int> joining_faces(CellCuts cell, const OtherSide& other_side) {
 }
 
 /// The faces of a cell whose skin is to be parted.
-std::vector<int> joining_faces(const Grid& grid, const grid::Cuts& cuts, const grid::CellId c, const CellCuts& cell) {
+std::vector<int> joining_faces(const Solid& solid, const grid::CellId c, const CellCuts& cell) {
   if (cell.skin == 0 || cell.blades() == 0 || !joins_nodes(cell, any_side))
     return {};
-  return joining_faces(cell, other_side(grid, cuts, c, cell));
+  return joining_faces(cell, other_side(solid, c, cell));
 }
 
 } // namespace
 
-bool must_be_parted(const Grid& grid, const grid::Cuts& cuts, const grid::CellId c) {
-  return !joining_faces(grid, cuts, c, grid::cuts_of(grid, cuts, c)).empty();
+bool must_be_parted(const Solid& solid, const grid::CellId c) {
+  return !joining_faces(solid, c, grid::cuts_of(solid, c)).empty();
 }
 
-std::vector<grid::EdgeId> keep_nodes_apart(const Grid& grid, grid::Cuts& cuts, const grid::CellId c) {
+std::vector<grid::EdgeId> keep_nodes_apart(Solid& solid, const grid::CellId c) {
   std::vector<grid::EdgeId> parted;
-  for (const int face : joining_faces(grid, cuts, c, grid::cuts_of(grid, cuts, c)))
-    part_face(grid, cuts, c, face, parted);
+  for (const int face : joining_faces(solid, c, grid::cuts_of(solid, c)))
+    part_face(solid, c, face, parted);
   return parted;
 }
 

@@ -6,7 +6,7 @@
 /// the edges of the grid, no bridge stays that no edge stands for.
 
 #include "cut/pending.h"
-#include "grid/complex.h"
+#include "grid/solid.h"
 
 #include <span>
 #include <vector>
@@ -15,15 +15,14 @@ namespace kerf::cut {
 
 class OpenEnds {
  public:
-  /// Notes them at edges that the blade with this label has cut.
-  void note(const grid::Grid& grid, const grid::Cuts& cuts, std::span<const grid::EdgeId> edges, grid::CutLabel label);
+  /// Notes them in cells in which the blade with this label has cut.
+  void note(const grid::Solid& solid, std::span<const grid::CellId> cells, grid::CutLabel label);
 
   /// Parts the skin of those that are more than a cell away from where the blade is in this step (whereabouts();
   /// triangles [m], world frame), when the corners are at `x`, and from cuts that wait; forgets those where the cut has
   /// gone on. Returns cut edges at the parted faces.
   std::vector<grid::EdgeId> close(std::span<const std::array<Vec3, 3>> blade, const PendingCuts& pending,
-                                  const grid::Grid& grid, grid::Cuts& cuts, const grid::CellComplex& complex,
-                                  const Points& x, grid::CutLabel label);
+                                  grid::Solid& solid, const Points& x, grid::CutLabel label);
 
   std::size_t size() const { return faces_.size() + cells_.size(); }
 

@@ -4,11 +4,10 @@
 
 namespace kerf::cut {
 
-void part_face(const grid::Grid& grid, grid::Cuts& cuts, const grid::CellId c, const int face,
-               std::vector<grid::EdgeId>& edges) {
-  cuts.set_seam(grid.faces(c)[face], grid::Seam::parted);
-  const unsigned blades = grid::cuts_of(grid, cuts, c).blades();
-  const auto of_cell = grid.edges(c);
+void part_face(grid::Solid& solid, const grid::CellId c, const int face, std::vector<grid::EdgeId>& edges) {
+  solid.cuts.set_seam(solid.grid.faces(c)[face], grid::Seam::parted);
+  const unsigned blades = grid::cuts_of(solid, c).blades();
+  const auto of_cell = solid.grid.edges(c);
   for (const int line : grid::cube::face_lines[face])
     if (blades >> line & 1)
       edges.push_back(of_cell[line]);

@@ -63,13 +63,12 @@ bool meets(const std::array<Vec3, 3>& triangle, const grid::Tetrahedron& tetrahe
 class Search {
  public:
   Search(const std::span<const std::array<Vec3, 3>> strip, const std::span<const grid::EdgeCut> found,
-         const grid::Grid& grid, const grid::Cuts& cuts, const grid::CellComplex& complex, const Points& x,
-         const grid::CutLabel label)
-    : near_(patches(strip)), grid_(grid), cuts_(cuts), complex_(complex), x_(x), label_(label) {
+         const grid::Solid& solid, const Points& x, const grid::CutLabel label)
+    : near_(patches(strip)), solid_(solid), x_(x), label_(label) {
     std::vector<grid::EdgeId> edges;
     for (const grid::EdgeCut& cut : found)
       edges.push_back(cut.edge);
-    met_ = grid::touched_cells(grid, edges);
+    met_ = grid::touched_cells(solid.grid, edges);
   }
 
   /// Boxes hold the ends of edges alone; other corners of the cells may lie beside them.
@@ -81,8 +80,8 @@ class Search {
   /// `room`: no corner of a copy lies further from the middle between its first and its last one [m]. That is 1.5 of the
   /// longest edge at most, by any way along three edges.
   bool passes(const grid::CellId cell, const double room) const {
-    for (const grid::CopyId c : complex_.copies_of(cell)) {
-      const grid::Copy& copy = complex_.copies[c];
+    for (const grid::CopyId c : solid_.complex.copies_of(cell)) {
+      const grid::Copy& copy = solid_.complex.copies[c];
       const Vec3 middle = 0.5 * (x_[copy.corners[0].value] + x_[copy.corners[7].value]);
       if (((near_.reach().lower - middle).array() > room).any() ||
           ((middle - near_.reach().upper).array() > room).any())
@@ -124,8 +123,8 @@ class Search {
   bool is_cut_by_label(const grid::CellId cell) const {
     if (std::ranges::binary_search(met_, cell, {}, &grid::TouchedCell::cell))
       return true;
-    return std::ranges::any_of(grid_.edges(cell), [&](const grid::EdgeId e) {
-      const grid::EdgeCut* const cut = cuts_.find(e);
+    return std::ranges::any_of(solid_.grid.edges(cell), [&](const grid::EdgeId e) {
+      const grid::EdgeCut* const cut = solid_.cuts.find(e);
       return cut && cut->label == label_;
     });
   }
@@ -136,7 +135,7 @@ class Search {
     for (int v = 0; v < 8; ++v)
       heights[v] = normal.dot(corners[v] - triangle[0]);
     bool found = false;
-    grid::for_each_tetrahedron(grid_, cuts_, copy, [&](const grid::Tetrahedron& rest, int) {
+    grid::for_each_tetrahedron(solid_, copy, [&](const grid::Tetrahedron& rest, int) {
       if (found || !are_parted(heights, rest))
         return;
       grid::Tetrahedron now;
@@ -151,9 +150,7 @@ class Search {
   }
 
   NearSweep near_;
-  const grid::Grid& grid_;
-  const grid::Cuts& cuts_;
-  const grid::CellComplex& complex_;
+  const grid::Solid& solid_;
   const Points& x_;
   grid::CutLabel label_;
   std::vector<grid::TouchedCell> met_; // whose edges are cut now
@@ -162,11 +159,10 @@ class Search {
 } // namespace
 
 void PassedCells::pass(const std::span<const std::array<Vec3, 3>> strip, const std::span<const grid::EdgeCut> found,
-                       const grid::Grid& grid, const grid::Cuts& cuts, const grid::CellComplex& complex,
-                       const Points& x, const EdgeBoxes& boxes, const grid::CutLabel label) {
+                       const grid::Solid& solid, const Points& x, const EdgeBoxes& boxes, const grid::CutLabel label) {
   if (strip.empty())
     return;
-  const Search search(strip, found, grid, cuts, complex, x, label);
+  const Search search(strip, found, solid, x, label);
   const auto blocks = boxes.blocks([&](const EdgeBoxes::Block& block) { return search.is_near(block); });
   std::vector<std::vector<grid::CellId>> passed(blocks.size());
   parallel_for(blocks.size(), [&](const std::size_t k) {

@@ -22,9 +22,8 @@ class PassedCells {
  public:
   /// Adds what `strip` (triangles [m], world frame) passes in a body with its corners at `x` [m], to which `boxes` are
   /// fitted. Cells with an edge that `cuts` holds with this label, or that is among `found`, are left out.
-  void pass(std::span<const std::array<Vec3, 3>> strip, std::span<const grid::EdgeCut> found, const grid::Grid& grid,
-            const grid::Cuts& cuts, const grid::CellComplex& complex, const Points& x, const EdgeBoxes& boxes,
-            grid::CutLabel label);
+  void pass(std::span<const std::array<Vec3, 3>> strip, std::span<const grid::EdgeCut> found, const grid::Solid& solid,
+            const Points& x, const EdgeBoxes& boxes, grid::CutLabel label);
 
   /// Takes out the cells around edges that the same label has cut now.
   void remove_around(const grid::Grid& grid, grid::EdgeId edge);

@@ -33,12 +33,13 @@ void PendingCuts::push(const std::span<const grid::EdgeCut> cuts) {
       queue_.push_back(cut);
 }
 
-std::vector<grid::EdgeCut> PendingCuts::release(const grid::Grid& grid, const grid::Cuts& cuts) {
+std::vector<grid::EdgeCut> PendingCuts::release(const grid::Solid& solid) {
   std::vector<grid::EdgeCut> released;
   std::deque<grid::EdgeCut> waiting;
   CutCounts counts;
   for (const grid::EdgeCut& cut : queue_) {
-    const bool can_be_cut = cuts.can_be_cut(grid, cut.edge), is_released = can_be_cut && counts.take(grid, cut.edge);
+    const bool can_be_cut = solid.cuts.can_be_cut(solid.grid, cut.edge),
+               is_released = can_be_cut && counts.take(solid.grid, cut.edge);
     if (is_released)
       released.push_back(cut);
     if (is_released || !can_be_cut)

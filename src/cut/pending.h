@@ -5,7 +5,7 @@
 /// once, do not go through here; nor do edges of the skin that a cut below takes along (at_skin.h), without which it
 /// would end in a bridge.
 
-#include "grid/cuts.h"
+#include "grid/solid.h"
 
 #include <deque>
 #include <set>
@@ -22,7 +22,7 @@ class PendingCuts {
 
   /// Takes out the cuts of this step, oldest first: each one that leaves no cell around its edge with more than two.
   /// Edges cut meanwhile are dropped. `cuts` is not changed.
-  std::vector<grid::EdgeCut> release(const grid::Grid& grid, const grid::Cuts& cuts);
+  std::vector<grid::EdgeCut> release(const grid::Solid& solid);
 
   std::size_t size() const { return queue_.size(); }
   bool waits(grid::EdgeId e) const { return waiting_.contains(e); }

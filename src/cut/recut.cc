@@ -46,11 +46,11 @@ class Crossings {
 
 } // namespace
 
-SweepCuts cut_edges(const Strip sweep, const grid::Grid& grid, const grid::Cuts& cuts, const grid::CellComplex& complex,
-                    const Points& x, const grid::CutLabel label, const EdgeBoxes* const boxes) {
+SweepCuts cut_edges(const Strip sweep, const grid::Solid& solid, const Points& x, const grid::CutLabel label,
+                    const EdgeBoxes* const boxes) {
   if (sweep.empty())
     return {};
-  const Target target(grid, cuts, complex, x, x, boxes);
+  const Target target(solid, x, x, boxes);
   std::vector<Box> triangle_boxes;
   for (const auto& triangle : sweep)
     triangle_boxes.push_back(box_around(triangle));
@@ -65,16 +65,15 @@ SweepCuts cut_edges(const Strip sweep, const grid::Grid& grid, const grid::Cuts&
                     });
 }
 
-SweepCuts cut_edges(const BladePath& path, const grid::Grid& grid, const grid::Cuts& cuts,
-                    const grid::CellComplex& complex, const Points& x_before, const Points& x,
+SweepCuts cut_edges(const BladePath& path, const grid::Solid& solid, const Points& x_before, const Points& x,
                     const grid::CutLabel label, const EdgeBoxes* const boxes) {
   if (boxes ? !boxes->moves() : x_before == x) { // one method for all edges of a body: they agree on what passes their
     std::vector<std::array<Vec3, 3>> strip;      // common node
     for (std::size_t k = 1; k < path.lines.size(); ++k)
       add_strip(path.lines[k - 1], path.lines[k], strip);
-    return cut_edges(strip, grid, cuts, complex, x, label, boxes);
+    return cut_edges(strip, solid, x, label, boxes);
   }
-  const Target target(grid, cuts, complex, x_before, x, boxes);
+  const Target target(solid, x_before, x, boxes);
   const NearSweep near(patches(path));
   return target.cut(label, {near.reach(), [&](const Box& box) { return near.may_be_in(box); }},
                     [&](const grid::EdgeId edge) {

@@ -18,8 +18,7 @@
 
 #include "cut/blade.h"
 #include "cut/edge_boxes.h"
-#include "grid/complex.h"
-#include "grid/cuts.h"
+#include "grid/solid.h"
 
 #include <span>
 
@@ -33,13 +32,11 @@ struct SweepCuts {
 /// The edges that `sweep` (triangles [m], world frame) cuts, when the corners are at `x` [m, world frame, one a
 /// corner]. Where an edge is crossed 3, 5, ... times, the crossing nearest to its lower node is kept. Throws
 /// NumericalError when a corner is not at a finite position.
-SweepCuts cut_edges(std::span<const std::array<Vec3, 3>> sweep, const grid::Grid& grid, const grid::Cuts& cuts,
-                    const grid::CellComplex& complex, const Points& x, grid::CutLabel label,
-                    const EdgeBoxes* boxes = nullptr);
+SweepCuts cut_edges(std::span<const std::array<Vec3, 3>> sweep, const grid::Solid& solid, const Points& x,
+                    grid::CutLabel label, const EdgeBoxes* boxes = nullptr);
 
 /// The edges that a blade cuts on its path through a step in which the corners moved from `x_before` to `x`.
-SweepCuts cut_edges(const BladePath& path, const grid::Grid& grid, const grid::Cuts& cuts,
-                    const grid::CellComplex& complex, const Points& x_before, const Points& x, grid::CutLabel label,
-                    const EdgeBoxes* boxes = nullptr);
+SweepCuts cut_edges(const BladePath& path, const grid::Solid& solid, const Points& x_before, const Points& x,
+                    grid::CutLabel label, const EdgeBoxes* boxes = nullptr);
 
 } // namespace kerf::cut

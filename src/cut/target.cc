@@ -50,16 +50,13 @@ Box with_skin(const EdgeBoxes::Block& block, const double longest) {
 
 } // namespace
 
-Target::Target(const grid::Grid& grid, const grid::Cuts& cuts, const grid::CellComplex& complex, const Points& x_before,
-               const Points& x, const EdgeBoxes* boxes)
-  : grid_(grid), cuts_(cuts), complex_(complex), x_before_(x_before), x_(x), boxes_(boxes) {
+Target::Target(const grid::Solid& solid, const Points& x_before, const Points& x, const EdgeBoxes* boxes)
+  : solid_(solid), x_before_(x_before), x_(x), boxes_(boxes) {
   if (!boxes_) // fit() has seen to it
     require_finite(x);
 }
 
-Segment Target::segment(const grid::EdgeId edge, const Points& x) const {
-  return ends_of(grid_, cuts_, complex_, edge).segment(x);
-}
+Segment Target::segment(const grid::EdgeId edge, const Points& x) const { return ends_of(solid_, edge).segment(x); }
 
 SweepCuts Target::cut(const grid::CutLabel label, const Nearness& near,
                       const std::function<Verdict(grid::EdgeId)>& judge) const {
@@ -67,18 +64,19 @@ SweepCuts Target::cut(const grid::CutLabel label, const Nearness& near,
 }
 
 SweepCuts Target::cut_anywhere(const grid::CutLabel label, const std::function<Verdict(grid::EdgeId)>& judge) const {
-  return joined((grid_.n_edges() + edges_per_chunk - 1) / edges_per_chunk, [&](const std::size_t k, SweepCuts& part) {
-    const std::size_t end = std::min(grid_.n_edges(), (k + 1) * edges_per_chunk);
-    for (std::size_t e = k * edges_per_chunk; e < end; ++e)
-      if (const grid::EdgeId edge(e); cuts_.can_be_cut(grid_, edge))
-        add(edge, judge(edge), label, part);
-  });
+  return joined((solid_.grid.n_edges() + edges_per_chunk - 1) / edges_per_chunk,
+                [&](const std::size_t k, SweepCuts& part) {
+                  const std::size_t end = std::min(solid_.grid.n_edges(), (k + 1) * edges_per_chunk);
+                  for (std::size_t e = k * edges_per_chunk; e < end; ++e)
+                    if (const grid::EdgeId edge(e); solid_.cuts.can_be_cut(solid_.grid, edge))
+                      add(edge, judge(edge), label, part);
+                });
 }
 
 SweepCuts Target::cut_near(const grid::CutLabel label, const Nearness& near,
                            const std::function<Verdict(grid::EdgeId)>& judge) const {
   const auto is_near = [&](const Box& box) { return geometry::overlap(box, near.reach) && near.may_meet(box); };
-  const double longest = std::max(boxes_->longest(), grid_.h());
+  const double longest = std::max(boxes_->longest(), solid_.grid.h());
   const auto blocks = boxes_->blocks([&](const EdgeBoxes::Block& block) { return is_near(with_skin(block, longest)); });
   const std::size_t n = (blocks.size() + blocks_per_chunk - 1) / blocks_per_chunk;
   SweepCuts result = joined(n, [&](const std::size_t k, SweepCuts& part) {
@@ -91,8 +89,8 @@ SweepCuts Target::cut_near(const grid::CutLabel label, const Nearness& near,
         const Segment before{x_before_[lower.value], x_before_[upper.value]}, now{x_[lower.value], x_[upper.value]};
         if (!geometry::overlap(room(before, now), near.reach))
           return;
-        const grid::EdgeId edge = grid_.edge(complex_.node[lower], axis);
-        if (cuts_.can_be_cut(grid_, edge))
+        const grid::EdgeId edge = solid_.grid.edge(solid_.complex.node[lower], axis);
+        if (solid_.cuts.can_be_cut(solid_.grid, edge))
           add_judged(edge);
       });
     }
@@ -110,9 +108,9 @@ void Target::judge_skin(const std::uint32_t block, const Nearness& near, const d
            ((before.cwiseMin(now) - near.reach.upper).array() <= room_around).all();
   };
   boxes_->for_each_skin_edge(block, [&](const grid::EdgeId edge, const grid::CornerId corner) {
-    if (!is_near(x_before_[corner.value], x_[corner.value]) || !cuts_.can_be_cut(grid_, edge))
+    if (!is_near(x_before_[corner.value], x_[corner.value]) || !solid_.cuts.can_be_cut(solid_.grid, edge))
       return;
-    const EdgeEnds ends = ends_of(grid_, cuts_, complex_, edge);
+    const EdgeEnds ends = ends_of(solid_, edge);
     if (geometry::overlap(room(ends.segment(x_before_), ends.segment(x_)), near.reach))
       judge(edge);
   });
@@ -120,50 +118,48 @@ void Target::judge_skin(const std::uint32_t block, const Nearness& near, const d
 
 void Target::add(const grid::EdgeId edge, const Verdict& verdict, const grid::CutLabel label, SweepCuts& result) const {
   if (verdict.n_crossings % 2 == 1) {
-    const EdgeEnds ends = ends_of(grid_, cuts_, complex_, edge);
+    const EdgeEnds ends = ends_of(solid_, edge);
     const double t = ends.from + verdict.t * (ends.to - ends.from), least = grid::min_edge_parameter;
     if ((ends.from == 0 || t > ends.from + least) && (ends.to == 1 || t < ends.to - least)) // else on the skin itself
-      result.cuts.push_back({edge, t, pulled_back(grid_, complex_, x_, edge, t, verdict.normal), label});
+      result.cuts.push_back({edge, t, pulled_back(solid_, x_, edge, t, verdict.normal), label});
   } else if (verdict.n_crossings > 0)
     ++result.n_double_crossings;
 }
 
-EdgeEnds ends_of(const grid::Grid& grid, const grid::Cuts& cuts, const grid::CellComplex& complex,
-                 const grid::EdgeId edge) {
-  const auto& [lower, upper] = grid.ends(edge);
-  const bool from_lower = grid.is_material(lower);
-  if (from_lower == grid.is_material(upper))
-    return {{complex.real_corner[lower], complex.real_corner[upper]}};
-  const auto around = grid.cells(edge);
+EdgeEnds ends_of(const grid::Solid& solid, const grid::EdgeId edge) {
+  const auto& [lower, upper] = solid.grid.ends(edge);
+  const bool from_lower = solid.grid.is_material(lower);
+  if (from_lower == solid.grid.is_material(upper))
+    return {{solid.complex.real_corner[lower], solid.complex.real_corner[upper]}};
+  const auto around = solid.grid.cells(edge);
   const grid::CellId c = *std::ranges::find_if(around, [](const grid::CellId cell) { return cell.valid(); });
-  const int v = vertex_of(grid, c, lower), w = v | 1 << grid.axis(edge);
-  const grid::Copy& copy = complex.copies[complex.copy_at(c, from_lower ? v : w)];
-  const double skin = cuts.find_outer(edge)->t;
+  const int v = vertex_of(solid.grid, c, lower), w = v | 1 << solid.grid.axis(edge);
+  const grid::Copy& copy = solid.complex.copies[solid.complex.copy_at(c, from_lower ? v : w)];
+  const double skin = solid.cuts.find_outer(edge)->t;
   return {{copy.corners[v], copy.corners[w]}, from_lower ? 0 : skin, from_lower ? skin : 1};
 }
 
-Mat3 gradient_on(const grid::Grid& grid, const grid::CellComplex& complex, const Points& x, const grid::EdgeId edge,
-                 const double t) {
-  const auto& [lower, upper] = grid.ends(edge);
+Mat3 gradient_on(const grid::Solid& solid, const Points& x, const grid::EdgeId edge, const double t) {
+  const auto& [lower, upper] = solid.grid.ends(edge);
   Mat3 sum = Mat3::Zero();
-  for (const grid::CellId c : grid.cells(edge)) {
+  for (const grid::CellId c : solid.grid.cells(edge)) {
     if (!c.valid())
       continue;
-    const int vertex = vertex_of(grid, c, lower);
+    const int vertex = vertex_of(solid.grid, c, lower);
     Vec3 at(vertex & 1, vertex >> 1 & 1, vertex >> 2 & 1);
-    at[grid.axis(edge)] = t;
-    const int held = grid.is_material(lower) ? vertex : vertex | 1 << grid.axis(edge);
-    sum += deformation_gradient(complex.copies[complex.copy_at(c, held)], x, grid.h(), at);
+    at[solid.grid.axis(edge)] = t;
+    const int held = solid.grid.is_material(lower) ? vertex : vertex | 1 << solid.grid.axis(edge);
+    sum += deformation_gradient(solid.complex.copies[solid.complex.copy_at(c, held)], x, solid.grid.h(), at);
   }
   return sum;
 }
 
-Vec3 pulled_back(const grid::Grid& grid, const grid::CellComplex& complex, const Points& x, const grid::EdgeId edge,
-                 const double t, const Vec3& normal) {
-  const Vec3 at_rest = gradient_on(grid, complex, x, edge, t).transpose() * normal;
+Vec3 pulled_back(const grid::Solid& solid, const Points& x, const grid::EdgeId edge, const double t,
+                 const Vec3& normal) {
+  const Vec3 at_rest = gradient_on(solid, x, edge, t).transpose() * normal;
   // Along the edge it is n . (q - p) / h, which is 0 only by rounding, since the surface is crossed.
   const double length = at_rest.norm();
-  return length > 0 ? Vec3(at_rest / length) : Vec3::Unit(grid.axis(edge));
+  return length > 0 ? Vec3(at_rest / length) : Vec3::Unit(solid.grid.axis(edge));
 }
 
 } // namespace kerf::cut

@@ -50,23 +50,20 @@ struct EdgeEnds {
     return {from == 0 ? lower : at(from), to == 1 ? upper : at(to)};
   }
 };
-EdgeEnds ends_of(const grid::Grid& grid, const grid::Cuts& cuts, const grid::CellComplex& complex, grid::EdgeId edge);
+EdgeEnds ends_of(const grid::Solid& solid, grid::EdgeId edge);
 
 /// dx/dX on an edge at t, summed over the copies around it that hold its material node, when the corners are at `x`:
 /// only its direction matters.
-Mat3 gradient_on(const grid::Grid& grid, const grid::CellComplex& complex, const Points& x, grid::EdgeId edge,
-                 double t);
+Mat3 gradient_on(const grid::Solid& solid, const Points& x, grid::EdgeId edge, double t);
 
 /// The unit normal at rest of a surface that cuts an edge at t with a current normal.
-Vec3 pulled_back(const grid::Grid& grid, const grid::CellComplex& complex, const Points& x, grid::EdgeId edge, double t,
-                 const Vec3& normal);
+Vec3 pulled_back(const grid::Solid& solid, const Points& x, grid::EdgeId edge, double t, const Vec3& normal);
 
 class Target {
  public:
   /// Everything must outlive it. `boxes` are fitted to x_before and x, or null: then every edge is judged. Throws
   /// NumericalError when a corner is not at a finite position.
-  Target(const grid::Grid& grid, const grid::Cuts& cuts, const grid::CellComplex& complex, const Points& x_before,
-         const Points& x, const EdgeBoxes* boxes);
+  Target(const grid::Solid& solid, const Points& x_before, const Points& x, const EdgeBoxes* boxes);
 
   Segment segment(grid::EdgeId edge) const { return segment(edge, x_); }
   /// Where the edge is when the corners are at `x`.
@@ -84,9 +81,7 @@ class Target {
                   const std::function<void(grid::EdgeId)>& judge) const;
   void add(grid::EdgeId edge, const Verdict& verdict, grid::CutLabel label, SweepCuts& result) const;
 
-  const grid::Grid& grid_;
-  const grid::Cuts& cuts_;
-  const grid::CellComplex& complex_;
+  const grid::Solid& solid_;
   const Points& x_before_;
   const Points& x_;
   const EdgeBoxes* boxes_;

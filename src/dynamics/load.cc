@@ -7,10 +7,10 @@ void LoadTangent::add_product(const std::span<const double> p, const std::span<d
     const Interpolation& w = *term.points;
     Vec3 at_j = Vec3::Zero();
     for (auto k = w.start[term.j]; k < w.start[term.j + 1]; ++k)
-      at_j += w.weights[k] * Eigen::Map<const Vec3>(p.data() + 3 * std::size_t(w.corners[k]));
+      at_j += w.values[k] * Eigen::Map<const Vec3>(p.data() + 3 * std::size_t(w.corners[k]));
     const Vec3 at_i = term.block * at_j;
     for (auto k = w.start[term.i]; k < w.start[term.i + 1]; ++k)
-      Eigen::Map<Vec3>(y.data() + 3 * std::size_t(w.corners[k])) += w.weights[k] * at_i;
+      Eigen::Map<Vec3>(y.data() + 3 * std::size_t(w.corners[k])) += w.values[k] * at_i;
   }
 }
 
@@ -21,7 +21,7 @@ void LoadTangent::add_diagonal(std::vector<Mat3>& blocks) const {
     for (auto k = w.start[term.i]; k < w.start[term.i + 1]; ++k)
       for (auto l = w.start[term.j]; l < w.start[term.j + 1]; ++l)
         if (w.corners[k] == w.corners[l])
-          blocks[w.corners[k]] += w.weights[k] * w.weights[l] * symmetric;
+          blocks[w.corners[k]] += w.values[k] * w.values[l] * symmetric;
   }
 }
 
@@ -34,7 +34,7 @@ void LoadTangent::add_entries(std::vector<Eigen::Triplet<double>>& entries) cons
           for (int b = 0; b < 3; ++b)
             if (term.block(a, b) != 0)
               entries.emplace_back(3 * w.corners[k] + a, 3 * w.corners[l] + b,
-                                   w.weights[k] * w.weights[l] * term.block(a, b));
+                                   w.values[k] * w.values[l] * term.block(a, b));
   }
 }
 

@@ -2,7 +2,7 @@
 
 /// The contract of a force from outside that depends on time, positions and velocities.
 
-#include "dynamics/interpolation.h"
+#include "base/interpolation.h"
 #include "dynamics/model.h"
 
 #include <Eigen/SparseCore>

@@ -6,38 +6,22 @@
 
 namespace kerf::fem {
 
-std::vector<grid::CopyId> changed_copies(const grid::Grid& grid, const grid::CellComplex& complex,
-                                         const grid::ComplexChange& change,
-                                         const std::span<const grid::EdgeId> new_edges) {
-  std::vector<grid::CopyId> changed = change.copies;
-  for (const auto edge : new_edges)
-    for (const auto cell : grid.cells(edge))
-      if (cell.valid())
-        for (const auto copy : complex.copies_of(cell))
-          changed.push_back(copy);
-  std::sort(changed.begin(), changed.end());
-  changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
-  return changed;
-}
-
-ElementTable::ElementTable(const grid::Grid& grid, const grid::Cuts& cuts, const grid::CellComplex& complex,
-                           const ElementTableOptions& options)
-  : h_(grid.h()), options_(options) {
+ElementTable::ElementTable(const grid::Solid& solid, const ElementTableOptions& options)
+  : h_(solid.grid.h()), options_(options) {
   elements_.push_back(make_element(full_cube_moments(), h_, options.material, options.element));
   std::vector<grid::CopyId> all;
-  all.reserve(complex.n_copies());
-  for (const auto c : ids<grid::CopyId>(complex.n_copies()))
+  all.reserve(solid.complex.n_copies());
+  for (const auto c : ids<grid::CopyId>(solid.complex.n_copies()))
     all.push_back(c);
-  update(grid, cuts, complex, all);
+  update(solid, all);
 }
 
-void ElementTable::update(const grid::Grid& grid, const grid::Cuts& cuts, const grid::CellComplex& complex,
-                          const std::span<const grid::CopyId> changed) {
-  element_of_.resize(complex.n_copies(), 0);
+void ElementTable::update(const grid::Solid& solid, const std::span<const grid::CopyId> changed) {
+  element_of_.resize(solid.complex.n_copies(), 0);
   std::vector<grid::CopyId> partial;
   for (const auto c : changed) {
     std::uint32_t& element = element_of_[c.value];
-    if (is_partial(grid, cuts, complex.copies[c])) {
+    if (is_partial(solid, solid.complex.copies[c])) {
       partial.push_back(c);
       element = element == 0 ? unused() : element;
     } else if (element != 0) {
@@ -46,13 +30,14 @@ void ElementTable::update(const grid::Grid& grid, const grid::Cuts& cuts, const 
     }
   }
   parallel_for(partial.size(), [&](const std::size_t i) {
-    const grid::Copy& copy = complex.copies[partial[i]];
-    elements_[element_of_[partial[i].value]] = make(material_moments(grid, cuts, copy));
+    const grid::Copy& copy = solid.complex.copies[partial[i]];
+    elements_[element_of_[partial[i].value]] = make(material_moments(solid, copy));
   });
 }
 
-bool ElementTable::is_partial(const grid::Grid& grid, const grid::Cuts& cuts, const grid::Copy& copy) const {
-  return options_.boundary != Boundary::full_cube && copy.nodes != 0xff && cuts.configuration(grid, copy.cell) != 0;
+bool ElementTable::is_partial(const grid::Solid& solid, const grid::Copy& copy) const {
+  return options_.boundary != Boundary::full_cube && copy.nodes != 0xff &&
+         solid.cuts.configuration(solid.grid, copy.cell) != 0;
 }
 
 Element ElementTable::make(const Moments& moments) const {

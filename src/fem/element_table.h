@@ -3,7 +3,7 @@
 /// The elements of a body: one for all full cubes, one for each copy whose material is less.
 
 #include "fem/element.h"
-#include "grid/complex.h"
+#include "grid/solid.h"
 
 #include <span>
 #include <vector>
@@ -17,11 +17,6 @@ enum class Boundary {
   full_cube        ///< as a full cube, as is common: doubles mass and stiffness along a cut
 };
 
-/// The copies whose element a cut has changed: new ones, those with other corners, and all in cells with a newly cut
-/// edge, whose material has another shape. Ascending.
-std::vector<grid::CopyId> changed_copies(const grid::Grid& grid, const grid::CellComplex& complex,
-                                         const grid::ComplexChange& change, std::span<const grid::EdgeId> new_edges);
-
 struct ElementTableOptions {
   material::Elastic material;
   Boundary boundary = Boundary::octants;
@@ -30,12 +25,10 @@ struct ElementTableOptions {
 
 class ElementTable {
  public:
-  ElementTable(const grid::Grid& grid, const grid::Cuts& cuts, const grid::CellComplex& complex,
-               const ElementTableOptions& options);
+  ElementTable(const grid::Solid& solid, const ElementTableOptions& options);
 
   /// Makes these copies' elements anew; all others must have the material they had.
-  void update(const grid::Grid& grid, const grid::Cuts& cuts, const grid::CellComplex& complex,
-              std::span<const grid::CopyId> changed);
+  void update(const grid::Solid& solid, std::span<const grid::CopyId> changed);
 
   const Element& operator[](const std::size_t copy) const { return elements_[element_of_[copy]]; }
   std::size_t n_copies() const { return element_of_.size(); }
@@ -47,7 +40,7 @@ class ElementTable {
   const std::uint32_t* element_of() const { return element_of_.data(); }
 
  private:
-  bool is_partial(const grid::Grid& grid, const grid::Cuts& cuts, const grid::Copy& copy) const;
+  bool is_partial(const grid::Solid& solid, const grid::Copy& copy) const;
   Element make(const Moments& moments) const;
   /// The index of an element that nothing uses.
   std::uint32_t unused();

@@ -39,9 +39,9 @@ class Marked {
 GhostPenalty::GhostPenalty(const GhostPenaltyOptions& options, const material::Elastic& material, const double h)
   : options_(options), stiffness_of_cube_(material.mu() * h), mass_of_cube_(material.density * h * h * h) {}
 
-void GhostPenalty::update(const grid::Grid& grid, const grid::CellComplex& complex,
-                          const std::span<const CopyId> changed, const std::function<double(std::size_t)>& fill,
-                          const std::span<const double> mass) {
+void GhostPenalty::update(const grid::Solid& solid, const std::span<const CopyId> changed,
+                          const std::function<double(std::size_t)>& fill, const std::span<const double> mass) {
+  const auto& [grid, cuts, complex] = solid;
   extended_mass_.assign(mass.begin(), mass.end());
   if (options_.weight == 0)
     return;
@@ -50,14 +50,14 @@ void GhostPenalty::update(const grid::Grid& grid, const grid::CellComplex& compl
   std::vector<GhostFace> found;
   for (const CopyId c : changed)
     for (int axis = 0; axis < 3; ++axis) {
-      add_faces_above(grid, complex, c, axis, fill, found);
+      add_faces_above(solid, c, axis, fill, found);
       const grid::CellId below = grid.neighbour(complex.copies[c].cell, 2 * axis);
       if (!below.valid())
         continue;
       const auto first = static_cast<std::ptrdiff_t>(found.size());
       for (const CopyId lower : complex.copies_of(below))
         if (!has_changed(lower))
-          add_faces_above(grid, complex, lower, axis, fill, found);
+          add_faces_above(solid, lower, axis, fill, found);
       found.erase(std::remove_if(found.begin() + first, found.end(), [&](const GhostFace& f) { return f.upper != c; }),
                   found.end());
     }
@@ -70,9 +70,10 @@ void GhostPenalty::update(const grid::Grid& grid, const grid::CellComplex& compl
   weigh_faces();
 }
 
-void GhostPenalty::add_faces_above(const grid::Grid& grid, const grid::CellComplex& complex, const CopyId lower,
-                                   const int axis, const std::function<double(std::size_t)>& fill,
+void GhostPenalty::add_faces_above(const grid::Solid& solid, const CopyId lower, const int axis,
+                                   const std::function<double(std::size_t)>& fill,
                                    std::vector<GhostFace>& faces) const {
+  const auto& [grid, cuts, complex] = solid;
   const grid::Copy& below = complex.copies[lower];
   const grid::CellId cell = grid.neighbour(below.cell, 2 * axis + 1);
   if (!cell.valid())

@@ -40,7 +40,7 @@
 /// near-empty copies lie in a row (tests/fem/ghost_penalty_test.cc has the figures).
 
 #include "base/vec.h"
-#include "grid/complex.h"
+#include "grid/solid.h"
 #include "material/elastic.h"
 
 #include <Eigen/SparseCore>
@@ -73,7 +73,7 @@ class GhostPenalty {
   /// Takes over copies that are new, or whose corners or material have changed. `fill`: the part of its cube that a
   /// copy's material is [1]; `mass`: the lumped one of each corner [kg]. Costs as much as there are changed copies, and a
   /// pass over faces and masses.
-  void update(const grid::Grid& grid, const grid::CellComplex& complex, std::span<const grid::CopyId> changed,
+  void update(const grid::Solid& solid, std::span<const grid::CopyId> changed,
               const std::function<double(std::size_t copy)>& fill, std::span<const double> mass);
 
   /// Those that have a penalty, in the order of their lower copies, axes, and upper copies.
@@ -93,7 +93,7 @@ class GhostPenalty {
  private:
   double need(double fill) const { return fill < options_.well_filled ? 1 - fill / options_.well_filled : 0; }
   /// Penalties between a copy and those of the cell above it along an axis.
-  void add_faces_above(const grid::Grid& grid, const grid::CellComplex& complex, grid::CopyId lower, int axis,
+  void add_faces_above(const grid::Solid& solid, grid::CopyId lower, int axis,
                        const std::function<double(std::size_t copy)>& fill, std::vector<GhostFace>& faces) const;
 
   void choose_faces(std::size_t n_copies);

@@ -39,36 +39,34 @@ Mat3 tangent_block(const Eigen::Ref<const Tangent>& A, const Vec3& b_a, const Ve
 
 } // namespace
 
-Hexahedra::Hexahedra(const grid::Grid& grid, const grid::Cuts& cuts, const grid::CellComplex& complex,
-                     const HexahedraOptions& options)
-  : h_(grid.h()),
+Hexahedra::Hexahedra(const grid::Solid& solid, const HexahedraOptions& options)
+  : h_(solid.grid.h()),
     law_(material::law_of(options.material)),
     frame_(frame_of(law_)),
     inertia_(options.inertia),
-    elements_(grid, cuts, complex, table_options(options)),
-    incidence_(complex),
-    ghost_penalty_(options.ghost_penalty, options.material, grid.h()) {
-  std::vector<std::uint32_t> corners(complex.n_corners());
+    elements_(solid, table_options(options)),
+    incidence_(solid.complex),
+    ghost_penalty_(options.ghost_penalty, options.material, h_) {
+  std::vector<std::uint32_t> corners(solid.complex.n_corners());
   std::iota(corners.begin(), corners.end(), 0);
   std::vector<grid::CopyId> copies;
-  copies.reserve(complex.n_copies());
-  for (const auto c : ids<grid::CopyId>(complex.n_copies()))
+  copies.reserve(solid.complex.n_copies());
+  for (const auto c : ids<grid::CopyId>(solid.complex.n_copies()))
     copies.push_back(c);
-  follow(grid, complex, copies, corners);
-  linearise(grid::rest_positions(grid, complex));
+  follow(solid, copies, corners);
+  linearise(grid::rest_positions(solid));
 }
 
-void Hexahedra::update(const grid::Grid& grid, const grid::Cuts& cuts, const grid::CellComplex& complex,
-                       const std::span<const grid::CopyId> changed) {
-  elements_.update(grid, cuts, complex, changed);
-  follow(grid, complex, changed, incidence_.update(complex, changed));
+void Hexahedra::update(const grid::Solid& solid, const std::span<const grid::CopyId> changed) {
+  elements_.update(solid, changed);
+  follow(solid, changed, incidence_.update(solid.complex, changed));
 }
 
-void Hexahedra::follow(const grid::Grid& grid, const grid::CellComplex& complex,
-                       const std::span<const grid::CopyId> changed, const std::span<const std::uint32_t> corners) {
+void Hexahedra::follow(const grid::Solid& solid, const std::span<const grid::CopyId> changed,
+                       const std::span<const std::uint32_t> corners) {
   sum_mass(corners);
   ghost_penalty_.update(
-    grid, complex, changed, [this](const std::size_t copy) { return fill(copy); }, mass_);
+    solid, changed, [this](const std::size_t copy) { return fill(copy); }, mass_);
 }
 
 void Hexahedra::sum_mass(const std::span<const std::uint32_t> corners) {

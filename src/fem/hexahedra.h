@@ -45,13 +45,11 @@ struct HexahedraOptions {
 
 class Hexahedra : public dynamics::ElasticModel, public dynamics::StiffnessMatrix {
  public:
-  Hexahedra(const grid::Grid& grid, const grid::Cuts& cuts, const grid::CellComplex& complex,
-            const HexahedraOptions& options);
+  Hexahedra(const grid::Solid& solid, const HexahedraOptions& options);
 
-  /// Follows a cut. `changed`: what changed_copies() says. All else stays as it is; the outcome is that of building
+  /// Follows a cut. `changed`: what grid::CutChange::reshaped says. All else stays as it is; the outcome is that of building
   /// anew, bit by bit. The linearisation is lost.
-  void update(const grid::Grid& grid, const grid::Cuts& cuts, const grid::CellComplex& complex,
-              std::span<const grid::CopyId> changed);
+  void update(const grid::Solid& solid, std::span<const grid::CopyId> changed);
 
   std::span<const double> lumped_mass() const override {
     return inertia_ == Inertia::lumped ? mass_ : ghost_penalty_.extended_mass();
@@ -82,8 +80,7 @@ class Hexahedra : public dynamics::ElasticModel, public dynamics::StiffnessMatri
 
  private:
   bool is_hookean() const { return frame_ == Frame::fixed || std::holds_alternative<material::Corotational>(law_); }
-  void follow(const grid::Grid& grid, const grid::CellComplex& complex, std::span<const grid::CopyId> changed,
-              std::span<const std::uint32_t> corners);
+  void follow(const grid::Solid& solid, std::span<const grid::CopyId> changed, std::span<const std::uint32_t> corners);
   void sum_mass(std::span<const std::uint32_t> corners);
   /// Part of its cube that a copy's material is [1].
   double fill(const std::size_t copy) const { return elements_[copy].volume / (h_ * h_ * h_); }

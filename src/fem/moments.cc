@@ -63,12 +63,11 @@ Moments full_cube_moments() {
   return m;
 }
 
-Moments octant_moments(const grid::Grid& grid, const grid::Cuts& cuts, const grid::CellId cell,
-                       const unsigned vertices) {
+Moments octant_moments(const grid::Solid& solid, const grid::CellId cell, const unsigned vertices) {
   Moments m{};
   for (int vertex = 0; vertex < 8; ++vertex)
     if (vertices >> vertex & 1)
-      for (const grid::Tetrahedron& t : grid::octant(grid, cuts, cell, vertex))
+      for (const grid::Tetrahedron& t : grid::octant(solid, cell, vertex))
         add(m, t);
   return m;
 }
@@ -90,10 +89,10 @@ Moments without_negative_squares(const Moments& m) {
   return result;
 }
 
-Moments material_moments(const grid::Grid& grid, const grid::Cuts& cuts, const grid::Copy& copy) {
+Moments material_moments(const grid::Solid& solid, const grid::Copy& copy) {
   constexpr double least = 1e-12; // far below what counts
   Moments m{};
-  grid::for_each_tetrahedron(grid, cuts, copy, [&](const grid::Tetrahedron& t, int) { add(m, t); });
+  grid::for_each_tetrahedron(solid, copy, [&](const grid::Tetrahedron& t, int) { add(m, t); });
   if (m[0] >= least)
     return m;
   m = full_cube_moments();

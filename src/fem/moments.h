@@ -4,7 +4,7 @@
 /// A trilinear cube's mass and stiffness for any distribution of material are linear in the 27 moments i, j, k <= 2,
 /// so a cut cell costs one set of moments, exact for every position of the cut.
 
-#include "grid/complex.h"
+#include "grid/solid.h"
 
 #include <array>
 
@@ -16,13 +16,13 @@ using Moments = std::array<double, 27>;
 Moments full_cube_moments();
 
 /// Moments of the octants of the given vertices (bits) of a cell.
-Moments octant_moments(const grid::Grid& grid, const grid::Cuts& cuts, grid::CellId cell, unsigned vertices);
+Moments octant_moments(const grid::Solid& solid, grid::CellId cell, unsigned vertices);
 /// The moments nearest to these, on the straight way to those of the same volume spread over the whole cube, under
 /// which no trilinear field has a negative square. What lies under a skin that is bent within a cell is a difference of
 /// volumes (grid/material.h): it may be no distribution of material at all, and an element of it would gain energy.
 Moments without_negative_squares(const Moments& m);
 /// Moments of all material of a copy. Material of less than 1e-12 of a cube counts as that much, spread over the whole
 /// cube: for where the skin is bent, the volume of rinds may vanish.
-Moments material_moments(const grid::Grid& grid, const grid::Cuts& cuts, const grid::Copy& copy);
+Moments material_moments(const grid::Solid& solid, const grid::Copy& copy);
 
 } // namespace kerf::fem

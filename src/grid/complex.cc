@@ -4,6 +4,7 @@
 #include "base/union_find.h"
 #include "grid/corner_classes.h"
 #include "grid/cube.h"
+#include "grid/solid.h"
 #include "grid/touched.h"
 
 #include <algorithm>
@@ -33,14 +34,14 @@ int rank(const Copy& copy) {
 }
 
 /// The cells with a cut edge, ascending.
-std::vector<CutCell> find_cut_cells(const Grid& grid, const Cuts& cuts) {
+std::vector<CutCell> find_cut_cells(const Solid& solid) {
   std::vector<EdgeId> edges;
-  edges.reserve(cuts.all().size());
-  for (const EdgeCut& cut : cuts.all())
+  edges.reserve(solid.cuts.all().size());
+  for (const EdgeCut& cut : solid.cuts.all())
     edges.push_back(cut.edge);
   std::vector<CutCell> cells;
-  for (const TouchedCell& touched : touched_cells(grid, edges)) // by which lines is its configuration
-    cells.push_back({touched.cell, parts_of(cuts_of(grid, cuts, touched.cell, touched.lines))});
+  for (const TouchedCell& touched : touched_cells(solid.grid, edges)) // by which lines is its configuration
+    cells.push_back({touched.cell, parts_of(cuts_of(solid, touched.cell, touched.lines))});
   return cells;
 }
 
@@ -139,26 +140,41 @@ void make_corners(const Grid& grid, const std::vector<CutCell>& cut_cells, CellC
     worth);
 }
 
+void sort_unique(std::vector<CopyId>& copies) {
+  std::sort(copies.begin(), copies.end());
+  copies.erase(std::unique(copies.begin(), copies.end()), copies.end());
+}
+
 /// Splits copies and renames corners around new cut edges.
 class Update {
  public:
-  Update(const Grid& grid, const Cuts& cuts, CellComplex& complex)
-    : grid_(grid), cuts_(cuts), complex_(complex), change_{complex.n_copies(), complex.n_corners(), {}, {}} {}
+  explicit Update(Solid& solid) : solid_(solid) {
+    change_.n_copies_before = solid.complex.n_copies();
+    change_.n_corners_before = solid.complex.n_corners();
+  }
 
-  ComplexChange run(const std::span<const EdgeId> new_edges) {
-    for (const TouchedCell& touched : touched_cells(grid_, new_edges))
+  CutChange run(std::vector<EdgeId> new_edges) {
+    change_.edges = std::move(new_edges);
+    change_.parted.assign(solid_.cuts.newly_parted().begin(), solid_.cuts.newly_parted().end());
+    for (const TouchedCell& touched : touched_cells(solid_.grid, change_.edges)) {
+      change_.cells.push_back(touched.cell);
       split(touched.cell);
+    }
     std::sort(slots_.begin(), slots_.end());
     for (auto slot = slots_.begin(); slot != slots_.end();) {
       const NodeId node = slot->node;
       CellsAround cells;
       for (; slot != slots_.end() && slot->node == node; ++slot)
         cells.add(slot->cell, slot->vertex);
-      cells.complete(grid_);
-      rename(node, CornerClasses(complex_, cells));
+      cells.complete(solid_.grid);
+      rename(node, CornerClasses(solid_.complex, cells));
     }
-    std::sort(change_.copies.begin(), change_.copies.end());
-    change_.copies.erase(std::unique(change_.copies.begin(), change_.copies.end()), change_.copies.end());
+    sort_unique(change_.copies);
+    change_.reshaped = change_.copies;
+    for (const CellId cell : change_.cells)
+      for (const CopyId c : solid_.complex.copies_of(cell))
+        change_.reshaped.push_back(c);
+    sort_unique(change_.reshaped);
     return std::move(change_);
   }
 
@@ -171,18 +187,18 @@ class Update {
   };
 
   void split(const CellId cell) {
-    const CellCuts cell_cuts = cuts_of(grid_, cuts_, cell);
+    const CellCuts cell_cuts = cuts_of(solid_, cell);
     const Parts parts = parts_of(cell_cuts);
     const unsigned rinds = new_rinds(cell, cell_cuts);
     bool splits = false;
-    for (CopyId c = complex_.first_copy[cell]; c.valid();) {
-      const CopyId next = complex_.copies[c].next;
+    for (CopyId c = solid_.complex.first_copy[cell]; c.valid();) {
+      const CopyId next = solid_.complex.copies[c].next;
       splits |= divide(c, parts, rinds);
       c = next;
     }
     if (splits) {
       sort_copies(cell);
-      const auto nodes = grid_.nodes(cell);
+      const auto nodes = solid_.grid.nodes(cell);
       for (int v = 0; v < 8; ++v)
         slots_.push_back({nodes[v], v, cell});
     }
@@ -191,15 +207,15 @@ class Update {
   /// Lines that have been cut a second time since: their rinds are in the copies of their nodes still.
   unsigned new_rinds(const CellId cell, const CellCuts& cell_cuts) const {
     unsigned known = 0;
-    for (const CopyId c : complex_.copies_of(cell))
-      known |= complex_.copies[c].rinds;
+    for (const CopyId c : solid_.complex.copies_of(cell))
+      known |= solid_.complex.copies[c].rinds;
     return cell_cuts.twice & ~known;
   }
 
   /// The first of the parts that a copy falls into keeps it; the others start with its corners, and stand behind it.
   /// Returns whether there are several.
   bool divide(const CopyId c, const Parts& parts, const unsigned new_rinds) {
-    Part whole = complex_.copies[c].part();
+    Part whole = solid_.complex.copies[c].part();
     for (int line = 0; line < cube::n_lines; ++line)
       if (const auto& [v, w] = cube::line_vertices[line];
           new_rinds >> line & 1 && (whole.nodes >> v | whole.nodes >> w) & 1)
@@ -212,7 +228,7 @@ class Update {
         throw std::logic_error("a cut has joined what was parted");
       if (!is_first)
         add_copy(c, part);
-      else if (part.nodes != complex_.copies[c].nodes || part.rinds != complex_.copies[c].rinds)
+      else if (part.nodes != solid_.complex.copies[c].nodes || part.rinds != solid_.complex.copies[c].rinds)
         set_part(c, part);
       is_split |= !is_first;
       is_first = false;
@@ -223,29 +239,30 @@ class Update {
   }
 
   void set_part(const CopyId c, const Part& part) {
-    complex_.copies[c].nodes = part.nodes;
-    complex_.copies[c].rinds = part.rinds;
+    solid_.complex.copies[c].nodes = part.nodes;
+    solid_.complex.copies[c].rinds = part.rinds;
     change_.copies.push_back(c);
   }
 
   void add_copy(const CopyId from, const Part& part) {
-    Copy copy = complex_.copies[from];
-    copy.next = complex_.copies[from].next;
-    const CopyId added = complex_.copies.push_back(copy);
-    complex_.copies[from].next = added;
+    Copy copy = solid_.complex.copies[from];
+    copy.next = solid_.complex.copies[from].next;
+    const CopyId added = solid_.complex.copies.push_back(copy);
+    solid_.complex.copies[from].next = added;
     set_part(added, part);
   }
 
   void sort_copies(const CellId cell) {
     std::array<CopyId, 16> copies;
     int n = 0;
-    for (const CopyId c : complex_.copies_of(cell))
+    for (const CopyId c : solid_.complex.copies_of(cell))
       copies[n++] = c;
-    std::sort(copies.begin(), copies.begin() + n,
-              [&](const CopyId a, const CopyId b) { return rank(complex_.copies[a]) < rank(complex_.copies[b]); });
-    complex_.first_copy[cell] = copies[0];
+    std::sort(copies.begin(), copies.begin() + n, [&](const CopyId a, const CopyId b) {
+      return rank(solid_.complex.copies[a]) < rank(solid_.complex.copies[b]);
+    });
+    solid_.complex.first_copy[cell] = copies[0];
     for (int i = 0; i < n; ++i)
-      complex_.copies[copies[i]].next = i + 1 < n ? copies[i + 1] : CopyId();
+      solid_.complex.copies[copies[i]].next = i + 1 < n ? copies[i + 1] : CopyId();
   }
 
   void rename(const NodeId node, const CornerClasses& classes) {
@@ -256,12 +273,13 @@ class Update {
     // slot of the cell whose lowest node this is.
     for (const auto& slot : classes.slots())
       if (CornerId& corner = corner_of[slot.class_number]; !corner.valid()) {
-        const CornerId old = complex_.copies[slot.copy].corners[slot.vertex];
+        const CornerId old = solid_.complex.copies[slot.copy].corners[slot.vertex];
         const auto end = corner_of.begin() + classes.n_classes();
         corner = std::find(corner_of.begin(), end, old) == end ? old : new_corner(node, old);
       }
     for (const auto& slot : classes.slots())
-      if (CornerId& corner = complex_.copies[slot.copy].corners[slot.vertex]; corner != corner_of[slot.class_number]) {
+      if (CornerId& corner = solid_.complex.copies[slot.copy].corners[slot.vertex];
+          corner != corner_of[slot.class_number]) {
         corner = corner_of[slot.class_number];
         change_.copies.push_back(slot.copy);
       }
@@ -269,13 +287,11 @@ class Update {
 
   CornerId new_corner(const NodeId node, const CornerId parent) {
     change_.parents.push_back(parent);
-    return complex_.node.push_back(node);
+    return solid_.complex.node.push_back(node);
   }
 
-  const Grid& grid_;
-  const Cuts& cuts_;
-  CellComplex& complex_;
-  ComplexChange change_;
+  Solid& solid_;
+  CutChange change_;
   std::vector<Slot> slots_; // of the cells that split
 };
 
@@ -300,17 +316,16 @@ std::size_t CellComplex::n_bytes() const {
          node.items().capacity() * sizeof(NodeId) + real_corner.items().capacity() * sizeof(CornerId);
 }
 
-CellComplex build_complex(const Grid& grid, const Cuts& cuts) {
+CellComplex build_complex(const Solid& solid) {
   CellComplex complex;
-  const auto cut_cells = find_cut_cells(grid, cuts);
-  make_copies(grid, cut_cells, complex);
-  make_corners(grid, cut_cells, complex);
+  const auto cut_cells = find_cut_cells(solid);
+  make_copies(solid.grid, cut_cells, complex);
+  make_corners(solid.grid, cut_cells, complex);
   return complex;
 }
 
-ComplexChange update_complex(const Grid& grid, const Cuts& cuts, const std::span<const EdgeId> new_edges,
-                             CellComplex& complex) {
-  return Update(grid, cuts, complex).run(new_edges);
+CutChange update_complex(Solid& solid, std::vector<EdgeId> new_edges) {
+  return Update(solid).run(std::move(new_edges));
 }
 
 Pieces pieces(const CellComplex& complex) {
@@ -338,11 +353,11 @@ Pieces pieces(const CellComplex& complex) {
   return result;
 }
 
-Points rest_positions(const Grid& grid, const CellComplex& complex) {
+Points rest_positions(const Solid& solid) {
   Points x;
-  x.reserve(with_room(complex.n_corners()));
-  for (const NodeId n : complex.node)
-    x.push_back(grid.position(n));
+  x.reserve(with_room(solid.complex.n_corners()));
+  for (const NodeId n : solid.complex.node)
+    x.push_back(solid.grid.position(n));
   return x;
 }
 

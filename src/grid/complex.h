@@ -70,26 +70,32 @@ struct CellComplex {
   std::size_t n_bytes() const;
 };
 
-/// Copies are ordered by cell, then as their parts are (parts.h); corners by node.
-CellComplex build_complex(const Grid& grid, const Cuts& cuts);
+/// Of what is cut. Copies are ordered by cell, then as their parts are (parts.h); corners by node.
+CellComplex build_complex(const Solid& solid);
 
-/// What an update did to a complex.
-struct ComplexChange {
+/// What a cut has done to a body. Placement, surface and physics follow it by this, and look for nothing themselves.
+struct CutChange {
+  std::vector<EdgeId> edges;  ///< that are cut now, and those cut before at faces whose skin is parted now
+  std::vector<FaceId> parted; ///< faces whose skin is parted now; ascending
+  std::vector<CellId> cells;  ///< around the edges; ascending
   std::size_t n_copies_before = 0, n_corners_before = 0;
   std::vector<CopyId> copies;    ///< new, or divided, or with other rinds or corners than before; ascending
+  std::vector<CopyId> reshaped;  ///< these, and all whose material has another shape: those in the cells; ascending
   std::vector<CornerId> parents; ///< of the corners n_corners_before, ... in their order: where they came from
+
+  /// Whether anything is cut.
+  bool any() const { return !edges.empty(); }
 };
 
-/// Brings a complex up to date with edges that `cuts` holds, but did not when it was built or updated last (an edge may
-/// be named again: where the skin of a face at it is now said to be parted). What it costs depends on the new edges
+/// Brings the complex up to date with edges that are cut, but were not when it was built or updated last (an edge may be
+/// named again: where the skin of a face at it is now said to be parted). What it costs depends on the new edges
 /// alone. Throws std::logic_error, and leaves the complex of no use, where the skin of a face now joins what was
 /// parted.
-ComplexChange update_complex(const Grid& grid, const Cuts& cuts, std::span<const EdgeId> new_edges,
-                             CellComplex& complex);
+CutChange update_complex(Solid& solid, std::vector<EdgeId> new_edges);
 
 /// Appends for each new corner what its parent has.
 template <class T>
-void inherit(const ComplexChange& change, std::vector<T>& of_corners) {
+void inherit(const CutChange& change, std::vector<T>& of_corners) {
   for (const CornerId parent : change.parents)
     of_corners.push_back(T(of_corners[parent.value]));
 }
@@ -105,6 +111,6 @@ Pieces pieces(const CellComplex& complex);
 inline std::uint32_t n_pieces(const CellComplex& complex) { return pieces(complex).n_pieces; }
 
 /// Rest positions of the corners [m].
-Points rest_positions(const Grid& grid, const CellComplex& complex);
+Points rest_positions(const Solid& solid);
 
 } // namespace kerf::grid

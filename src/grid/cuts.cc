@@ -1,6 +1,7 @@
 #include "grid/cuts.h"
 
 #include "grid/cube.h"
+#include "grid/solid.h"
 
 #include <algorithm>
 #include <stdexcept>
@@ -91,11 +92,9 @@ Vec3 point_on(const Grid& grid, const EdgeId e, const EdgeCut* const cut) {
 
 } // namespace
 
-Vec3 edge_point(const Grid& grid, const Cuts& cuts, const EdgeId e) { return point_on(grid, e, cuts.find(e)); }
+Vec3 edge_point(const Solid& solid, const EdgeId e) { return point_on(solid.grid, e, solid.cuts.find(e)); }
 
-Vec3 edge_skin_point(const Grid& grid, const Cuts& cuts, const EdgeId e) {
-  return point_on(grid, e, cuts.find_outer(e));
-}
+Vec3 edge_skin_point(const Solid& solid, const EdgeId e) { return point_on(solid.grid, e, solid.cuts.find_outer(e)); }
 
 Vec3 centre(const Grid& grid, const CellId c) { return grid.origin(c) + Vec3::Constant(0.5 * grid.h()); }
 
@@ -109,24 +108,24 @@ Vec3 centre(const Grid& grid, const FaceId f) {
   return p;
 }
 
-Vec3 face_point(const Grid& grid, const Cuts& cuts, const FaceId f) {
-  const Vec3* p = cuts.point(f);
-  return p ? *p : centre(grid, f);
+Vec3 face_point(const Solid& solid, const FaceId f) {
+  const Vec3* p = solid.cuts.point(f);
+  return p ? *p : centre(solid.grid, f);
 }
 
-Vec3 cell_point(const Grid& grid, const Cuts& cuts, const CellId c) {
-  const Vec3* p = cuts.point(c);
-  return p ? *p : centre(grid, c);
+Vec3 cell_point(const Solid& solid, const CellId c) {
+  const Vec3* p = solid.cuts.point(c);
+  return p ? *p : centre(solid.grid, c);
 }
 
-Vec3 face_skin_point(const Grid& grid, const Cuts& cuts, const FaceId f, const int i) {
-  const SkinPoint* const of_skin = cuts.skin_point(f);
-  return of_skin && (of_skin->lines >> i & 1) ? of_skin->p : face_point(grid, cuts, f);
+Vec3 face_skin_point(const Solid& solid, const FaceId f, const int i) {
+  const SkinPoint* const of_skin = solid.cuts.skin_point(f);
+  return of_skin && (of_skin->lines >> i & 1) ? of_skin->p : face_point(solid, f);
 }
 
-Vec3 cell_skin_point(const Grid& grid, const Cuts& cuts, const CellId c, const int line) {
-  const SkinPoint* const of_skin = cuts.skin_point(c);
-  return of_skin && (of_skin->lines >> line & 1) ? of_skin->p : cell_point(grid, cuts, c);
+Vec3 cell_skin_point(const Solid& solid, const CellId c, const int line) {
+  const SkinPoint* const of_skin = solid.cuts.skin_point(c);
+  return of_skin && (of_skin->lines >> line & 1) ? of_skin->p : cell_point(solid, c);
 }
 
 } // namespace kerf::grid

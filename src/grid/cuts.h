@@ -17,6 +17,8 @@
 
 namespace kerf::grid {
 
+struct Solid; // solid.h
+
 /// Who cut an edge: 0 is the body's skin (the input mesh), 1, 2, ... the blades in the order of the scene.
 using CutLabel = std::uint16_t;
 constexpr CutLabel skin_label = 0;
@@ -137,14 +139,14 @@ class Cuts {
 };
 
 /// Rest position [m] of the point on an edge (its cut, else its middle), in a face and in a cell (placed, else centre).
-Vec3 edge_point(const Grid& grid, const Cuts& cuts, EdgeId e);
-Vec3 face_point(const Grid& grid, const Cuts& cuts, FaceId f);
-Vec3 cell_point(const Grid& grid, const Cuts& cuts, CellId c);
+Vec3 edge_point(const Solid& solid, EdgeId e);
+Vec3 face_point(const Solid& solid, FaceId f);
+Vec3 cell_point(const Solid& solid, CellId c);
 
 /// The same of the skin [m]; in a face for its i-th line, in a cell for a line of its.
-Vec3 edge_skin_point(const Grid& grid, const Cuts& cuts, EdgeId e);
-Vec3 face_skin_point(const Grid& grid, const Cuts& cuts, FaceId f, int i);
-Vec3 cell_skin_point(const Grid& grid, const Cuts& cuts, CellId c, int line);
+Vec3 edge_skin_point(const Solid& solid, EdgeId e);
+Vec3 face_skin_point(const Solid& solid, FaceId f, int i);
+Vec3 cell_skin_point(const Solid& solid, CellId c, int line);
 
 /// Centre of a face [m].
 Vec3 centre(const Grid& grid, FaceId f);

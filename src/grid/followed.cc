@@ -40,39 +40,39 @@ void spread(const CellComplex& complex, std::vector<Followed>& copies, std::map<
 
 } // namespace
 
-std::vector<Followed> followed_nodes(const Grid& grid, const CellComplex& complex) {
+std::vector<Followed> followed_nodes(const Solid& solid) {
   std::vector<Followed> result;
-  for (const auto c : ids<CopyId>(complex.n_copies()))
-    if (complex.copies[c].nodes == 0)
+  for (const auto c : ids<CopyId>(solid.complex.n_copies()))
+    if (solid.complex.copies[c].nodes == 0)
       result.push_back({c, NodeId()});
   if (result.empty())
     return result;
 
   std::map<CornerId, NodeId> node_at; // of the corners of copies that follow something
   for (const Followed& followed : result)
-    for (const CornerId corner : complex.copies[followed.copy].corners)
+    for (const CornerId corner : solid.complex.copies[followed.copy].corners)
       node_at[corner];
-  for (const Copy& copy : complex.copies)
+  for (const Copy& copy : solid.complex.copies)
     if (copy.nodes != 0)
       for (const CornerId corner : copy.corners)
         if (const auto at = node_at.find(corner); at != node_at.end())
-          at->second = std::min(at->second, lowest_node(grid, copy));
+          at->second = std::min(at->second, lowest_node(solid.grid, copy));
 
-  spread(complex, result, node_at);
+  spread(solid.complex, result, node_at);
   // Pieces of rinds alone: one node for all of a piece.
   for (;;) {
     NodeId lowest;
     CopyId from;
     for (const auto& [c, node] : result)
-      if (const NodeId other = cut_off_from(grid, complex.copies[c]); !node.valid() && other < lowest) {
+      if (const NodeId other = cut_off_from(solid.grid, solid.complex.copies[c]); !node.valid() && other < lowest) {
         lowest = other;
         from = c;
       }
     if (!from.valid())
       return result;
-    for (const CornerId corner : complex.copies[from].corners)
+    for (const CornerId corner : solid.complex.copies[from].corners)
       node_at[corner] = lowest;
-    spread(complex, result, node_at);
+    spread(solid.complex, result, node_at);
   }
 }
 

@@ -4,7 +4,7 @@
 /// where they have a cell to themselves, they are a copy without a node. Models whose particles are nodes let it
 /// follow one.
 
-#include "grid/complex.h"
+#include "grid/solid.h"
 
 namespace kerf::grid {
 
@@ -16,6 +16,6 @@ struct Followed {
 /// For each copy without nodes, ascending: the lowest node of the nearest copies (fewest steps between copies with a
 /// corner in common) that hang together with it; for all of a piece of rinds alone, the lowest node from which one of
 /// them was cut off. So it does not depend on the order of cuts.
-std::vector<Followed> followed_nodes(const Grid& grid, const CellComplex& complex);
+std::vector<Followed> followed_nodes(const Solid& solid);
 
 } // namespace kerf::grid

@@ -9,18 +9,18 @@
 
 namespace kerf::grid {
 
-std::array<Tetrahedron, 6> octant(const Grid& grid, const Cuts& cuts, const CellId c, const int vertex) {
-  const Vec3 origin = grid.origin(c);
-  const auto edges = grid.edges(c);
-  const auto faces = grid.faces(c);
-  const auto local = [&](const Vec3& p) -> Vec3 { return (p - origin) / grid.h(); };
+std::array<Tetrahedron, 6> octant(const Solid& solid, const CellId c, const int vertex) {
+  const Vec3 origin = solid.grid.origin(c);
+  const auto edges = solid.grid.edges(c);
+  const auto faces = solid.grid.faces(c);
+  const auto local = [&](const Vec3& p) -> Vec3 { return (p - origin) / solid.grid.h(); };
   const Vec3 node(vertex & 1, vertex >> 1 & 1, vertex >> 2 & 1);
-  const Vec3 middle = local(cell_point(grid, cuts, c));
+  const Vec3 middle = local(cell_point(solid, c));
   std::array<Vec3, 3> on_edge, in_face;  // by the edge's direction, by the face's normal
   for (int axis = 0; axis < 3; ++axis) { // right on the edge and in the face: round-off may not turn a thin octant over
     on_edge[axis] = node;
-    on_edge[axis][axis] = local(edge_point(grid, cuts, edges[cube::line_at(vertex, axis)]))[axis];
-    in_face[axis] = local(face_point(grid, cuts, faces[cube::face_at(vertex, axis)]));
+    on_edge[axis][axis] = local(edge_point(solid, edges[cube::line_at(vertex, axis)]))[axis];
+    in_face[axis] = local(face_point(solid, faces[cube::face_at(vertex, axis)]));
     in_face[axis][axis] = node[axis];
   }
   std::array<Tetrahedron, 6> tetrahedra;
@@ -45,23 +45,23 @@ std::array<Tetrahedron, 3> prism(const std::array<Vec3, 3>& from, const std::arr
   return tetrahedra;
 }
 
-std::array<Tetrahedron, 6> under_skin(const Grid& grid, const Cuts& cuts, const CellId c, const int line) {
-  const Vec3 origin = grid.origin(c);
-  const auto faces = grid.faces(c);
-  const EdgeId edge = grid.edges(c)[line];
-  const auto local = [&](const Vec3& p) -> Vec3 { return (p - origin) / grid.h(); };
+std::array<Tetrahedron, 6> under_skin(const Solid& solid, const CellId c, const int line) {
+  const Vec3 origin = solid.grid.origin(c);
+  const auto faces = solid.grid.faces(c);
+  const EdgeId edge = solid.grid.edges(c)[line];
+  const auto local = [&](const Vec3& p) -> Vec3 { return (p - origin) / solid.grid.h(); };
   const int axis = cube::line_axis(line), lower = cube::line_vertices[line][0];
-  const int vertex = grid.is_material(grid.ends(edge)[0]) ? lower : cube::line_vertices[line][1];
+  const int vertex = solid.grid.is_material(solid.grid.ends(edge)[0]) ? lower : cube::line_vertices[line][1];
   Vec3 of_cut(lower & 1, lower >> 1 & 1, lower >> 2 & 1), of_skin = of_cut;
-  of_cut[axis] = local(edge_point(grid, cuts, edge))[axis];
-  of_skin[axis] = local(edge_skin_point(grid, cuts, edge))[axis];
-  const Vec3 middle = local(cell_point(grid, cuts, c)), skin_middle = local(cell_skin_point(grid, cuts, c, line));
+  of_cut[axis] = local(edge_point(solid, edge))[axis];
+  of_skin[axis] = local(edge_skin_point(solid, edge))[axis];
+  const Vec3 middle = local(cell_point(solid, c)), skin_middle = local(cell_skin_point(solid, c, line));
   std::array<Tetrahedron, 6> tetrahedra;
   for (int i = 0; i < 2; ++i) {
     const int normal = (axis + 1 + i) % 3;
     const int face = cube::face_at(vertex, normal);
-    Vec3 in_face = local(face_point(grid, cuts, faces[face])),
-         skin_in_face = local(face_skin_point(grid, cuts, faces[face], cube::place_in_face(face, line)));
+    Vec3 in_face = local(face_point(solid, faces[face])),
+         skin_in_face = local(face_skin_point(solid, faces[face], cube::place_in_face(face, line)));
     in_face[normal] = skin_in_face[normal] = of_cut[normal];
     const bool turned = (std::popcount(static_cast<unsigned>(vertex)) & 1) != 0; // as in octant()
     const auto of_face = prism({of_cut, in_face, middle}, {of_skin, skin_in_face, skin_middle}, turned == (i == 1));
@@ -72,8 +72,8 @@ std::array<Tetrahedron, 6> under_skin(const Grid& grid, const Cuts& cuts, const 
 
 double volume(const Tetrahedron& t) { return (t[1] - t[0]).dot((t[2] - t[0]).cross(t[3] - t[0])) / 6; }
 
-unsigned lines_under_skin(const Grid& grid, const Cuts& cuts, const Copy& copy) {
-  const CellCuts cell = cuts_of(grid, cuts, copy.cell);
+unsigned lines_under_skin(const Solid& solid, const Copy& copy) {
+  const CellCuts cell = cuts_of(solid, copy.cell);
   if (!cell.has_two_points())
     return 0;
   unsigned lines = copy.rinds;

@@ -2,7 +2,7 @@
 
 /// The material of a cell's copies as tetrahedra.
 
-#include "grid/complex.h"
+#include "grid/solid.h"
 
 namespace kerf::grid {
 
@@ -15,13 +15,13 @@ using Tetrahedron = std::array<Vec3, 4>;
 /// face and cell (a hexahedron folds where a cut leaves a face vertex in the chord of its edge vertices), and they
 /// are bounded by just the triangles of the surface, so that volume by surface and mass by octants agree to round-
 /// off.
-std::array<Tetrahedron, 6> octant(const Grid& grid, const Cuts& cuts, CellId c, int vertex);
+std::array<Tetrahedron, 6> octant(const Solid& solid, CellId c, int vertex);
 
 /// What lies between the blades' cuts and the skin at one line of the skin: a prism on each of the line's two faces,
 /// from the triangle (edge point, face point, centre) of the cuts to that of the skin, in three tetrahedra each. Faces
 /// and lines that share a side of a prism divide it by the same diagonal. Volumes are signed: positive where the skin
 /// lies outside of the cuts. Empty where cuts and skin have all three points in common.
-std::array<Tetrahedron, 6> under_skin(const Grid& grid, const Cuts& cuts, CellId c, int line);
+std::array<Tetrahedron, 6> under_skin(const Solid& solid, CellId c, int line);
 
 /// A prism between two triangles, as three tetrahedra; the triangles' vertices correspond. Positive where the second
 /// triangle lies on the side from which the first is seen counter-clockwise; the other way round with `mirrored`.
@@ -30,27 +30,27 @@ std::array<Tetrahedron, 3> prism(const std::array<Vec3, 3>& from, const std::arr
 /// Calls f(tetrahedron, vertex) for all material of a copy: the octants of its nodes, and what lies under its part of
 /// the skin; the vertex is the node's, or the material end of the skin's line.
 template <class Function>
-void for_each_tetrahedron(const Grid& grid, const Cuts& cuts, const Copy& copy, const Function& f);
+void for_each_tetrahedron(const Solid& solid, const Copy& copy, const Function& f);
 
 /// Bits of the lines of the skin under which there may be material of the copy beside the octants.
-unsigned lines_under_skin(const Grid& grid, const Cuts& cuts, const Copy& copy);
+unsigned lines_under_skin(const Solid& solid, const Copy& copy);
 
 /// Volume of a tetrahedron with these vertices, positive where the last three turn counter-clockwise seen from outside
 /// [1].
 double volume(const Tetrahedron& t);
 
 template <class Function>
-void for_each_tetrahedron(const Grid& grid, const Cuts& cuts, const Copy& copy, const Function& f) {
+void for_each_tetrahedron(const Solid& solid, const Copy& copy, const Function& f) {
   for (int vertex = 0; vertex < cube::n_vertices; ++vertex)
     if (copy.nodes >> vertex & 1)
-      for (const Tetrahedron& t : octant(grid, cuts, copy.cell, vertex))
+      for (const Tetrahedron& t : octant(solid, copy.cell, vertex))
         f(t, vertex);
-  const unsigned lines = lines_under_skin(grid, cuts, copy);
+  const unsigned lines = lines_under_skin(solid, copy);
   for (int line = 0; line < cube::n_lines; ++line)
     if (lines >> line & 1) {
       const auto& [lower, upper] = cube::line_vertices[line];
-      const int vertex = grid.is_material(grid.nodes(copy.cell)[lower]) ? lower : upper;
-      for (const Tetrahedron& t : under_skin(grid, cuts, copy.cell, line))
+      const int vertex = solid.grid.is_material(solid.grid.nodes(copy.cell)[lower]) ? lower : upper;
+      for (const Tetrahedron& t : under_skin(solid, copy.cell, line))
         f(t, vertex);
     }
 }

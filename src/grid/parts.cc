@@ -1,5 +1,7 @@
 #include "grid/parts.h"
 
+#include "grid/solid.h"
+
 #include <algorithm>
 
 namespace kerf::grid {
@@ -89,28 +91,28 @@ bool CellCuts::has_two_points(const int face) const {
                                               [&](const SkinArc& arc) { return (blades() & beside(arc)) != 0; });
 }
 
-CellCuts cuts_of(const Grid& grid, const Cuts& cuts, const CellId c) {
-  return cuts_of(grid, cuts, c, cuts.configuration(grid, c));
+CellCuts cuts_of(const Solid& solid, const CellId c) {
+  return cuts_of(solid, c, solid.cuts.configuration(solid.grid, c));
 }
 
-CellCuts cuts_of(const Grid& grid, const Cuts& cuts, const CellId c, const unsigned cut_lines) {
+CellCuts cuts_of(const Solid& solid, const CellId c, const unsigned cut_lines) {
   CellCuts result;
   result.cut = cut_lines;
-  const auto nodes = grid.nodes(c);
+  const auto nodes = solid.grid.nodes(c);
   for (int v = 0; v < cube::n_vertices; ++v)
-    result.material |= unsigned(grid.is_material(nodes[v])) << v;
+    result.material |= unsigned(solid.grid.is_material(nodes[v])) << v;
   result.skin = skin_lines[result.material];
   if (result.skin == 0)
     return result;
-  if (cuts.n_cut_twice() > 0) {
-    const auto edges = grid.edges(c);
+  if (solid.cuts.n_cut_twice() > 0) {
+    const auto edges = solid.grid.edges(c);
     for (int line = 0; line < cube::n_lines; ++line)
-      result.twice |= unsigned((result.skin >> line & 1) != 0 && cuts.is_cut_twice(edges[line])) << line;
+      result.twice |= unsigned((result.skin >> line & 1) != 0 && solid.cuts.is_cut_twice(edges[line])) << line;
   }
   if (result.blades() != 0) {
-    const auto faces = grid.faces(c);
+    const auto faces = solid.grid.faces(c);
     for (int face = 0; face < cube::n_faces; ++face)
-      result.seams[face] = cuts.seam(faces[face]);
+      result.seams[face] = solid.cuts.seam(faces[face]);
   }
   return result;
 }

@@ -32,9 +32,9 @@ struct CellCuts {
   static unsigned beside(const SkinArc& arc) { return arc.inner | 1u << arc.lines[0] | 1u << arc.lines[1]; }
 };
 
-CellCuts cuts_of(const Grid& grid, const Cuts& cuts, CellId c);
+CellCuts cuts_of(const Solid& solid, CellId c);
 /// The same for a cell whose cut lines are known.
-CellCuts cuts_of(const Grid& grid, const Cuts& cuts, CellId c, unsigned cut_lines);
+CellCuts cuts_of(const Solid& solid, CellId c, unsigned cut_lines);
 
 /// Which lines of the skin belong to one fan around its centre: those that its arcs join but where they are rims. Of
 /// each line of the skin, the lowest line of its fan.

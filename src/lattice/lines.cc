@@ -16,31 +16,30 @@ constexpr std::uint32_t nowhere = grid::NodeId::no_value;
 
 /// Calls f(axis, lower, upper) for each step of the lattice.
 template <class Function>
-void for_each_step(const grid::Grid& grid, const grid::Cuts& cuts, const Function& f) {
-  for (const auto e : ids<grid::EdgeId>(grid.n_edges()))
-    if (const auto& [lower, upper] = grid.ends(e);
-        !cuts.is_cut(e) && grid.is_material(lower) && grid.is_material(upper))
-      f(grid.axis(e), lower, upper);
+void for_each_step(const grid::Solid& solid, const Function& f) {
+  for (const auto e : ids<grid::EdgeId>(solid.grid.n_edges()))
+    if (const auto& [lower, upper] = solid.grid.ends(e);
+        !solid.cuts.is_cut(e) && solid.grid.is_material(lower) && solid.grid.is_material(upper))
+      f(solid.grid.axis(e), lower, upper);
 }
 
 } // namespace
 
-Lines::Lines(const grid::Grid& grid, const grid::Cuts& cuts, const int half_width)
-  : half_width_(static_cast<std::size_t>(half_width)) {
+Lines::Lines(const grid::Solid& solid, const int half_width) : half_width_(static_cast<std::size_t>(half_width)) {
   if (half_width < 1)
     throw ParameterError({.path = "Half width [cells]",
                           .value = std::to_string(half_width),
                           .rule = "must be >= 1",
                           .remedy = "A region of no width is a single point and has no stiffness"});
-  std::vector<std::uint32_t> point_of(grid.n_nodes(), nowhere);
-  for (const auto n : ids<grid::NodeId>(grid.n_nodes()))
-    if (grid.is_material(n)) {
+  std::vector<std::uint32_t> point_of(solid.grid.n_nodes(), nowhere);
+  for (const auto n : ids<grid::NodeId>(solid.grid.n_nodes()))
+    if (solid.grid.is_material(n)) {
       point_of[n.value] = static_cast<std::uint32_t>(nodes_.size());
       nodes_.push_back(n);
     }
   std::array<std::vector<std::uint32_t>, 3> next;
   next.fill(std::vector<std::uint32_t>(n_points(), nowhere));
-  for_each_step(grid, cuts, [&](const int axis, const grid::NodeId lower, const grid::NodeId upper) {
+  for_each_step(solid, [&](const int axis, const grid::NodeId lower, const grid::NodeId upper) {
     next[axis][point_of[lower.value]] = point_of[upper.value];
   });
   for (int axis = 0; axis < 3; ++axis)

@@ -17,7 +17,7 @@
 /// Limits: where lines are broken, regions depend on the order of the axes, and r may be in the region of s without s
 /// in that of r. Matching needs neither.
 
-#include "grid/cuts.h"
+#include "grid/solid.h"
 
 #include <vector>
 
@@ -26,7 +26,7 @@ namespace kerf::lattice {
 class Lines {
  public:
   /// Throws ParameterError when the half width is below 1.
-  Lines(const grid::Grid& grid, const grid::Cuts& cuts, int half_width);
+  Lines(const grid::Solid& solid, int half_width);
 
   int half_width() const { return static_cast<int>(half_width_); }
   /// Points are numbered in the grid's order of nodes, x fastest.

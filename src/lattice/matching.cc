@@ -57,18 +57,17 @@ Vec3 angular_velocity(const Mat3& J, const Vec3& L) {
 
 } // namespace
 
-Matching::Matching(const grid::Grid& grid, const grid::Cuts& cuts, const grid::CellComplex& complex,
-                   const MatchingOptions& options)
+Matching::Matching(const grid::Solid& solid, const MatchingOptions& options)
   : stiffness_(options.stiffness),
-    lines_(grid, cuts, options.half_width),
-    rest_(grid::rest_positions(grid, complex)),
-    mass_(complex.n_corners(), 0.0) {
+    lines_(solid, options.half_width),
+    rest_(grid::rest_positions(solid)),
+    mass_(solid.complex.n_corners(), 0.0) {
   require_positive("Density [kg/m^3]", options.density);
   require_positive("Stiffness [1/s^2]", options.stiffness);
   const Vec3 middle = mean(rest_);
   for (Vec3& X : rest_)
     X -= middle;
-  count_shares(material_shares(grid, cuts, complex, options.density));
+  count_shares(material_shares(solid, options.density));
   measure_regions();
 }
 

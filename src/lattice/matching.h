@@ -39,8 +39,7 @@ struct MatchingOptions {
 class Matching : public dynamics::ForceModel {
  public:
   /// Throws ParameterError for an option that makes no sense.
-  Matching(const grid::Grid& grid, const grid::Cuts& cuts, const grid::CellComplex& complex,
-           const MatchingOptions& options);
+  Matching(const grid::Solid& solid, const MatchingOptions& options);
 
   std::span<const double> lumped_mass() const override { return mass_; }
   /// Round-off is that of k sum of m_c |x_c|^2 from the body's middle.

@@ -30,9 +30,9 @@ struct Integrals {
   std::array<double, 8> elsewhere{};
 };
 
-Integrals integrals_of(const grid::Grid& grid, const grid::Cuts& cuts, const grid::Copy& copy) {
+Integrals integrals_of(const grid::Solid& solid, const grid::Copy& copy) {
   Integrals integrals;
-  grid::for_each_tetrahedron(grid, cuts, copy, [&](const grid::Tetrahedron& t, const int vertex) {
+  grid::for_each_tetrahedron(solid, copy, [&](const grid::Tetrahedron& t, const int vertex) {
     auto& sum = copy.nodes >> vertex & 1 ? integrals.at_nodes[vertex] : integrals.elsewhere;
     const auto of_tetrahedron = shape_integrals(t);
     for (int a = 0; a < 8; ++a)
@@ -54,14 +54,14 @@ unsigned nearest(const unsigned nodes, const int corner) {
   return 0;
 }
 
-CopyShares shares_of(const grid::Grid& grid, const grid::Cuts& cuts, const grid::Copy& copy) {
+CopyShares shares_of(const grid::Solid& solid, const grid::Copy& copy) {
   CopyShares shares{};
   if (copy.nodes == 0xff) { // a full cube, wherever its octants meet
     for (int a = 0; a < 8; ++a)
       shares[a][a] = 1.0 / 8;
     return shares;
   }
-  const auto& [integrals, elsewhere] = integrals_of(grid, cuts, copy);
+  const auto& [integrals, elsewhere] = integrals_of(solid, copy);
   for (int a = 0; a < 8; ++a) {
     const unsigned owners = nearest(copy.nodes, a);
     double total = elsewhere[a], of_owners = 0;
@@ -106,27 +106,26 @@ std::array<double, 8> shape_integrals(const grid::Tetrahedron& t) {
   return integrals;
 }
 
-std::vector<Share> material_shares(const grid::Grid& grid, const grid::Cuts& cuts, const grid::CellComplex& complex,
-                                   const double density) {
-  std::vector<CopyShares> of_copy(complex.n_copies());
+std::vector<Share> material_shares(const grid::Solid& solid, const double density) {
+  std::vector<CopyShares> of_copy(solid.complex.n_copies());
   parallel_for(
-    complex.n_copies(),
-    [&](const std::size_t c) { of_copy[c] = shares_of(grid, cuts, complex.copies[grid::CopyId(c)]); }, 256);
-  const double scale = density * grid.h() * grid.h() * grid.h();
+    solid.complex.n_copies(),
+    [&](const std::size_t c) { of_copy[c] = shares_of(solid, solid.complex.copies[grid::CopyId(c)]); }, 256);
+  const double scale = density * solid.grid.h() * solid.grid.h() * solid.grid.h();
   std::vector<Share> shares;
-  for (const auto& [c, node] : grid::followed_nodes(grid, complex)) {
-    const grid::Copy& copy = complex.copies[c];
-    const auto integrals = integrals_of(grid, cuts, copy).elsewhere;
+  for (const auto& [c, node] : grid::followed_nodes(solid)) {
+    const grid::Copy& copy = solid.complex.copies[c];
+    const auto integrals = integrals_of(solid, copy).elsewhere;
     for (int a = 0; a < 8; ++a)
       if (integrals[a] > 0)
         shares.push_back({node, copy.corners[a], scale * integrals[a]});
   }
-  for (const auto c : ids<grid::CopyId>(complex.n_copies())) {
-    const grid::Copy& copy = complex.copies[c];
+  for (const auto c : ids<grid::CopyId>(solid.complex.n_copies())) {
+    const grid::Copy& copy = solid.complex.copies[c];
     for (int vertex = 0; vertex < 8; ++vertex)
       for (int a = 0; a < 8; ++a)
         if (const double share = of_copy[c.value][vertex][a]; share > 0)
-          shares.push_back({grid.nodes(copy.cell)[vertex], copy.corners[a], scale * share});
+          shares.push_back({solid.grid.nodes(copy.cell)[vertex], copy.corners[a], scale * share});
   }
   return merged(std::move(shares));
 }

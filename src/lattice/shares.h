@@ -28,7 +28,6 @@ struct Share {
 std::array<double, 8> shape_integrals(const grid::Tetrahedron& t);
 
 /// Sorted by node, then by corner; each pair once; each mass positive.
-std::vector<Share> material_shares(const grid::Grid& grid, const grid::Cuts& cuts, const grid::CellComplex& complex,
-                                   double density);
+std::vector<Share> material_shares(const grid::Solid& solid, double density);
 
 } // namespace kerf::lattice

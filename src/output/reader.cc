@@ -103,7 +103,7 @@ Surface Reader::surface(const std::string& body, const std::size_t index) const 
   return {h5::read_items<std::uint32_t, Triangle>(group, "triangles"),
           h5::read_vector<std::uint16_t>(group, "label"),
           h5::read_items<double, Vec3>(group, "rest_position"),
-          {h5::read_vector<std::uint64_t>(group, "weights/row_start"),
+          {h5::read_vector<std::uint32_t>(group, "weights/row_start"),
            h5::read_vector<std::uint32_t>(group, "weights/column"), h5::read_vector<double>(group, "weights/value")}};
 }
 

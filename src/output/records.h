@@ -2,6 +2,7 @@
 
 /// What goes into a run's file and comes out of it again: plain records, the same for writing and reading.
 
+#include "base/interpolation.h"
 #include "base/timer.h"
 #include "base/vec.h"
 
@@ -60,19 +61,12 @@ struct Complex {
   Points rest_positions;            ///< per corner [m], rest configuration
 };
 
-/// A sparse matrix by rows: entries row_starts[i] .. row_starts[i + 1] belong to row i.
-struct SparseRows {
-  std::vector<std::uint64_t> row_starts; ///< n_rows + 1
-  std::vector<std::uint32_t> columns;
-  std::vector<double> values;
-};
-
 /// A body's closed surface; it follows the corners by x_surface = W x_corners.
 struct Surface {
   std::vector<Triangle> triangles;
   std::vector<std::uint16_t> labels; ///< per triangle: which cut revealed it, 0 for the skin
   Points rest_positions;             ///< per vertex [m], rest configuration
-  SparseRows weights;                ///< W [1], vertices x corners
+  Interpolation weights;             ///< W [1], vertices x corners
 };
 
 /// One body at one output step, for writing.

@@ -76,16 +76,16 @@ struct Sources {
   }
 };
 
-void fill_sources(const grid::Grid& grid, const grid::CellComplex& complex, const NodePairs& pairs, CornerMap& map) {
-  const auto rows = rows_of(complex, pairs);
-  std::vector<Sources> sources(complex.n_corners());
-  for (const grid::Copy& copy : complex.copies)
+void fill_sources(const grid::Solid& solid, const NodePairs& pairs, CornerMap& map) {
+  const auto rows = rows_of(solid.complex, pairs);
+  std::vector<Sources> sources(solid.complex.n_corners());
+  for (const grid::Copy& copy : solid.complex.copies)
     for (unsigned v = 0; v < 8; ++v)
       for (unsigned real = 0; real < 8; ++real)
         if (copy.nodes >> real & 1)
-          sources[copy.corners[v].value].offer(std::popcount(v ^ real), rows[complex.node[copy.corners[real]]]);
-  for (const auto& [c, node] : grid::followed_nodes(grid, complex))
-    for (const grid::CornerId corner : complex.copies[c].corners)
+          sources[copy.corners[v].value].offer(std::popcount(v ^ real), rows[solid.complex.node[copy.corners[real]]]);
+  for (const auto& [c, node] : grid::followed_nodes(solid))
+    for (const grid::CornerId corner : solid.complex.copies[c].corners)
       sources[corner.value].offer(far, rows[node]);
   map.source_start.push_back(0);
   for (Sources& s : sources) {
@@ -118,14 +118,13 @@ NodePairs find_node_pairs(const grid::Grid& grid, const Phyxels& phyxels) {
   return pairs;
 }
 
-CornerMap build_corner_map(const grid::Grid& grid, const grid::CellComplex& complex, const Phyxels& phyxels,
-                           const std::span<const grid::CopyId> copies, const NodePairs& pairs,
-                           const std::span<const Sight> sights) {
+CornerMap build_corner_map(const grid::Solid& solid, const Phyxels& phyxels, const std::span<const grid::CopyId> copies,
+                           const NodePairs& pairs, const std::span<const Sight> sights) {
   CornerMap map;
   map.rest = phyxels.rest;
-  map.corners = grid::rest_positions(grid, complex);
-  fill_rows(complex, phyxels, copies, pairs, sights, map);
-  fill_sources(grid, complex, pairs, map);
+  map.corners = grid::rest_positions(solid);
+  fill_rows(solid.complex, phyxels, copies, pairs, sights, map);
+  fill_sources(solid, pairs, map);
   return map;
 }
 

@@ -43,8 +43,8 @@ struct CornerMap {
 };
 
 /// `copies`: the copy of each phyxel (copies_around()); `sights`: of each of pairs.pairs.
-CornerMap build_corner_map(const grid::Grid& grid, const grid::CellComplex& complex, const Phyxels& phyxels,
-                           std::span<const grid::CopyId> copies, const NodePairs& pairs, std::span<const Sight> sights);
+CornerMap build_corner_map(const grid::Solid& solid, const Phyxels& phyxels, std::span<const grid::CopyId> copies,
+                           const NodePairs& pairs, std::span<const Sight> sights);
 
 /// Positions of the corners [m] from positions [m] and gradients [1] of the phyxels.
 void follow(const CornerMap& map, const Points& x, const std::vector<Mat3>& F, Points& corners);

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "grid/locate.h"
 #include "pba/point_grid.h"
 #include "pba/region.h"
 
@@ -76,21 +77,20 @@ std::vector<double> make_supports(const Points& points, const PhyxelOptions& opt
   return supports;
 }
 
-Phyxels fill(const grid::Grid& grid, const grid::Cuts& cuts, const grid::CellComplex& complex,
-             const PhyxelOptions& options) {
+Phyxels fill(const grid::Solid& solid, const PhyxelOptions& options) {
   SamplingOptions sampling = options.sampling;
   if (sampling.spacing == 0)
-    sampling.spacing = grid.h();
-  const auto inside = [&](const Vec3& p) { return copy_around(grid, cuts, complex, p).valid(); };
+    sampling.spacing = solid.grid.h();
+  const auto inside = [&](const Vec3& p) { return copy_around(solid, p).valid(); };
   Phyxels phyxels;
-  phyxels.rest = sample(bounds(grid, cuts, complex), inside, sampling);
+  phyxels.rest = sample(bounds(solid), inside, sampling);
   constexpr std::size_t fewest = 4; // a gradient in space takes three neighbours
   if (phyxels.size() < fewest)
     throw ParameterError({.path = "Spacing [m]",
                           .value = to_text(sampling.spacing),
                           .rule = "the body must hold at least 4 phyxels, and holds " + std::to_string(phyxels.size()),
                           .remedy = "Use a smaller spacing"});
-  phyxels.volume = voronoi_volumes(phyxels.rest, crumbs(grid, cuts, complex, 0.5 * sampling.spacing));
+  phyxels.volume = voronoi_volumes(phyxels.rest, crumbs(solid, 0.5 * sampling.spacing));
   phyxels.support = make_supports(phyxels.rest, options);
   return phyxels;
 }

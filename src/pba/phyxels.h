@@ -8,7 +8,7 @@
 /// is there. Departs from Mueller and others, who take mass over density by kernel sums: these know no skin, and give
 /// a phyxel on a face twice the volume of one inside, on an edge four times.
 
-#include "grid/complex.h"
+#include "grid/solid.h"
 #include "pba/sampling.h"
 
 namespace kerf::pba {
@@ -36,8 +36,7 @@ struct PhyxelOptions {
 };
 
 /// Fills the material of a body. Throws ParameterError for fewer than 4 phyxels, and where make_supports() does.
-Phyxels fill(const grid::Grid& grid, const grid::Cuts& cuts, const grid::CellComplex& complex,
-             const PhyxelOptions& options);
+Phyxels fill(const grid::Solid& solid, const PhyxelOptions& options);
 
 /// Volume [m^3] of each point: that of the parts of which it is the nearest point. A point that is the nearest of none
 /// takes a thousandth of the mean; then all are scaled to the sum of the parts.

@@ -20,7 +20,7 @@ class OnCorners : public Physics {
   OnCorners(const CutBody& body, ModelMaker make_model, IntegratorMaker make_integrator)
     : make_model_(std::move(make_model)),
       make_integrator_(std::move(make_integrator)),
-      rest_(grid::rest_positions(body.grid, body.complex)),
+      rest_(grid::rest_positions(body.solid)),
       model_(make_model_(body)) {
     make_stepper(body);
   }
@@ -32,28 +32,28 @@ class OnCorners : public Physics {
     return stepper_->step(state, loads, dt);
   }
 
-  void follow_cut(const CutBody& body, const NewCut& cut, dynamics::State& state) override {
+  void follow_cut(const CutBody& body, const grid::CutChange& change, dynamics::State& state) override {
     for (Points* of_corners : {&rest_, &state.x, &state.v})
-      grid::inherit(cut.change, *of_corners);
+      grid::inherit(change, *of_corners);
     for (auto& [name, values] : state.history)
-      if (values.size() == cut.change.n_corners_before)
-        grid::inherit(cut.change, values);
+      if (values.size() == change.n_corners_before)
+        grid::inherit(change, values);
     dynamics::forget_forces(state);
-    follow_cut_with_model(body, cut);
+    follow_cut_with_model(body, change);
     make_stepper(body);
   }
 
   const Points& corners(const dynamics::State& state) const override { return state.x; }
-  dynamics::Interpolation carry(const dynamics::Interpolation& of_corners) const override { return of_corners; }
+  Interpolation carry(const Interpolation& of_corners) const override { return of_corners; }
 
   const dynamics::Stepper& stepper() const { return *stepper_; }
 
  private:
-  void follow_cut_with_model(const CutBody& body, const NewCut&) { model_ = make_model_(body); }
+  void follow_cut_with_model(const CutBody& body, const grid::CutChange&) { model_ = make_model_(body); }
   /// Both are made again from what the body is now.
   void make_stepper(const CutBody& body) {
     // The complex outlives the call, as the stepper asks at once.
-    stepper_ = make_integrator_(*model_, [&body] { return corner_pieces(body.complex); });
+    stepper_ = make_integrator_(*model_, [&body] { return corner_pieces(body.solid.complex); });
   }
 
   ModelMaker make_model_;
@@ -65,9 +65,8 @@ class OnCorners : public Physics {
 
 /// Elements are brought up to date where the cut is, and stay elsewhere.
 template <>
-inline void OnCorners<fem::Hexahedra>::follow_cut_with_model(const CutBody& body, const NewCut& cut) {
-  const auto changed = fem::changed_copies(body.grid, body.complex, cut.change, cut.edges);
-  model_->update(body.grid, body.cuts, body.complex, changed);
+inline void OnCorners<fem::Hexahedra>::follow_cut_with_model(const CutBody& body, const grid::CutChange& change) {
+  model_->update(body.solid, change.reshaped);
 }
 
 using Elements = OnCorners<fem::Hexahedra>;

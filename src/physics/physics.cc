@@ -1,7 +1,7 @@
 #include "physics/physics.h"
 
+#include "grid/locate.h"
 #include "grid/shape.h"
-#include "pba/region.h"
 
 namespace kerf::physics {
 
@@ -18,37 +18,18 @@ std::vector<std::uint32_t> corner_pieces(const grid::CellComplex& complex) {
   return pieces;
 }
 
-dynamics::Interpolation surface_points(const surface::Surface& surface) {
-  dynamics::Interpolation points;
-  points.start = surface.weights.row_start;
-  points.weights = surface.weights.values;
-  points.corners.reserve(surface.weights.corners.size());
-  for (const grid::CornerId corner : surface.weights.corners)
-    points.corners.push_back(corner.value);
-  return points;
-}
-
-grid::CopyId copy_at(const CutBody& body, const Vec3& rest) {
-  const double reach = 1e-6 * body.grid.h(); // what lies on the skin belongs to the body
-  const auto copy_around = [&](const Vec3& p) { return pba::copy_around(body.grid, body.cuts, body.complex, p); };
-  grid::CopyId copy = copy_around(rest);
-  for (int corner = 0; corner < 8 && !copy.valid(); ++corner)
-    copy = copy_around(rest + reach * Vec3(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1));
-  return copy;
-}
-
-dynamics::Interpolation body_point(const CutBody& body, const Vec3& rest) {
-  dynamics::Interpolation point;
-  const grid::CopyId c = copy_at(body, rest);
+Interpolation body_point(const CutBody& body, const Vec3& rest) {
+  Interpolation point;
+  const grid::CopyId c = grid::copy_at(body.solid, rest);
   if (!c.valid())
     return point;
-  const grid::Copy& copy = body.complex.copies[c];
-  const Vec3 origin = body.grid.position(body.grid.nodes(copy.cell)[0]);
+  const grid::Copy& copy = body.solid.complex.copies[c];
+  const Vec3 origin = body.solid.grid.position(body.solid.grid.nodes(copy.cell)[0]);
   std::array<std::uint32_t, 8> corners;
   std::array<double, 8> weights;
   for (int v = 0; v < 8; ++v) {
     corners[v] = copy.corners[v].value;
-    weights[v] = grid::shape(v, (rest - origin) / body.grid.h());
+    weights[v] = grid::shape(v, (rest - origin) / body.solid.grid.h());
   }
   point.add_point(corners, weights);
   return point;

@@ -4,9 +4,9 @@
 /// particles, which are the unknowns of its State: the corners of the copies, or samples of its own. Blades, surface and
 /// images see corners only, so every backend moves the very same cut.
 
-#include "dynamics/interpolation.h"
+#include "base/interpolation.h"
 #include "dynamics/stepper.h"
-#include "grid/complex.h"
+#include "grid/solid.h"
 #include "surface/surface.h"
 
 #include <functional>
@@ -16,16 +16,8 @@ namespace kerf::physics {
 
 /// The body that a backend lives in. Refers to what must outlive it.
 struct CutBody {
-  const grid::Grid& grid;
-  const grid::Cuts& cuts;
-  const grid::CellComplex& complex;
+  const grid::Solid& solid;
   const surface::Surface& surface;
-};
-
-/// What a cut has done to the body.
-struct NewCut {
-  std::span<const grid::EdgeId> edges;
-  const grid::ComplexChange& change;
 };
 
 /// The piece of each particle, 0, 1, ...: asked for by those who need it.
@@ -48,7 +40,7 @@ class Physics {
   virtual dynamics::StepReport step(dynamics::State& state, const dynamics::Loads& loads, double dt) = 0;
 
   /// Follows a cut of the body, and so does the state: new particles take what their parents have.
-  virtual void follow_cut(const CutBody& body, const NewCut& cut, dynamics::State& state) = 0;
+  virtual void follow_cut(const CutBody& body, const grid::CutChange& change, dynamics::State& state) = 0;
   /// Does a step's share of what cuts have left to do.
   virtual void catch_up(const CutBody&) {}
 
@@ -58,7 +50,7 @@ class Physics {
   virtual const Points& corners(const dynamics::State& state) const = 0;
   /// Points that follow corners, as points that follow particles: for forces on them. Sums of weights, and of weights
   /// times rest positions, stay what they are.
-  virtual dynamics::Interpolation carry(const dynamics::Interpolation& of_corners) const = 0;
+  virtual Interpolation carry(const Interpolation& of_corners) const = 0;
 };
 
 /// A body at rest: all particles where they are at rest, at time 0.
@@ -67,13 +59,7 @@ dynamics::State state_at_rest(const Physics& physics);
 /// The piece of each corner.
 std::vector<std::uint32_t> corner_pieces(const grid::CellComplex& complex);
 
-/// The vertices of a surface as points that follow corners.
-dynamics::Interpolation surface_points(const surface::Surface& surface);
-
-/// The copy whose material holds a rest point [m], or has it on its skin; invalid elsewhere.
-grid::CopyId copy_at(const CutBody& body, const Vec3& rest);
-
 /// A rest point [m] as a point that follows corners; no point where the body has no material.
-dynamics::Interpolation body_point(const CutBody& body, const Vec3& rest);
+Interpolation body_point(const CutBody& body, const Vec3& rest);
 
 } // namespace kerf::physics

@@ -1,6 +1,7 @@
 #include "physics/phyxels.h"
 
 #include "base/union_find.h"
+#include "grid/locate.h"
 
 #include <Eigen/Eigenvalues>
 
@@ -56,8 +57,8 @@ bool Phyxels::ByCoordinates::operator()(const Face& a, const Face& b) const {
 Phyxels::Phyxels(const CutBody& body, const PhyxelsOptions& options, StepperMaker make_stepper)
   : options_(options),
     make_stepper_(std::move(make_stepper)),
-    model_(pba::fill(body.grid, body.cuts, body.complex, options.phyxels), options.material, options.model),
-    node_pairs_(pba::find_node_pairs(body.grid, model_.phyxels())) {
+    model_(pba::fill(body.solid, options.phyxels), options.material, options.model),
+    node_pairs_(pba::find_node_pairs(body.solid.grid, model_.phyxels())) {
   const auto& neighbours = model_.neighbours();
   sights_of_phyxels_ = pba::clear_sights(rest(), rest(), neighbours.pairs);
   sights_of_nodes_ = pba::clear_sights(node_pairs_.rest, rest(), node_pairs_.pairs);
@@ -96,9 +97,9 @@ void Phyxels::add_faces(const surface::Surface& surface, const bool of_skin) {
 }
 
 void Phyxels::find_pieces(const CutBody& body) {
-  copies_ = pba::copies_around(body.grid, body.cuts, body.complex, rest());
-  phyxel_pieces_ = pba::phyxel_pieces(body.complex, copies_);
-  node_pieces_ = pba::node_pieces(body.complex, node_pairs_);
+  copies_ = grid::copies_around(body.solid, rest());
+  phyxel_pieces_ = pba::phyxel_pieces(body.solid.complex, copies_);
+  node_pieces_ = pba::node_pieces(body.solid.complex, node_pairs_);
 }
 
 bool Phyxels::hold_together(std::vector<pba::Sight>& sights) const {
@@ -134,7 +135,7 @@ void Phyxels::build_map(const CutBody& body) {
     find_pieces(body);
   std::vector<pba::Sight> parted = sights_of_nodes_;
   pba::part(node_pairs_.pairs, node_pieces_, phyxel_pieces_, parted);
-  map_ = pba::build_corner_map(body.grid, body.complex, model_.phyxels(), copies_, node_pairs_, parted);
+  map_ = pba::build_corner_map(body.solid, model_.phyxels(), copies_, node_pairs_, parted);
   parted = sights_of_phyxels_;
   pba::part(model_.neighbours().pairs, phyxel_pieces_, phyxel_pieces_, parted);
   model_.update(parted);
@@ -143,7 +144,7 @@ void Phyxels::build_map(const CutBody& body) {
   is_stale_ = false;
 }
 
-void Phyxels::follow_cut(const CutBody& body, const NewCut&, dynamics::State& state) {
+void Phyxels::follow_cut(const CutBody& body, const grid::CutChange&, dynamics::State& state) {
   if (!sights_)
     begin_to_look(body.surface);
   add_faces(body.surface, false);
@@ -194,8 +195,8 @@ void Phyxels::add_row(const std::uint32_t row, const Vec3& point, const double f
   }
 }
 
-dynamics::Interpolation Phyxels::carry(const dynamics::Interpolation& of_corners) const {
-  dynamics::Interpolation of_phyxels;
+Interpolation Phyxels::carry(const Interpolation& of_corners) const {
+  Interpolation of_phyxels;
   std::vector<std::uint32_t> phyxels;
   std::vector<double> weights;
   for (std::size_t i = 0; i < of_corners.n_points(); ++i) {
@@ -205,7 +206,7 @@ dynamics::Interpolation Phyxels::carry(const dynamics::Interpolation& of_corners
       const auto corner = of_corners.corners[k];
       const auto first = map_.source_start[corner], last = map_.source_start[corner + 1];
       for (auto s = first; s < last; ++s)
-        add_row(map_.source[s], map_.corners[corner], of_corners.weights[k] / (last - first), phyxels, weights);
+        add_row(map_.source[s], map_.corners[corner], of_corners.values[k] / (last - first), phyxels, weights);
     }
     of_phyxels.add_point(phyxels, weights);
   }

@@ -52,13 +52,13 @@ class Phyxels : public Physics {
   pba::PhyxelModel& model() override { return model_; }
   const Points& rest() const override { return model_.phyxels().rest; }
   dynamics::StepReport step(dynamics::State& state, const dynamics::Loads& loads, double dt) override;
-  void follow_cut(const CutBody& body, const NewCut& cut, dynamics::State& state) override;
+  void follow_cut(const CutBody& body, const grid::CutChange& change, dynamics::State& state) override;
   void catch_up(const CutBody& body) override;
   void follow(const dynamics::State& state) override;
   const Points& corners(const dynamics::State&) const override { return corners_; }
   /// Point by point the weights of (2.33), corrected to first order: so forces keep their torque where three phyxels
   /// and more are in sight that are not in a row.
-  dynamics::Interpolation carry(const dynamics::Interpolation& of_corners) const override;
+  Interpolation carry(const Interpolation& of_corners) const override;
 
   const dynamics::Stepper& stepper() const { return *stepper_; }
   const pba::CornerMap& map() const { return map_; }

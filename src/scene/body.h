@@ -3,14 +3,8 @@
 /// A body of the scene: its grid, what cuts it, its physics, and how all of it follows a cut.
 
 #include "base/timer.h"
-#include "cut/blade.h"
-#include "cut/cut_surface.h"
-#include "cut/edge_boxes.h"
-#include "cut/open_ends.h"
-#include "cut/passed.h"
-#include "cut/pending.h"
+#include "cut/cutter.h"
 #include "geometry/triangle_mesh.h"
-#include "grid/complex.h"
 #include "physics/physics.h"
 #include "scene/accounts.h"
 #include "scene/region.h"
@@ -56,28 +50,14 @@ struct Observable {
   std::function<double(const Body&)> value;
 };
 
-/// What only a body in a scene that cuts needs.
-struct Cutting {
-  cut::PendingCuts pending;
-  surface::SurfaceIndex surface_index;
-  std::optional<cut::EdgeBoxes> boxes;  ///< around the edges; there from start() on
-  std::vector<cut::PassedCells> passed; ///< by label, from 1
-  std::vector<cut::OpenEnds> open_ends; ///< by label, from 1
-  Points x_before;                      ///< where the corners were when the blades were met last [m]
-  std::vector<std::size_t> n_cut_edges; ///< by label, from 1: the blades, then the cut surfaces
-  std::size_t n_double_crossings = 0;   ///< edges that one cut crossed an even number of times: left uncut
-  std::size_t n_tips = 0;               ///< edges of the skin whose cuts would have cut a tip off alone: left uncut
-};
-
 struct Body {
   std::string name;
-  grid::Grid grid;
-  grid::Cuts cuts;
-  grid::CellComplex complex = {};
+  grid::Solid solid;
   surface::Placement placement = {};
   surface::PlacementCounts placed = {};
   surface::Surface surface = {};
-  Points positions = {}; ///< of the surface's vertices, now [m]
+  surface::SurfaceIndex surface_index = {}; ///< nothing in a scene that cuts nothing
+  Points positions = {};                    ///< of the surface's vertices, now [m]
 
   std::unique_ptr<physics::Physics> physics = nullptr;
   double density = 0;         ///< of its material [kg/m^3]
@@ -93,18 +73,18 @@ struct Body {
   std::vector<Observable> observables = {};
   std::unique_ptr<Accounts> accounts = nullptr; ///< null when no observable needs them
 
-  std::unique_ptr<Cutting> cutting = nullptr; ///< null in a scene that cuts nothing
-  int n_recuts = 0;                           ///< how often the complex has changed
-  double mesh_volume = 0;                     ///< of the input mesh [m^3]
-  double first_volume = 0;                    ///< rest volume of the surface before any cut [m^3]
-  std::size_t n_lost_shells = 0;              ///< shells of the input mesh that hold no grid node
-  std::size_t n_thin_walls = 0;               ///< grid edges through walls of the input mesh that are lost
-  std::size_t n_thin_gaps = 0;                ///< grid edges through gaps of the input mesh that are filled
-  std::size_t n_triple_crossings = 0;         ///< grid edges of the skin that the input mesh crosses 3, 5, ... times
+  std::unique_ptr<cut::Cutter> cutter = nullptr; ///< null in a scene that cuts nothing; labels: blades, then surfaces
+  int n_recuts = 0;                              ///< how often the complex has changed
+  double mesh_volume = 0;                        ///< of the input mesh [m^3]
+  double first_volume = 0;                       ///< rest volume of the surface before any cut [m^3]
+  std::size_t n_lost_shells = 0;                 ///< shells of the input mesh that hold no grid node
+  std::size_t n_thin_walls = 0;                  ///< grid edges through walls of the input mesh that are lost
+  std::size_t n_thin_gaps = 0;                   ///< grid edges through gaps of the input mesh that are filled
+  std::size_t n_triple_crossings = 0;            ///< grid edges of the skin that the input mesh crosses 3, 5, ... times
 };
 
 /// What the physics sees of a body.
-inline physics::CutBody seen(const Body& body) { return {body.grid, body.cuts, body.complex, body.surface}; }
+inline physics::CutBody seen(const Body& body) { return {body.solid, body.surface}; }
 
 /// Where the corners are now [m].
 inline const Points& corners(const Body& body) { return body.physics->corners(body.state); }

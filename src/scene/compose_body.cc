@@ -46,7 +46,7 @@ std::string describe_physics(const Section& section, const BodyParameters& param
     const auto visibility = read_if_written<physics::VisibilityOptions>(section, "Visibility");
     const std::string masks =
       visibility.choice.criterion == "extended visibility" ? ", masks by " + visibility.choice.masks_by : "";
-    const std::string sight = body.cutting ? visibility.choice.criterion + masks : "no visibility: nothing cuts";
+    const std::string sight = body.cutter ? visibility.choice.criterion + masks : "no visibility: nothing cuts";
     return line("point-based animation, ", body.physics->rest().size(), " phyxels, ", sight, ", ",
                 parameters.integrator, "; left out: Element, Integration, Law");
   }
@@ -70,7 +70,7 @@ Body compose_body(const Section& section, const GravityParameters* gravity, cons
     const ScopedTimer timer(world.setup_seconds, "cut");
     return embed_mesh(section, parameters, mesh);
   }();
-  Body body{section.name(), std::move(embedding.grid), std::move(embedding.cuts)};
+  Body body{section.name(), std::move(embedding.solid)};
   body.placement.sharp_angle = parameters.sharp_angle;
   body.mesh_volume = geometry::volume(mesh);
   body.n_thin_walls = embedding.n_thin_walls;
@@ -83,15 +83,13 @@ Body compose_body(const Section& section, const GravityParameters* gravity, cons
   body.loads.mass_damping = damping.mass;
   body.loads.stiffness_damping = damping.stiffness;
   compose_loads(section, floors, body);
-  if (const std::size_t n_cuts = world.blades.size() + world.cut_surfaces.size(); n_cuts > 0) {
-    body.cutting = std::make_unique<Cutting>();
-    body.cutting->n_cut_edges.assign(n_cuts, 0);
-  }
+  if (const std::size_t n_cuts = world.blades.size() + world.cut_surfaces.size(); n_cuts > 0)
+    body.cutter = std::make_unique<cut::Cutter>(n_cuts);
   start(body, mesh, physics_maker(section, parameters, world.time_step), world.setup_seconds);
   require_sound_loads(section, world.n_steps * world.time_step, body);
   world.composition.push_back(line("body ", body.name, ": ", mesh.triangles.size(), " mesh triangles in ",
-                                   body.grid.n_cells(), " cells of ", parameters.cube_edge, " m, ",
-                                   body.complex.n_corners(), " corners, ", body.surface.triangles.size(),
+                                   body.solid.grid.n_cells(), " cells of ", parameters.cube_edge, " m, ",
+                                   body.solid.complex.n_corners(), " corners, ", body.surface.triangles.size(),
                                    " surface triangles"));
   world.composition.push_back(line("body ", body.name, ": ", describe_physics(section, parameters, body), ", ",
                                    body.regions.size(), " supports, ", body.load_makers.size(), " loads"));

@@ -61,7 +61,7 @@ std::vector<double> volumes(const Body& body) {
 /// The triangles of the faces ("skin", "revealed", "all") whose rest centres are in a region.
 dynamics::SurfacePatch patch_of(const Body& body, const std::string& faces, const Region& region) {
   const surface::Surface& surface = body.surface;
-  dynamics::SurfacePatch patch{body.physics->carry(physics::surface_points(surface)), surface.rest, {}};
+  dynamics::SurfacePatch patch{body.physics->carry(surface.weights), surface.rest, {}};
   for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
     const bool is_skin = surface.labels[t] == 0;
     if ((faces == "skin" && !is_skin) || (faces == "revealed" && is_skin))
@@ -86,7 +86,7 @@ void compose_skin_support(const Section& section, const Section& body_section, B
     throw section.complaint("Hold at", "lattice shape matching takes loads explicitly, and the skin's are too stiff",
                             "Write 'set Hold at = corners', or choose another backend");
   const double stiffness = section.read<SupportParameters>().skin_stiffness *
-                           read_if_written<material::Elastic>(body_section, "Material").youngs_modulus / body.grid.h();
+                           read_if_written<material::Elastic>(body_section, "Material").youngs_modulus / body.solid.grid.h();
   const SupportRegion support = compose_support(section);
   body.load_makers.push_back({support.name, [=](const Body& b, LoadList& loads) {
                                 loads.push_back(std::make_unique<dynamics::SkinSupport>(
@@ -107,7 +107,7 @@ void compose_support(const Section& section, const Section& body_section, Body& 
 /// Vertices of the surface, each with a third of the rest area of its triangles.
 dynamics::ContactPoints contact_points(const Body& body) {
   const surface::Surface& surface = body.surface;
-  dynamics::ContactPoints contact{body.physics->carry(physics::surface_points(surface)),
+  dynamics::ContactPoints contact{body.physics->carry(surface.weights),
                                   std::vector<double>(surface.rest.size(), 0.0)};
   for (const auto& triangle : surface.triangles) {
     const auto& [a, b, c] = triangle;
@@ -206,7 +206,7 @@ void require_resolved_friction(const Section& section, const std::vector<const S
 /// Skin must be there from the start; what cuts will reveal may not be there yet.
 void require_loaded_triangles(const Section& section, const dynamics::PatchParameters& parameters, const Body& body) {
   if (parameters.faces == "revealed") {
-    if (!body.cutting)
+    if (!body.cutter)
       throw section.complaint("Faces", "nothing in the scene cuts, so no face is ever revealed",
                               "Add a blade, scissors or a cut surface, or load the skin");
     return;
@@ -235,7 +235,7 @@ std::vector<const Section*> corner_supports(const Section& section) {
 }
 
 void require_no_contradiction(const Section& section, const double time, const Body& body) {
-  const double tolerance = 1e-6 * body.grid.h();
+  const double tolerance = 1e-6 * body.solid.grid.h();
   const auto found = dynamics::find_contradiction(body.loads, time, tolerance);
   if (!found)
     return;
@@ -292,8 +292,8 @@ void require_static_answer(const Section& section, const Body& body) {
   const auto parameters = read_if_written<QuasiStaticSceneParameters>(section, "Quasi-static");
   if (parameters.free_modes == "allow")
     return;
-  const bool are_corners = body.physics->rest().size() == body.complex.n_corners();
-  const auto pieces = are_corners ? physics::corner_pieces(body.complex) : std::vector<std::uint32_t>();
+  const bool are_corners = body.physics->rest().size() == body.solid.complex.n_corners();
+  const auto pieces = are_corners ? physics::corner_pieces(body.solid.complex) : std::vector<std::uint32_t>();
   try {
     dynamics::require_supported(dynamics::free_rigid_modes(body.physics->model(), body.loads, 0, body.state.x, pieces));
   } catch (const ParameterError& error) {

@@ -27,8 +27,7 @@ PhysicsMaker make_elements(const Section& section, const BodyParameters& paramet
     .inertia = integrator.inertia};
   return [=](const CutBody& body) {
     return std::make_unique<physics::Elements>(
-      body, [=](const CutBody& b) { return std::make_unique<fem::Hexahedra>(b.grid, b.cuts, b.complex, options); },
-      integrator.make);
+      body, [=](const CutBody& b) { return std::make_unique<fem::Hexahedra>(b.solid, options); }, integrator.make);
   };
 }
 
@@ -40,7 +39,7 @@ PhysicsMaker make_springs(const Section& section, const BodyParameters& paramete
       body,
       [=](const CutBody& b) {
         return std::make_unique<spring::MassSpring>(
-          b.grid, b.cuts, b.complex, spring::MassSpringOptions{material.density, material.youngs_modulus});
+          b.solid, spring::MassSpringOptions{material.density, material.youngs_modulus});
       },
       integrator.make);
   };
@@ -100,7 +99,7 @@ PhysicsMaker make_lattice(const Section& section, const BodyParameters& paramete
   const lattice::MatchingOptions options = matching_options(section, lattice, parameters.cube_edge, dt);
   return [=](const CutBody& body) {
     return std::make_unique<physics::ShapeMatching>(
-      body, [=](const CutBody& b) { return std::make_unique<lattice::Matching>(b.grid, b.cuts, b.complex, options); },
+      body, [=](const CutBody& b) { return std::make_unique<lattice::Matching>(b.solid, options); },
       [=](lattice::Matching& model, const physics::PiecesOfParticles&) {
         return std::make_unique<lattice::ShapeMatching>(model, lattice.region_damping);
       });

@@ -35,7 +35,7 @@ void append(const Mat3& tensor, std::vector<double>& values) {
 }
 
 std::vector<double> displacements(const Body& body) {
-  const Points rest = grid::rest_positions(body.grid, body.complex);
+  const Points rest = grid::rest_positions(body.solid);
   std::vector<double> values;
   for (std::size_t c = 0; c < rest.size(); ++c)
     for (int axis = 0; axis < 3; ++axis)
@@ -89,15 +89,15 @@ std::vector<output::Field> fields_at_corners(const Body& body, const std::vector
 }
 
 std::vector<output::Field> at_vertices(const surface::Surface& surface, const std::vector<output::Field>& of_corners) {
-  const surface::Weights& W = surface.weights;
+  const Interpolation& W = surface.weights;
   std::vector<output::Field> fields;
   for (const output::Field& from : of_corners) {
     const std::size_t n = from.n_components;
-    output::Field field{from.name, from.unit, n, std::vector<double>(n * W.n_rows(), 0.0)};
-    for (std::size_t row = 0; row < W.n_rows(); ++row)
-      for (auto k = W.row_start[row]; k < W.row_start[row + 1]; ++k)
+    output::Field field{from.name, from.unit, n, std::vector<double>(n * W.n_points(), 0.0)};
+    for (std::size_t row = 0; row < W.n_points(); ++row)
+      for (auto k = W.start[row]; k < W.start[row + 1]; ++k)
         for (std::size_t i = 0; i < n; ++i)
-          field.values[n * row + i] += W.values[k] * from.values[n * W.corners[k].value + i];
+          field.values[n * row + i] += W.values[k] * from.values[n * W.corners[k] + i];
     fields.push_back(std::move(field));
   }
   return fields;

@@ -96,15 +96,15 @@ std::vector<Observable> load_forces(const Body& body, const std::vector<std::str
 }
 
 Vec3 cube_coordinates(const Body& body, const Probe& probe) {
-  const grid::CellId cell = body.complex.copies[probe.copy].cell;
-  return (probe.rest - body.grid.position(body.grid.nodes(cell)[0])) / body.grid.h();
+  const grid::CellId cell = body.solid.complex.copies[probe.copy].cell;
+  return (probe.rest - body.solid.grid.position(body.solid.grid.nodes(cell)[0])) / body.solid.grid.h();
 }
 
 Vec3 displacement(const Body& body, const Probe& probe) {
   const Vec3 xi = cube_coordinates(body, probe);
   Vec3 x = Vec3::Zero();
   for (int v = 0; v < 8; ++v)
-    x += grid::shape(v, xi) * corners(body)[body.complex.copies[probe.copy].corners[v].value];
+    x += grid::shape(v, xi) * corners(body)[body.solid.complex.copies[probe.copy].corners[v].value];
   return x - probe.rest;
 }
 
@@ -113,8 +113,8 @@ Mat3 strain(const Body& body, const Probe& probe) {
   const Vec3 xi = cube_coordinates(body, probe);
   Mat3 F = Mat3::Zero();
   for (int v = 0; v < 8; ++v)
-    F += corners(body)[body.complex.copies[probe.copy].corners[v].value] *
-         (grid::shape_gradient(v, xi) / body.grid.h()).transpose();
+    F += corners(body)[body.solid.complex.copies[probe.copy].corners[v].value] *
+         (grid::shape_gradient(v, xi) / body.solid.grid.h()).transpose();
   return 0.5 * (F.transpose() * F - Mat3::Identity());
 }
 
@@ -184,38 +184,32 @@ const std::vector<Observable>& body_observables() {
      [](const Body& b) { return rest_volume(b) - b.first_volume; }},
     {"largest displacement", "m", "of a surface vertex from its rest position", largest_displacement},
     {"pieces", "1", "connected components of the copies",
-     [](const Body& b) { return count(grid::n_pieces(b.complex)); }},
-    {"copies", "1", "cells, once per connected component", [](const Body& b) { return count(b.complex.n_copies()); }},
+     [](const Body& b) { return count(grid::n_pieces(b.solid.complex)); }},
+    {"copies", "1", "cells, once per connected component", [](const Body& b) { return count(b.solid.complex.n_copies()); }},
     {"surface triangles", "1", "of the closed surface",
      [](const Body& b) { return count(b.surface.triangles.size()); }},
     {"cut edges", "1", "grid edges cut by blades and cut surfaces",
      [](const Body& b) {
        std::size_t n = 0;
-       if (b.cutting)
-         for (const std::size_t m : b.cutting->n_cut_edges)
+       if (b.cutter)
+         for (const std::size_t m : b.cutter->counts().n_cut_edges)
            n += m;
        return count(n);
      }},
     {"waiting cuts", "1", "cut edges that wait: at most two edges of a cell are cut in a step (thesis §2.4.3)",
-     [](const Body& b) { return b.cutting ? count(b.cutting->pending.size()) : 0.0; }},
+     [](const Body& b) { return b.cutter ? count(b.cutter->n_waiting()) : 0.0; }},
     {"double crossings", "1", "grid edges that one sweep or cut surface crossed an even number of times, left uncut",
-     [](const Body& b) { return b.cutting ? count(b.cutting->n_double_crossings) : 0.0; }},
+     [](const Body& b) { return b.cutter ? count(b.cutter->counts().n_double_crossings) : 0.0; }},
     {"thin walls", "1", "grid edges through walls of the mesh between two empty nodes, which are lost",
      [](const Body& b) { return count(b.n_thin_walls); }},
     {"thin gaps", "1", "grid edges through gaps of the mesh between two material nodes, which are filled",
      [](const Body& b) { return count(b.n_thin_gaps); }},
     {"tips left whole", "1",
      "grid edges cut between skin and last node where nothing else holds what is cut off, left uncut",
-     [](const Body& b) { return b.cutting ? count(b.cutting->n_tips) : 0.0; }},
+     [](const Body& b) { return b.cutter ? count(b.cutter->counts().n_tips) : 0.0; }},
     {"cells passed uncut", "1",
      "cells whose material a blade passed through without cutting one of their edges, so far (cut/passed.h)",
-     [](const Body& b) {
-       std::size_t n = 0;
-       if (b.cutting)
-         for (const cut::PassedCells& passed : b.cutting->passed)
-           n += passed.cells().size();
-       return count(n);
-     }},
+     [](const Body& b) { return b.cutter ? count(b.cutter->n_passed_cells()) : 0.0; }},
     {"solver iterations", "1", "of the linear solver in the step",
      [](const Body& b) { return count(b.report.n_iterations); }},
     {"Newton iterations", "1", "in the step", [](const Body& b) { return count(b.report.n_newton); }},

@@ -59,32 +59,26 @@ output::Schema make_schema(const World& world) {
 
 output::Complex to_record(const Body& body) {
   output::Complex record;
-  for (const grid::Copy& copy : body.complex.copies) {
+  for (const grid::Copy& copy : body.solid.complex.copies) {
     std::array<std::uint32_t, 8> corners;
     for (int v = 0; v < 8; ++v)
       corners[v] = copy.corners[v].value;
     record.corners.push_back(corners);
-    record.cells.push_back(body.grid.index(body.grid.nodes(copy.cell)[0]));
+    record.cells.push_back(body.solid.grid.index(body.solid.grid.nodes(copy.cell)[0]));
     record.nodes.push_back(copy.nodes);
     record.rinds.push_back(copy.rinds);
   }
-  record.rest_positions = grid::rest_positions(body.grid, body.complex);
+  record.rest_positions = grid::rest_positions(body.solid);
   return record;
 }
 
 output::Surface to_record(const surface::Surface& surface) {
-  output::Surface record{surface.triangles, surface.labels, surface.rest, {}};
-  const surface::Weights& w = surface.weights;
-  record.weights.row_starts.assign(w.row_start.begin(), w.row_start.end());
-  for (const grid::CornerId corner : w.corners)
-    record.weights.columns.push_back(corner.value);
-  record.weights.values = w.values;
-  return record;
+  return {surface.triangles, surface.labels, surface.rest, surface.weights};
 }
 
 /// Of the corners, where they are the particles of the body's physics.
 std::span<const Vec3> velocities(const Body& body) {
-  return body.state.v.size() == body.complex.n_corners() && &corners(body) == &body.state.x
+  return body.state.v.size() == body.solid.complex.n_corners() && &corners(body) == &body.state.x
            ? std::span<const Vec3>(body.state.v)
            : std::span<const Vec3>();
 }

@@ -18,7 +18,7 @@ void require_sound(const Body& body, const double dt) {
     sum += body.state.x[i].sum();
     fastest = std::max(fastest, body.state.v[i].norm());
   }
-  if (!std::isfinite(sum) || fastest * dt > cells_per_step * body.grid.h())
+  if (!std::isfinite(sum) || fastest * dt > cells_per_step * body.solid.grid.h())
     throw NumericalError("the motion has diverged: the fastest corner moves at " + to_text(fastest) +
                          " m/s. Use a smaller time step");
 }
@@ -49,7 +49,7 @@ void on(const World& world, const Body& body, const int step, const double time,
 void cut(World& world, const int step, Timings& seconds) {
   const double dt = world.time_step, t0 = (step - 1) * dt, t1 = step * dt;
   for (Body& body : world.bodies) {
-    if (!body.cutting)
+    if (!body.cutter)
       continue;
     on(world, body, step, t1, [&] {
       const int n_recuts = body.n_recuts;

@@ -23,11 +23,11 @@ void require_positive(const std::string& path, const double value) {
 }
 
 /// The material's part of the copy's cube [1].
-double fill_of(const grid::Grid& grid, const grid::Cuts& cuts, const grid::Copy& copy) {
+double fill_of(const grid::Solid& solid, const grid::Copy& copy) {
   if (copy.nodes == 0xff)
     return 1;
   double sum = 0;
-  grid::for_each_tetrahedron(grid, cuts, copy, [&](const grid::Tetrahedron& t, int) { sum += grid::volume(t); });
+  grid::for_each_tetrahedron(solid, copy, [&](const grid::Tetrahedron& t, int) { sum += grid::volume(t); });
   return sum;
 }
 
@@ -48,19 +48,18 @@ std::vector<Pair> pairs_of_cube() {
 
 } // namespace
 
-MassSpring::MassSpring(const grid::Grid& grid, const grid::Cuts& cuts, const grid::CellComplex& complex,
-                       const MassSpringOptions& options)
-  : mass_(complex.n_corners(), 0.0) {
+MassSpring::MassSpring(const grid::Solid& solid, const MassSpringOptions& options)
+  : mass_(solid.complex.n_corners(), 0.0) {
   require_positive("Density [kg/m^3]", options.density);
   require_positive("Young's modulus [Pa]", options.youngs_modulus);
-  std::vector<double> fill(complex.n_copies());
+  std::vector<double> fill(solid.complex.n_copies());
   parallel_for(
-    fill.size(), [&](const std::size_t c) { fill[c] = fill_of(grid, cuts, complex.copies[grid::CopyId(c)]); }, 256);
-  const double eighth = options.density * grid.h() * grid.h() * grid.h() / 8;
-  for (const auto c : ids<grid::CopyId>(complex.n_copies()))
-    for (const auto corner : complex.copies[c].corners)
+    fill.size(), [&](const std::size_t c) { fill[c] = fill_of(solid, solid.complex.copies[grid::CopyId(c)]); }, 256);
+  const double eighth = options.density * solid.grid.h() * solid.grid.h() * solid.grid.h() / 8;
+  for (const auto c : ids<grid::CopyId>(solid.complex.n_copies()))
+    for (const auto corner : solid.complex.copies[c].corners)
       mass_[corner.value] += fill[c.value] * eighth;
-  add_springs(complex, fill, grid.h(), options);
+  add_springs(solid.complex, fill, solid.grid.h(), options);
   find_users();
 }
 

@@ -19,7 +19,7 @@
 /// only follows Hooke's law; springs know no inside out, and a body that is turned inside out stays so.
 
 #include "dynamics/model.h"
-#include "grid/complex.h"
+#include "grid/solid.h"
 
 namespace kerf::spring {
 
@@ -34,8 +34,7 @@ constexpr double poissons_ratio = 0.25;
 class MassSpring : public dynamics::ElasticModel, public dynamics::StiffnessMatrix {
  public:
   /// Throws ParameterError for an option that makes no sense.
-  MassSpring(const grid::Grid& grid, const grid::Cuts& cuts, const grid::CellComplex& complex,
-             const MassSpringOptions& options);
+  MassSpring(const grid::Solid& solid, const MassSpringOptions& options);
 
   std::span<const double> lumped_mass() const override { return mass_; }
   double energy(const Points& x) const override;

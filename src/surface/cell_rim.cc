@@ -17,11 +17,15 @@ namespace {
 /// One cell with a rim.
 class CellRim {
  public:
-  CellRim(const grid::Grid& grid, const grid::Cuts& cuts, const View& view)
-    : cuts_(cuts), view_(view), h_(grid.h()), faces_(grid.faces(view.cell)), skin_(*cuts.skin_point(view.cell)) {
+  CellRim(const grid::Solid& solid, const View& view)
+    : cuts_(solid.cuts),
+      view_(view),
+      h_(solid.grid.h()),
+      faces_(solid.grid.faces(view.cell)),
+      skin_(*solid.cuts.skin_point(view.cell)) {
     unsigned lines = 0;
     for (int face = 0; face < cube::n_faces; ++face) {
-      in_face_[face] = grid::face_point(grid, cuts, faces_[face]);
+      in_face_[face] = grid::face_point(solid, faces_[face]);
       for (const grid::SkinArc& arc : grid::skin_arcs(face, view.now.material))
         if (view.now.is_rim(face, arc)) {
           rim_.push_back(in_face_[face]);
@@ -147,34 +151,34 @@ class CellRim {
 
 } // namespace
 
-void for_each_skin_triangle(const grid::Grid& grid, const grid::Cuts& cuts, const View& view,
+void for_each_skin_triangle(const grid::Solid& solid, const View& view,
                             const std::function<void(const std::array<Vec3, 3>&)>& f) {
-  const auto faces = grid.faces(view.cell);
-  const Vec3 centre = cuts.skin_point(view.cell)->p;
+  const auto faces = solid.grid.faces(view.cell);
+  const Vec3 centre = solid.cuts.skin_point(view.cell)->p;
   for (int face = 0; face < cube::n_faces; ++face)
     for (const grid::SkinArc& arc : grid::skin_arcs(face, view.now.material)) {
-      const grid::SkinPoint* const of_skin = cuts.skin_point(faces[face]);
-      const Vec3 corner = of_skin ? of_skin->p : grid::face_point(grid, cuts, faces[face]);
+      const grid::SkinPoint* const of_skin = solid.cuts.skin_point(faces[face]);
+      const Vec3 corner = of_skin ? of_skin->p : grid::face_point(solid, faces[face]);
       for (const int line : arc.lines)
         f({view.skin_at(line), corner, centre});
     }
 }
 
-bool rim_passes(const grid::Grid& grid, const grid::Cuts& cuts, const View& view) {
-  const auto faces = grid.faces(view.cell);
+bool rim_passes(const grid::Solid& solid, const View& view) {
+  const auto faces = solid.grid.faces(view.cell);
   int n = 0;
   for (int face = 0; face < cube::n_faces; ++face)
     for (const grid::SkinArc& arc : grid::skin_arcs(face, view.now.material))
       if (view.now.is_rim(face, arc)) {
-        if (!cuts.skin_point(faces[face])->has_rim)
+        if (!solid.cuts.skin_point(faces[face])->has_rim)
           return false;
         ++n;
       }
   return n > 1;
 }
 
-std::optional<RimVertex> place_on_rim(const grid::Grid& grid, const grid::Cuts& cuts, const View& view) {
-  return CellRim(grid, cuts, view).place();
+std::optional<RimVertex> place_on_rim(const grid::Solid& solid, const View& view) {
+  return CellRim(solid, view).place();
 }
 
 } // namespace kerf::surface

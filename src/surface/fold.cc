@@ -30,10 +30,10 @@ void add(std::array<double, 8>& integrals, const grid::Tetrahedron& t) {
 
 } // namespace
 
-bool is_folded(const grid::Grid& grid, const grid::Cuts& cuts, const View& view) {
+bool is_folded(const grid::Solid& solid, const View& view) {
   bool may_be = false;
   for_each_bit(view.now.skin, [&](const int line) {
-    for (const auto& t : grid::under_skin(grid, cuts, view.cell, line))
+    for (const auto& t : grid::under_skin(solid, view.cell, line))
       may_be |= grid::volume(t) < -negligible;
   });
   if (!may_be)
@@ -41,7 +41,7 @@ bool is_folded(const grid::Grid& grid, const grid::Cuts& cuts, const View& view)
   for (const grid::Part& part : parts_of(view.now)) {
     std::array<double, 8> integrals{};
     const grid::Copy copy{view.cell, part.nodes, part.rinds, {}, {}};
-    grid::for_each_tetrahedron(grid, cuts, copy, [&](const grid::Tetrahedron& t, int) { add(integrals, t); });
+    grid::for_each_tetrahedron(solid, copy, [&](const grid::Tetrahedron& t, int) { add(integrals, t); });
     for (const double integral : integrals)
       if (integral < -negligible)
         return true;

@@ -9,7 +9,7 @@
 namespace kerf::surface {
 
 /// Has a part of the cell negative mass at one of its corners?
-bool is_folded(const grid::Grid& grid, const grid::Cuts& cuts, const View& view);
+bool is_folded(const grid::Solid& solid, const View& view);
 
 /// Does the line of the skin in a face pass below the cuts' vertex p, seen from one of its ends? `skin` is the skin's
 /// vertex.

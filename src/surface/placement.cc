@@ -17,10 +17,9 @@ namespace kerf::surface {
 
 namespace cube = grid::cube;
 using grid::CellId;
-using grid::Cuts;
 using grid::EdgeId;
 using grid::FaceId;
-using grid::Grid;
+using grid::Solid;
 
 namespace {
 
@@ -76,35 +75,36 @@ class Joint {
 
 class Placer {
  public:
-  Placer(const Grid& grid, Cuts& cuts, const Placement& placement)
-    : grid_(grid),
-      cuts_(cuts),
+  Placer(Solid& solid, const Placement& placement)
+    : solid_(solid),
       join_(placement.sharp_angle * std::numbers::pi / 180),
       threshold_(std::tan(0.5 * placement.sharp_angle * std::numbers::pi / 180)) {}
 
-  PlacementCounts run() {
-    for (const CellId c : changed_cells()) {
-      const View view = look_at(grid_, cuts_, c);
+  PlacementCounts run() { return run(changed_cells()); }
+  /// `cells` ascending: all around new cuts, and beside newly parted faces that blades have cut.
+  PlacementCounts run(const std::span<const CellId> cells) {
+    for (const CellId c : cells) {
+      const View view = look_at(solid_, c);
       const unsigned new_lines = view.now.cut & ~view.old;
       if (new_lines == 0 && view.parted_faces == 0)
         continue;
-      const auto faces = grid_.faces(c);
+      const auto faces = solid_.grid.faces(c);
       for (int face = 0; face < cube::n_faces; ++face) {
         const FaceId f = faces[face];
-        const bool first_seen = (face & 1) == 1 || !grid_.cells(f)[0].valid(); // else done from the cell below
+        const bool first_seen = (face & 1) == 1 || !solid_.grid.cells(f)[0].valid(); // else done from the cell below
         const bool has_changed = (new_lines & cube::lines_of_face[face]) != 0 || (view.parted_faces >> face & 1) != 0;
         if (has_changed && first_seen) {
-          cuts_.set_point(f, place_face(view, face));
+          solid_.cuts.set_point(f, place_face(view, face));
           count_held();
         }
       }
-      const Vec3 before = grid::cell_point(grid_, cuts_, c);
-      cuts_.set_point(c, place_cell(view));
+      const Vec3 before = grid::cell_point(solid_, c);
+      solid_.cuts.set_point(c, place_cell(view));
       if (view.now.has_two_points())
         unfold(view, before);
       count_held();
     }
-    cuts_.settle();
+    solid_.cuts.settle();
     return counts_;
   }
 
@@ -117,15 +117,15 @@ class Placer {
   /// Those around new cuts, and beside newly parted faces; ascending.
   std::vector<CellId> changed_cells() const {
     std::vector<EdgeId> edges;
-    for (const grid::EdgeCut& cut : cuts_.new_cuts())
+    for (const grid::EdgeCut& cut : solid_.cuts.new_cuts())
       edges.push_back(cut.edge);
     std::vector<CellId> cells;
-    for (const grid::TouchedCell& touched : grid::touched_cells(grid_, edges))
+    for (const grid::TouchedCell& touched : grid::touched_cells(solid_.grid, edges))
       cells.push_back(touched.cell);
-    if (cuts_.newly_parted().empty())
+    if (solid_.cuts.newly_parted().empty())
       return cells;
-    for (const FaceId f : cuts_.newly_parted())
-      for (const CellId c : grid_.cells(f))
+    for (const FaceId f : solid_.cuts.newly_parted())
+      for (const CellId c : solid_.grid.cells(f))
         if (c.valid())
           cells.push_back(c);
     std::sort(cells.begin(), cells.end());
@@ -167,49 +167,49 @@ class Placer {
   }
 
   Vec3 place_face(const View& view, const int face) {
-    const FaceId f = grid_.faces(view.cell)[face];
+    const FaceId f = solid_.grid.faces(view.cell)[face];
     const int normal = cube::face_axis(face);
     Directions in_face{Mat3::Identity(), 2};
     in_face.projection(normal, normal) = 0;
     const unsigned vertices = cube::face_mask(face), lines = cube::lines_of_face[face];
     if (!view.now.has_two_points(face))
-      return place_in(make_site(view, vertices, lines, in_face), normal, grid::face_point(grid_, cuts_, f),
-                      grid::centre(grid_, f));
+      return place_in(make_site(view, vertices, lines, in_face), normal, grid::face_point(solid_, f),
+                      grid::centre(solid_.grid, f));
     const int n_old = keep_skin_point(f) ? 0 : parts_of(view.before(), face).n;
     const int n_before = parts_of(view.without_blades(), face).n;
     for (const grid::SkinArc& arc : grid::skin_arcs(face, view.now.material))
-      if (view.now.is_rim(face, arc) && (cuts_.skin_point(f)->has_rim || n_old <= n_before))
+      if (view.now.is_rim(face, arc) && (solid_.cuts.skin_point(f)->has_rim || n_old <= n_before))
         return place_on_rim(view, face, arc);
     const Site site = make_site_of_blades(view, lines, in_face, n_before, n_old, parts_of(view.now, face).n);
-    const Vec3 p = place_in(site, normal, grid::face_point(grid_, cuts_, f), middle_of_material(site, vertices));
+    const Vec3 p = place_in(site, normal, grid::face_point(solid_, f), middle_of_material(site, vertices));
     const Vec3 from = mean_point_of_blades(view, lines);
     double part = 1;
     for (const grid::SkinArc& arc : grid::skin_arcs(face, view.now.material))
-      part = std::min(part, part_before_line(from, p, view.skin_at(arc.lines[0]), cuts_.skin_point(f)->p,
+      part = std::min(part, part_before_line(from, p, view.skin_at(arc.lines[0]), solid_.cuts.skin_point(f)->p,
                                              view.skin_at(arc.lines[1]), normal));
     const Vec3 q = inside(site, hold_below_skin(from, p, part));
-    const grid::SkinPoint& skin = *cuts_.skin_point(f);
+    const grid::SkinPoint& skin = *solid_.cuts.skin_point(f);
     if (!is_folded(view, face, q, skin))
       return q;
     is_held_ = true;
-    const Vec3 before = grid::face_point(grid_, cuts_, f);
+    const Vec3 before = grid::face_point(solid_, f);
     return is_folded(view, face, before, skin) ? skin.p : before;
   }
 
   Vec3 place_cell(const View& view) {
-    const Vec3 p = grid::cell_point(grid_, cuts_, view.cell);
+    const Vec3 p = grid::cell_point(solid_, view.cell);
     if (!view.now.has_two_points())
       return place_in(make_site(view, 0xff, 0xfff, Directions()), no_axis, p, 0.5 * (view.lower + view.upper));
     const int n_old = keep_skin_point(view.cell) ? 0 : parts_of(view.before()).n;
     const int n_before = parts_of(view.without_blades()).n;
-    if (cuts_.skin_point(view.cell)->has_rim)
+    if (solid_.cuts.skin_point(view.cell)->has_rim)
       return p; // an earlier rim stays
-    if (n_old <= n_before && rim_passes(grid_, cuts_, view)) {
-      const auto on_rim = surface::place_on_rim(grid_, cuts_, view);
+    if (n_old <= n_before && rim_passes(solid_, view)) {
+      const auto on_rim = surface::place_on_rim(solid_, view);
       is_held_ |= !on_rim;
       if (on_rim) {
         ++counts_.n_placed;
-        cuts_.set_skin_point(view.cell, on_rim->skin);
+        solid_.cuts.set_skin_point(view.cell, on_rim->skin);
         return on_rim->p;
       }
     }
@@ -217,7 +217,7 @@ class Placer {
     const Vec3 q = place_in(site, no_axis, p, middle_of_material(site, 0xff));
     const Vec3 from = mean_point_of_blades(view, 0xfff);
     double part = 1;
-    for_each_skin_triangle(grid_, cuts_, view, [&](const std::array<Vec3, 3>& triangle) {
+    for_each_skin_triangle(solid_, view, [&](const std::array<Vec3, 3>& triangle) {
       part = std::min(part, part_before(from, q, triangle));
     });
     return inside(site, hold_below_skin(from, q, part));
@@ -225,11 +225,11 @@ class Placer {
 
   /// Where the cell's vertex folds the skin, it goes back to where it was, on earlier cuts, or else to the skin's.
   void unfold(const View& view, const Vec3& before) {
-    const Vec3 of_skin = cuts_.skin_point(view.cell)->p;
+    const Vec3 of_skin = solid_.cuts.skin_point(view.cell)->p;
     for (const Vec3& p : {before, of_skin})
-      if (is_folded(grid_, cuts_, view)) {
-        cuts_.set_point(view.cell, p);
-        cuts_.set_skin_point(view.cell, {of_skin});
+      if (is_folded(solid_, view)) {
+        solid_.cuts.set_point(view.cell, p);
+        solid_.cuts.set_skin_point(view.cell, {of_skin});
         is_held_ = true;
       }
   }
@@ -268,19 +268,19 @@ class Placer {
   /// is so.
   template <class Id>
   bool keep_skin_point(const Id id) {
-    if (cuts_.skin_point(id))
+    if (solid_.cuts.skin_point(id))
       return false;
-    cuts_.set_skin_point(id, {point_of(id)});
+    solid_.cuts.set_skin_point(id, {point_of(id)});
     return true;
   }
-  Vec3 point_of(const FaceId f) const { return grid::face_point(grid_, cuts_, f); }
-  Vec3 point_of(const CellId c) const { return grid::cell_point(grid_, cuts_, c); }
+  Vec3 point_of(const FaceId f) const { return grid::face_point(solid_, f); }
+  Vec3 point_of(const CellId c) const { return grid::cell_point(solid_, c); }
 
   Vec3 place_on_rim(const View& view, const int face, const grid::SkinArc& arc) {
-    const FaceId f = grid_.faces(view.cell)[face];
-    grid::SkinPoint of_skin = *cuts_.skin_point(f);
+    const FaceId f = solid_.grid.faces(view.cell)[face];
+    grid::SkinPoint of_skin = *solid_.cuts.skin_point(f);
     if (of_skin.has_rim)
-      return grid::face_point(grid_, cuts_, f); // an earlier rim stays
+      return grid::face_point(solid_, f); // an earlier rim stays
     const RimPoint rim = meet_line(view.mean_plane(view.now.blades() & grid::CellCuts::beside(arc)),
                                    view.skin_at(arc.lines[0]), of_skin.p, view.skin_at(arc.lines[1]));
     of_skin.lines &= static_cast<std::uint16_t>(~(1u << cube::place_in_face(face, arc.lines[1 - rim.side_of_corner])));
@@ -293,7 +293,7 @@ class Placer {
       is_held_ = true;
       return of_skin.p;
     }
-    cuts_.set_skin_point(f, of_skin);
+    solid_.cuts.set_skin_point(f, of_skin);
     return p;
   }
 
@@ -358,7 +358,7 @@ class Placer {
     return hold_inside(site, start, moves_to_planes(start, site.open, site.inside, threshold_));
   }
 
-  double margin() const { return grid::min_edge_parameter * grid_.h(); }
+  double margin() const { return grid::min_edge_parameter * solid_.grid.h(); }
 
   /// p, no closer to the sides of the site than a vertex may be.
   Vec3 inside(const Site& site, const Vec3& p) const {
@@ -375,7 +375,7 @@ class Placer {
     const double reach = 2 * margin();
     Planes sides;
     for (int axis = 0; axis < 3; ++axis)
-      if (site.reaches(axis) && (p[axis] < lower[axis] + reach || p[axis] > lower[axis] + grid_.h() - reach))
+      if (site.reaches(axis) && (p[axis] < lower[axis] + reach || p[axis] > lower[axis] + solid_.grid.h() - reach))
         sides.push_back({p, Vec3::Unit(axis)});
     return sides;
   }
@@ -399,7 +399,7 @@ class Placer {
     for (int axis = 0; axis < 3; ++axis) {
       if (!site.reaches(axis))
         continue;
-      const double low = lower[axis] + margin(), high = lower[axis] + grid_.h() - margin();
+      const double low = lower[axis] + margin(), high = lower[axis] + solid_.grid.h() - margin();
       const double end = p[axis] + move[axis];
       if (end > high + slack)
         part = std::min(part, (high - p[axis]) / move[axis]);
@@ -409,8 +409,7 @@ class Placer {
     return std::max(part, 0.0);
   }
 
-  const Grid& grid_;
-  Cuts& cuts_;
+  Solid& solid_;
   Joint join_;
   double threshold_;
   PlacementCounts counts_;
@@ -419,8 +418,10 @@ class Placer {
 
 } // namespace
 
-PlacementCounts place(const Grid& grid, Cuts& cuts, const Placement& placement) {
-  return Placer(grid, cuts, placement).run();
+PlacementCounts place(Solid& solid, const Placement& placement) { return Placer(solid, placement).run(); }
+
+PlacementCounts place(Solid& solid, const grid::CutChange& change, const Placement& placement) {
+  return Placer(solid, placement).run(change.cells);
 }
 
 } // namespace kerf::surface

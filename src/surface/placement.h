@@ -24,7 +24,7 @@
 /// and one in a cell, so that where cuts cross on the skin, or a rim bends twice in a cell, it passes by the skin's
 /// vertex; of a plane, the tip of a sharp edge that lies between the grid's edges is lost.
 
-#include "grid/cuts.h"
+#include "grid/solid.h"
 
 namespace kerf::surface {
 
@@ -41,6 +41,8 @@ struct PlacementCounts {
 
 /// Places the vertices in all faces and cells that are newly cut, or whose skin is newly parted beside a cut; then all
 /// cuts are settled.
-PlacementCounts place(const grid::Grid& grid, grid::Cuts& cuts, const Placement& placement);
+PlacementCounts place(grid::Solid& solid, const Placement& placement);
+/// The same where it is known what has been cut since.
+PlacementCounts place(grid::Solid& solid, const grid::CutChange& change, const Placement& placement);
 
 } // namespace kerf::surface

@@ -17,18 +17,15 @@ void reserve_vertices(Surface& surface) {
   constexpr double entries_per_vertex = (2 + 2 * 4 + 8) / 4.0, spare = 1.05;
   const auto n = static_cast<std::size_t>(spare * 0.5 * static_cast<double>(surface.triangles.size()));
   surface.rest.reserve(n);
-  surface.weights.row_start.reserve(n + 1);
+  surface.weights.start.reserve(n + 1);
   surface.weights.corners.reserve(static_cast<std::size_t>(entries_per_vertex * static_cast<double>(n)));
   surface.weights.values.reserve(static_cast<std::size_t>(entries_per_vertex * static_cast<double>(n)));
 }
 
-/// The cells whose part of the surface an update writes.
-std::vector<CellId> cells_to_write(const Grid& grid, const CellComplex& complex,
-                                   const std::span<const EdgeId> new_edges, const grid::ComplexChange& change) {
+/// The cells whose part of the surface an update writes: those whose material or corners are others.
+std::vector<CellId> cells_of(const grid::CutChange& change, const CellComplex& complex) {
   std::vector<CellId> cells;
-  for (const grid::TouchedCell& touched : grid::touched_cells(grid, new_edges))
-    cells.push_back(touched.cell);
-  for (const CopyId c : change.copies)
+  for (const CopyId c : change.reshaped)
     cells.push_back(complex.copies[c].cell);
   std::sort(cells.begin(), cells.end());
   cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
@@ -43,7 +40,7 @@ std::size_t bytes(const std::vector<T>& items) {
 } // namespace
 
 std::size_t Surface::n_bytes() const {
-  return bytes(rest) + bytes(triangles) + bytes(labels) + bytes(copies) + bytes(weights.row_start) +
+  return bytes(rest) + bytes(triangles) + bytes(labels) + bytes(copies) + bytes(weights.start) +
          bytes(weights.corners) + bytes(weights.values);
 }
 
@@ -53,39 +50,31 @@ std::size_t SurfaceIndex::n_bytes() const {
          bytes(first_triangle) + bytes(centres.items());
 }
 
-Surface build_surface(const Grid& grid, const Cuts& cuts, const CellComplex& complex) {
+Surface build_surface(const Solid& solid) {
   SurfaceIndex index;
-  return build_surface(grid, cuts, complex, index);
+  return build_surface(solid, index);
 }
 
-Surface build_surface(const Grid& grid, const Cuts& cuts, const CellComplex& complex, SurfaceIndex& index) {
+Surface build_surface(const Solid& solid, SurfaceIndex& index) {
   Surface surface;
   index = {};
-  index.first_face_vertex = index.first_sheet_vertex = grid::SparseIndex<FaceId>(grid.n_faces());
-  index.centres.reserve(complex.copies.items().capacity());
-  Writer writer(grid, cuts, complex, surface, index, Known::kept);
+  index.first_face_vertex = index.first_sheet_vertex = grid::SparseIndex<FaceId>(solid.grid.n_faces());
+  index.centres.reserve(solid.complex.copies.items().capacity());
+  Writer writer(solid, surface, index, Known::kept);
   reserve_vertices(surface);
   writer.write_all();
   return surface;
 }
 
-void update_surface(const Grid& grid, const Cuts& cuts, const CellComplex& complex,
-                    const std::span<const EdgeId> new_edges, const grid::ComplexChange& change, Surface& surface,
-                    SurfaceIndex& index) {
-  Writer writer(grid, cuts, complex, surface, index, Known::renewed);
-  for (const CellId cell : cells_to_write(grid, complex, new_edges, change))
+void update_surface(const Solid& solid, const grid::CutChange& change, Surface& surface, SurfaceIndex& index) {
+  Writer writer(solid, surface, index, Known::renewed);
+  for (const CellId cell : cells_of(change, solid.complex))
     writer.write(cell);
 }
 
 void follow(const Surface& surface, const Points& corners, Points& positions) {
-  const Weights& w = surface.weights;
-  positions.resize(w.n_rows());
-  parallel_for(positions.size(), [&](const std::size_t i) {
-    Vec3 p = Vec3::Zero();
-    for (std::uint32_t k = w.row_start[i]; k < w.row_start[i + 1]; ++k)
-      p += w.values[k] * corners[w.corners[k].value];
-    positions[i] = p;
-  });
+  positions.resize(surface.weights.n_points());
+  parallel_for(positions.size(), [&](const std::size_t i) { positions[i] = surface.weights.at(i, corners); });
 }
 
 double enclosed_volume(const Points& positions, const std::vector<Triangle>& triangles) {

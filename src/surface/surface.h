@@ -16,27 +16,19 @@
 /// what is new, and appends; a vertex of skin or cut that is taken over by the other sheet may remain without
 /// triangles. The order of vertices depends on the sequence of cuts, the surface does not.
 
-#include "grid/complex.h"
+#include "base/interpolation.h"
+#include "grid/solid.h"
 
 #include <unordered_map>
 
 namespace kerf::surface {
-
-/// The rows of W: entries row_start[i] .. row_start[i + 1] belong to vertex i.
-struct Weights {
-  std::vector<std::uint32_t> row_start = {0}; ///< n_vertices + 1
-  std::vector<grid::CornerId> corners;
-  std::vector<double> values; ///< [1]; those of a vertex sum to 1
-
-  std::size_t n_rows() const { return row_start.size() - 1; }
-};
 
 struct Surface {
   Points rest;                        ///< rest positions of the vertices [m]
   std::vector<Triangle> triangles;    ///< counter-clockwise from outside; those of a cut edge follow each other
   std::vector<grid::CutLabel> labels; ///< per triangle: which cut made it; 0 is the skin
   std::vector<grid::CopyId> copies;   ///< per triangle: the copy whose material it bounds
-  Weights weights;
+  Interpolation weights;              ///< W; those of a vertex sum to 1
 
   /// Memory of all tables [B].
   std::size_t n_bytes() const;
@@ -59,17 +51,14 @@ struct SurfaceIndex {
   std::size_t n_bytes() const;
 };
 
-Surface build_surface(const grid::Grid& grid, const grid::Cuts& cuts, const grid::CellComplex& complex);
+Surface build_surface(const grid::Solid& solid);
 
 /// The same, for a surface that will be updated.
-Surface build_surface(const grid::Grid& grid, const grid::Cuts& cuts, const grid::CellComplex& complex,
-                      SurfaceIndex& index);
+Surface build_surface(const grid::Solid& solid, SurfaceIndex& index);
 
-/// Brings surface and index up to date with edges that were cut, and their vertices placed, since they were built or
-/// updated last. `change` is what update_complex said of the same edges. The cost depends on the new edges alone.
-void update_surface(const grid::Grid& grid, const grid::Cuts& cuts, const grid::CellComplex& complex,
-                    std::span<const grid::EdgeId> new_edges, const grid::ComplexChange& change, Surface& surface,
-                    SurfaceIndex& index);
+/// Brings surface and index up to date with a cut whose vertices have been placed; of earlier ones they know. The cost
+/// depends on the new edges alone.
+void update_surface(const grid::Solid& solid, const grid::CutChange& change, Surface& surface, SurfaceIndex& index);
 
 /// x_surface = W x_corners [m].
 void follow(const Surface& surface, const Points& corners, Points& positions);

@@ -40,36 +40,36 @@ Vec3 View::inside(const Vec3& p) const {
   return p.cwiseMax(lower + margin).cwiseMin(upper - margin);
 }
 
-View look_at(const grid::Grid& grid, const grid::Cuts& cuts, const grid::CellId c) {
+View look_at(const grid::Solid& solid, const grid::CellId c) {
   View view;
   view.cell = c;
-  const auto edges = grid.edges(c);
-  Index3 index = grid.index(grid.nodes(c)[0]);
-  view.lower = grid.lattice().position(index);
+  const auto edges = solid.grid.edges(c);
+  Index3 index = solid.grid.index(solid.grid.nodes(c)[0]);
+  view.lower = solid.grid.lattice().position(index);
   for (int& i : index)
     ++i;
-  view.upper = grid.lattice().position(index);
+  view.upper = solid.grid.lattice().position(index);
   const auto plane_of = [&](const int line, const grid::EdgeCut& cut) -> Plane {
     const int v = cube::line_vertices[line][0];
     Vec3 p(v & 1 ? view.upper[0] : view.lower[0], v & 2 ? view.upper[1] : view.lower[1],
            v & 4 ? view.upper[2] : view.lower[2]);
-    p[cube::line_axis(line)] += grid.h() * cut.t;
+    p[cube::line_axis(line)] += solid.grid.h() * cut.t;
     return {p, cut.normal};
   };
   unsigned cut_lines = 0;
   for (int line = 0; line < cube::n_lines; ++line)
-    if (const grid::EdgeCut* cut = cuts.find(edges[line])) {
+    if (const grid::EdgeCut* cut = solid.cuts.find(edges[line])) {
       cut_lines |= 1u << line;
-      view.old |= unsigned(!cuts.is_new(edges[line])) << line;
+      view.old |= unsigned(!solid.cuts.is_new(edges[line])) << line;
       view.planes[line] = plane_of(line, *cut);
       view.labels[line] = cut->label;
     }
-  view.now = grid::cuts_of(grid, cuts, c, cut_lines);
-  const auto faces = grid.faces(c);
+  view.now = grid::cuts_of(solid, c, cut_lines);
+  const auto faces = solid.grid.faces(c);
   for (int face = 0; face < cube::n_faces; ++face)
-    view.parted_faces |= unsigned(cuts.is_newly_parted(faces[face]) && view.now.has_two_points(face)) << face;
+    view.parted_faces |= unsigned(solid.cuts.is_newly_parted(faces[face]) && view.now.has_two_points(face)) << face;
   for_each_bit(view.now.twice,
-               [&](const int line) { view.skin_planes[line] = plane_of(line, *cuts.find_outer(edges[line])); });
+               [&](const int line) { view.skin_planes[line] = plane_of(line, *solid.cuts.find_outer(edges[line])); });
   return view;
 }
 

@@ -3,6 +3,7 @@
 /// A cell with its cut edges, as the placement of vertices sees it.
 
 #include "grid/parts.h"
+#include "grid/solid.h"
 #include "surface/planes.h"
 
 namespace kerf::surface {
@@ -38,6 +39,6 @@ struct View {
   Vec3 inside(const Vec3& p) const;
 };
 
-View look_at(const grid::Grid& grid, const grid::Cuts& cuts, grid::CellId c);
+View look_at(const grid::Solid& solid, grid::CellId c);
 
 } // namespace kerf::surface

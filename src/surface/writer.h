@@ -23,6 +23,7 @@ using grid::EdgeId;
 using grid::FaceId;
 using grid::Grid;
 using grid::NodeId;
+using grid::Solid;
 
 inline constexpr std::uint32_t unset = Id<void>::no_value;
 inline constexpr std::size_t triangles_per_end = 8; // two in each of the four cells around an edge
@@ -53,30 +54,30 @@ enum class Known { kept, renewed };
 /// place and weights come from its edge or face alone, so that they are the same bits whichever cell writes them.
 class Writer {
  public:
-  Writer(const Grid& grid, const Cuts& cuts, const CellComplex& complex, Surface& surface, SurfaceIndex& index,
-         const Known known)
-    : grid_(grid), cuts_(cuts), complex_(complex), surface_(surface), index_(index), known_(known) {
+  Writer(const Solid& solid, Surface& surface, SurfaceIndex& index, const Known known)
+    : solid_(solid), surface_(surface), index_(index), known_(known) {
     make_room();
   }
 
   /// All cells with a cut edge.
   void write_all() {
     std::vector<EdgeId> edges;
-    edges.reserve(cuts_.all().size());
-    for (const grid::EdgeCut& cut : cuts_.all())
+    edges.reserve(solid_.cuts.all().size());
+    for (const grid::EdgeCut& cut : solid_.cuts.all())
       edges.push_back(cut.edge);
-    for (const grid::TouchedCell& touched : grid::touched_cells(grid_, edges)) // by which lines is its configuration
+    for (const grid::TouchedCell& touched :
+         grid::touched_cells(solid_.grid, edges)) // by which lines is its configuration
       write(touched.cell, touched.lines);
   }
 
-  void write(const CellId cell) { write(cell, cuts_.configuration(grid_, cell)); }
+  void write(const CellId cell) { write(cell, solid_.cuts.configuration(solid_.grid, cell)); }
 
  private:
   void write(const CellId cell, const unsigned cut_lines) {
     if (cut_lines == 0)
       return;
     enter(cell, cut_lines);
-    if (const grid::CellCuts cell_cuts = grid::cuts_of(grid_, cuts_, cell, cut_lines);
+    if (const grid::CellCuts cell_cuts = grid::cuts_of(solid_, cell, cut_lines);
         cell_cuts.skin != 0 && cell_cuts.blades() != 0) {
       write_sheets(cell_cuts);
       return;
@@ -88,35 +89,35 @@ class Writer {
 
   /// Triangles for all cuts, and tables for all copies and faces.
   void make_room() {
-    const auto cuts = cuts_.all();
+    const auto cuts = solid_.cuts.all();
     std::size_t n = surface_.triangles.size();
     for (std::size_t i = index_.first_triangle.size(); i < cuts.size(); ++i) {
       index_.first_triangle.push_back(static_cast<std::uint32_t>(n));
-      if (cuts_.is_cut_twice(cuts[i].edge) && cuts_.index(cuts[i].edge) == i)
+      if (solid_.cuts.is_cut_twice(cuts[i].edge) && solid_.cuts.index(cuts[i].edge) == i)
         n += 2 * triangles_per_end; // one side is that of the rind
       else
-        for (const NodeId end : grid_.ends(cuts[i].edge))
-          n += grid_.is_material(end) ? triangles_per_end : 0;
+        for (const NodeId end : solid_.grid.ends(cuts[i].edge))
+          n += solid_.grid.is_material(end) ? triangles_per_end : 0;
       surface_.labels.resize(n, cuts[i].label);
     }
     surface_.triangles.resize(n);
     surface_.copies.resize(n);
     index_.edge_vertices.resize(2 * cuts.size(), unset);
-    index_.centres.resize(complex_.n_copies(), unset);
+    index_.centres.resize(solid_.complex.n_copies(), unset);
   }
 
   void enter(const CellId cell, const unsigned cut_lines) {
     cell_ = cell;
-    faces_ = grid_.faces(cell);
-    lower_ = grid_.index(grid_.nodes(cell)[0]);
+    faces_ = solid_.grid.faces(cell);
+    lower_ = solid_.grid.index(solid_.grid.nodes(cell)[0]);
     seen_.reset();
-    const auto edges = grid_.edges(cell);
+    const auto edges = solid_.grid.edges(cell);
     for (unsigned left = cut_lines; left != 0; left &= left - 1)
-      cut_[std::countr_zero(left)] = cuts_.index(edges[std::countr_zero(left)]);
+      cut_[std::countr_zero(left)] = solid_.cuts.index(edges[std::countr_zero(left)]);
     copy_at_.fill(CopyId());
-    for (const CopyId c : complex_.copies_of(cell))
+    for (const CopyId c : solid_.complex.copies_of(cell))
       for (int v = 0; v < cube::n_vertices; ++v)
-        if (complex_.copies[c].nodes >> v & 1)
+        if (solid_.complex.copies[c].nodes >> v & 1)
           copy_at_[v] = c;
   }
 
@@ -156,11 +157,11 @@ class Writer {
       if (is_material && (!of_skin || is_twice))
         write_of_cuts(parts, quad, quad.end, copy_at_[quad.end]);
       if (!is_material && is_twice)
-        write_of_cuts(parts, quad, first_rind + quad.line, complex_.copy_with_rind(cell_, quad.line));
+        write_of_cuts(parts, quad, first_rind + quad.line, solid_.complex.copy_with_rind(cell_, quad.line));
       if (is_material && of_skin) {
         const int item = is_twice ? first_rind + quad.line : quad.end;
         write_of_skin(cell, parts, quad, fans[quad.line], item,
-                      is_twice ? complex_.copy_with_rind(cell_, quad.line) : copy_at_[item]);
+                      is_twice ? solid_.complex.copy_with_rind(cell_, quad.line) : copy_at_[item]);
       }
     }
   }
@@ -169,7 +170,7 @@ class Writer {
 
   /// A quadrilateral of a blade's cut; `item` is what it bounds.
   void write_of_cuts(const std::array<grid::Parts, 6>& parts, const Quad& quad, const int item, const CopyId copy) {
-    const std::uint32_t cut = cuts_.index(grid_.edges(cell_)[quad.line]);
+    const std::uint32_t cut = solid_.cuts.index(solid_.grid.edges(cell_)[quad.line]);
     const bool is_upper = quad.end == cube::line_vertices[quad.line][1];
     const std::uint32_t edge = edge_vertex_of(cut, quad, copy), middle = centre(copy);
     const int f = quad.vertices[1].index, g = quad.vertices[3].index;
@@ -182,7 +183,7 @@ class Writer {
   /// A quadrilateral of the skin, and its walls.
   void write_of_skin(const grid::CellCuts& cell, const std::array<grid::Parts, 6>& parts, const Quad& quad,
                      const int fan, const int item, const CopyId copy) {
-    const std::uint32_t cut = cuts_.outer_index(grid_.edges(cell_)[quad.line]);
+    const std::uint32_t cut = solid_.cuts.outer_index(solid_.grid.edges(cell_)[quad.line]);
     const std::uint32_t edge = edge_vertex_of(cut, quad, copy), middle = skin_centre(fan, copy);
     std::array<std::uint32_t, 2> in_face;
     for (const int i : {0, 1}) {
@@ -222,9 +223,9 @@ class Writer {
     surface_.triangles[t] = turned ? Triangle{skin, middle, rim} : Triangle{skin, rim, middle};
     surface_.triangles[t + 1] = turned ? Triangle{rim, middle, rim_middle} : Triangle{rim, rim_middle, middle};
     surface_.copies[t] = surface_.copies[t + 1] = copy;
-    const bool on_skin = cuts_.skin_point(faces_[face])->has_rim;
+    const bool on_skin = solid_.cuts.skin_point(faces_[face])->has_rim;
     surface_.labels[t] = on_skin ? grid::skin_label : label;
-    surface_.labels[t + 1] = on_skin && cuts_.skin_point(cell_)->has_rim ? grid::skin_label : label;
+    surface_.labels[t + 1] = on_skin && solid_.cuts.skin_point(cell_)->has_rim ? grid::skin_label : label;
   }
 
   /// Of the blade that has cut beside the skin's line in a face.
@@ -232,7 +233,7 @@ class Writer {
     for (const grid::SkinArc& arc : grid::skin_arcs(face, cell.material))
       if (arc.lines[0] == line || arc.lines[1] == line) {
         const int cut = std::countr_zero(cell.blades() & grid::CellCuts::beside(arc));
-        return cuts_.find(grid_.edges(cell_)[cut])->label;
+        return solid_.cuts.find(solid_.grid.edges(cell_)[cut])->label;
       }
     return grid::skin_label;
   }
@@ -260,10 +261,9 @@ class Writer {
                                                         : 8);
     std::uint32_t& id = index_.face_vertices[i];
     if (id == unset || known_ == Known::renewed) {
-      const Vec3 p = sheet == Sheet::skin
-                       ? grid::face_skin_point(grid_, cuts_, faces_[face], cube::place_in_face(face, line))
-                       : grid::face_point(grid_, cuts_, faces_[face]);
-      set(id, p, (p - node_position(cube::face_vertices[face][0])) / grid_.h(), copy, cube::face_mask(face));
+      const Vec3 p = sheet == Sheet::skin ? grid::face_skin_point(solid_, faces_[face], cube::place_in_face(face, line))
+                                          : grid::face_point(solid_, faces_[face]);
+      set(id, p, (p - node_position(cube::face_vertices[face][0])) / solid_.grid.h(), copy, cube::face_mask(face));
     }
     return id;
   }
@@ -272,19 +272,19 @@ class Writer {
     const std::uint64_t key = std::uint64_t(cell_.value) * cube::n_lines + static_cast<unsigned>(line);
     std::uint32_t& id = index_.skin_centres.try_emplace(key, unset).first->second;
     if (id == unset || known_ == Known::renewed)
-      set_centre(id, grid::cell_skin_point(grid_, cuts_, cell_, line), copy);
+      set_centre(id, grid::cell_skin_point(solid_, cell_, line), copy);
     return id;
   }
 
   std::uint32_t centre(const CopyId copy) {
     std::uint32_t& id = index_.centres[copy];
     if (id == unset || known_ == Known::renewed)
-      set_centre(id, grid::cell_point(grid_, cuts_, cell_), copy);
+      set_centre(id, grid::cell_point(solid_, cell_), copy);
     return id;
   }
 
   void set_centre(std::uint32_t& id, const Vec3& p, const CopyId copy) {
-    set(id, p, (p - node_position(0)) / grid_.h(), copy, 0xff);
+    set(id, p, (p - node_position(0)) / solid_.grid.h(), copy, 0xff);
   }
 
   /// The first of n places for the vertices of a face; made where there are none yet.
@@ -298,7 +298,7 @@ class Writer {
 
   /// Of a vertex of the cell.
   Vec3 node_position(const int vertex) const {
-    return grid_.lattice().position(
+    return solid_.grid.lattice().position(
       {lower_[0] + (vertex & 1), lower_[1] + (vertex >> 1 & 1), lower_[2] + (vertex >> 2 & 1)});
   }
 
@@ -314,9 +314,9 @@ class Writer {
   void set_edge_vertex(std::uint32_t& id, const int line, const std::uint32_t cut, const CopyId copy) {
     const auto& [lower, upper] = cube::line_vertices[line];
     const int axis = cube::line_axis(line);
-    const double t = cuts_.all()[cut].t;
+    const double t = solid_.cuts.all()[cut].t;
     Vec3 p = node_position(lower), xi = Vec3::Zero();
-    p[axis] += grid_.h() * t;
+    p[axis] += solid_.grid.h() * t;
     xi[axis] = t;
     set(id, p, xi, copy, (1u << lower) | (1u << upper));
   }
@@ -328,8 +328,9 @@ class Writer {
     const std::uint32_t first = block(index_.first_face_vertex.at(faces_[v.index]), 4);
     std::uint32_t& id = index_.face_vertices[first + place_in_face(v.index, v.side)];
     if (is_wanted(id, place)) {
-      const Vec3 p = grid::face_point(grid_, cuts_, faces_[v.index]);
-      set(id, p, (p - node_position(cube::face_vertices[v.index][0])) / grid_.h(), copy, cube::face_mask(v.index));
+      const Vec3 p = grid::face_point(solid_, faces_[v.index]);
+      set(id, p, (p - node_position(cube::face_vertices[v.index][0])) / solid_.grid.h(), copy,
+          cube::face_mask(v.index));
     }
     return in_cell_[place] = id;
   }
@@ -337,8 +338,8 @@ class Writer {
   std::uint32_t centre(const CopyId copy, const TableVertex& v) {
     std::uint32_t& id = index_.centres[copy];
     if (is_wanted(id, 72 + v.side)) {
-      const Vec3 p = grid::cell_point(grid_, cuts_, cell_);
-      set(id, p, (p - node_position(0)) / grid_.h(), copy, 0xff);
+      const Vec3 p = grid::cell_point(solid_, cell_);
+      set(id, p, (p - node_position(0)) / solid_.grid.h(), copy, 0xff);
     }
     return id;
   }
@@ -352,21 +353,21 @@ class Writer {
 
   /// Writes a vertex at rest position p whose weights go to the corners in `support` (bits) of the copy.
   void set(std::uint32_t& id, const Vec3& p, const Vec3& xi, const CopyId copy, const unsigned support) {
-    Weights& w = surface_.weights;
+    Interpolation& w = surface_.weights;
     if (id == unset) {
       id = static_cast<std::uint32_t>(surface_.rest.size());
       surface_.rest.push_back(p);
-      w.row_start.push_back(w.row_start.back() + static_cast<std::uint32_t>(std::bitset<8>(support).count()));
-      w.corners.resize(w.row_start.back());
-      w.values.resize(w.row_start.back());
+      w.start.push_back(w.start.back() + static_cast<std::uint32_t>(std::bitset<8>(support).count()));
+      w.corners.resize(w.start.back());
+      w.values.resize(w.start.back());
     } else
       surface_.rest[id] = p;
     const auto factors = shape_factors(xi, support);
-    const auto& corners = complex_.copies[copy].corners;
-    std::uint32_t entry = w.row_start[id];
+    const auto& corners = solid_.complex.copies[copy].corners;
+    std::uint32_t entry = w.start[id];
     for (unsigned left = support; left != 0; left &= left - 1, ++entry) {
       const int v = std::countr_zero(left);
-      w.corners[entry] = corners[v];
+      w.corners[entry] = corners[v].value;
       w.values[entry] = factors[0][v & 1] * factors[1][v >> 1 & 1] * factors[2][v >> 2 & 1];
     }
   }
@@ -381,9 +382,7 @@ class Writer {
     return factors;
   }
 
-  const Grid& grid_;
-  const Cuts& cuts_;
-  const CellComplex& complex_;
+  const Solid& solid_;
   const SplittingTable& table_ = splitting_table();
   Surface& surface_;
   SurfaceIndex& index_;
@@ -392,7 +391,7 @@ class Writer {
   CellId cell_;
   std::array<FaceId, 6> faces_;
   Index3 lower_{};
-  std::array<std::uint32_t, 12> cut_; // by line: place in cuts_.all()
+  std::array<std::uint32_t, 12> cut_; // by line: place in Cuts::all()
   std::array<CopyId, 8> copy_at_;
   std::bitset<80> seen_;                  // 24 edge vertices, 48 face vertices, 8 centres
   std::array<std::uint32_t, 80> in_cell_; // ids of seen ones, face vertices only

@@ -1,18 +1,14 @@
 /// What a cut costs by the size of the body, at equal cut area: a blade 16 cubes wide goes 16 cubes deep into boxes of
 /// ever more cells, in steps of 0.9 cubes, as scene/body.cc takes it in, stage by stage; at rest and while the body
-/// drifts and turns with the blade. And what all tables take of memory by the cell. Prints microseconds a touched cell
+/// drifts and turns with the blade. Cutting has a stage of its own that goes with all corners and not with what is cut,
+/// fitting boxes to them: it is timed on boxes beside the cutter's, and taken off. And what all tables take of memory by the cell. Prints microseconds a touched cell
 /// (a cell around an edge that is cut in the step): CPU time of one thread, stage by stage the best of several runs.
 
 #include "base/parallel.h"
-#include "cut/add_cuts.h"
-#include "cut/embed.h"
-#include "cut/open_ends.h"
-#include "cut/passed.h"
-#include "cut/pending.h"
-#include "cut/recut.h"
-#include "grid/touched.h"
+#include "cut/cutter.h"
 #include "surface/placement.h"
 #include "surface/surface.h"
+#include "tests/support/bodies.h"
 
 #include <Eigen/Geometry>
 
@@ -22,13 +18,14 @@
 #include <cstdlib>
 #include <ctime>
 #include <limits>
+#include <numbers>
 #include <vector>
 
 namespace {
 
 using namespace kerf;
 
-enum Stage { fit, find, add, place, split, surface_, passed_, n_stages };
+enum Stage { fit, cut_, place, surface_, n_stages };
 using Seconds = std::array<double, n_stages>;
 
 double cpu_seconds() {
@@ -51,20 +48,15 @@ enum class Motion { none, drift };
 
 /// A body as scene/body.cc keeps it, without physics.
 struct Body {
-  grid::Grid grid;
-  grid::Cuts cuts;
-  grid::CellComplex complex = grid::build_complex(grid, cuts);
+  grid::Solid solid;
   surface::SurfaceIndex index = {};
-  surface::Surface surface = surface::build_surface(grid, cuts, complex, index);
-  Points x = grid::rest_positions(grid, complex), v = x, x_before = x;
-  cut::EdgeBoxes boxes{grid, complex};
-  cut::PendingCuts pending = {};
-  cut::PassedCells passed = {};
-  cut::OpenEnds open_ends = {};
+  surface::Surface surface = surface::build_surface(solid, index);
+  Points x = grid::rest_positions(solid), v = x;
+  cut::Cutter cutter{1};
 
   std::size_t n_bytes() const {
-    return grid.n_bytes() + cuts.n_bytes() + complex.n_bytes() + surface.n_bytes() + index.n_bytes() + boxes.n_bytes() +
-           sizeof(Vec3) * (x.capacity() + v.capacity() + x_before.capacity());
+    return solid.grid.n_bytes() + solid.cuts.n_bytes() + solid.complex.n_bytes() + surface.n_bytes() + index.n_bytes() +
+           cutter.n_bytes() + sizeof(Vec3) * (x.capacity() + v.capacity());
   }
 };
 
@@ -80,35 +72,35 @@ Body make_body(const int n) {
   for (const auto e : ids<grid::EdgeId>(grid.n_edges()))
     if (const auto& [lower, upper] = grid.ends(e); grid.is_material(lower) != grid.is_material(upper))
       cuts.add(grid, {e, 0.5, Vec3::Unit(grid.axis(e)), grid::skin_label});
-  surface::place(grid, cuts, {});
-  Body body{std::move(grid), std::move(cuts)};
-  for (Points* points : {&body.v, &body.x_before})
-    points->reserve(body.x.capacity());
+  grid::Solid solid{std::move(grid), std::move(cuts)};
+  surface::place(solid, {});
+  Body body{support::with_copies(std::move(solid))};
+  body.v.reserve(body.x.capacity());
+  body.cutter.begin(body.solid, body.x);
   return body;
 }
 
-/// Where the body, and the blade with it, is in a step.
-struct Pose {
-  Mat3 turn = Mat3::Identity();
-  Vec3 shift = Vec3::Zero();
-
-  Vec3 operator()(const Vec3& p) const { return turn * p + shift; }
-};
-
-Pose pose_at(const Motion motion, const int step) {
-  if (motion == Motion::none)
-    return {};
-  return {Eigen::AngleAxisd(0.002 * step, Vec3(1, 2, 3).normalized()).toRotationMatrix(), 0.05 * step * Vec3(1, 2, 1)};
+/// By how much the body, and the blade with it, has turned about an axis [rad], and moved [m], in a step.
+const Vec3 axis = Vec3(1, 2, 3).normalized();
+double turn_at(const Motion motion, const int step) { return motion == Motion::none ? 0 : 0.002 * step; }
+Vec3 place_at(const Motion motion, const int step, const Vec3& p) {
+  const Vec3 shift = motion == Motion::none ? Vec3::Zero() : Vec3(0.05 * step * Vec3(1, 2, 1));
+  return Eigen::AngleAxisd(turn_at(motion, step), axis) * p + shift;
 }
 
 constexpr int n_steps = 18;
 constexpr double depth_per_step = 0.9, width = 16;
 
-/// The blade's place at the end of a step, a line across the top of the box that comes down slightly slanted.
-Points blade_at(const int n, const Motion motion, const int step) {
-  const double top = n - 0.2 - depth_per_step * step, middle = 0.5 * n;
-  const Pose pose = pose_at(motion, step);
-  return {pose({middle + 0.31, middle - width / 2, top}), pose({middle + 0.37, middle + width / 2, top + 0.3})};
+/// A line across the top of the box that comes down, slightly slanted; a step a second.
+cut::Blade make_blade(const int n, const Motion motion) {
+  cut::Blade blade{.name = "", .edge = {Vec3::Zero(), Vec3(0.06, width, 0.3)}, .key_frames = {}};
+  const double middle = 0.5 * n;
+  for (int step = 0; step <= n_steps; ++step) {
+    const Vec3 end(middle + 0.31, middle - width / 2, n - 0.2 - depth_per_step * step);
+    blade.key_frames.push_back(
+      {double(step), place_at(motion, step, end), 180 / std::numbers::pi * turn_at(motion, step) * axis});
+  }
+  return blade;
 }
 
 struct Tally {
@@ -116,63 +108,32 @@ struct Tally {
   std::size_t n_touched = 0, n_cut = 0;
 };
 
-void take_in(Body& body, const std::vector<grid::EdgeCut>& released, const std::vector<grid::EdgeId>& ended,
-             Tally& tally) {
-  Seconds& s = tally.seconds;
-  std::vector<grid::EdgeId> edges;
-  timed(s[add], [&] {
-    edges = cut::add_cuts(body.grid, body.cuts, body.complex, body.x, released, cut::Front::possible).edges;
-    edges.insert(edges.end(), ended.begin(), ended.end());
-  });
-  timed(s[passed_], [&] {
-    for (const grid::EdgeId e : edges)
-      body.passed.remove_around(body.grid, e);
-  });
-  timed(s[place], [&] { surface::place(body.grid, body.cuts, {}); });
-  const auto change = timed(s[split], [&] {
-    auto result = grid::update_complex(body.grid, body.cuts, edges, body.complex);
-    for (Points* points : {&body.x, &body.v, &body.x_before})
-      grid::inherit(result, *points);
-    return result;
-  });
-  timed(s[surface_],
-        [&] { surface::update_surface(body.grid, body.cuts, body.complex, edges, change, body.surface, body.index); });
-  timed(s[add], [&] { body.open_ends.note(body.grid, body.cuts, edges, 1); });
-  tally.n_touched += grid::touched_cells(body.grid, edges).size();
-  tally.n_cut += edges.size();
-}
-
 /// The body is built anew: a copy's tables would have no room left, and the first cut would move them.
 Tally cut_through(const int n, const Motion motion) {
   Body body = make_body(n);
+  const cut::Blade blade = make_blade(n, motion);
+  grid::Solid& solid = body.solid;
+  cut::EdgeBoxes boxes(solid);
   Tally tally;
   Seconds& s = tally.seconds;
-  body.boxes.fit(body.x);
   for (int step = 1; step <= n_steps; ++step) {
-    if (motion == Motion::drift) {
-      const Pose pose = pose_at(motion, step);
-      for (std::size_t i = 0; i < body.x.size(); ++i)
-        body.x[i] = pose(body.grid.position(body.complex.node[grid::CornerId(i)]));
-      timed(s[fit], [&] { body.boxes.fit(body.x_before, body.x); });
-    }
-    const cut::BladePath path{{0, 1}, {blade_at(n, motion, step - 1), blade_at(n, motion, step)}};
-    const auto found = timed(s[find], [&] {
-      return cut::cut_edges(path, body.grid, body.cuts, body.complex, body.x_before, body.x, 1, &body.boxes);
-    });
-    std::vector<grid::EdgeId> ended;
-    timed(s[passed_], [&] {
-      std::vector<std::array<Vec3, 3>> strip;
-      cut::add_strip(path.lines[0], path.lines[1], strip);
-      body.passed.pass(strip, found.cuts, body.grid, body.cuts, body.complex, body.x, body.boxes, 1);
-      ended = body.open_ends.close(strip, body.pending, body.grid, body.cuts, body.complex, body.x, 1);
-    });
-    const auto released = timed(s[add], [&] {
-      body.pending.push(found.cuts);
-      return body.pending.release(body.grid, body.cuts);
-    });
-    take_in(body, released, ended, tally);
     if (motion == Motion::drift)
-      body.x_before = body.x;
+      for (std::size_t i = 0; i < body.x.size(); ++i)
+        body.x[i] = place_at(motion, step, solid.grid.position(solid.complex.node[grid::CornerId(i)]));
+    double fitting = 0;
+    timed(fitting, [&] { boxes.fit(body.cutter.stands_at(), body.x); });
+    const auto change =
+      timed(s[cut_], [&] { return body.cutter.step(solid, std::span(&blade, 1), step - 1, step, body.x); });
+    s[fit] += fitting;
+    s[cut_] -= fitting;
+    timed(s[cut_], [&] {
+      for (Points* points : {&body.x, &body.v})
+        grid::inherit(change, *points);
+    });
+    timed(s[place], [&] { surface::place(solid, change, {}); });
+    timed(s[surface_], [&] { surface::update_surface(solid, change, body.surface, body.index); });
+    tally.n_touched += change.cells.size();
+    tally.n_cut += change.edges.size();
   }
   return tally;
 }
@@ -195,12 +156,12 @@ void print(const Body& body, const Tally& tally, const char* const motion) {
   const auto us = [&](const double seconds) { return 1e6 * seconds / static_cast<double>(tally.n_touched); };
   const Seconds& s = tally.seconds;
   double total = 0;
-  for (int stage = find; stage < n_stages; ++stage)
+  for (int stage = cut_; stage < n_stages; ++stage)
     total += s[stage];
-  std::printf("%8zu %6s %8zu %7zu %7.2f %7.2f %7.2f %7.2f %7.2f %7.2f %7.2f %9.2e %11.3e %9.1f\n", body.grid.n_cells(),
-              motion, tally.n_touched, tally.n_cut, us(s[find]), us(s[add]), us(s[place]), us(s[split]),
-              us(s[surface_]), us(s[passed_]), us(total), total, static_cast<double>(tally.n_touched) / total,
-              1e9 * s[fit] / n_steps / static_cast<double>(body.complex.n_corners()));
+  std::printf("%8zu %6s %8zu %7zu %7.2f %7.2f %7.2f %7.2f %9.2e %11.3e %9.1f\n", body.solid.grid.n_cells(), motion,
+              tally.n_touched, tally.n_cut, us(s[cut_]), us(s[place]), us(s[surface_]), us(total), total,
+              static_cast<double>(tally.n_touched) / total,
+              1e9 * s[fit] / n_steps / static_cast<double>(body.solid.complex.n_corners()));
 }
 
 struct Memory {
@@ -226,26 +187,26 @@ int main(const int argc, char** const argv) {
   const int n_runs = argc > 1 ? std::max(1, std::atoi(argv[1])) : 7;
   set_n_threads(1);
   std::printf("%d runs (first argument); microseconds of one thread a touched cell\n", n_runs);
-  std::printf("%8s %6s %8s %7s %7s %7s %7s %7s %7s %7s %7s %9s %11s %9s\n", "cells", "body", "touched", "cut", "find",
-              "add", "place", "complex", "surface", "passed", "total", "total s", "cells/s", "fit ns/co");
+  std::printf("%8s %6s %8s %7s %7s %7s %7s %7s %9s %11s %9s\n", "cells", "body", "touched", "edges", "cut", "place",
+              "surface", "total", "total s", "cells/s", "fit ns/co");
   std::vector<Memory> sizes;
   for (const int n : {17, 28, 46, 64, 80, 100}) {
     const Body body = make_body(n);
     print(body, best(n, Motion::none, n_runs), "rests");
     print(body, best(n, Motion::drift, n_runs), "moves");
-    const double cells = static_cast<double>(body.grid.n_cells());
+    const double cells = static_cast<double>(body.solid.grid.n_cells());
     double cut = 0;
-    for (const auto c : ids<grid::CellId>(body.grid.n_cells()))
-      cut += body.cuts.configuration(body.grid, c) != 0;
+    for (const auto c : ids<grid::CellId>(body.solid.grid.n_cells()))
+      cut += body.solid.cuts.configuration(body.solid.grid, c) != 0;
     sizes.push_back({cells - cut, cut, static_cast<double>(body.n_bytes())});
     std::printf(
       "%8.0f cells, %.0f of them at the skin: %.0f B a cell; grid %.0f, cuts %.0f, complex %.0f, surface and "
-      "index %.0f, boxes %.0f, x, v, x_before %.0f\n",
-      cells, cut, sizes.back().bytes / cells, static_cast<double>(body.grid.n_bytes()) / cells,
-      static_cast<double>(body.cuts.n_bytes()) / cells, static_cast<double>(body.complex.n_bytes()) / cells,
+      "index %.0f, cutter %.0f, x, v %.0f\n",
+      cells, cut, sizes.back().bytes / cells, static_cast<double>(body.solid.grid.n_bytes()) / cells,
+      static_cast<double>(body.solid.cuts.n_bytes()) / cells, static_cast<double>(body.solid.complex.n_bytes()) / cells,
       static_cast<double>(body.surface.n_bytes() + body.index.n_bytes()) / cells,
-      static_cast<double>(body.boxes.n_bytes()) / cells,
-      static_cast<double>(sizeof(Vec3) * (body.x.capacity() + body.v.capacity() + body.x_before.capacity())) / cells);
+      static_cast<double>(body.cutter.n_bytes()) / cells,
+      static_cast<double>(sizeof(Vec3) * (body.x.capacity() + body.v.capacity())) / cells);
   }
   const auto [uncut, cut] = bytes_a_cell(sizes);
   std::printf("memory: %.0f B an uncut cell, %.0f B one at the skin\n", uncut, cut);

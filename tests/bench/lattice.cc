@@ -29,20 +29,19 @@ support::Body cut_block(const int n) {
   for (const auto& cut : support::plane_cuts(body, {Vec3::UnitX(), 0.01 * (0.5 * n + 0.75)}))
     if (body.grid.position(body.grid.ends(cut.edge)[0])[2] > 0.005 * n)
       body.cuts.add(body.grid, cut);
-  surface::place(body.grid, body.cuts, {});
+  surface::place(body, {});
   return body;
 }
 
 void measure(const int n, const int half_width, const double region_damping) {
-  const support::Body body = cut_block(n);
-  const grid::CellComplex complex = grid::build_complex(body.grid, body.cuts);
+  const support::Body body = support::with_copies(cut_block(n));
+  const grid::CellComplex& complex = body.complex;
   constexpr double dt = 1.0 / 60;
   const double start_of_set_up = cpu_time();
-  const lattice::Matching model(body.grid, body.cuts, complex,
-                                lattice::matching_options({.half_width = half_width}, 1000, dt));
+  const lattice::Matching model(body, lattice::matching_options({.half_width = half_width}, 1000, dt));
   const double set_up = cpu_time() - start_of_set_up;
   lattice::ShapeMatching stepper(model, region_damping);
-  dynamics::State state{grid::rest_positions(body.grid, complex), Points(complex.n_corners(), Vec3::Zero()), 0};
+  dynamics::State state{grid::rest_positions(body), Points(complex.n_corners(), Vec3::Zero()), 0};
   support::Random random(1);
   for (Vec3& v : state.v)
     v = 0.02 * support::random_vector(random);

@@ -40,12 +40,11 @@ double seconds(const int n_calls, const Function& f) {
 void measure(const double n_wanted) {
   constexpr int cells = 17;
   constexpr double edge = 0.2;
-  const support::Body body = support::block({cells, cells, cells}, edge / cells);
-  const auto complex = grid::build_complex(body.grid, body.cuts);
+  const support::Body body = support::with_copies(support::block({cells, cells, cells}, edge / cells));
   pba::PhyxelOptions options;
   options.sampling.spacing = edge / std::cbrt(n_wanted);
-  const double filling = seconds(1, [&] { pba::fill(body.grid, body.cuts, complex, options); });
-  const pba::Phyxels phyxels = pba::fill(body.grid, body.cuts, complex, options);
+  const double filling = seconds(1, [&] { pba::fill(body, options); });
+  const pba::Phyxels phyxels = pba::fill(body, options);
   pba::PhyxelModel model(phyxels, {}, {});
   const auto& pairs = model.neighbours().pairs;
   const auto clear = pba::clear_sights(phyxels.rest, phyxels.rest, pairs);
@@ -73,10 +72,9 @@ void measure(const double n_wanted) {
 
   const auto node_pairs = pba::find_node_pairs(body.grid, phyxels);
   const auto sights = pba::clear_sights(node_pairs.rest, phyxels.rest, node_pairs.pairs);
-  const auto copies = pba::copies_around(body.grid, body.cuts, complex, phyxels.rest);
+  const auto copies = grid::copies_around(body, phyxels.rest);
   pba::CornerMap map;
-  const double mapping =
-    seconds(1, [&] { map = pba::build_corner_map(body.grid, complex, phyxels, copies, node_pairs, sights); });
+  const double mapping = seconds(1, [&] { map = pba::build_corner_map(body, phyxels, copies, node_pairs, sights); });
   const double following = seconds(n, [&] {
     model.deformation(state.x, F);
     pba::follow(map, state.x, F, corners);

@@ -57,7 +57,7 @@ std::vector<grid::NodeRun> material_runs(const grid::Grid& grid) {
   return runs;
 }
 
-std::size_t n_surface_cells(const cut::Embedding& body) {
+std::size_t n_surface_cells(const grid::Solid& body) {
   std::size_t n = 0;
   for (const auto c : ids<grid::CellId>(body.grid.n_cells()))
     n += body.cuts.configuration(body.grid, c) != 0;
@@ -67,18 +67,17 @@ std::size_t n_surface_cells(const cut::Embedding& body) {
 void measure(const geometry::TriangleMesh& mesh, const double h) {
   const Vec3 offset = Vec3::Constant(0.5);
   const double embedding = seconds([&] { cut::embed(mesh, h, offset); });
-  const cut::Embedding bare = cut::embed(mesh, h, offset);
+  const grid::Solid bare = cut::embed(mesh, h, offset).solid;
   const auto runs = material_runs(bare.grid);
   const double gridding = seconds([&] { grid::Grid::from_runs(bare.grid.lattice(), runs); });
-  grid::Cuts cuts = bare.cuts;
-  const double placing = seconds([&] { cuts = bare.cuts; }, [&] { surface::place(bare.grid, cuts, {}); });
-  grid::Cuts fitted = cuts;
-  const double fitting = seconds([&] { fitted = cuts; }, [&] { cut::fit_skin(mesh, bare.grid, fitted); });
-  grid::CellComplex complex;
-  const double copying = seconds([&] { complex = grid::build_complex(bare.grid, fitted); });
+  grid::Solid solid = bare;
+  const double placing = seconds([&] { solid.cuts = bare.cuts; }, [&] { surface::place(solid, {}); });
+  const grid::Cuts placed = solid.cuts;
+  const double fitting = seconds([&] { solid.cuts = placed; }, [&] { cut::fit_skin(mesh, solid); });
+  const double copying = seconds([&] { solid.complex = grid::build_complex(solid); });
   surface::Surface surface;
-  const double tessellating = seconds([&] { surface = surface::build_surface(bare.grid, fitted, complex); });
-  const Points corners = grid::rest_positions(bare.grid, complex);
+  const double tessellating = seconds([&] { surface = surface::build_surface(solid); });
+  const Points corners = grid::rest_positions(solid);
   Points positions;
   const double following = seconds([&] { surface::follow(surface, corners, positions); });
 

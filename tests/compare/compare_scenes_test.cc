@@ -39,14 +39,14 @@ TEST_P(CompareScenes, RunSomeSteps) {
     SCOPED_TRACE(file.string());
     const output::TemporaryFolder folder;
     World world = compose(with_backend(file, GetParam()));
-    const std::size_t n_before = world.bodies.at(0).complex.n_copies();
+    const std::size_t n_before = world.bodies.at(0).solid.complex.n_copies();
     world.n_steps = 5;
     run_silently(world, folder / "out");
     const Body& body = world.bodies.at(0);
     EXPECT_EQ(output::Reader(folder / "out" / "run.h5").n_steps(), 6u);
     EXPECT_TRUE(std::isfinite(value(body, "volume")));
     EXPECT_GT(speed(body), 0);
-    EXPECT_EQ(body.complex.n_copies() > n_before, !world.cut_surfaces.empty());
+    EXPECT_EQ(body.solid.complex.n_copies() > n_before, !world.cut_surfaces.empty());
   }
 }
 

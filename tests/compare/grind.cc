@@ -22,10 +22,10 @@ World free_cube(const std::string& backend) {
 
 std::vector<grid::EdgeId> edges_that_hold(const Body& body) {
   std::vector<grid::EdgeId> edges;
-  for (const grid::CellId c : ids<grid::CellId>(body.grid.n_cells()))
-    for (const grid::EdgeId e : body.grid.edges(c))
-      if (const auto [a, b] = body.grid.ends(e);
-          !body.cuts.is_cut(e) && body.grid.is_material(a) && body.grid.is_material(b))
+  for (const grid::CellId c : ids<grid::CellId>(body.solid.grid.n_cells()))
+    for (const grid::EdgeId e : body.solid.grid.edges(c))
+      if (const auto [a, b] = body.solid.grid.ends(e);
+          !body.solid.cuts.is_cut(e) && body.solid.grid.is_material(a) && body.solid.grid.is_material(b))
         edges.push_back(e);
   return edges;
 }
@@ -63,12 +63,11 @@ std::vector<bool> pieces_with_nodes(const grid::CellComplex& complex) {
 }
 
 /// In shape matching a splinter without a node goes with the node that it follows, rigidly: they are one body.
-void join_splinters(const grid::Grid& grid, const grid::CellComplex& complex,
-                    std::vector<std::uint32_t>& corner_pieces) {
-  for (const auto& [copy, node] : grid::followed_nodes(grid, complex))
+void join_splinters(const grid::Solid& solid, std::vector<std::uint32_t>& corner_pieces) {
+  for (const auto& [copy, node] : grid::followed_nodes(solid))
     std::replace(corner_pieces.begin(), corner_pieces.end(),
-                 std::uint32_t(corner_pieces[complex.copies[copy].corners[0].value]),
-                 std::uint32_t(corner_pieces[complex.real_corner[node].value]));
+                 std::uint32_t(corner_pieces[solid.complex.copies[copy].corners[0].value]),
+                 std::uint32_t(corner_pieces[solid.complex.real_corner[node].value]));
 }
 
 class Grinder {
@@ -86,9 +85,9 @@ class Grinder {
     const auto edges = edges_that_hold(body());
     if (edges.empty())
       return false;
-    const auto [a, b] = body().grid.ends(edges[random_() % edges.size()]);
-    const Vec3 from = corners(body())[body().complex.real_corner[a].value],
-               to = corners(body())[body().complex.real_corner[b].value];
+    const auto [a, b] = body().solid.grid.ends(edges[random_() % edges.size()]);
+    const Vec3 from = corners(body())[body().solid.complex.real_corner[a].value],
+               to = corners(body())[body().solid.complex.real_corner[b].value];
     const Vec3 along = (to - from).normalized();
     Vec3 blade, way;
     do {
@@ -127,7 +126,7 @@ class Grinder {
     for (int i = 0; i < 20; ++i)
       step(ground);
     const auto [end, unused] = centres(piece);
-    const std::vector<bool> has_node = pieces_with_nodes(body().complex);
+    const std::vector<bool> has_node = pieces_with_nodes(body().solid.complex);
     for (std::size_t p = 0; p < start.size(); ++p) {
       if (!has_node[p])
         continue; // in some backends it follows a node
@@ -157,16 +156,16 @@ class Grinder {
 
   /// The piece of each particle: of a phyxel, that of the material around it.
   std::vector<std::uint32_t> pieces() {
-    if (body().state.x.size() == body().complex.n_corners()) {
-      auto piece = physics::corner_pieces(body().complex);
+    if (body().state.x.size() == body().solid.complex.n_corners()) {
+      auto piece = physics::corner_pieces(body().solid.complex);
       if (is_lattice_)
-        join_splinters(body().grid, body().complex, piece);
+        join_splinters(body().solid, piece);
       return piece;
     }
-    const grid::Pieces all = grid::pieces(body().complex);
+    const grid::Pieces all = grid::pieces(body().solid.complex);
     std::vector<std::uint32_t> piece;
     for (const Vec3& rest : body().physics->rest())
-      piece.push_back(all.piece[pba::copy_around(body().grid, body().cuts, body().complex, rest)]);
+      piece.push_back(all.piece[grid::copy_around(body().solid, rest)]);
     return piece;
   }
 
@@ -204,11 +203,11 @@ Ground grind(const std::string& backend, const unsigned seed, const int most_str
     grinder.step(ground);
   grinder.fly(ground);
   const Body& body = grinder.body();
-  const std::vector<bool> has_node = pieces_with_nodes(body.complex);
+  const std::vector<bool> has_node = pieces_with_nodes(body.solid.complex);
   ground.n_pieces = static_cast<std::size_t>(std::count(has_node.begin(), has_node.end(), true));
   ground.n_splinters = has_node.size() - ground.n_pieces;
-  for (const grid::NodeId n : ids<grid::NodeId>(body.grid.n_nodes()))
-    ground.n_nodes += body.grid.is_material(n) ? 1 : 0;
+  for (const grid::NodeId n : ids<grid::NodeId>(body.solid.grid.n_nodes()))
+    ground.n_nodes += body.solid.grid.is_material(n) ? 1 : 0;
   return ground;
 }
 

@@ -267,7 +267,7 @@ TEST(AtSkin, ABladeThatStopsInsideDoesNotPart) {
 
 /// Area of what a label has cut open, by one of its two lips [m^2].
 double lip_area(const Patient& patient, const grid::CutLabel label) {
-  const auto surface = surface::build_surface(patient.body.grid, patient.body.cuts, patient.complex);
+  const auto surface = surface::build_surface(patient.body);
   double area = 0;
   for (std::size_t i = 0; i < surface.triangles.size(); ++i)
     if (const auto& [a, b, c] = surface.triangles[i]; surface.labels[i] == label)

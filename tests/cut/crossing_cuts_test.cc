@@ -97,11 +97,11 @@ TEST(AtSkin, TheOrderOfTwoCutsThatCrossDoesNotMatter) {
 /// For each material node the lowest one of its piece.
 std::vector<std::uint32_t> partition(const Patient& patient) {
   const grid::Grid& grid = patient.body.grid;
-  const auto pieces = grid::pieces(patient.complex);
+  const auto pieces = grid::pieces(patient.body.complex);
   std::map<std::uint32_t, std::uint32_t> first;
   std::vector<std::uint32_t> result(grid.n_nodes(), grid::NodeId::no_value);
-  for (const auto c : ids<grid::CopyId>(patient.complex.n_copies())) {
-    const grid::Copy& copy = patient.complex.copies[c];
+  for (const auto c : ids<grid::CopyId>(patient.body.complex.n_copies())) {
+    const grid::Copy& copy = patient.body.complex.copies[c];
     for (int v = 0; v < grid::cube::n_vertices; ++v)
       if (copy.nodes >> v & 1)
         result[grid.nodes(copy.cell)[v].value] = pieces.piece[c];
@@ -167,10 +167,10 @@ TEST(PartSkin, GoesByParity) {
         edges.push_back(e);
       }
     const std::vector<EdgeId> given = edges;
-    part_skin(body.grid, body.cuts, edges);
+    part_skin(body, edges);
     EXPECT_EQ(edges, given) << "no face is parted that has no new cut";
     for (const auto c : ids<grid::CellId>(body.grid.n_cells())) {
-      const grid::CellCuts cell = grid::cuts_of(body.grid, body.cuts, c);
+      const grid::CellCuts cell = grid::cuts_of(body, c);
       for (int face = 0; face < grid::cube::n_faces; ++face) {
         bool is_cut = false, is_odd = false;
         for (const grid::SkinArc& arc : grid::skin_arcs(face, cell.material)) {

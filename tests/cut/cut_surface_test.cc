@@ -1,7 +1,8 @@
 #include "cut/cut_surface.h"
 
+#include "cut/cutter.h"
+
 #include "base/error.h"
-#include "cut/add_cuts.h"
 #include "cut/blade.h"
 #include "tests/support/clipped_box.h"
 #include "tests/support/placed.h"
@@ -30,22 +31,25 @@ constexpr double pi = std::numbers::pi;
 /// A body that stands as it was embedded.
 struct Resting {
   Body body;
-  grid::CellComplex complex = grid::build_complex(body.grid, body.cuts);
-  Points x = grid::rest_positions(body.grid, complex);
+  Points x;
+  Cutter cutter{1};
 
-  SweepCuts meet(const Shape& shape) const { return cut_edges({"", shape, 1}, body.grid, body.cuts, complex, x); }
+  Resting(Body whole) : body(std::move(whole)) {
+    body.complex = grid::build_complex(body);
+    x = grid::rest_positions(body);
+    cutter.begin(body, x);
+  }
+
+  SweepCuts meet(const Shape& shape) const { return cut_edges({"", shape, 1}, body, x); }
   SweepCuts cut(const Shape& shape) {
     SweepCuts found = meet(shape);
-    const Front front = rim({"", shape, 1}).empty() ? Front::none : Front::possible;
-    add_cuts(body.grid, body.cuts, complex, x, found.cuts, front);
-    surface::place(body.grid, body.cuts, {});
-    complex = grid::build_complex(body.grid, body.cuts);
-    x = grid::rest_positions(body.grid, complex);
+    surface::place(body, cutter.at_once(body, {"", shape, 1}, x), {});
+    x = grid::rest_positions(body);
     return found;
   }
-  surface::Surface surface() const { return surface::build_surface(body.grid, body.cuts, complex); }
+  surface::Surface surface() const { return surface::build_surface(body); }
   std::vector<double> volumes() const {
-    auto volumes = surface::piece_volumes(surface(), complex);
+    auto volumes = surface::piece_volumes(surface(), body.complex);
     std::sort(volumes.begin(), volumes.end());
     return volumes;
   }
@@ -107,7 +111,7 @@ TEST(CutSurface, PlanesThroughNodesCutBelowThem) {
         EXPECT_EQ(body.body.grid.index(body.body.grid.ends(cut.edge)[0])[axis], sign > 0 ? 2 : 3);
         EXPECT_EQ(cut.t, sign > 0 ? 1 : 0);
       }
-      EXPECT_EQ(grid::n_pieces(body.complex), 2u);
+      EXPECT_EQ(grid::n_pieces(body.body.complex), 2u);
     }
 }
 
@@ -139,7 +143,7 @@ TEST(CutSurface, ClosedShapesCutTheBorderOfASetOfNodes) {
         const auto is_end_inside = [&](const grid::NodeId n,
                                        const double beyond) { // the skin's, where the node is empty
           const Vec3 p = body.body.grid.position(n);
-          const Vec3 skin = grid::edge_skin_point(body.body.grid, body.body.cuts, e);
+          const Vec3 skin = grid::edge_skin_point(body.body, e);
           return is_inside(body.body.grid.is_material(n) ? p : Vec3(skin + beyond * (p - skin)));
         };
         const auto is_parted = [&](const double beyond) {
@@ -235,7 +239,7 @@ TEST(CutSurface, DiscsMakeCracks) {
     Resting body = cube(1, h, random_offset(random));
     const Vec3 centre = 0.05 * random_offset(random), normal = i < 3 ? Vec3(Vec3::Unit(i)) : random_direction(random);
     const auto found = body.cut(Disc{centre, normal, r});
-    EXPECT_EQ(grid::n_pieces(body.complex), 1u);
+    EXPECT_EQ(grid::n_pieces(body.body.complex), 1u);
     const double expected =
       pi * r * r / (h * h) * normal.lpNorm<1>(); // edges along x: the disc's shadow on the yz plane
     EXPECT_NEAR(static_cast<double>(found.cuts.size()) / expected, 1, 0.05);
@@ -273,7 +277,7 @@ TEST(CutSurface, ABigSquareAndABladeCutLikeThePlane) {
     Blade blade{.name = "", .edge = {point - u - v, point + u - v}, .key_frames = {{0, Vec3::Zero(), Vec3::Zero()}}};
     blade.key_frames.push_back({1, 2 * v, Vec3::Zero()});
     check(blade);
-    expect_same(cut_edges(sweep(blade, 0, 1), body.body.grid, body.body.cuts, body.complex, body.x, 1).cuts, plane);
+    expect_same(cut_edges(sweep(blade, 0, 1), body.body, body.x, 1).cuts, plane);
   }
 }
 
@@ -395,9 +399,9 @@ TEST(CutSurface, LeavesCutEdgesAlone) {
   const Plane plane{Vec3(0, 0, 0.02), Vec3::UnitZ()};
   EXPECT_FALSE(body.cut(plane).cuts.empty());
   EXPECT_TRUE(body.meet(plane).cuts.empty());
-  EXPECT_EQ(grid::n_pieces(body.complex), 2u);
+  EXPECT_EQ(grid::n_pieces(body.body.complex), 2u);
   body.cut(Plane{Vec3(0.01, 0, 0), Vec3::UnitX()});
-  EXPECT_EQ(grid::n_pieces(body.complex), 4u);
+  EXPECT_EQ(grid::n_pieces(body.body.complex), 4u);
 }
 
 void expect_complaint(const Shape& shape, const std::string& key) {

@@ -29,9 +29,10 @@ using support::uniform;
 /// A body somewhere, that was somewhere else before.
 struct Placed {
   Body body;
-  grid::CellComplex complex = grid::build_complex(body.grid, body.cuts);
-  Points x = grid::rest_positions(body.grid, complex), x_before = x;
-  EdgeBoxes boxes{body.grid, complex};
+  Points x = grid::rest_positions(body), x_before = x;
+  EdgeBoxes boxes{body};
+
+  Placed(Body whole) : body(support::with_copies(std::move(whole))) {}
 
   void cut(const std::vector<grid::EdgeCut>& cuts) {
     std::vector<EdgeId> edges;
@@ -39,7 +40,7 @@ struct Placed {
       body.cuts.add(body.grid, cut);
       edges.push_back(cut.edge);
     }
-    const auto change = grid::update_complex(body.grid, body.cuts, edges, complex);
+    const auto change = grid::update_complex(body, edges);
     grid::inherit(change, x);
     grid::inherit(change, x_before);
   }
@@ -71,10 +72,10 @@ TEST(EdgeBoxes, HoldEveryEdgeOnce) {
     for (std::uint32_t block = 0; block < placed.boxes.n_blocks(); ++block) {
       placed.boxes.for_each_cell(block, [&](const grid::CellId c) { ++n_cells[c.value]; });
       placed.boxes.for_each_edge(block, [&](const grid::CornerId lower, const grid::CornerId upper, const int axis) {
-        const EdgeId e = grid.edge(placed.complex.node[lower], axis);
+        const EdgeId e = grid.edge(placed.body.complex.node[lower], axis);
         ++n_seen[e.value];
-        ASSERT_EQ(placed.complex.real_corner[grid.ends(e)[0]], lower);
-        ASSERT_EQ(placed.complex.real_corner[grid.ends(e)[1]], upper);
+        ASSERT_EQ(placed.body.complex.real_corner[grid.ends(e)[0]], lower);
+        ASSERT_EQ(placed.body.complex.real_corner[grid.ends(e)[1]], upper);
         const double length = (placed.x[upper.value] - placed.x[lower.value]).norm();
         const auto found = placed.boxes.blocks([&](const EdgeBoxes::Block& b) {
           return b.box.contains(placed.x[lower.value]) && b.box.contains(placed.x[upper.value]) &&
@@ -96,7 +97,7 @@ TEST(EdgeBoxes, FitTightly) {
     Placed placed{support::block({6 + i, 5, 9})};
     placed.cut(support::random_cuts(random, placed.body, 0.3));
     if (i % 2)
-      placed.boxes = EdgeBoxes(placed.body.grid, placed.complex);
+      placed.boxes = EdgeBoxes(placed.body);
     scramble(placed.x, random, 2);
     placed.boxes.fit(placed.x_before, placed.x);
     for (std::uint32_t block = 0; block < placed.boxes.n_blocks(); ++block) {
@@ -154,7 +155,7 @@ TEST(EdgeBoxes, FindWhatALookAtEveryEdgeFinds) {
     placed.cut(support::random_cuts(random, placed.body, 0.02));
     const double h = placed.body.grid.h();
     for (int i = 0; i < 300; ++i) {
-      placed.x_before = placed.x = grid::rest_positions(placed.body.grid, placed.complex);
+      placed.x_before = placed.x = grid::rest_positions(placed.body);
       if (i % 4 == 1) {
         const Eigen::AngleAxisd turn(uniform(random, 0, 0.2), random_direction(random));
         const Vec3 shift = uniform(random, 0, 3) * h * random_direction(random);
@@ -168,7 +169,7 @@ TEST(EdgeBoxes, FindWhatALookAtEveryEdgeFinds) {
       const BladePath path = random_path(random, placed);
       placed.boxes.fit(placed.x_before, placed.x);
       const auto find = [&](const EdgeBoxes* boxes) {
-        return cut_edges(path, placed.body.grid, placed.body.cuts, placed.complex, placed.x_before, placed.x, 1, boxes);
+        return cut_edges(path, placed.body, placed.x_before, placed.x, 1, boxes);
       };
       const SweepCuts found = find(&placed.boxes);
       expect_same(found, find(nullptr));
@@ -196,9 +197,7 @@ TEST(EdgeBoxes, FindWhatShapesCut) {
                                            geometry::sphere_mesh(r, centre, 2)};
       const CutSurface surface{"", shapes[i % 5], 1};
       placed.boxes.fit(placed.x);
-      const auto find = [&](const EdgeBoxes* boxes) {
-        return cut_edges(surface, placed.body.grid, placed.body.cuts, placed.complex, placed.x, boxes);
-      };
+      const auto find = [&](const EdgeBoxes* boxes) { return cut_edges(surface, placed.body, placed.x, boxes); };
       expect_same(find(&placed.boxes), find(nullptr));
       ASSERT_FALSE(HasFatalFailure()) << "shape " << i;
       n_cut += find(&placed.boxes).cuts.size();
@@ -232,8 +231,7 @@ TEST(EdgeBoxes, AreTheSameOnOneAndTwoThreads) {
   for (const int n : {1, 2}) {
     set_n_threads(n);
     placed.boxes.fit(placed.x_before, placed.x);
-    found.push_back(
-      cut_edges(path, placed.body.grid, placed.body.cuts, placed.complex, placed.x_before, placed.x, 1, &placed.boxes));
+    found.push_back(cut_edges(path, placed.body, placed.x_before, placed.x, 1, &placed.boxes));
   }
   set_n_threads(before);
   expect_same(found[0], found[1]);

@@ -33,43 +33,43 @@ std::size_t n_material(const grid::Grid& grid) {
 /// What holds for every embedding.
 void expect_consistent(const Embedding& e) {
   std::size_t n_cut = 0;
-  for (const EdgeId edge : ids<EdgeId>(e.grid.n_edges())) {
-    const auto& [lower, upper] = e.grid.ends(edge);
-    ASSERT_EQ(e.cuts.is_cut(edge), e.grid.is_material(lower) != e.grid.is_material(upper));
-    n_cut += e.cuts.is_cut(edge) ? 1 : 0;
+  for (const EdgeId edge : ids<EdgeId>(e.solid.grid.n_edges())) {
+    const auto& [lower, upper] = e.solid.grid.ends(edge);
+    ASSERT_EQ(e.solid.cuts.is_cut(edge), e.solid.grid.is_material(lower) != e.solid.grid.is_material(upper));
+    n_cut += e.solid.cuts.is_cut(edge) ? 1 : 0;
   }
-  ASSERT_EQ(e.cuts.all().size(), n_cut);
-  for (const auto& cut : e.cuts.all()) {
+  ASSERT_EQ(e.solid.cuts.all().size(), n_cut);
+  for (const auto& cut : e.solid.cuts.all()) {
     ASSERT_EQ(cut.label, grid::skin_label);
     ASSERT_NEAR(cut.normal.norm(), 1, 1e-12);
     ASSERT_GE(cut.t, grid::min_edge_parameter);
     ASSERT_LE(cut.t, 1 - grid::min_edge_parameter);
   }
-  for (const auto c : ids<grid::CellId>(e.grid.n_cells()))
+  for (const auto c : ids<grid::CellId>(e.solid.grid.n_cells()))
     for (int d = 0; d < 3; ++d)
-      ASSERT_GE(e.grid.index(e.grid.nodes(c)[0])[d], 0);
+      ASSERT_GE(e.solid.grid.index(e.solid.grid.nodes(c)[0])[d], 0);
 }
 
 void expect_equal(const Embedding& a, const Embedding& b) {
-  ASSERT_EQ(a.grid.n_nodes(), b.grid.n_nodes());
-  ASSERT_EQ(a.cuts.all().size(), b.cuts.all().size());
-  for (std::size_t i = 0; i < a.cuts.all().size(); ++i) {
-    ASSERT_EQ(a.cuts.all()[i].edge, b.cuts.all()[i].edge);
-    ASSERT_EQ(a.cuts.all()[i].t, b.cuts.all()[i].t);
-    ASSERT_EQ(a.cuts.all()[i].normal, b.cuts.all()[i].normal);
+  ASSERT_EQ(a.solid.grid.n_nodes(), b.solid.grid.n_nodes());
+  ASSERT_EQ(a.solid.cuts.all().size(), b.solid.cuts.all().size());
+  for (std::size_t i = 0; i < a.solid.cuts.all().size(); ++i) {
+    ASSERT_EQ(a.solid.cuts.all()[i].edge, b.solid.cuts.all()[i].edge);
+    ASSERT_EQ(a.solid.cuts.all()[i].t, b.solid.cuts.all()[i].t);
+    ASSERT_EQ(a.solid.cuts.all()[i].normal, b.solid.cuts.all()[i].normal);
   }
 }
 
 void expect_nodes(const Embedding& e, const std::function<bool(const Vec3&)>& is_inside, const Box& box) {
-  const grid::Lattice& lattice = e.grid.lattice();
+  const grid::Lattice& lattice = e.solid.grid.lattice();
   Index3 n;
   for (int d = 0; d < 3; ++d)
     n[d] = static_cast<int>((box.upper[d] - lattice.origin[d]) / lattice.h) + 3;
   for (int i = 0; i < n[0]; ++i)
     for (int j = 0; j < n[1]; ++j)
       for (int k = 0; k < n[2]; ++k) {
-        const auto node = e.grid.find_node({i, j, k});
-        const bool is_material = node && e.grid.is_material(*node);
+        const auto node = e.solid.grid.find_node({i, j, k});
+        const bool is_material = node && e.solid.grid.is_material(*node);
         ASSERT_EQ(is_material, is_inside(lattice.position({i, j, k}))) << i << ' ' << j << ' ' << k;
       }
 }
@@ -90,8 +90,8 @@ TEST_P(Offsets, BoxOnLatticePlanes) {
   const double h = 0.125;
   const Embedding e = embed(box_mesh(lower, upper), h, offset());
   expect_consistent(e);
-  EXPECT_EQ(n_material(e.grid), 8u * 6 * 4) << "one node a cube, wherever the lattice is";
-  EXPECT_EQ(e.cuts.all().size(), 2u * (8 * 6 + 6 * 4 + 4 * 8));
+  EXPECT_EQ(n_material(e.solid.grid), 8u * 6 * 4) << "one node a cube, wherever the lattice is";
+  EXPECT_EQ(e.solid.cuts.all().size(), 2u * (8 * 6 + 6 * 4 + 4 * 8));
   EXPECT_EQ(e.n_thin_walls + e.n_thin_gaps, 0u);
   EXPECT_EQ(e.n_lost_components, 0u);
   expect_nodes(e,
@@ -99,17 +99,17 @@ TEST_P(Offsets, BoxOnLatticePlanes) {
                  return (p.array() > lower.array()).all() && (p.array() <= upper.array()).all();
                },
                {lower, upper});
-  for (const auto& cut : e.cuts.all())
-    EXPECT_EQ(cut.normal.cwiseAbs(), Vec3(Vec3::Unit(e.grid.axis(cut.edge))));
+  for (const auto& cut : e.solid.cuts.all())
+    EXPECT_EQ(cut.normal.cwiseAbs(), Vec3(Vec3::Unit(e.solid.grid.axis(cut.edge))));
 }
 
 TEST_P(Offsets, CutsLieOnTheBox) {
   const Vec3 lower(0.1, 0.2, 0.3), upper(1.13, 1.27, 0.91);
   const Embedding e = embed(box_mesh(lower, upper), 0.1, offset());
   expect_consistent(e);
-  for (const auto& cut : e.cuts.all()) {
-    const int axis = e.grid.axis(cut.edge);
-    const double x = grid::edge_point(e.grid, e.cuts, cut.edge)[axis];
+  for (const auto& cut : e.solid.cuts.all()) {
+    const int axis = e.solid.grid.axis(cut.edge);
+    const double x = grid::edge_point(e.solid, cut.edge)[axis];
     EXPECT_LT(std::min(std::abs(x - lower[axis]), std::abs(x - upper[axis])), 0.1 * grid::min_edge_parameter + 1e-12);
   }
 }
@@ -138,9 +138,9 @@ TEST_P(Offsets, SphereKeepsItsVolume) {
   const Embedding e = embed(sphere_mesh(1, {0.1, 0.2, 0.3}, 5), h, offset());
   expect_consistent(e);
   const double volume = geometry::volume(sphere_mesh(1, {0.1, 0.2, 0.3}, 5));
-  EXPECT_NEAR(n_material(e.grid) * h * h * h / volume, 1, 5e-3);
-  for (const auto& cut : e.cuts.all()) {
-    const Vec3 radius = grid::edge_point(e.grid, e.cuts, cut.edge) - Vec3(0.1, 0.2, 0.3);
+  EXPECT_NEAR(n_material(e.solid.grid) * h * h * h / volume, 1, 5e-3);
+  for (const auto& cut : e.solid.cuts.all()) {
+    const Vec3 radius = grid::edge_point(e.solid, cut.edge) - Vec3(0.1, 0.2, 0.3);
     EXPECT_NEAR(radius.norm(), 1, 1e-3);
     EXPECT_GT(cut.normal.dot(radius.normalized()), 0.998);
   }
@@ -189,7 +189,7 @@ TEST(Embed, CountsWhatTheGridCannotResolve) {
   const auto plate = box_mesh({6.1, 0, 0}, {6.4, 4, 4});
   const Embedding e = embed(together(cube, plate), 1, midway);
   expect_consistent(e);
-  EXPECT_EQ(n_material(e.grid), 64u);
+  EXPECT_EQ(n_material(e.solid.grid), 64u);
   EXPECT_EQ(e.n_thin_walls, 16u);
   EXPECT_EQ(e.n_thin_gaps, 0u);
   EXPECT_EQ(e.n_lost_components, 1u);
@@ -200,9 +200,9 @@ TEST(Embed, CountsWhatTheGridCannotResolve) {
   expect_consistent(f);
   EXPECT_EQ(f.n_thin_walls + f.n_thin_gaps, 0u);
   EXPECT_EQ(f.n_triple_crossings, 4u);
-  for (const auto& cut : f.cuts.all()) { // the void's bottom is nearest to the material
-    const Vec3 p = grid::edge_point(f.grid, f.cuts, cut.edge);
-    if (f.grid.axis(cut.edge) == 2 && p[2] > 2 && p[0] > 1 && p[0] < 3 && p[1] > 1 && p[1] < 3) {
+  for (const auto& cut : f.solid.cuts.all()) { // the void's bottom is nearest to the material
+    const Vec3 p = grid::edge_point(f.solid, cut.edge);
+    if (f.solid.grid.axis(cut.edge) == 2 && p[2] > 2 && p[0] > 1 && p[0] < 3 && p[1] > 1 && p[1] < 3) {
       EXPECT_NEAR(p[2], 3.6, 1e-12);
     }
   }
@@ -214,7 +214,7 @@ TEST(Embed, TellsThinWallsFromThinGaps) {
   expect_consistent(gap);
   EXPECT_EQ(gap.n_thin_gaps, 16u) << "the edges along z between the halves";
   EXPECT_EQ(gap.n_thin_walls, 0u);
-  EXPECT_EQ(n_material(gap.grid), 128u);
+  EXPECT_EQ(n_material(gap.solid.grid), 128u);
 
   // The same gap as a void inside, and a hollow box whose wall is thinner than an edge on one side.
   const auto block = box_mesh({0, 0, 0}, {6, 6, 6});
@@ -237,7 +237,7 @@ TEST(Embed, VoidsAreEmpty) {
   const auto mesh = together(box_mesh({0, 0, 0}, {6, 6, 6}), inside_out(box_mesh({2, 2, 2}, {4, 4, 4})));
   const Embedding e = embed(mesh, 1, midway);
   expect_consistent(e);
-  EXPECT_EQ(n_material(e.grid), 216u - 8);
+  EXPECT_EQ(n_material(e.solid.grid), 216u - 8);
   EXPECT_EQ(e.n_lost_components, 0u);
 }
 
@@ -263,7 +263,7 @@ TEST(Embed, LiverIsTheSameWithOneAndTwoThreads) {
   const Embedding two = embed(mesh, h, midway);
   expect_consistent(one);
   expect_equal(one, two);
-  EXPECT_NEAR(n_material(one.grid) * h * h * h / geometry::volume(mesh), 1, 0.02);
+  EXPECT_NEAR(n_material(one.solid.grid) * h * h * h / geometry::volume(mesh), 1, 0.02);
 }
 
 TEST(Embed, BenchmarkPrintsNAndSeconds) {
@@ -272,8 +272,8 @@ TEST(Embed, BenchmarkPrintsNAndSeconds) {
     const auto start = std::chrono::steady_clock::now();
     const Embedding e = embed(mesh, h, midway);
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    std::cout << mesh.triangles.size() << " triangles, " << e.grid.n_cells() << " cells, " << e.cuts.all().size()
-              << " cuts: " << seconds << " s\n";
+    std::cout << mesh.triangles.size() << " triangles, " << e.solid.grid.n_cells() << " cells, "
+              << e.solid.cuts.all().size() << " cuts: " << seconds << " s\n";
     EXPECT_EQ(e.n_thin_walls + e.n_thin_gaps, 0u);
   }
 }

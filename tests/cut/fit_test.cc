@@ -19,8 +19,7 @@ using grid::CellId;
 using support::Body;
 
 Body placed(const geometry::TriangleMesh& mesh, const double h, const Vec3& offset) {
-  Embedding e = embed(mesh, h, offset);
-  return support::with_placed_skin({std::move(e.grid), std::move(e.cuts)});
+  return support::with_placed_skin(embed(mesh, h, offset).solid);
 }
 
 double distance(const geometry::TriangleMesh& mesh, const Vec3& p) {
@@ -70,7 +69,7 @@ Vec3 outward(const Body& body, const CellId c, const Lines& lines) {
 void expect_fitted(const geometry::TriangleMesh& mesh, const double h, const Vec3& offset, const int stride) {
   const Body before = placed(mesh, h, offset);
   Body after = before;
-  fit_skin(mesh, after.grid, after.cuts);
+  fit_skin(mesh, after);
   std::size_t n_moved = 0, n_seen = 0;
   int k = 0;
   const auto expect = [&](const std::optional<Vec3>& expected, const Vec3& was, const Vec3& is) {
@@ -128,7 +127,7 @@ TEST(Fit, LeavesABoxAsItIs) {
   const auto mesh = geometry::box_mesh({0, 0, 0}, {0.73, 0.61, 0.52});
   const Body before = placed(mesh, 0.1, {0.31, 0.83, 0.12});
   Body after = before;
-  fit_skin(mesh, after.grid, after.cuts);
+  fit_skin(mesh, after);
   for (const CellId c : ids<CellId>(after.grid.n_cells()))
     if (before.cuts.point(c)) {
       EXPECT_LT(distance(mesh, *after.cuts.point(c)), 1e-15);
@@ -146,10 +145,9 @@ TEST(Fit, IsTheSameWithOneAndTwoThreads) {
   }
   set_n_threads(n_before);
   for (const CellId c : ids<CellId>(bodies[0].grid.n_cells())) {
-    ASSERT_EQ(grid::cell_point(bodies[0].grid, bodies[0].cuts, c), grid::cell_point(bodies[1].grid, bodies[1].cuts, c));
+    ASSERT_EQ(grid::cell_point(bodies[0], c), grid::cell_point(bodies[1], c));
     for (const auto f : bodies[0].grid.faces(c))
-      ASSERT_EQ(grid::face_point(bodies[0].grid, bodies[0].cuts, f),
-                grid::face_point(bodies[1].grid, bodies[1].cuts, f));
+      ASSERT_EQ(grid::face_point(bodies[0], f), grid::face_point(bodies[1], f));
   }
 }
 

@@ -5,6 +5,7 @@
 
 #include "cut/open_ends.h"
 #include "grid/parts.h"
+#include "grid/touched.h"
 #include "tests/grid/histories.h"
 
 #include <gtest/gtest.h>
@@ -39,33 +40,36 @@ class ThreeNodes : public testing::Test {
 
 TEST_F(ThreeNodes, StayTogetherOnOneSideOfAPlane) {
   cut({1, 1, 0}, {1, 1, 0});
-  EXPECT_FALSE(must_be_parted(body.grid, body.cuts, cell));
-  EXPECT_TRUE(keep_nodes_apart(body.grid, body.cuts, cell).empty());
+  EXPECT_FALSE(must_be_parted(body, cell));
+  EXPECT_TRUE(keep_nodes_apart(body, cell).empty());
   EXPECT_EQ(body.cuts.seam(face), Seam::whole);
 }
 
 TEST_F(ThreeNodes, AreKeptApartAcrossAPlane) {
   cut({1, 0, 0}, {0, 1, 0});
-  EXPECT_TRUE(must_be_parted(body.grid, body.cuts, cell));
-  EXPECT_EQ(keep_nodes_apart(body.grid, body.cuts, cell).size(), 2u);
+  EXPECT_TRUE(must_be_parted(body, cell));
+  EXPECT_EQ(keep_nodes_apart(body, cell).size(), 2u);
   EXPECT_EQ(body.cuts.seam(face), Seam::parted);
-  EXPECT_FALSE(must_be_parted(body.grid, body.cuts, cell));
+  EXPECT_FALSE(must_be_parted(body, cell));
 }
 
 /// Only once the blade is more than a cell away, and no cut waits beside it.
 TEST_F(ThreeNodes, AreKeptApartOnceTheBladeHasGone) {
-  const grid::CellComplex complex = grid::build_complex(body.grid, body.cuts);
-  const Points x = grid::rest_positions(body.grid, complex);
+  body.complex = grid::build_complex(body);
+  const Points x = grid::rest_positions(body);
   cut({1, 0, 0}, {0, 1, 0});
+  std::vector<CellId> cells;
+  for (const auto& touched : grid::touched_cells(body.grid, std::vector{along_x, along_y}))
+    cells.push_back(touched.cell);
   OpenEnds ends;
-  ends.note(body.grid, body.cuts, std::vector{along_x, along_y}, 1);
+  ends.note(body, cells, 1);
   PendingCuts pending;
   const auto close = [&](const Vec3& blade) {
     const std::array<Vec3, 3> triangle = {blade, blade + Vec3::UnitX(), blade + Vec3::UnitY()};
-    return ends.close(std::span(&triangle, 1), pending, body.grid, body.cuts, complex, x, 1).size();
+    return ends.close(std::span(&triangle, 1), pending, body, x, 1).size();
   };
   OpenEnds of_another;
-  of_another.note(body.grid, body.cuts, std::vector{along_x, along_y}, 2);
+  of_another.note(body, cells, 2);
   EXPECT_EQ(of_another.size(), 0u) << "a blade that has not cut here ends nothing";
   EXPECT_EQ(close({1, 1, 1.5}), 0u);
   pending.push(std::vector<grid::EdgeCut>{{*body.grid.find_edge({2, 1, 1}, 0), 0.1, Vec3::UnitX(), 1}});
@@ -81,7 +85,7 @@ TEST_F(ThreeNodes, AreKeptApartOnceTheBladeHasGone) {
 bool has_plane_between(const Body& body, const CellId c, const grid::CellCuts& cell, const Vec3& p, const Vec3& q) {
   for (int line = 0; line < grid::cube::n_lines; ++line)
     if (const EdgeId e = body.grid.edges(c)[line]; cell.blades() >> line & 1) {
-      const Vec3 on = grid::edge_point(body.grid, body.cuts, e), normal = body.cuts.find(e)->normal;
+      const Vec3 on = grid::edge_point(body, e), normal = body.cuts.find(e)->normal;
       const double a = normal.dot(p - on), b = normal.dot(q - on);
       if (a * b < 0 && std::min(std::abs(a), std::abs(b)) > 1e-9)
         return true;
@@ -103,9 +107,9 @@ TEST(NodesApart, AfterAnyCutsAndSeams) {
       std::vector<Seam> before;
       for (const FaceId f : faces)
         before.push_back(body.cuts.seam(f));
-      n_joined += must_be_parted(body.grid, body.cuts, c);
-      keep_nodes_apart(body.grid, body.cuts, c);
-      const grid::CellCuts cell = grid::cuts_of(body.grid, body.cuts, c);
+      n_joined += must_be_parted(body, c);
+      keep_nodes_apart(body, c);
+      const grid::CellCuts cell = grid::cuts_of(body, c);
       const auto nodes = body.grid.nodes(c);
       for (const grid::Part& part : grid::parts_of(cell))
         for (int v = 0; v < 8; ++v)

@@ -22,24 +22,25 @@ using Strip = std::vector<std::array<Vec3, 3>>;
 
 struct Resting {
   Body body;
-  grid::CellComplex complex = grid::build_complex(body.grid, body.cuts);
-  Points x = grid::rest_positions(body.grid, complex);
-  EdgeBoxes boxes{body.grid, complex};
+  Points x = grid::rest_positions(body);
+  EdgeBoxes boxes{body};
   PassedCells passed = {};
+
+  Resting(Body whole) : body(support::with_copies(std::move(whole))) {}
 
   SweepCuts sweep(const Strip& strip) {
     boxes.fit(x);
-    const auto found = cut_edges(strip, body.grid, body.cuts, complex, x, 1, &boxes);
-    passed.pass(strip, found.cuts, body.grid, body.cuts, complex, x, boxes, 1);
+    const auto found = cut_edges(strip, body, x, 1, &boxes);
+    passed.pass(strip, found.cuts, body, x, boxes, 1);
     return found;
   }
   void cut(const std::vector<grid::EdgeCut>& cuts) {
     for (const auto& cut : cuts)
       passed.remove_around(body.grid, cut.edge);
     support::cut(body, cuts);
-    complex = grid::build_complex(body.grid, body.cuts);
-    x = grid::rest_positions(body.grid, complex);
-    boxes = EdgeBoxes(body.grid, complex);
+    body.complex = grid::build_complex(body);
+    x = grid::rest_positions(body);
+    boxes = EdgeBoxes(body);
   }
 };
 
@@ -98,15 +99,14 @@ std::vector<CellId> cells_with(const Resting& body, const Vec3& p) {
     const Vec3 local = (p - body.body.grid.origin(c)) / body.body.grid.h();
     if ((local.array() < 0).any() || (local.array() > 1).any())
       continue;
-    for (const auto copy : body.complex.copies_of(c))
-      grid::for_each_tetrahedron(body.body.grid, body.body.cuts, body.complex.copies[copy],
-                                 [&](const grid::Tetrahedron& t, int) {
-                                   Mat3 sides;
-                                   sides << t[1] - t[0], t[2] - t[0], t[3] - t[0];
-                                   const Vec3 b = sides.inverse() * (local - t[0]);
-                                   if ((b.array() > 1e-5).all() && b.sum() < 1 - 1e-5)
-                                     found.push_back(c);
-                                 });
+    for (const auto copy : body.body.complex.copies_of(c))
+      grid::for_each_tetrahedron(body.body, body.body.complex.copies[copy], [&](const grid::Tetrahedron& t, int) {
+        Mat3 sides;
+        sides << t[1] - t[0], t[2] - t[0], t[3] - t[0];
+        const Vec3 b = sides.inverse() * (local - t[0]);
+        if ((b.array() > 1e-5).all() && b.sum() < 1 - 1e-5)
+          found.push_back(c);
+      });
   }
   return found;
 }

@@ -2,10 +2,7 @@
 
 /// A body that is cut as scenes cut theirs, in steps, while it stands deformed; and a box to cut.
 
-#include "cut/add_cuts.h"
-#include "cut/cut_surface.h"
-#include "cut/open_ends.h"
-#include "cut/pending.h"
+#include "cut/cutter.h"
 #include "tests/support/placed.h"
 #include "tests/support/same.h"
 
@@ -33,57 +30,47 @@ inline Body box_body(Random& random) {
 /// A map from where material rests to where it is now.
 using Map = std::function<Vec3(const Vec3&)>;
 
-/// Cuts that are found in a step: all made in it, or at most two edges of a cell (pending.h).
-enum class Release { at_once, queued };
-
 /// A body and where its corners are, cut as scenes do.
 struct Patient {
   Body body;
-  grid::CellComplex complex = grid::build_complex(body.grid, body.cuts);
-  Points x = grid::rest_positions(body.grid, complex);
+  Points x;
+
+  explicit Patient(Body whole) : body(std::move(whole)) {
+    body.complex = grid::build_complex(body);
+    x = grid::rest_positions(body);
+  }
 
   void deform(const Map& map) { std::transform(x.begin(), x.end(), x.begin(), map); }
 
-  void update(const std::vector<EdgeId>& edges) {
-    surface::place(body.grid, body.cuts, {});
-    grid::inherit(grid::update_complex(body.grid, body.cuts, edges, complex), x);
+  void follow(const grid::CutChange& change) {
+    surface::place(body, change, {});
+    grid::inherit(change, x);
   }
 
-  void cut_through(const std::vector<EdgeCut>& cuts) {
-    update(add_cuts(body.grid, body.cuts, complex, x, cuts, Front::none).edges);
+  Cutter cutter(const grid::CutLabel label, const Release release = Release::queued) const {
+    Cutter cutter(label, release);
+    cutter.begin(body, x);
+    return cutter;
   }
+
+  void cut_through(const std::vector<EdgeCut>& cuts) { follow(cutter(1).cut(body, cuts, Front::none, x)); }
   void cut_through(const Shape& shape, const grid::CutLabel label = 1) {
-    cut_through(cut_edges(CutSurface{"", shape, label}, body.grid, body.cuts, complex, x).cuts);
+    follow(cutter(label).at_once(body, {"", shape, label}, x));
   }
 
   /// The blade's whole motion, from 0 to 1 s, and a step of rest; until nothing waits.
   void pass(const Blade& blade, const int n_steps, const Release release) {
-    PendingCuts pending;
-    OpenEnds ends;
-    for (int k = 0; k <= n_steps || pending.size() > 0; ++k) {
-      std::vector<EdgeCut> found;
-      const double t0 = double(k) / n_steps, t1 = double(k + 1) / n_steps;
-      for (const BladePath& path : paths(blade, t0, t1))
-        for (const EdgeCut& cut : cut_edges(path, body.grid, body.cuts, complex, x, x, blade.label).cuts)
-          found.push_back(cut);
-      if (release == Release::queued)
-        pending.push(found);
-      const auto ended = ends.close(whereabouts(blade, t0, t1), pending, body.grid, body.cuts, complex, x, blade.label);
-      if (release == Release::queued)
-        found = pending.release(body.grid, body.cuts);
-      std::vector<EdgeId> edges = add_cuts(body.grid, body.cuts, complex, x, found, Front::possible).edges;
-      edges.insert(edges.end(), ended.begin(), ended.end());
-      update(edges);
-      ends.note(body.grid, body.cuts, edges, blade.label);
-    }
+    Cutter with = cutter(blade.label, release);
+    for (int k = 0; k <= n_steps || with.n_waiting() > 0; ++k)
+      follow(with.step(body, std::span(&blade, 1), double(k) / n_steps, double(k + 1) / n_steps, x));
   }
 
   /// Is the complex, which each cut has brought up to date, the one that all cuts make?
-  bool is_as_built() const { return support::renaming(complex, grid::build_complex(body.grid, body.cuts)).has_value(); }
+  bool is_as_built() const { return support::renaming(body.complex, grid::build_complex(body)).has_value(); }
 
   /// Of each piece, ascending [m^3].
   std::vector<double> volumes() const {
-    auto volumes = surface::piece_volumes(surface::build_surface(body.grid, body.cuts, complex), complex);
+    auto volumes = surface::piece_volumes(surface::build_surface(body), body.complex);
     std::sort(volumes.begin(), volumes.end());
     return volumes;
   }

@@ -10,6 +10,7 @@
 #include "geometry/predicates.h"
 #include "grid/cube.h"
 #include "tests/geometry/meshes.h"
+#include "tests/support/bodies.h"
 
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
@@ -29,13 +30,11 @@ using grid::NodeId;
 /// A block of cubes, its nodes at integers: 0.5, 1.5, ... would be its skin.
 struct Block {
   static constexpr int n = 5;
-  Embedding body = embed(geometry::box_mesh(Vec3::Constant(-0.5), Vec3::Constant(n - 0.5)), 1, Vec3::Constant(0.5));
-  grid::CellComplex complex = grid::build_complex(body.grid, body.cuts);
-  Points x = grid::rest_positions(body.grid, complex);
+  grid::Solid body = support::with_copies(
+    embed(geometry::box_mesh(Vec3::Constant(-0.5), Vec3::Constant(n - 0.5)), 1, Vec3::Constant(0.5)).solid);
+  Points x = grid::rest_positions(body);
 
-  SweepCuts cut(const std::vector<std::array<Vec3, 3>>& strip) const {
-    return cut_edges(strip, body.grid, body.cuts, complex, x, 1);
-  }
+  SweepCuts cut(const std::vector<std::array<Vec3, 3>>& strip) const { return cut_edges(strip, body, x, 1); }
 
   bool is_inner(const EdgeId e) const {
     return body.grid.is_material(body.grid.ends(e)[0]) && body.grid.is_material(body.grid.ends(e)[1]);
@@ -155,7 +154,7 @@ TEST(Recut, CrookedBodiesAreCutBySides) {
   std::mt19937 random(11);
   std::uniform_int_distribution<int> step(-2, 2); // quarters: many corners lie on the plane and on the strip's edges
   for (int round = 0; round < 20; ++round) {
-    block.x = grid::rest_positions(block.body.grid, block.complex);
+    block.x = grid::rest_positions(block.body);
     for (Vec3& p : block.x)
       p += 0.25 * Vec3(step(random), step(random), step(random));
     const Vec3 from(-8, -8, 2), along(16, 0, 0), by(0, 16, 0);
@@ -169,7 +168,8 @@ TEST(Recut, CrookedBodiesAreCutBySides) {
       if (block.body.cuts.is_cut(e) || !grid.is_material(grid.ends(e)[0]))
         continue;
       const auto side = [&](const NodeId n) {
-        return geometry::side(block.x[block.complex.real_corner[n].value], {from, from + along, from + along + by});
+        return geometry::side(block.x[block.body.complex.real_corner[n].value],
+                              {from, from + along, from + along + by});
       };
       ASSERT_EQ(is_cut.contains(e), side(grid.ends(e)[0]) != side(grid.ends(e)[1]));
     }
@@ -194,7 +194,7 @@ TEST(Recut, AgreesWithBruteForceOnTurningBlades) {
   for (const EdgeId e : ids<EdgeId>(block.body.grid.n_edges())) {
     if (!block.body.cuts.can_be_cut(block.body.grid, e))
       continue;
-    const EdgeEnds ends = ends_of(block.body.grid, block.body.cuts, block.complex, e);
+    const EdgeEnds ends = ends_of(block.body, e);
     const auto [p, q] = ends.segment(block.x);
     std::size_t n = 0;
     double first = 2;
@@ -249,8 +249,8 @@ TEST(Recut, EdgesOfTheSkinAreCutOnceMore) {
   ASSERT_EQ(cuts.size(), 25u);
   for (const EdgeCut& cut : cuts)
     block.body.cuts.add(block.body.grid, cut);
-  block.complex = grid::build_complex(block.body.grid, block.body.cuts);
-  block.x = grid::rest_positions(block.body.grid, block.complex);
+  block.body.complex = grid::build_complex(block.body);
+  block.x = grid::rest_positions(block.body);
   EXPECT_EQ(block.body.cuts.n_cut_twice(), 25u);
   EXPECT_TRUE(block.cut(strip).cuts.empty());
   EXPECT_TRUE(block.cut(plane_sweep(Vec3(-2, -2, -0.2), Vec3(9, 0, 0), Vec3(0, 9, 0), 1)).cuts.empty());
@@ -282,12 +282,12 @@ TEST(Recut, BentBodiesAreSeparated) {
   const auto first = block.cut(plane_sweep(Vec3(-9, -9, 2.3), Vec3(20, 0, 0), Vec3(0, 20, 0), 1)).cuts;
   for (const EdgeCut& cut : first)
     block.body.cuts.add(block.body.grid, cut);
-  block.complex = grid::build_complex(block.body.grid, block.body.cuts);
-  ASSERT_EQ(grid::n_pieces(block.complex), 2u);
-  block.x = grid::rest_positions(block.body.grid, block.complex);
-  const grid::Pieces pieces = grid::pieces(block.complex);
-  for (grid::CopyId c : ids<grid::CopyId>(block.complex.n_copies()))
-    for (const grid::CornerId corner : block.complex.copies[c].corners)
+  block.body.complex = grid::build_complex(block.body);
+  ASSERT_EQ(grid::n_pieces(block.body.complex), 2u);
+  block.x = grid::rest_positions(block.body);
+  const grid::Pieces pieces = grid::pieces(block.body.complex);
+  for (grid::CopyId c : ids<grid::CopyId>(block.body.complex.n_copies()))
+    for (const grid::CornerId corner : block.body.complex.copies[c].corners)
       if (Vec3& p = block.x[corner.value]; pieces.piece[c] == 1 && p[2] < 50)
         p += Vec3(0.3, 0, 100 + 0.1 * p[0] * p[0]);
   const auto lower = block.cut(plane_sweep(Vec3(2, -9, -9), Vec3(0, 20, 0), Vec3(0, 0, 20), 2)).cuts;
@@ -316,14 +316,14 @@ TEST(Recut, RefusesCornersThatAreNotFinite) {
 }
 
 TEST(Recut, OneAndTwoThreadsGiveTheSameBits) {
-  const Embedding body = embed(geometry::sphere_mesh(1, Vec3::Zero(), 4), 0.07, Vec3::Constant(0.5));
-  const auto complex = grid::build_complex(body.grid, body.cuts);
-  const Points x = grid::rest_positions(body.grid, complex);
+  const grid::Solid body =
+    support::with_copies(embed(geometry::sphere_mesh(1, Vec3::Zero(), 4), 0.07, Vec3::Constant(0.5)).solid);
+  const Points x = grid::rest_positions(body);
   const auto strip = plane_sweep(Vec3(-3, -3, 0.1), Vec3(6, 0.5, 0.2), Vec3(0, 6, 0.3), 5);
   set_n_threads(1);
-  const auto one = cut_edges(strip, body.grid, body.cuts, complex, x, 1);
+  const auto one = cut_edges(strip, body, x, 1);
   set_n_threads(2);
-  const auto two = cut_edges(strip, body.grid, body.cuts, complex, x, 1);
+  const auto two = cut_edges(strip, body, x, 1);
   ASSERT_GT(one.cuts.size(), 200u);
   ASSERT_EQ(one.cuts.size(), two.cuts.size());
   for (std::size_t i = 0; i < one.cuts.size(); ++i) {
@@ -347,7 +347,7 @@ TEST(PendingCuts, ReleaseTwoEdgesACellInOrder) {
     ASSERT_LT(n_releases, 50);
     const auto oldest_waits = pending.size();
     std::map<std::uint32_t, int> n_cut;
-    for (const EdgeCut& cut : pending.release(block.body.grid, block.body.cuts)) {
+    for (const EdgeCut& cut : pending.release(block.body)) {
       for (const auto cell : block.body.grid.cells(cut.edge))
         EXPECT_TRUE(!cell.valid() || ++n_cut[cell.value] <= PendingCuts::max_per_cell);
       block.body.cuts.add(block.body.grid, cut);
@@ -358,7 +358,7 @@ TEST(PendingCuts, ReleaseTwoEdgesACellInOrder) {
   EXPECT_GT(n_releases, 1);
   EXPECT_EQ(released.front(), cuts.front().edge);
   EXPECT_EQ(released.size(), cuts.size());
-  EXPECT_EQ(grid::n_pieces(grid::build_complex(block.body.grid, block.body.cuts)), 2u);
+  EXPECT_EQ(grid::n_pieces(grid::build_complex(block.body)), 2u);
 }
 
 /// Edges of the skin wait as others do, and go when they are cut twice.
@@ -375,7 +375,7 @@ TEST(PendingCuts, EdgesOfTheSkinWaitToo) {
   for (int step = 0; pending.size() > 0; ++step) {
     ASSERT_LT(step, 50);
     const std::size_t n_waiting = pending.size();
-    const auto released = pending.release(block.body.grid, block.body.cuts);
+    const auto released = pending.release(block.body);
     n_released += released.size();
     n_dropped += n_waiting - released.size() - pending.size();
     for (const EdgeCut& cut : released)
@@ -399,7 +399,7 @@ TEST(PendingCuts, DropEdgesThatWereCutMeanwhile) {
   pending.push(cuts);
   for (const EdgeCut& cut : cuts)
     block.body.cuts.add(block.body.grid, cut);
-  EXPECT_TRUE(pending.release(block.body.grid, block.body.cuts).empty());
+  EXPECT_TRUE(pending.release(block.body).empty());
   EXPECT_EQ(pending.size(), 0u);
 }
 

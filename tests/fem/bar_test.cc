@@ -21,8 +21,7 @@ constexpr double reference = -0.37663e-3; // [m], at a thousandth of g
 
 Body make_bar(const double h, const Vec3& offset) {
   const auto mesh = geometry::box_mesh(Vec3(0, -0.1, -0.1), Vec3(1, 0.1, 0.1));
-  cut::Embedding embedding = cut::embed(mesh, h, offset);
-  Body bar{std::move(embedding.grid), std::move(embedding.cuts)};
+  Body bar{cut::embed(mesh, h, offset).solid};
   bar.cut({});
   return bar;
 }
@@ -40,7 +39,7 @@ dynamics::Support clamp(const Body& bar) {
 
 /// Mean deflection of the surface at x = 1 [m].
 double tip(const Body& bar, const Points& x) {
-  const auto skin = surface::build_surface(bar.grid, bar.cuts, bar.complex);
+  const auto skin = surface::build_surface(bar);
   Points positions;
   surface::follow(skin, x, positions);
   double sum = 0;
@@ -56,7 +55,7 @@ double tip(const Body& bar, const Points& x) {
 /// By one step so long that inertia does not count.
 double static_tip(const double h, const Vec3& offset, const HexahedraOptions& options) {
   const Body bar = make_bar(h, offset);
-  Hexahedra model(bar.grid, bar.cuts, bar.complex, options);
+  Hexahedra model(bar, options);
   dynamics::ImplicitEuler stepper(model, {.cg_tolerance = 1e-9, .max_cg_iterations = 20000});
   dynamics::State state{bar.rest(), Points(bar.complex.n_corners(), Vec3::Zero()), 0};
   dynamics::Loads loads{.gravity = Vec3(0, 0, -9.81e-3), .supports = {}};

@@ -37,20 +37,16 @@ struct Interval {
   double lower, upper;
 };
 
-struct Body {
-  grid::Grid grid;
-  grid::Cuts cuts{grid};
-  grid::CellComplex complex = {};
-
+struct Body : grid::Solid {
   /// Adds cuts, places the vertices they make and numbers the copies anew.
   void cut(const std::vector<grid::EdgeCut>& added) {
     for (const grid::EdgeCut& c : added)
       cuts.add(grid, c);
-    surface::place(grid, cuts, {});
-    complex = grid::build_complex(grid, cuts);
+    surface::place(*this, {});
+    complex = grid::build_complex(*this);
   }
 
-  Points rest() const { return grid::rest_positions(grid, complex); }
+  Points rest() const { return grid::rest_positions(*this); }
 };
 
 /// n[0] x n[1] x n[2] material nodes from lattice coordinates (1, 1, 1), inside a skin with random places and normals.
@@ -58,7 +54,9 @@ inline Body make_block(const Index3& n, const double h, Draw& draw, const Interv
   std::vector<Index3> nodes;
   for (int i = 0; i < n[0] * n[1] * n[2]; ++i)
     nodes.push_back({1 + i % n[0], 1 + i / n[0] % n[1], 1 + i / n[0] / n[1]});
-  Body body{grid::Grid({Vec3(0.3, -0.2, 0.1), h}, nodes)};
+  grid::Grid grid({Vec3(0.3, -0.2, 0.1), h}, nodes);
+  grid::Cuts cuts(grid);
+  Body body{{std::move(grid), std::move(cuts)}};
   std::vector<grid::EdgeCut> skin;
   for (const auto e : ids<grid::EdgeId>(body.grid.n_edges()))
     if (body.grid.is_material(body.grid.ends(e)[0]) != body.grid.is_material(body.grid.ends(e)[1]))

@@ -120,7 +120,7 @@ TEST(Element, SliverMassesAreNotNegative) {
     for (int vertex = 0; vertex < 8; ++vertex) {
       Draw draw(5);
       Body body = make_block({1, 1, 1}, 1, draw, {0.5, 0.5});
-      Body sliver{body.grid};
+      Body sliver{{body.grid, grid::Cuts(body.grid)}};
       std::vector<grid::EdgeCut> skin;
       for (const auto e : ids<grid::EdgeId>(body.grid.n_edges()))
         if (body.cuts.is_cut(e))
@@ -128,7 +128,7 @@ TEST(Element, SliverMassesAreNotNegative) {
                           grid::skin_label});
       sliver.cut(skin);
       const grid::Copy& copy = sliver.complex.copies[grid::CopyId(vertex)];
-      const Element element = make_element(material_moments(sliver.grid, sliver.cuts, copy), 1, rubber, {});
+      const Element element = make_element(material_moments(sliver, copy), 1, rubber, {});
       for (int a = 0; a < 8; ++a)
         EXPECT_TRUE(element.mass[a] > 0 || (element.mass[a] == 0 && t < 1e-4))
           << "t " << t << ", octant " << vertex << ", vertex " << a << ": " << element.mass[a];

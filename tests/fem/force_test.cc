@@ -243,8 +243,8 @@ TEST(Mass, IsDensityTimesTheVolumeInsideTheSurface) {
   for (int n = 0; n < 20; ++n) {
     Body body = make_block({3, 2, 3}, 0.2, draw, {0, 1});
     cut_at_random(body, 0.1 * (n % 10), draw, {0, 1});
-    const Hexahedra model(body.grid, body.cuts, body.complex, {.material = rubber});
-    const auto skin = surface::build_surface(body.grid, body.cuts, body.complex);
+    const Hexahedra model(body, {.material = rubber});
+    const auto skin = surface::build_surface(body);
     const double volume = surface::enclosed_volume(skin.rest, skin.triangles);
     double mass = 0;
     for (const double m : model.lumped_mass())
@@ -258,7 +258,7 @@ TEST(Mass, OfFullCubesIsACubeACopy) {
   Draw draw(64);
   Body body = make_block({3, 2, 3}, 0.2, draw, {0.3, 0.7});
   cut_at_random(body, 0.5, draw, {0.3, 0.7});
-  const Hexahedra model(body.grid, body.cuts, body.complex, {.material = rubber, .boundary = Boundary::full_cube});
+  const Hexahedra model(body, {.material = rubber, .boundary = Boundary::full_cube});
   double mass = 0;
   for (const double m : model.lumped_mass())
     mass += m;
@@ -298,7 +298,7 @@ TEST(Mass, ConsistentOneIntegratesLinearFields) {
   for (std::size_t c = 0; c < v.size(); ++c)
     found += v[c].dot(Mv[c]);
   for (const grid::Copy& copy : body.complex.copies)
-    for (const auto& [x, weight] : material_rule(body.grid, body.cuts, copy, 4))
+    for (const auto& [x, weight] : material_rule(body, copy, 4))
       expected += rubber.density * 0.008 * weight * (A * (body.grid.origin(copy.cell) + 0.2 * x)).squaredNorm();
   EXPECT_NEAR(found / expected, 1, 1e-12);
 
@@ -313,7 +313,7 @@ TEST(Mass, OfEachCornerIsPositive) {
   for (int n = 0; n < 10; ++n) {
     Body body = make_block({3, 2, 3}, 0.2, draw, {0.001, 0.999});
     cut_at_random(body, 0.5, draw, {0.001, 0.999});
-    const Hexahedra model(body.grid, body.cuts, body.complex, {.material = rubber});
+    const Hexahedra model(body, {.material = rubber});
     for (const double m : model.lumped_mass())
       EXPECT_GT(m, 0);
   }
@@ -326,7 +326,7 @@ TEST(Pieces, DoNotFeelEachOther) {
     Body body = make_block({4, 3, 3}, 0.2, draw, {0.4, 0.6});
     cut_plane(body, 0, 2, 0.3);
     ASSERT_EQ(grid::n_pieces(body.complex), 2u);
-    Hexahedra model(body.grid, body.cuts, body.complex, {.material = rubber, .boundary = boundary});
+    Hexahedra model(body, {.material = rubber, .boundary = boundary});
     const grid::Pieces pieces = grid::pieces(body.complex);
     std::vector<std::uint32_t> piece(body.complex.n_corners());
     for (const auto c : ids<grid::CopyId>(body.complex.n_copies()))

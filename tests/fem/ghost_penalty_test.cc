@@ -111,8 +111,8 @@ TEST(GhostPenalty, WellFilledCopiesHaveNone) {
                                      return grid::EdgeCut{e, is_upper ? depth : 1 - depth, Vec3::Unit(grid.axis(e)),
                                                           grid::skin_label};
                                    });
-    surface::place(body.grid, body.cuts, {});
-    return Hexahedra(body.grid, body.cuts, grid::build_complex(body.grid, body.cuts), {.material = rubber});
+    surface::place(body, {});
+    return Hexahedra(support::with_copies(std::move(body)), {.material = rubber});
   };
   EXPECT_TRUE(model_of_block(0.9).ghost_penalty().faces().empty());
   const Hexahedra shallow = model_of_block(0.1);
@@ -127,14 +127,13 @@ struct Spectra {
 };
 
 Spectra spectra_of(support::Body& body, const double weight) {
-  surface::place(body.grid, body.cuts, {});
-  const auto complex = grid::build_complex(body.grid, body.cuts);
-  const Hexahedra model(body.grid, body.cuts, complex,
-                        {.material = rubber,
-                         .strain = Strain::enhanced,
-                         .inertia = Inertia::extended,
-                         .ghost_penalty = {.weight = weight}});
-  Matrix K = model.stiffness_matrix(grid::rest_positions(body.grid, complex), dynamics::Tangent::positive);
+  surface::place(body, {});
+  body.complex = grid::build_complex(body);
+  const Hexahedra model(body, {.material = rubber,
+                               .strain = Strain::enhanced,
+                               .inertia = Inertia::extended,
+                               .ghost_penalty = {.weight = weight}});
+  Matrix K = model.stiffness_matrix(grid::rest_positions(body), dynamics::Tangent::positive);
   const Eigen::Index n = K.rows();
   Matrix scaled = K;
   for (Eigen::Index i = 0; i < n; i += 3) {
@@ -150,7 +149,7 @@ Spectra spectra_of(support::Body& body, const double weight) {
     K.row(i) /= std::sqrt(model.lumped_mass()[i / 3]);
     K.col(i) /= std::sqrt(model.lumped_mass()[i / 3]);
   }
-  return {of_scaled[n - 1] / of_scaled[6 * grid::n_pieces(complex)], std::sqrt(eigenvalues(K)[n - 1])};
+  return {of_scaled[n - 1] / of_scaled[6 * grid::n_pieces(body.complex)], std::sqrt(eigenvalues(K)[n - 1])};
 }
 
 /// 3 x 3 x 3 nodes whose skin lies `depth` beyond the last nodes along some axes (bits), and 0.5 elsewhere.
@@ -210,7 +209,7 @@ const std::vector<Family> families = {
          body.cuts.add(body.grid, cut);
          edges.push_back(cut.edge);
        }
-     cut::part_skin(body.grid, body.cuts, edges);
+     cut::part_skin(body, edges);
      return body;
    }}};
 

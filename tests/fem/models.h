@@ -16,9 +16,7 @@ inline material::Elastic with_law(material::Elastic material, const std::string&
   return material;
 }
 
-inline Hexahedra make_model(const Body& body, const HexahedraOptions& options) {
-  return Hexahedra(body.grid, body.cuts, body.complex, options);
-}
+inline Hexahedra make_model(const Body& body, const HexahedraOptions& options) { return Hexahedra(body, options); }
 
 /// What a test prints when it fails.
 inline std::string name_of(const HexahedraOptions& options) {

@@ -56,7 +56,7 @@ TEST(Moments, OfTheCopiesOfACellSumToTheFullCubeInEveryConfiguration) {
     ASSERT_EQ(body.cuts.configuration(body.grid, cell), configuration);
     Moments sum{};
     for (const grid::CopyId c : body.complex.copies_of(cell)) {
-      const Moments m = material_moments(body.grid, body.cuts, body.complex.copies[c]);
+      const Moments m = material_moments(body, body.complex.copies[c]);
       EXPECT_GT(m[0], 0);
       for (int n = 0; n < 27; ++n)
         sum[n] += m[n];
@@ -74,8 +74,8 @@ TEST(Moments, OfOctantsAgreeWithAnotherRule) {
       const Body body = one_cell(static_cast<unsigned>(draw(0, 4096)), draw, t);
       const auto cell = *body.grid.find_cell({1, 1, 1});
       for (int v = 0; v < 8; ++v) {
-        const auto rule = material_rule(body.grid, body.cuts, cell, 1u << v, 5);
-        EXPECT_LT(distance(octant_moments(body.grid, body.cuts, cell, 1u << v), by_quadrature(rule)), 1e-14);
+        const auto rule = material_rule(body, cell, 1u << v, 5);
+        EXPECT_LT(distance(octant_moments(body, cell, 1u << v), by_quadrature(rule)), 1e-14);
       }
     }
 }
@@ -142,12 +142,12 @@ TEST(Moments, MakeElementsThatNeverGainEnergy) {
       const Vec3 through = Vec3::Constant(0.5) + 0.2 * support::random_vector(random);
       support::cut_through(body, support::plane_cuts(body, {normal, normal.dot(through)}, label));
     }
-    const auto complex = grid::build_complex(body.grid, body.cuts);
+    const auto complex = grid::build_complex(body);
     for (const grid::Copy& copy : complex.copies) {
-      if (grid::lines_under_skin(body.grid, body.cuts, copy) == 0)
+      if (grid::lines_under_skin(body, copy) == 0)
         continue;
       ++n_under_skin;
-      const Moments m = material_moments(body.grid, body.cuts, copy);
+      const Moments m = material_moments(body, copy);
       const Moments positive = without_negative_squares(m);
       EXPECT_DOUBLE_EQ(positive[0], m[0]);
       EXPECT_GT(least_square(positive), -1e-15);

@@ -51,7 +51,7 @@ dynamics::State thrown(const Body& body, const unsigned seed) {
 
 TEST(Motion, ImplicitEulerKeepsMomentum) {
   const Body body = cut_block(71);
-  Hexahedra model(body.grid, body.cuts, body.complex, {.material = rubber});
+  Hexahedra model(body, {.material = rubber});
   dynamics::ImplicitEuler stepper(model, {.cg_tolerance = 1e-13});
   dynamics::State state = thrown(body, 72);
   const Vec3 before = momentum(model, state).linear;
@@ -63,7 +63,7 @@ TEST(Motion, ImplicitEulerKeepsMomentum) {
 /// f has no torque, so x += dt v keeps the angular momentum too. Full cubes: light slivers would need shorter steps.
 TEST(Motion, SymplecticEulerKeepsBothMomenta) {
   const Body body = cut_block(73);
-  Hexahedra model(body.grid, body.cuts, body.complex, {.material = rubber, .boundary = Boundary::full_cube});
+  Hexahedra model(body, {.material = rubber, .boundary = Boundary::full_cube});
   dynamics::SymplecticEuler stepper(model);
   dynamics::State state = thrown(body, 74);
   const Momentum before = momentum(model, state);
@@ -93,7 +93,7 @@ double longest_stable_step(const Hexahedra& model) {
 TEST(Motion, SymplecticEulerIsStableUpToTheLargestFrequency) {
   Draw draw(75);
   const Body body = make_block({2, 2, 2}, 0.1, draw, {0.4, 0.6});
-  Hexahedra model(body.grid, body.cuts, body.complex, {.material = rubber});
+  Hexahedra model(body, {.material = rubber});
   const double limit = longest_stable_step(model);
   const Points rest = body.rest();
   const auto run = [&](const double dt) {
@@ -119,7 +119,7 @@ TEST(Motion, SliversShortenTheStableStep) {
   for (const double t : {0.5, 0.2, 0.1, 0.01}) {
     Draw draw(75);
     const Body body = make_block({2, 2, 2}, 0.1, draw, {t, t});
-    const double step = longest_stable_step({body.grid, body.cuts, body.complex, {.material = rubber}});
+    const double step = longest_stable_step({body, {.material = rubber}});
     EXPECT_LT(step, before);
     RecordProperty("step_us_at_t_" + std::to_string(t), std::to_string(1e6 * step));
     before = step;
@@ -133,7 +133,7 @@ TEST(Motion, SliversDoNotStopTheSolver) {
     Body body = make_block({4, 4, 4}, 0.1, draw, {0.5, 0.5});
     cut_plane(body, 0, 2, t);
     cut_at_random(body, 0.1, draw, {t, t});
-    Hexahedra model(body.grid, body.cuts, body.complex, {.material = rubber});
+    Hexahedra model(body, {.material = rubber});
     dynamics::ImplicitEuler stepper(model, {});
     dynamics::State state{body.rest(), Points(body.complex.n_corners(), Vec3::Zero()), 0};
     for (Vec3& v : state.v)
@@ -158,7 +158,7 @@ TEST(Motion, OneAndTwoThreadsGiveTheSameBits) {
     Draw draw(78);
     Body body = make_block({14, 14, 14}, 0.1, draw, {0.3, 0.7});
     cut_at_random(body, 0.1, draw, {0.3, 0.7});
-    Hexahedra model(body.grid, body.cuts, body.complex, {.material = rubber});
+    Hexahedra model(body, {.material = rubber});
     dynamics::ImplicitEuler stepper(model, {});
     states[n - 1] = thrown(body, 79);
     for (int i = 0; i < 2; ++i)

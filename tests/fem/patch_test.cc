@@ -97,7 +97,7 @@ TEST(Patch, EveryConfigurationOfACellUnderEveryLaw) {
   double worst = 0;
   for (unsigned configuration = 0; configuration < 4096; ++configuration) {
     const Body body = with_configuration(block, cell, configuration, draw);
-    const auto skin = surface::build_surface(body.grid, body.cuts, body.complex);
+    const auto skin = surface::build_surface(body);
     for (std::size_t law = 0; law < all_laws.size(); ++law) {
       const auto options = options_of(all_laws[law], all_strains[(configuration + law + configuration / 16) % 2]);
       worst = std::max(worst, patch_error(body, skin, options, deformation(draw)));
@@ -130,7 +130,7 @@ TEST(Patch, BodiesCutAtRandom) {
         Body body = make_block({3, 4, 3}, 0.1, draw, {0, 1});
         cut_at_random(body, probability, draw, {0, 1});
         cut_at_random(body, 0.3, draw, {0, 1}); // later cuts move what the first ones placed
-        const auto skin = surface::build_surface(body.grid, body.cuts, body.complex);
+        const auto skin = surface::build_surface(body);
         EXPECT_LT(patch_error(body, skin, options_of(law, strain), deformation(draw)), 1e-10);
       }
 }
@@ -140,7 +140,7 @@ TEST(Patch, BodiesCutAtRandom) {
 TEST(Patch, OtherBoundariesDoNotPass) {
   Draw draw(23);
   const Body body = make_block({2, 2, 2}, 1, draw, {0.4, 0.4});
-  const auto skin = surface::build_surface(body.grid, body.cuts, body.complex);
+  const auto skin = surface::build_surface(body);
   for (const Boundary boundary : {Boundary::full_cube, Boundary::volume_fraction}) {
     HexahedraOptions options = options_of("corotational", Strain::trilinear);
     options.boundary = boundary;

@@ -74,12 +74,12 @@ inline std::vector<WeightedPoint<Eigen::Vector2d>> triangle_rule(const int n) {
 }
 
 /// Points of the octants of `vertices` (bits) of a cell, in the unit cube.
-inline std::vector<WeightedPoint<Vec3>> material_rule(const grid::Grid& grid, const grid::Cuts& cuts,
-                                                      const grid::CellId cell, const unsigned vertices, const int n) {
+inline std::vector<WeightedPoint<Vec3>> material_rule(const grid::Solid& solid, const grid::CellId cell,
+                                                      const unsigned vertices, const int n) {
   std::vector<WeightedPoint<Vec3>> rule;
   for (int v = 0; v < 8; ++v)
     if (vertices >> v & 1)
-      for (const auto& t : grid::octant(grid, cuts, cell, v)) {
+      for (const auto& t : grid::octant(solid, cell, v)) {
         const auto part = tetrahedron_rule(t, n);
         rule.insert(rule.end(), part.begin(), part.end());
       }
@@ -87,10 +87,9 @@ inline std::vector<WeightedPoint<Vec3>> material_rule(const grid::Grid& grid, co
 }
 
 /// Points of all material of a copy.
-inline std::vector<WeightedPoint<Vec3>> material_rule(const grid::Grid& grid, const grid::Cuts& cuts,
-                                                      const grid::Copy& copy, const int n) {
+inline std::vector<WeightedPoint<Vec3>> material_rule(const grid::Solid& solid, const grid::Copy& copy, const int n) {
   std::vector<WeightedPoint<Vec3>> rule;
-  grid::for_each_tetrahedron(grid, cuts, copy, [&](const grid::Tetrahedron& t, int) {
+  grid::for_each_tetrahedron(solid, copy, [&](const grid::Tetrahedron& t, int) {
     const auto part = tetrahedron_rule(t, n);
     rule.insert(rule.end(), part.begin(), part.end());
   });

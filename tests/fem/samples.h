@@ -22,9 +22,9 @@ inline std::vector<Sample> make_samples() {
     Body body = make_block({2, 2, 2}, 1, draw, {0.2, 0.8});
     cut_at_random(body, 0.5, draw, {0.2, 0.8});
     for (const grid::Copy& copy : body.complex.copies) {
-      const Moments m = material_moments(body.grid, body.cuts, copy);
+      const Moments m = material_moments(body, copy);
       if (m[0] > 0.2 && copy.nodes != 0xff)
-        all.push_back({m, material_rule(body.grid, body.cuts, copy, 5)});
+        all.push_back({m, material_rule(body, copy, 5)});
     }
   }
   return all;

@@ -14,16 +14,15 @@
 namespace kerf::fem {
 
 inline Body make_embedded(const geometry::TriangleMesh& mesh, const double h, const Vec3& offset) {
-  support::Body placed = support::embedded(mesh, h, offset);
-  Body body{std::move(placed.grid), std::move(placed.cuts)};
-  body.complex = grid::build_complex(body.grid, body.cuts);
+  Body body{support::embedded(mesh, h, offset)};
+  body.complex = grid::build_complex(body);
   return body;
 }
 
 /// Nodal forces of a traction [Pa] on the surface triangles that lie in x = `plane` [N].
 inline Points end_traction(const Body& body, const double plane, const Vec3& traction) {
   static const auto rule = triangle_rule(3);
-  const auto skin = surface::build_surface(body.grid, body.cuts, body.complex);
+  const auto skin = surface::build_surface(body);
   Points sum(body.complex.n_corners(), Vec3::Zero());
   for (std::size_t i = 0; i < skin.triangles.size(); ++i) {
     const auto vertex = [&](const int k) { return skin.rest[skin.triangles[i][k]]; };

@@ -50,8 +50,7 @@ TEST(Stiffness, HasSixRigidModesAPiece) {
     Body body = make_block({2, 2, 1 + n % 3}, 0.2, draw, {0.25, 0.75});
     cut_at_random(body, 0.2 + 0.2 * (n % 4), draw, {0.25, 0.75});
     for (const double weight : {0.0, 0.03}) {
-      const Hexahedra model(body.grid, body.cuts, body.complex,
-                            {.material = rubber, .ghost_penalty = {.weight = weight}});
+      const Hexahedra model(body, {.material = rubber, .ghost_penalty = {.weight = weight}});
       const Eigen::VectorXd spectrum = scaled_spectrum(assembled(model));
       const std::uint32_t n_pieces = grid::n_pieces(body.complex);
       const Eigen::Index n_rigid = 6 * n_pieces;
@@ -72,7 +71,7 @@ TEST(Stiffness, ProductsAreThoseOfASymmetricMatrix) {
   Draw draw(32);
   Body body = make_block({2, 3, 2}, 0.2, draw, {0.2, 0.8});
   cut_at_random(body, 0.3, draw, {0.2, 0.8});
-  Hexahedra model(body.grid, body.cuts, body.complex, {.material = rubber});
+  Hexahedra model(body, {.material = rubber});
   model.linearise(disturbed(body.rest(), draw.rotation(), 0.03, draw));
   const Matrix K = assembled(model);
   EXPECT_LT((K - K.transpose()).norm(), 1e-15 * K.norm());
@@ -97,11 +96,11 @@ TEST(Stiffness, IsTheSumOfItsElements) {
   Draw draw(33);
   Body body = make_block({2, 2, 2}, 0.2, draw, {0.2, 0.8});
   cut_at_random(body, 0.3, draw, {0.2, 0.8});
-  const Hexahedra model(body.grid, body.cuts, body.complex, {.material = rubber, .ghost_penalty = {.weight = 0}});
+  const Hexahedra model(body, {.material = rubber, .ghost_penalty = {.weight = 0}});
   const Matrix found = assembled(model);
   Matrix K = Matrix::Zero(found.rows(), found.cols());
   for (const grid::Copy& copy : body.complex.copies) {
-    const Element element = make_element(material_moments(body.grid, body.cuts, copy), body.grid.h(), rubber, {});
+    const Element element = make_element(material_moments(body, copy), body.grid.h(), rubber, {});
     const Eigen::Map<const Matrix24> k(element.stiffness.data());
     for (int a = 0; a < 8; ++a)
       for (int b = 0; b < 8; ++b)
@@ -114,7 +113,7 @@ TEST(Stiffness, TurnsWithTheBody) {
   Draw draw(34);
   Body body = make_block({2, 2, 2}, 0.2, draw, {0.2, 0.8});
   cut_at_random(body, 0.3, draw, {0.2, 0.8});
-  Hexahedra model(body.grid, body.cuts, body.complex, {.material = rubber});
+  Hexahedra model(body, {.material = rubber});
   const Matrix at_rest = assembled(model);
   const Mat3 Q = draw.rotation();
   model.linearise(disturbed(body.rest(), Q, 0, draw));
@@ -129,7 +128,7 @@ TEST(Stiffness, IsTheDerivativeOfTheForceAtRest) {
   Draw draw(35);
   Body body = make_block({2, 2, 2}, 0.2, draw, {0.2, 0.8});
   cut_at_random(body, 0.4, draw, {0.2, 0.8});
-  const Hexahedra model(body.grid, body.cuts, body.complex, {.material = rubber});
+  const Hexahedra model(body, {.material = rubber});
   const Matrix K = assembled(model);
   const Points rest = body.rest();
   const double eps = 1e-5 * body.grid.h();
@@ -220,7 +219,7 @@ TEST(Stiffness, OneAndTwoThreadsGiveTheSameBits) {
     Draw draw(37);
     Body body = make_block({6, 5, 7}, 0.1, draw, {0.1, 0.9});
     cut_at_random(body, 0.2, draw, {0.1, 0.9});
-    Hexahedra model(body.grid, body.cuts, body.complex, {.material = rubber});
+    Hexahedra model(body, {.material = rubber});
     const Points x = disturbed(body.rest(), draw.rotation(), 0.02, draw);
     model.linearise(x);
     Points f, y(x.size());

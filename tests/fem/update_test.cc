@@ -49,9 +49,8 @@ std::vector<grid::CopyId> cut_some(Body& body, const double probability, Draw& d
       body.cuts.add(body.grid, {e, draw(0.1, 0.9), draw.vector().normalized(), 1});
       edges.push_back(e);
     }
-  surface::place(body.grid, body.cuts, {});
-  const auto change = grid::update_complex(body.grid, body.cuts, edges, body.complex);
-  return changed_copies(body.grid, body.complex, change, edges);
+  surface::place(body, {});
+  return grid::update_complex(body, edges).reshaped;
 }
 
 TEST(Update, IsBuildingAnewBitByBit) {
@@ -65,7 +64,7 @@ TEST(Update, IsBuildingAnewBitByBit) {
       Hexahedra model = make_model(body, options);
       for (int step = 0; step < 6; ++step) {
         const auto changed = cut_some(body, 0.08, draw);
-        model.update(body.grid, body.cuts, body.complex, changed);
+        model.update(body, changed);
         const Points x = disturbed(body, draw);
         Hexahedra anew = make_model(body, options);
         ASSERT_EQ(answers(model, x), answers(anew, x)) << law << ", step " << step;
@@ -108,8 +107,8 @@ TEST(Update, ChangesFewElements) {
   Body body = make_block({8, 8, 8}, 0.1, draw, {0.5, 0.5});
   const auto edge = inner_edges(body)[100];
   body.cuts.add(body.grid, {edge, 0.5, Vec3::UnitX(), 1});
-  const auto change = grid::update_complex(body.grid, body.cuts, {&edge, 1}, body.complex);
-  EXPECT_EQ(changed_copies(body.grid, body.complex, change, {&edge, 1}).size(), 4u);
+  const auto change = grid::update_complex(body, {edge});
+  EXPECT_EQ(change.reshaped.size(), 4u);
 }
 
 TEST(Update, CountsElementsOfTheirOwn) {
@@ -120,7 +119,7 @@ TEST(Update, CountsElementsOfTheirOwn) {
   std::vector<grid::CopyId> all;
   for (const auto c : ids<grid::CopyId>(body.complex.n_copies()))
     all.push_back(c);
-  model.update(body.grid, body.cuts, body.complex, all);
+  model.update(body, all);
   EXPECT_EQ(model.n_partial(), before);
   EXPECT_EQ(before, 125u - 27u);
 }

@@ -1,6 +1,5 @@
 #include "tests/fuzz/cases.h"
 
-#include "cut/pending.h"
 #include "cut/target.h"
 #include "grid/cube.h"
 #include "tests/fuzz/invariants.h"
@@ -16,7 +15,7 @@ namespace kerf::fuzz {
 
 namespace {
 
-/// How what a sweep cuts is released: at most two edges of a cell at once as in scene/body.cc, one release a sweep;
+/// How what a sweep cuts is released: at most two edges of a cell at once as in scenes, one release a sweep;
 /// the same, but until nothing waits; or all of it at once.
 enum class Release { one, drained, at_once };
 
@@ -35,7 +34,7 @@ void require_sound_cuts(const Subject& subject, const cut::SweepCuts& found) {
     if (i > 0 && !(found.cuts[i - 1].edge < cut.edge))
       throw Violation("cuts are not ordered by edge");
     const support::Body& body = subject.specimen.body; // its skin is that of the subject
-    if (!subject.cuts.can_be_cut(body.grid, cut.edge) ||
+    if (!subject.solid.cuts.can_be_cut(body.grid, cut.edge) ||
         (!support::is_inner(body, cut.edge) && !support::is_below_skin(body, cut.edge, cut.t)))
       throw Violation("an edge is cut again, or outside of the material");
     if (!(cut.t >= 0 && cut.t <= 1) || !(std::abs(cut.normal.norm() - 1) < 1e-12))
@@ -55,7 +54,7 @@ void require_no_hole(const Subject& subject, const std::vector<grid::EdgeCut>& f
       int n_crossed = 0, n_cut = 0;
       for (const int line : lines) {
         n_crossed += crossed[grid.edges(c)[line]];
-        n_cut += subject.cuts.is_cut(grid.edges(c)[line]);
+        n_cut += subject.solid.cuts.is_cut(grid.edges(c)[line]);
       }
       if (n_cut == 0 && n_crossed % 2 != 0)
         throw Violation("a closed surface cuts an odd number of edges of a face of cell " + std::to_string(c.value));
@@ -67,7 +66,7 @@ double height(const cut::Plane& plane, const Vec3& p) { return plane.normal.dot(
 /// Each cut lies where the plane meets the current edge.
 void require_on_plane(const Subject& subject, const cut::Plane& plane, const std::vector<grid::EdgeCut>& found) {
   for (const auto& cut : found) {
-    const auto [lower, upper] = cut::ends_of(subject.grid(), subject.cuts, subject.complex, cut.edge).corners;
+    const auto [lower, upper] = cut::ends_of(subject.solid, cut.edge).corners;
     const Vec3 &p = subject.x[lower.value], &q = subject.x[upper.value];
     const double off = std::abs(height(plane, p + cut.t * (q - p)));
     if (!(off < 1e-13 * (p.norm() + q.norm() + plane.point.norm())))
@@ -78,11 +77,11 @@ void require_on_plane(const Subject& subject, const cut::Plane& plane, const std
 /// Where nothing had been cut before, a plane leaves nothing joined across it: not by edges, nor by the skin.
 void require_parted(const Subject& subject, const cut::Plane& plane) {
   const grid::Grid& grid = subject.grid();
-  const Items items(grid, subject.cuts, subject.specimen.arcs);
+  const Items items(grid, subject.solid.cuts, subject.specimen.arcs);
   std::vector<bool> is_above(items.n_names());
   for (const auto n : ids<grid::NodeId>(grid.n_nodes()))
     if (grid.is_material(n))
-      is_above[items.node(n)] = height(plane, subject.x[subject.complex.real_corner[n].value]) >= 0;
+      is_above[items.node(n)] = height(plane, subject.x[subject.solid.complex.real_corner[n].value]) >= 0;
   for (const auto e : ids<grid::EdgeId>(grid.n_edges()))
     if (items.has_rind(e)) {
       const auto& [lower, upper] = grid.ends(e);
@@ -109,7 +108,14 @@ class Run {
       outcome_(outcome) {
     tell(subject_.specimen.name + ", " + put_into_state(subject_, random_) + ", " +
          release_names[static_cast<std::size_t>(release_)]);
-    subject_.x_before = subject_.x;
+    std::uint32_t n_labels = 0;
+    for (const std::uint32_t number : one.sweeps)
+      n_labels = std::max(n_labels, number + 1);
+    subject_.cutter =
+      cut::Cutter(n_labels, release_ == Release::at_once ? cut::Release::at_once : cut::Release::queued);
+    subject_.cutter.begin(subject_.solid, subject_.x);
+    for (std::uint32_t label = 1; label <= n_labels; ++label)
+      strokes_.push_back({static_cast<grid::CutLabel>(label)});
   }
 
   void all_sweeps() {
@@ -119,8 +125,7 @@ class Run {
       ++tally_.n_sweeps;
     }
     drain();
-    strip_.clear(); // all blades are gone
-    cut(subject_, {}, strip_, label_, pending_, tally_);
+    step({static_cast<grid::CutLabel>(1)}); // all blades are gone
     require_untouched_elsewhere();
     require_same_in_any_order();
     outcome_.digest = digest(subject_, outcome_.digest);
@@ -131,34 +136,34 @@ class Run {
 
   void sweep(const std::uint32_t number) {
     Random random = generator(case_.seed, number + 1);
+    const auto label = static_cast<grid::CutLabel>(number + 1);
     const std::string motion = move(subject_, random);
     const NamedSweep swept = random_sweep(subject_, last_, random);
     tell("sweep " + std::to_string(number) + ": " + motion + ", " + swept.name);
-    const auto found = meet(subject_, swept.sweep, static_cast<grid::CutLabel>(number + 1));
+    const auto found = meet(subject_, swept.sweep, label);
     require_sound_cuts(subject_, found);
     if (swept.extent == Extent::closed)
       require_no_hole(subject_, found.cuts);
     const cut::Plane* const plane = plane_of(swept.sweep);
-    const bool is_first = subject_.cuts.all().size() == subject_.specimen.body.cuts.all().size();
+    const bool is_first = subject_.solid.cuts.all().size() == subject_.specimen.body.cuts.all().size();
     if (plane)
       require_on_plane(subject_, *plane, found.cuts);
     tally_.n_double_crossings += found.n_double_crossings;
     tally_.n_idle_sweeps += found.cuts.empty();
     last_ = swept;
-    strip_ = strip_of(swept.sweep);
-    label_ = static_cast<grid::CutLabel>(number + 1);
-    if (release_ == Release::at_once || std::holds_alternative<cut::CutSurface>(swept.sweep)) {
-      cut_at_once(found.cuts, swept.sweep);
+    if (const auto* const surface = std::get_if<cut::CutSurface>(&swept.sweep)) {
+      cut_at_once(*surface, label);
       if (plane && is_first)
         require_parted(subject_, *plane);
     } else {
-      pending_.push(found.cuts);
-      cut_swept(pending_.release(subject_.grid(), subject_.cuts));
-      tally_.n_most_waiting = std::max(tally_.n_most_waiting, pending_.size());
+      const Soup strip = strip_of(swept.sweep);
+      step({label, found, strip, strip});
+      tally_.n_most_waiting = std::max(tally_.n_most_waiting, subject_.cutter.n_waiting());
+      now_ = {label, {}, strip, strip};
       if (release_ == Release::drained)
         drain();
     }
-    subject_.x_before = subject_.x;
+    subject_.cutter.stand(subject_.x);
     outcome_.digest = digest(subject_, outcome_.digest);
   }
 
@@ -177,45 +182,54 @@ class Run {
     return strip;
   }
 
-  void cut_at_once(const std::vector<grid::EdgeCut>& cuts, const Sweep& sweep) {
-    const auto* const surface = std::get_if<cut::CutSurface>(&sweep);
-    const Front front = surface && cut::rim(*surface).empty() ? Front::none : Front::possible;
-    if (!cuts.empty())
-      cut(subject_, cuts, front, tally_);
+  void cut_at_once(cut::CutSurface surface, const grid::CutLabel label) {
+    surface.label = label;
+    cut(
+      subject_, [&](Subject& s) { return s.cutter.at_once(s.solid, surface, s.x); }, tally_);
+    tally_.n_ended += cut(
+      subject_, [&](Subject& s) { return s.cutter.end(s.solid, surface, s.x); }, tally_);
   }
 
-  void cut_swept(const std::vector<grid::EdgeCut>& cuts) { cut(subject_, cuts, strip_, label_, pending_, tally_); }
+  /// One blade, while all others have gone.
+  void step(const cut::Stroke& stroke) {
+    std::vector<cut::Stroke> strokes = strokes_;
+    if (!strokes.empty())
+      strokes[stroke.label - 1] = stroke;
+    const bool none_can_be_cut = stroke.found.cuts.empty() && subject_.cutter.n_waiting() == 0;
+    const auto n = cut(
+      subject_, [&](Subject& s) { return s.cutter.step(s.solid, strokes, s.x); }, tally_);
+    tally_.n_ended += none_can_be_cut ? n : 0;
+  }
 
   void drain() {
-    while (pending_.size() > 0) {
-      const auto released = pending_.release(subject_.grid(), subject_.cuts);
-      if (released.empty() && pending_.size() > 0)
+    while (const std::size_t n_waiting = subject_.cutter.n_waiting()) {
+      step(now_);
+      if (subject_.cutter.n_waiting() == n_waiting)
         throw Violation("nothing is released although cuts wait");
-      cut_swept(released);
     }
   }
 
   /// The ledger was kept up to date in the cells around new cuts alone.
   void require_untouched_elsewhere() const {
     for (const auto c : ids<grid::CellId>(subject_.grid().n_cells()))
-      if (require_sound_volumes(subject_.grid(), subject_.cuts, subject_.complex, c, tally_) != subject_.volumes[c])
+      if (require_sound_volumes(subject_.solid, c, tally_) != subject_.volumes[c])
         throw Violation("cell " + std::to_string(c.value) + " changed without a cut");
   }
 
   void require_same_in_any_order() {
     const grid::Grid& grid = subject_.grid();
     grid::histories::Plan plan;
-    for (const auto& cut : subject_.cuts.all())
+    for (const auto& cut : subject_.solid.cuts.all())
       if (cut.label != grid::skin_label)
         plan.cuts.push_back(cut);
     for (const auto f : ids<grid::FaceId>(grid.n_faces()))
-      if (subject_.cuts.seam(f) != grid::Seam::unsaid)
-        plan.seams[f] = subject_.cuts.seam(f);
+      if (subject_.solid.cuts.seam(f) != grid::Seam::unsaid)
+        plan.seams[f] = subject_.solid.cuts.seam(f);
     Subject other = make_subject(subject_.specimen, tally_);
     for (const auto& step : grid::histories::dealt(random_, subject_.specimen.body, plan, 1 + draw(random_, 6)))
       if (!step.cuts.empty() || !step.seams.empty())
         cut(other, step, tally_);
-    require_same(subject_.complex, other.complex);
+    require_same(subject_.solid.complex, other.solid.complex);
   }
 
   const Case& case_;
@@ -224,10 +238,9 @@ class Run {
   Release release_;
   Tally& tally_;
   Outcome& outcome_;
-  cut::PendingCuts pending_;
   std::optional<NamedSweep> last_;
-  Soup strip_;               // what is swept now
-  grid::CutLabel label_ = 0; // of the strip
+  std::vector<cut::Stroke> strokes_; // by label: of blades that have gone
+  cut::Stroke now_;                  // where the last blade is
 };
 
 } // namespace

@@ -89,7 +89,7 @@ struct Held {
   CopyId copy; ///< by the complex
 };
 
-std::vector<Held> held_by(const Items& items, const grid::Grid& grid, const CellComplex& complex, const CellId c) {
+std::vector<Held> held_by(const Items& items, const grid::Solid& solid, const CellId c) {
   std::vector<Held> all;
   const auto add = [&](const bool is_item, const Item item, const CopyId copy) {
     if (copy.valid() != is_item)
@@ -98,9 +98,11 @@ std::vector<Held> held_by(const Items& items, const grid::Grid& grid, const Cell
       all.push_back({item, copy});
   };
   for (int v = 0; v < cube::n_vertices; ++v)
-    add(grid.is_material(grid.nodes(c)[v]), items.node(grid.nodes(c)[v]), complex.copy_at(c, v));
+    add(solid.grid.is_material(solid.grid.nodes(c)[v]), items.node(solid.grid.nodes(c)[v]),
+        solid.complex.copy_at(c, v));
   for (int line = 0; line < cube::n_lines; ++line)
-    add(items.has_rind(grid.edges(c)[line]), items.rind(grid.edges(c)[line]), complex.copy_with_rind(c, line));
+    add(items.has_rind(solid.grid.edges(c)[line]), items.rind(solid.grid.edges(c)[line]),
+        solid.complex.copy_with_rind(c, line));
   return all;
 }
 
@@ -110,14 +112,14 @@ std::uint32_t place_of(const std::vector<Held>& held, const Item item) {
   return static_cast<std::uint32_t>(at - held.begin());
 }
 
-void require_sound_copies(const Items& items, const grid::Grid& grid, const CellComplex& complex) {
+void require_sound_copies(const Items& items, const grid::Solid& solid) {
   std::size_t n_copies = 0;
-  for (const CellId c : ids<CellId>(grid.n_cells())) {
-    const auto held = held_by(items, grid, complex, c);
+  for (const CellId c : ids<CellId>(solid.grid.n_cells())) {
+    const auto held = held_by(items, solid, c);
     ItemLinks links;
-    for (const auto e : grid.edges(c))
+    for (const auto e : solid.grid.edges(c))
       items.add_links(e, links);
-    for (const auto f : grid.faces(c))
+    for (const auto f : solid.grid.faces(c))
       items.add_links(f, links);
     for (auto& link : links)
       link = {place_of(held, link[0]), place_of(held, link[1])};
@@ -127,62 +129,64 @@ void require_sound_copies(const Items& items, const grid::Grid& grid, const Cell
     n_copies += require_same_sets(flooded(held.size(), links), copies,
                                   "the copies of cell " + std::to_string(c.value) + " are not its parts");
   }
-  if (n_copies != complex.n_copies())
+  if (n_copies != solid.complex.n_copies())
     complain("there are copies of nothing");
 }
 
 /// The copies without a node's material may hold its real corner all the same: those at a cut's front.
-void require_real_corners(const grid::Grid& grid, const CellComplex& complex) {
-  Table<NodeId, std::uint8_t> is_held(grid.n_nodes(), 0);
-  for (const Copy& copy : complex.copies)
+void require_real_corners(const grid::Solid& solid) {
+  Table<NodeId, std::uint8_t> is_held(solid.grid.n_nodes(), 0);
+  for (const Copy& copy : solid.complex.copies)
     for (int v = 0; v < 8; ++v) {
-      const NodeId node = grid.nodes(copy.cell)[v];
+      const NodeId node = solid.grid.nodes(copy.cell)[v];
       const bool is_real = (copy.nodes >> v & 1) != 0;
-      if (complex.node[copy.corners[v]] != node || (is_real && complex.real_corner[node] != copy.corners[v]))
+      if (solid.complex.node[copy.corners[v]] != node ||
+          (is_real && solid.complex.real_corner[node] != copy.corners[v]))
         complain("node " + std::to_string(node.value) + " has a wrong corner in cell " +
                  std::to_string(copy.cell.value));
       is_held[node] |= is_real ? 1 : 0;
     }
-  for (const NodeId node : ids<NodeId>(grid.n_nodes()))
-    if ((is_held[node] != 0) != grid.is_material(node) || complex.real_corner[node].valid() != grid.is_material(node))
+  for (const NodeId node : ids<NodeId>(solid.grid.n_nodes()))
+    if ((is_held[node] != 0) != solid.grid.is_material(node) ||
+        solid.complex.real_corner[node].valid() != solid.grid.is_material(node))
       complain("node " + std::to_string(node.value) + " has a real corner, but is not material, or the reverse");
 }
 
-void require_pieces(const Items& items, const grid::Grid& grid, const CellComplex& complex) {
+void require_pieces(const Items& items, const grid::Solid& solid) {
   ItemLinks links;
-  for (const auto e : ids<grid::EdgeId>(grid.n_edges()))
+  for (const auto e : ids<grid::EdgeId>(solid.grid.n_edges()))
     items.add_links(e, links);
-  for (const auto f : ids<grid::FaceId>(grid.n_faces()))
+  for (const auto f : ids<grid::FaceId>(solid.grid.n_faces()))
     items.add_links(f, links);
   const Labels component = flooded(items.n_names(), links);
-  const grid::Pieces pieces = grid::pieces(complex);
+  const grid::Pieces pieces = grid::pieces(solid.complex);
   Labels by_items, by_copies;
-  for (const CopyId c : ids<CopyId>(complex.n_copies())) {
-    const Copy& copy = complex.copies[c];
+  for (const CopyId c : ids<CopyId>(solid.complex.n_copies())) {
+    const Copy& copy = solid.complex.copies[c];
     const auto add = [&](const Item item) {
       by_items.push_back(component[item]);
       by_copies.push_back(pieces.piece[c]);
     };
     for (int v = 0; v < cube::n_vertices; ++v)
       if (copy.nodes >> v & 1)
-        add(items.node(grid.nodes(copy.cell)[v]));
+        add(items.node(solid.grid.nodes(copy.cell)[v]));
     for (int line = 0; line < cube::n_lines; ++line)
       if (copy.rinds >> line & 1)
-        add(items.rind(grid.edges(copy.cell)[line]));
+        add(items.rind(solid.grid.edges(copy.cell)[line]));
   }
   if (require_same_sets(by_items, by_copies, "pieces are not what edges and skin join") != pieces.n_pieces)
     complain("the number of pieces is wrong");
 }
 
 /// Item by item: the copies on both sides of a face that hold a node or a rind of it are one along the whole face.
-Links glued_slots(const Items& items, const grid::Grid& grid, const CellComplex& complex) {
+Links glued_slots(const Items& items, const grid::Solid& solid) {
   Table<CellId, std::vector<Held>> held;
-  for (const CellId c : ids<CellId>(grid.n_cells()))
-    held.push_back(held_by(items, grid, complex, c));
+  for (const CellId c : ids<CellId>(solid.grid.n_cells()))
+    held.push_back(held_by(items, solid, c));
   Links links;
-  for (const CellId below : ids<CellId>(grid.n_cells()))
+  for (const CellId below : ids<CellId>(solid.grid.n_cells()))
     for (int axis = 0; axis < 3; ++axis) {
-      const CellId above = grid.cells(grid.faces(below)[2 * axis + 1])[1];
+      const CellId above = solid.grid.cells(solid.grid.faces(below)[2 * axis + 1])[1];
       if (!above.valid())
         continue;
       for (const auto& [item, a] : held[below]) {
@@ -195,13 +199,13 @@ Links glued_slots(const Items& items, const grid::Grid& grid, const CellComplex&
   return links;
 }
 
-void require_gluing(const Items& items, const grid::Grid& grid, const CellComplex& complex) {
-  const Labels glued = flooded(8 * complex.n_copies(), glued_slots(items, grid, complex));
+void require_gluing(const Items& items, const grid::Solid& solid) {
+  const Labels glued = flooded(8 * solid.complex.n_copies(), glued_slots(items, solid));
   Labels corners;
-  for (const Copy& copy : complex.copies)
+  for (const Copy& copy : solid.complex.copies)
     for (const CornerId corner : copy.corners)
       corners.push_back(corner.value);
-  if (require_same_sets(glued, corners, "corners are not what gluing joins") != complex.n_corners())
+  if (require_same_sets(glued, corners, "corners are not what gluing joins") != solid.complex.n_corners())
     complain("the number of corners is wrong");
 }
 
@@ -237,13 +241,12 @@ std::vector<CopyId> origins_of(const CellComplex& before, const Copy& copy) {
 
 } // namespace
 
-void require_sound_complex(const grid::Grid& grid, const grid::Cuts& cuts, const FaceArcs& arcs,
-                           const CellComplex& complex) {
-  const Items items(grid, cuts, arcs);
-  require_sound_copies(items, grid, complex);
-  require_real_corners(grid, complex);
-  require_pieces(items, grid, complex);
-  require_gluing(items, grid, complex);
+void require_sound_complex(const grid::Solid& solid, const FaceArcs& arcs) {
+  const Items items(solid, arcs);
+  require_sound_copies(items, solid);
+  require_real_corners(solid);
+  require_pieces(items, solid);
+  require_gluing(items, solid);
 }
 
 void require_sound_parents(const CellComplex& before, const CellComplex& after,
@@ -263,7 +266,7 @@ void require_sound_parents(const CellComplex& before, const CellComplex& after,
   }
 }
 
-void require_sound_change(const CellComplex& before, const CellComplex& after, const grid::ComplexChange& change) {
+void require_sound_change(const CellComplex& before, const CellComplex& after, const grid::CutChange& change) {
   if (change.n_copies_before != before.n_copies() || change.n_corners_before != before.n_corners() ||
       change.parents.size() != after.n_corners() - before.n_corners())
     complain("a change does not say how large the complex was");
@@ -300,16 +303,16 @@ void require_closed(const surface::Surface& surface) {
     complain("the surface is not closed");
 }
 
-void require_sound_weights(const grid::Grid& grid, const CellComplex& complex, const surface::Surface& surface) {
-  const Points corners = grid::rest_positions(grid, complex);
+void require_sound_weights(const grid::Solid& solid, const surface::Surface& surface) {
+  const Points corners = grid::rest_positions(solid);
   Points followed;
   surface::follow(surface, corners, followed);
-  double reach = grid.h();
+  double reach = solid.grid.h();
   for (const Vec3& p : corners)
     reach = std::max(reach, p.norm());
   for (std::size_t i = 0; i < surface.rest.size(); ++i) {
     double sum = 0;
-    for (auto k = surface.weights.row_start[i]; k < surface.weights.row_start[i + 1]; ++k)
+    for (auto k = surface.weights.start[i]; k < surface.weights.start[i + 1]; ++k)
       sum += surface.weights.values[k];
     if (!(std::abs(sum - 1) < 1e-14))
       complain("a row of W sums to 1 + " + number(sum - 1));
@@ -320,19 +323,18 @@ void require_sound_weights(const grid::Grid& grid, const CellComplex& complex, c
 
 double CellVolumes::sum() const { return std::accumulate(of_copies.begin(), of_copies.end(), 0.0); }
 
-CellVolumes require_sound_volumes(const grid::Grid& grid, const grid::Cuts& cuts, const CellComplex& complex,
-                                  const CellId cell, Tally& tally) {
+CellVolumes require_sound_volumes(const grid::Solid& solid, const CellId cell, Tally& tally) {
   CellVolumes volumes;
   for (int v = 0; v < cube::n_vertices; ++v)
-    for (const auto& t : grid::octant(grid, cuts, cell, v)) {
+    for (const auto& t : grid::octant(solid, cell, v)) {
       const double volume = support::volume(t);
       if (!(volume > 0))
         complain("a tetrahedron of cell " + std::to_string(cell.value) + " has the volume " + number(volume) + " h^3");
       volumes.of_octants[v] += volume;
     }
-  for (const CopyId c : complex.copies_of(cell)) {
+  for (const CopyId c : solid.complex.copies_of(cell)) {
     std::array<double, 8> mass{};
-    grid::for_each_tetrahedron(grid, cuts, complex.copies[c],
+    grid::for_each_tetrahedron(solid, solid.complex.copies[c],
                                [&](const grid::Tetrahedron& t, int) { add_mass(t, mass); });
     const double least = *std::min_element(mass.begin(), mass.end());
     tally.least_mass = std::min(tally.least_mass, least);
@@ -345,7 +347,7 @@ CellVolumes require_sound_volumes(const grid::Grid& grid, const grid::Cuts& cuts
 }
 
 void require_kept_volumes(const Subject& subject, Tally& tally) {
-  const CellComplex& complex = subject.complex;
+  const CellComplex& complex = subject.solid.complex;
   const grid::Pieces pieces = grid::pieces(complex);
   std::vector<double> by_tetrahedra(pieces.n_pieces, 0.0);
   const double cube = std::pow(subject.grid().h(), 3);
@@ -373,14 +375,13 @@ void require_same(const CellComplex& a, const CellComplex& b) {
     complain("the complex depends on the order in which edges were cut");
 }
 
-Table<CornerId, double> corner_masses(const grid::Grid& grid, const grid::Cuts& cuts, const CellComplex& complex,
-                                      const std::span<const CellId> cells) {
-  Table<CornerId, double> masses(complex.n_corners(), 0.0);
+Table<CornerId, double> corner_masses(const grid::Solid& solid, const std::span<const CellId> cells) {
+  Table<CornerId, double> masses(solid.complex.n_corners(), 0.0);
   for (const CellId cell : cells)
-    for (const CopyId c : complex.copies_of(cell)) {
-      const Copy& copy = complex.copies[c];
+    for (const CopyId c : solid.complex.copies_of(cell)) {
+      const Copy& copy = solid.complex.copies[c];
       std::array<double, 8> mass{};
-      grid::for_each_tetrahedron(grid, cuts, copy, [&](const grid::Tetrahedron& t, int) { add_mass(t, mass); });
+      grid::for_each_tetrahedron(solid, copy, [&](const grid::Tetrahedron& t, int) { add_mass(t, mass); });
       for (int v = 0; v < 8; ++v)
         masses[copy.corners[v]] += mass[v];
     }
@@ -388,9 +389,9 @@ Table<CornerId, double> corner_masses(const grid::Grid& grid, const grid::Cuts& 
 }
 
 void require_sound(const Subject& subject, Tally& tally) {
-  require_sound_complex(subject.grid(), subject.cuts, subject.specimen.arcs, subject.complex);
+  require_sound_complex(subject.solid, subject.specimen.arcs);
   require_closed(subject.surface);
-  require_sound_weights(subject.grid(), subject.complex, subject.surface);
+  require_sound_weights(subject.solid, subject.surface);
   require_kept_volumes(subject, tally);
 }
 

@@ -21,8 +21,7 @@ class Violation : public std::runtime_error {
 
 /// Copies are the parts of their cells; each material node has one real corner; pieces are what uncut edges and the
 /// skin join of nodes and rinds; corners are the slots that gluing joins, no more and no fewer.
-void require_sound_complex(const grid::Grid& grid, const grid::Cuts& cuts, const FaceArcs& arcs,
-                           const grid::CellComplex& complex);
+void require_sound_complex(const grid::Solid& solid, const FaceArcs& arcs);
 
 /// Every corner has one parent, whatever copy is asked, an instance of the same node; real corners have real ones. A
 /// copy comes from that which had its nodes, its rinds, or the nodes under rinds that are new.
@@ -31,18 +30,17 @@ void require_sound_parents(const grid::CellComplex& before, const grid::CellComp
 
 /// What an update does not name as changed is as it was.
 void require_sound_change(const grid::CellComplex& before, const grid::CellComplex& after,
-                          const grid::ComplexChange& change);
+                          const grid::CutChange& change);
 
 /// Each directed edge is met once each way, and no triangle holds a vertex twice.
 void require_closed(const surface::Surface& surface);
 
 /// Rows of W sum to 1 and take rest positions to rest positions.
-void require_sound_weights(const grid::Grid& grid, const grid::CellComplex& complex, const surface::Surface& surface);
+void require_sound_weights(const grid::Solid& solid, const surface::Surface& surface);
 
 /// Volumes in a cell. The octants of all its vertices have positive tetrahedra; below a curved skin a tetrahedron may
 /// be turned over, but no copy has less than no mass at any of its corners.
-CellVolumes require_sound_volumes(const grid::Grid& grid, const grid::Cuts& cuts, const grid::CellComplex& complex,
-                                  grid::CellId cell, Tally& tally);
+CellVolumes require_sound_volumes(const grid::Solid& solid, grid::CellId cell, Tally& tally);
 
 /// The tetrahedra of each piece enclose what its triangles enclose, and the pieces together the volume of the uncut
 /// body.
@@ -52,8 +50,7 @@ void require_kept_volumes(const Subject& subject, Tally& tally);
 void require_same(const grid::CellComplex& a, const grid::CellComplex& b);
 
 /// Lumped mass of each corner [h^3, at unit density] in the given cells.
-Table<grid::CornerId, double> corner_masses(const grid::Grid& grid, const grid::Cuts& cuts,
-                                            const grid::CellComplex& complex, std::span<const grid::CellId> cells);
+Table<grid::CornerId, double> corner_masses(const grid::Solid& solid, std::span<const grid::CellId> cells);
 
 /// All of it but parents and masses.
 void require_sound(const Subject& subject, Tally& tally);

@@ -52,8 +52,8 @@ FaceArcs face_arcs(const grid::Grid& grid) {
 }
 
 void Items::add_links(const EdgeId edge, ItemLinks& links) const {
-  const auto& [lower, upper] = grid_.ends(edge);
-  if (grid_.is_material(lower) && grid_.is_material(upper) && !cuts_.is_cut(edge))
+  const auto& [lower, upper] = solid_.grid.ends(edge);
+  if (solid_.grid.is_material(lower) && solid_.grid.is_material(upper) && !solid_.cuts.is_cut(edge))
     links.push_back({node(lower), node(upper)});
 }
 
@@ -64,10 +64,10 @@ void Items::add_links(const FaceId face, ItemLinks& links) const {
 }
 
 bool Items::is_whole(const FaceId face, const FaceArc& arc) const {
-  const grid::Seam seam = cuts_.seam(face);
+  const grid::Seam seam = solid_.cuts.seam(face);
   if (seam != grid::Seam::unsaid)
     return seam == grid::Seam::whole;
-  return std::ranges::none_of(arc.inner, [&](const EdgeId e) { return cuts_.is_cut(e); });
+  return std::ranges::none_of(arc.inner, [&](const EdgeId e) { return solid_.cuts.is_cut(e); });
 }
 
 } // namespace kerf::fuzz

@@ -6,7 +6,7 @@
 ///
 /// The arcs of the skin do not depend on what blades cut: they are found once for a grid, by tests/grid/slow_parts.h.
 
-#include "grid/cuts.h"
+#include "grid/solid.h"
 
 #include <array>
 #include <vector>
@@ -30,13 +30,13 @@ using ItemLinks = std::vector<std::array<Item, 2>>;
 class Items {
  public:
   /// All must outlive it.
-  Items(const grid::Grid& grid, const grid::Cuts& cuts, const FaceArcs& arcs) : grid_(grid), cuts_(cuts), arcs_(arcs) {}
+  Items(const grid::Solid& solid, const FaceArcs& arcs) : solid_(solid), arcs_(arcs) {}
 
-  std::size_t n_names() const { return grid_.n_nodes() + grid_.n_edges(); }
+  std::size_t n_names() const { return solid_.grid.n_nodes() + solid_.grid.n_edges(); }
   Item node(const grid::NodeId n) const { return n.value; }
-  Item rind(const grid::EdgeId e) const { return static_cast<Item>(grid_.n_nodes()) + e.value; }
+  Item rind(const grid::EdgeId e) const { return static_cast<Item>(solid_.grid.n_nodes()) + e.value; }
   /// Is there a rind on the edge?
-  bool has_rind(const grid::EdgeId e) const { return cuts_.is_cut_twice(e); }
+  bool has_rind(const grid::EdgeId e) const { return solid_.cuts.is_cut_twice(e); }
 
   /// What lies under the skin at an end of its arc: the rind of the edge there, or its node.
   Item under(const FaceArc& arc, const int end) const {
@@ -49,8 +49,7 @@ class Items {
   void add_links(grid::FaceId face, ItemLinks& links) const;
 
  private:
-  const grid::Grid& grid_;
-  const grid::Cuts& cuts_;
+  const grid::Solid& solid_;
   const FaceArcs& arcs_;
 };
 

@@ -15,7 +15,7 @@ namespace {
 template <class Map>
 void map_corners(Subject& subject, const Map& map) {
   for (std::size_t i = 0; i < subject.x.size(); ++i)
-    subject.x[i] = map(subject.x[i], subject.grid().position(subject.complex.node[grid::CornerId(i)]));
+    subject.x[i] = map(subject.x[i], subject.grid().position(subject.solid.complex.node[grid::CornerId(i)]));
 }
 
 Mat3 random_rotation(Random& random, const double angle) {
@@ -103,18 +103,18 @@ std::string drifted(Subject& subject, Random& random) {
 /// Every piece goes its own way, and virtual corners leave the node's material: cuts gape.
 std::string pulled_apart(Subject& subject, Random& random) {
   const double size = subject.grid().h() * uniform(random, 0.05, 1.5);
-  const grid::Pieces pieces = grid::pieces(subject.complex);
+  const grid::Pieces pieces = grid::pieces(subject.solid.complex);
   Points way(pieces.n_pieces);
   for (Vec3& d : way)
     d = size * support::random_direction(random);
-  std::vector<std::uint32_t> piece(subject.complex.n_corners());
-  for (const auto c : ids<grid::CopyId>(subject.complex.n_copies()))
-    for (const auto corner : subject.complex.copies[c].corners)
+  std::vector<std::uint32_t> piece(subject.solid.complex.n_corners());
+  for (const auto c : ids<grid::CopyId>(subject.solid.complex.n_copies()))
+    for (const auto corner : subject.solid.complex.copies[c].corners)
       piece[corner.value] = pieces.piece[c];
   for (std::size_t i = 0; i < subject.x.size(); ++i) {
     const grid::CornerId corner(i);
     subject.x[i] += way[piece[i]];
-    if (subject.complex.real_corner[subject.complex.node[corner]] != corner)
+    if (subject.solid.complex.real_corner[subject.solid.complex.node[corner]] != corner)
       subject.x[i] += 0.3 * size * support::random_vector(random);
   }
   return "pulled apart";

@@ -11,7 +11,7 @@ namespace kerf::fuzz {
 std::string put_into_state(Subject& subject, Random& random);
 
 /// What happens to the body between two sweeps: nothing, a rigid motion, a jitter, its pieces and copies pulled
-/// apart, a new state. `x_before` stays. Returns its name.
+/// apart, a new state. What the cutter knows of where it was stays. Returns its name.
 std::string move(Subject& subject, Random& random);
 
 /// 0 .. n - 1.

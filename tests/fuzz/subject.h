@@ -2,9 +2,7 @@
 
 /// A body under test: what scene/body.cc keeps of a body, without physics, so that a test can put its corners anywhere.
 
-#include "cut/add_cuts.h"
-#include "cut/cut_surface.h"
-#include "cut/open_ends.h"
+#include "cut/cutter.h"
 #include "surface/placement.h"
 #include "surface/surface.h"
 #include "tests/fuzz/items.h"
@@ -12,7 +10,7 @@
 #include "tests/support/bodies.h"
 
 #include <cstdint>
-#include <map>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -56,35 +54,27 @@ struct CellVolumes {
 
 struct Subject {
   const Specimen& specimen;
-  grid::Cuts cuts;
-  grid::CellComplex complex;
+  grid::Solid solid;
   surface::Surface surface;
   surface::SurfaceIndex index;
-  cut::EdgeBoxes boxes;                              ///< made before any cut
-  std::map<grid::CutLabel, cut::OpenEnds> open_ends; ///< of the blades that have cut
-  Points x, x_before;                                ///< corners now, and when the blades were met last [m]
-  Table<grid::CellId, CellVolumes> volumes;          ///< now
-  Table<grid::CellId, double> first_volumes;         ///< before any cut [h^3]
-  double volume = 0;                                 ///< at rest, before any cut [m^3]
+  cut::EdgeBoxes boxes;                      ///< made before any cut
+  cut::Cutter cutter;                        ///< knows where the corners were when the blades were met last
+  Points x;                                  ///< corners now [m]
+  Table<grid::CellId, CellVolumes> volumes;  ///< now
+  Table<grid::CellId, double> first_volumes; ///< before any cut [h^3]
+  double volume = 0;                         ///< at rest, before any cut [m^3]
 
-  const grid::Grid& grid() const { return specimen.body.grid; }
+  const grid::Grid& grid() const { return solid.grid; }
 };
 
 /// At rest; every invariant is checked (invariants.h).
 Subject make_subject(const Specimen& specimen, Tally& tally);
 
-using cut::Front;
+/// Lets the cutter cut, carries the corners over, and checks every invariant. Returns how many edges something has
+/// changed at. Throws Violation.
+std::size_t cut(Subject& subject, const std::function<grid::CutChange(Subject&)>& make, Tally& tally);
 
-/// Cuts these edges at once, and what goes with them at the skin, carries the corners over, and checks every
-/// invariant. Throws Violation.
-void cut(Subject& subject, std::span<const grid::EdgeCut> cuts, Front front, Tally& tally);
-
-/// The same for a step in which the blade with this label sweeps `strip` (triangles [m]) and all others have gone: cuts
-/// that a blade has left come to their end, but where others wait.
-void cut(Subject& subject, std::span<const grid::EdgeCut> cuts, std::span<const std::array<Vec3, 3>> strip,
-         grid::CutLabel label, const cut::PendingCuts& pending, Tally& tally);
-
-/// The same with seams that are known: no further edges are cut.
+/// The same with cuts and seams that are known: no further edges are cut.
 void cut(Subject& subject, const grid::histories::Step& step, Tally& tally);
 
 /// Adds the bits of positions, cuts, complex and surface to a number.

@@ -184,12 +184,12 @@ class Draw {
     Soup triangles;
     const int axis = draw(random_, 3), level = subject_.grid().index(random_node())[axis];
     const bool sheet = draw(random_, 2) == 0;
-    const auto n_copies = static_cast<int>(subject_.complex.n_copies());
+    const auto n_copies = static_cast<int>(subject_.solid.complex.n_copies());
     const int n = sheet ? n_copies : 1 + draw(random_, 12);
     for (int k = 0; k < n; ++k) {
       const CopyId c(sheet ? k : draw(random_, n_copies));
       const auto& grid = subject_.grid();
-      if (!sheet || grid.index(grid.nodes(subject_.complex.copies[c].cell)[0])[axis] == level)
+      if (!sheet || grid.index(grid.nodes(subject_.solid.complex.copies[c].cell)[0])[axis] == level)
         add_face(c, sheet ? 2 * axis : draw(random_, 6), triangles);
     }
     return triangles;
@@ -238,7 +238,7 @@ class Draw {
   }
 
   /// Where the material of a node is now.
-  Vec3 at(const NodeId node) const { return subject_.x[subject_.complex.real_corner[node].value]; }
+  Vec3 at(const NodeId node) const { return subject_.x[subject_.solid.complex.real_corner[node].value]; }
 
   /// The next material node along an axis; the node itself at the skin.
   NodeId neighbour(const NodeId node, const int axis, const int step) const {
@@ -257,7 +257,7 @@ class Draw {
   void add_face(const CopyId c, const int face, Soup& triangles) const {
     std::array<Vec3, 4> p;
     for (int k = 0; k < 4; ++k)
-      p[k] = subject_.x[subject_.complex.copies[c].corners[cube::face_vertices[face][k]].value];
+      p[k] = subject_.x[subject_.solid.complex.copies[c].corners[cube::face_vertices[face][k]].value];
     triangles.push_back({p[0], p[1], p[3]});
     triangles.push_back({p[0], p[3], p[2]});
   }
@@ -371,12 +371,11 @@ cut::SweepCuts meet(const Subject& subject, const Sweep& sweep, const grid::CutL
     if constexpr (std::is_same_v<By, cut::CutSurface>) {
       cut::CutSurface labelled = by;
       labelled.label = label;
-      return cut::cut_edges(labelled, subject.grid(), subject.cuts, subject.complex, subject.x, boxes);
+      return cut::cut_edges(labelled, subject.solid, subject.x, boxes);
     } else if constexpr (std::is_same_v<By, cut::BladePath>) {
-      return cut::cut_edges(by, subject.grid(), subject.cuts, subject.complex, subject.x_before, subject.x, label,
-                            boxes);
+      return cut::cut_edges(by, subject.solid, subject.cutter.stands_at(), subject.x, label, boxes);
     } else {
-      return cut::cut_edges(by, subject.grid(), subject.cuts, subject.complex, subject.x, label, boxes);
+      return cut::cut_edges(by, subject.solid, subject.x, label, boxes);
     }
   };
   return std::visit(met, sweep);
@@ -392,7 +391,7 @@ cut::SweepCuts meet(Subject& subject, const Sweep& sweep, const grid::CutLabel l
   if (std::holds_alternative<cut::CutSurface>(sweep))
     subject.boxes.fit(subject.x);
   else
-    subject.boxes.fit(subject.x_before, subject.x);
+    subject.boxes.fit(subject.cutter.stands_at(), subject.x);
   const auto found = meet(subject, sweep, label, &subject.boxes), all = meet(subject, sweep, label, nullptr);
   if (found.n_double_crossings != all.n_double_crossings ||
       !std::equal(found.cuts.begin(), found.cuts.end(), all.cuts.begin(), all.cuts.end(), is_same))

@@ -26,7 +26,7 @@ struct NamedSweep {
 /// Draws a sweep for the body as it stands; `last` is what was swept before it.
 NamedSweep random_sweep(const Subject& subject, const std::optional<NamedSweep>& last, Random& random);
 
-/// The edges that it cuts, as scene/body.cc asks for them: found among the boxes of the body's edges. Throws Violation
+/// The edges that it cuts, as the cutter asks for them: found among the boxes of the body's edges. Throws Violation
 /// when a look at every edge finds others, or finds them elsewhere.
 cut::SweepCuts meet(Subject& subject, const Sweep& sweep, grid::CutLabel label);
 

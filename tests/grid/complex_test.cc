@@ -164,7 +164,7 @@ CopyId copy_before(const Body& body, const CellComplex& before, const Copy& copy
 
 /// One parent a corner, an instance of the same node, whichever copy is asked; real stays real; pieces only split; what
 /// is not named as changed has not.
-void expect_change(const Body& body, const CellComplex& before, const CellComplex& after, const ComplexChange& change) {
+void expect_change(const Body& body, const CellComplex& before, const CellComplex& after, const CutChange& change) {
   ASSERT_EQ(change.n_copies_before, before.n_copies());
   ASSERT_EQ(change.n_corners_before, before.n_corners());
   ASSERT_EQ(change.parents.size(), after.n_corners() - before.n_corners());
@@ -204,14 +204,14 @@ void expect_change(const Body& body, const CellComplex& before, const CellComple
 
 /// Follows a plan in a random order and in random steps; after each of them, updated is built.
 void expect_updates(Random& random, Body body, const Plan& plan, const std::size_t n_steps) {
-  CellComplex complex = build_complex(body.grid, body.cuts);
+  body.complex = build_complex(body);
   for (const histories::Step& step : histories::dealt(random, body, plan, n_steps)) {
     histories::apply(step, body);
-    const CellComplex before = complex;
-    const ComplexChange change = update_complex(body.grid, body.cuts, step.edges, complex);
-    expect_change(body, before, complex, change);
-    expect_consistent(body, complex);
-    expect_same(complex, build_complex(body.grid, body.cuts));
+    const CellComplex before = body.complex;
+    const CutChange change = update_complex(body, step.edges);
+    expect_change(body, before, body.complex, change);
+    expect_consistent(body, body.complex);
+    expect_same(body.complex, build_complex(body));
     if (testing::Test::HasFatalFailure())
       return;
   }
@@ -223,7 +223,7 @@ Plan through(const Body& body, const std::vector<EdgeCut>& cuts) {
   std::vector<EdgeId> edges;
   for (const EdgeCut& c : cuts)
     edges.push_back(c.edge);
-  cut::part_skin(cut.grid, cut.cuts, edges);
+  cut::part_skin(cut, edges);
   Plan plan{cuts, {}};
   for (const auto face : ids<FaceId>(body.grid.n_faces()))
     if (cut.cuts.seam(face) != Seam::unsaid)
@@ -248,13 +248,13 @@ struct Tally {
 
 CellComplex check(Random& random, const Body& body, const Plan& plan) {
   const Body cut = histories::applied(plan, body);
-  const CellComplex complex = build_complex(cut.grid, cut.cuts);
+  const CellComplex complex = build_complex(cut);
   expect_consistent(cut, complex);
   expect_matches_slow(cut, complex);
   expect_pieces_of_material(cut, complex);
   Plan other = plan;
   std::shuffle(other.cuts.begin(), other.cuts.end(), random);
-  expect_same(complex, build_complex(cut.grid, histories::applied(other, body).cuts));
+  expect_same(complex, build_complex(histories::applied(other, body)));
   const std::size_t n_steps = 1 + random() % std::max<std::size_t>(1, std::min<std::size_t>(6, plan.cuts.size()));
   expect_updates(random, body, plan, n_steps);
   return complex;
@@ -262,12 +262,12 @@ CellComplex check(Random& random, const Body& body, const Plan& plan) {
 
 TEST(Complex, OfAnUncutBodyIsItsGrid) {
   for (const Index3& n : {Index3{1, 1, 1}, {2, 3, 4}, {1, 5, 2}}) {
-    const Body body = support::block(n, 0.5);
-    const CellComplex complex = build_complex(body.grid, body.cuts);
+    const Body body = support::with_copies(support::block(n, 0.5));
+    const CellComplex& complex = body.complex;
     EXPECT_EQ(complex.n_copies(), body.grid.n_cells());
     EXPECT_EQ(complex.n_corners(), body.grid.n_nodes());
     EXPECT_EQ(grid::n_pieces(complex), 1u);
-    const Points x = rest_positions(body.grid, complex);
+    const Points x = rest_positions(body);
     for (const auto corner : ids<CornerId>(complex.n_corners()))
       EXPECT_EQ(x[corner.value], body.grid.position(complex.node[corner]));
     expect_consistent(body, complex);
@@ -278,7 +278,7 @@ TEST(Complex, HasTwoCopiesAtTheFaceOfAFront) {
   // Four nodes in a ring, its lower x edge cut: the cell through the ring holds one component, the one below it two.
   Body body = support::block({2, 1, 2});
   body.cuts.add(body.grid, {*body.grid.find_edge({1, 1, 1}, 0), 0.5, Vec3::UnitX(), 1});
-  const CellComplex complex = build_complex(body.grid, body.cuts);
+  const CellComplex complex = build_complex(body);
   const CellId below = *body.grid.find_cell({1, 1, 0}), above = *body.grid.find_cell({1, 1, 1});
   EXPECT_TRUE(complex.copies[complex.first_copy[below]].next.valid());
   EXPECT_FALSE(complex.copies[complex.first_copy[above]].next.valid());
@@ -341,8 +341,7 @@ TEST(Complex, AgreesWithItsDefinitionOnEmbeddedBodies) {
   const std::string liver = std::string(KERF_SOURCE_DIR) + "/params/meshes/liver_25k.off";
   for (const auto& [mesh, h] : {std::pair(geometry::sphere_mesh(1, Vec3::Zero(), 3), 0.3),
                                 std::pair(geometry::require_solid(geometry::read_mesh(liver, 1e-3), liver), 0.022)}) {
-    const cut::Embedding e = cut::embed(mesh, h, {0.1, 0.5, 0.7});
-    const Body body{e.grid, e.cuts};
+    const Body body = cut::embed(mesh, h, {0.1, 0.5, 0.7}).solid;
     for (const double probability : {0.0, 0.1, 0.5, 0.9})
       for (const double seam : {0.0, 0.7})
         check(random, body, histories::random_plan(random, body, probability, uniform(random, 0, 1), seam));
@@ -355,14 +354,14 @@ TEST(Complex, AgreesWithItsDefinitionOnEmbeddedBodies) {
 TEST(Complex, GivesARindThatIsCutOffCopiesOfItsOwn) {
   // One node in eight cells; its edge along x is cut a second time, and the skin of the four faces around it opens one
   // by one.
-  Body body = support::block({1, 1, 1});
-  CellComplex complex = build_complex(body.grid, body.cuts);
+  Body body = support::with_copies(support::block({1, 1, 1}));
+  const CellComplex& complex = body.complex;
   const EdgeId edge = *body.grid.find_edge({1, 1, 1}, 0);
   const std::array<CellId, 4> around = body.grid.cells(edge);
   const auto face = [&](const int cell, const int local) { return body.grid.faces(around[cell])[local]; };
   body.cuts.add(body.grid, {edge, 0.2, Vec3::UnitX(), 1});
   const auto expect = [&](const std::size_t n_copies, const std::size_t n_corners, const std::uint32_t n_pieces) {
-    update_complex(body.grid, body.cuts, std::array{edge}, complex);
+    update_complex(body, {edge});
     EXPECT_EQ(complex.n_copies(), n_copies);
     EXPECT_EQ(complex.n_corners(), n_corners);
     EXPECT_EQ(grid::n_pieces(complex), n_pieces);
@@ -381,18 +380,17 @@ TEST(Complex, GivesARindThatIsCutOffCopiesOfItsOwn) {
 }
 
 TEST(Complex, RefusesCutsThatJoin) {
-  Body body = support::block({2, 1, 1});
+  Body body = support::with_copies(support::block({2, 1, 1}));
   const EdgeId inner = *body.grid.find_edge({1, 1, 1}, 0), edge = *body.grid.find_edge({1, 1, 1}, 1);
   const FaceId face = body.grid.faces(*body.grid.find_cell({1, 1, 1}))[4];
-  CellComplex complex = build_complex(body.grid, body.cuts);
   body.cuts.add(body.grid, {inner, 0.5, Vec3::UnitX(), 1});
-  update_complex(body.grid, body.cuts, std::array{inner}, complex);
-  ASSERT_EQ(grid::n_pieces(complex), 2u);
+  update_complex(body, {inner});
+  ASSERT_EQ(grid::n_pieces(body.complex), 2u);
   body.cuts.set_seam(face, Seam::whole);
-  CellComplex joined = complex;
-  EXPECT_THROW(update_complex(body.grid, body.cuts, std::array{edge}, joined), std::logic_error);
+  Body joined = body;
+  EXPECT_THROW(update_complex(joined, {edge}), std::logic_error);
   body.cuts.set_seam(face, Seam::parted);
-  EXPECT_NO_THROW(update_complex(body.grid, body.cuts, std::array{edge}, complex));
+  EXPECT_NO_THROW(update_complex(body, {edge}));
 }
 
 /// Does a part hold what was in several?
@@ -437,13 +435,13 @@ TEST(Complex, RefusesExactlyTheSeamsThatJoin) {
     std::vector<EdgeId> edges = {histories::edges_of(blank.grid, face)[random() % 4]};
     for (std::size_t k = first.cuts.size(); k < plan.cuts.size(); ++k)
       edges.push_back(plan.cuts[k].edge);
-    CellComplex complex = build_complex(before.grid, before.cuts);
+    after.complex = build_complex(before);
     if (has_joined(before, after)) {
-      EXPECT_THROW(update_complex(after.grid, after.cuts, edges, complex), std::logic_error);
+      EXPECT_THROW(update_complex(after, edges), std::logic_error);
       ++n_refused;
     } else {
-      ASSERT_NO_THROW(update_complex(after.grid, after.cuts, edges, complex));
-      expect_same(complex, build_complex(after.grid, after.cuts));
+      ASSERT_NO_THROW(update_complex(after, edges));
+      expect_same(after.complex, build_complex(after));
       ++n_taken;
     }
     ASSERT_FALSE(HasFatalFailure()) << "random body " << i;

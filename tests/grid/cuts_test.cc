@@ -31,14 +31,14 @@ TEST(Cuts, AreKeptByEdge) {
   const EdgeId e = *body.grid.find_edge({1, 1, 1}, 0);
   EXPECT_FALSE(body.cuts.is_cut(e));
   EXPECT_EQ(body.cuts.find(e), nullptr);
-  EXPECT_EQ(edge_point(body.grid, body.cuts, e), Vec3(1.5, 1, 1));
+  EXPECT_EQ(edge_point(body, e), Vec3(1.5, 1, 1));
   const std::size_t n = body.cuts.all().size();
   body.cuts.add(body.grid, {e, 0.25, Vec3::UnitZ(), 3});
   ASSERT_NE(body.cuts.find(e), nullptr);
   EXPECT_EQ(body.cuts.find(e)->label, 3);
   EXPECT_EQ(body.cuts.find(e)->normal, Vec3(0, 0, 1));
   EXPECT_EQ(body.cuts.all().size(), n + 1);
-  EXPECT_EQ(edge_point(body.grid, body.cuts, e), Vec3(1.25, 1, 1));
+  EXPECT_EQ(edge_point(body, e), Vec3(1.25, 1, 1));
   EXPECT_THROW(body.cuts.add(body.grid, {e, 0.5, Vec3::UnitX(), 1}), std::logic_error);
 }
 
@@ -70,8 +70,8 @@ TEST(Cuts, MayBeTwoOnAnEdgeOfTheSkin) {
     EXPECT_EQ(body.cuts.find(e)->normal, Vec3(0, 0, 1));
     EXPECT_EQ(body.cuts.find_outer(e)->t, 0.5);
     EXPECT_EQ(body.cuts.find_outer(e)->label, skin_label);
-    EXPECT_NEAR(edge_point(body.grid, body.cuts, e)[0], node_is_above ? 0.8 : 1.2, 1e-15);
-    EXPECT_EQ(edge_skin_point(body.grid, body.cuts, e), Vec3(node_is_above ? 0.5 : 1.5, 1, 1));
+    EXPECT_NEAR(edge_point(body, e)[0], node_is_above ? 0.8 : 1.2, 1e-15);
+    EXPECT_EQ(edge_skin_point(body, e), Vec3(node_is_above ? 0.5 : 1.5, 1, 1));
     EXPECT_FALSE(body.cuts.can_be_cut(body.grid, e));
     EXPECT_THROW(body.cuts.add(body.grid, {e, node_is_above ? 0.9 : 0.1, Vec3::UnitX(), 1}), std::logic_error);
     EXPECT_EQ(body.cuts.all().size(), n + 1) << "refused, and left alone";
@@ -179,15 +179,15 @@ TEST(Cuts, KeepThePointsOfFacesAndCells) {
     const FaceId f = body.grid.faces(c)[face];
     EXPECT_EQ(centre(body.grid, f), middle);
     EXPECT_EQ(body.cuts.point(f), nullptr);
-    EXPECT_EQ(face_point(body.grid, body.cuts, f), middle);
+    EXPECT_EQ(face_point(body, f), middle);
     body.cuts.set_point(f, middle + Vec3::Constant(face));
     body.cuts.set_point(f, middle - Vec3::Constant(face));
-    EXPECT_EQ(face_point(body.grid, body.cuts, f), middle - Vec3::Constant(face));
+    EXPECT_EQ(face_point(body, f), middle - Vec3::Constant(face));
   }
   EXPECT_EQ(centre(body.grid, c), Vec3(0.75, 0.75, 0.75));
-  EXPECT_EQ(cell_point(body.grid, body.cuts, c), Vec3(0.75, 0.75, 0.75));
+  EXPECT_EQ(cell_point(body, c), Vec3(0.75, 0.75, 0.75));
   body.cuts.set_point(c, {0.6, 0.7, 0.8});
-  EXPECT_EQ(cell_point(body.grid, body.cuts, c), Vec3(0.6, 0.7, 0.8));
+  EXPECT_EQ(cell_point(body, c), Vec3(0.6, 0.7, 0.8));
 }
 
 TEST(Cuts, KeepThePointsOfTheSkin) {
@@ -199,17 +199,17 @@ TEST(Cuts, KeepThePointsOfTheSkin) {
     const Vec3 of_cuts = centre(body.grid, f) + Vec3(0.1, 0.1, 0.1), of_skin(face, 2, 3);
     body.cuts.set_point(f, of_cuts);
     for (int i = 0; i < 4; ++i)
-      EXPECT_EQ(face_skin_point(body.grid, body.cuts, f, i), of_cuts) << "the same where the skin has none of its own";
+      EXPECT_EQ(face_skin_point(body, f, i), of_cuts) << "the same where the skin has none of its own";
     SkinPoint point;
     point.p = of_skin;
     body.cuts.set_skin_point(f, point);
     for (int i = 0; i < 4; ++i)
-      EXPECT_EQ(face_skin_point(body.grid, body.cuts, f, i), of_skin);
+      EXPECT_EQ(face_skin_point(body, f, i), of_skin);
     point.lines = 0b0100;
     body.cuts.set_skin_point(f, point);
     for (int i = 0; i < 4; ++i)
-      EXPECT_EQ(face_skin_point(body.grid, body.cuts, f, i), i == 2 ? of_skin : of_cuts);
-    EXPECT_EQ(face_point(body.grid, body.cuts, f), of_cuts);
+      EXPECT_EQ(face_skin_point(body, f, i), i == 2 ? of_skin : of_cuts);
+    EXPECT_EQ(face_point(body, f), of_cuts);
     for (int i = 0; i < 4; ++i)
       EXPECT_EQ(cube::place_in_face(face, cube::face_lines[face][i]), i);
   }
@@ -220,7 +220,7 @@ TEST(Cuts, KeepThePointsOfTheSkin) {
   point.lines = 1 << 5 | 1 << 11;
   body.cuts.set_skin_point(c, point);
   for (int line = 0; line < 12; ++line)
-    EXPECT_EQ(cell_skin_point(body.grid, body.cuts, c, line), line == 5 || line == 11 ? point.p : middle);
+    EXPECT_EQ(cell_skin_point(body, c, line), line == 5 || line == 11 ? point.p : middle);
 }
 
 TEST(Octants, TileTheirCellForEveryPositionOfThePoints) {
@@ -229,22 +229,22 @@ TEST(Octants, TileTheirCellForEveryPositionOfThePoints) {
   const Body blank = support::block({2, 2, 2}, h);
   const CellId c = *blank.grid.find_cell({1, 1, 1});
   for (int i = 0; i < 2000; ++i) {
-    Cuts cuts(blank.grid);
+    Body body{blank.grid, Cuts(blank.grid)};
     for (const EdgeId e : blank.grid.edges(c))
       if (uniform(random, 0, 1) < 0.8)
-        cuts.add(blank.grid, {e, anywhere(random), Vec3::UnitX(), 1});
+        body.cuts.add(blank.grid, {e, anywhere(random), Vec3::UnitX(), 1});
     const auto random_point = [&] {
       return Vec3(blank.grid.origin(c) + h * Vec3(anywhere(random), anywhere(random), anywhere(random)));
     };
     for (int face = 0; face < 6; ++face) {
       Vec3 p = random_point();
       p[face / 2] = blank.grid.origin(c)[face / 2] + (face & 1 ? h : 0);
-      cuts.set_point(blank.grid.faces(c)[face], p);
+      body.cuts.set_point(blank.grid.faces(c)[face], p);
     }
-    cuts.set_point(c, random_point());
+    body.cuts.set_point(c, random_point());
     double sum = 0;
     for (int v = 0; v < 8; ++v)
-      for (const auto& t : octant(blank.grid, cuts, c, v)) {
+      for (const auto& t : octant(body, c, v)) {
         ASSERT_GT(volume(t), 0) << "cell " << i << " octant " << v;
         sum += volume(t);
       }
@@ -257,7 +257,7 @@ TEST(Octants, OfAnUncutCellAreEighths) {
   const CellId c = *body.grid.find_cell({1, 1, 1});
   for (int v = 0; v < 8; ++v) {
     double sum = 0;
-    for (const auto& t : octant(body.grid, body.cuts, c, v)) {
+    for (const auto& t : octant(body, c, v)) {
       sum += volume(t);
       for (const Vec3& p : t)
         for (int axis = 0; axis < 3; ++axis)

@@ -31,7 +31,8 @@ struct Nearest {
 };
 
 /// Goes from copy to copy.
-Nearest nearest(const Body& body, const CellComplex& complex, const CopyId from) {
+Nearest nearest(const Body& body, const CopyId from) {
+  const CellComplex& complex = body.complex;
   std::set<CopyId> reached = {from};
   Nearest result;
   for (std::size_t n_before = 0; result.nodes.empty() && reached.size() != n_before; ++result.n_steps) {
@@ -59,8 +60,9 @@ struct Tally {
   std::size_t n_followed = 0, n_far = 0, n_alone = 0;
 };
 
-void expect_nearest(const Body& body, const CellComplex& complex, Tally& tally) {
-  const auto followed = followed_nodes(body.grid, complex);
+void expect_nearest(const Body& body, Tally& tally) {
+  const CellComplex& complex = body.complex;
+  const auto followed = followed_nodes(body);
   std::size_t i = 0;
   for (const auto c : ids<CopyId>(complex.n_copies())) {
     if (complex.copies[c].nodes != 0)
@@ -69,7 +71,7 @@ void expect_nearest(const Body& body, const CellComplex& complex, Tally& tally) 
     ASSERT_EQ(followed[i].copy, c);
     const NodeId node = followed[i].node;
     ASSERT_TRUE(node.valid() && body.grid.is_material(node));
-    const Nearest expected = nearest(body, complex, c);
+    const Nearest expected = nearest(body, c);
     if (expected.nodes.empty())
       ASSERT_EQ(node, expected.cut_off_from);
     else
@@ -92,7 +94,7 @@ TEST(Followed, AreTheNodesOfTheNearestCopies) {
     const Body body = histories::applied(
       histories::random_plan(random, blank, uniform(random, 0, 0.5), uniform(random, 0.2, 1), uniform(random, 0, 0.8)),
       blank);
-    expect_nearest(body, build_complex(body.grid, body.cuts), tally);
+    expect_nearest(support::with_copies(body), tally);
     ASSERT_FALSE(HasFatalFailure()) << "random body " << i;
   }
   EXPECT_GT(tally.n_followed, 1000u);
@@ -100,9 +102,10 @@ TEST(Followed, AreTheNodesOfTheNearestCopies) {
 }
 
 /// The nodes by what the copies hold, not by their names.
-std::map<std::tuple<CellId, unsigned, unsigned>, NodeId> by_content(const Body& body, const CellComplex& complex) {
+std::map<std::tuple<CellId, unsigned, unsigned>, NodeId> by_content(const Body& body) {
+  const CellComplex& complex = body.complex;
   std::map<std::tuple<CellId, unsigned, unsigned>, NodeId> nodes;
-  for (const auto& [c, node] : followed_nodes(body.grid, complex))
+  for (const auto& [c, node] : followed_nodes(body))
     nodes[{complex.copies[c].cell, complex.copies[c].nodes, complex.copies[c].rinds}] = node;
   return nodes;
 }
@@ -112,13 +115,12 @@ TEST(Followed, DoNotDependOnTheOrderOfCuts) {
   for (int i = 0; i < 100; ++i) {
     const Body blank = support::block({3, 2, 2});
     const histories::Plan plan = histories::random_plan(random, blank, 0.3, uniform(random, 0.5, 1), 0.7);
-    Body body = blank;
-    CellComplex complex = build_complex(body.grid, body.cuts);
+    Body body = support::with_copies(blank);
     for (const histories::Step& step : histories::dealt(random, body, plan, 5)) {
       histories::apply(step, body);
-      update_complex(body.grid, body.cuts, step.edges, complex);
+      update_complex(body, step.edges);
     }
-    ASSERT_EQ(by_content(body, complex), by_content(body, build_complex(body.grid, body.cuts)));
+    ASSERT_EQ(by_content(body), by_content(support::with_copies(body)));
   }
 }
 
@@ -140,28 +142,26 @@ Body peeled(const int n_along, const bool at_both_ends) {
 
 TEST(Followed, AreFoundAlongARind) {
   const int n = 6;
-  const Body body = peeled(n, false);
-  const CellComplex complex = build_complex(body.grid, body.cuts);
-  EXPECT_EQ(n_pieces(complex), 1u);
-  const auto followed = followed_nodes(body.grid, complex);
+  const Body body = support::with_copies(peeled(n, false));
+  EXPECT_EQ(n_pieces(body.complex), 1u);
+  const auto followed = followed_nodes(body);
   EXPECT_EQ(followed.size(), 2u * n); // in two rows of cells, but for the two at the end that holds
   const NodeId first = *body.grid.find_node({1, 1, 1});
   for (const Followed& f : followed)
     EXPECT_EQ(f.node, first) << "the only one in the cells that hold";
   Tally tally;
-  expect_nearest(body, complex, tally);
+  expect_nearest(body, tally);
   EXPECT_GE(tally.n_far, 2u * n - 4) << "several steps";
 }
 
 TEST(Followed, AreWhatRindsWereCutOffFrom) {
   const int n = 4;
-  const Body body = peeled(n, true);
-  const CellComplex complex = build_complex(body.grid, body.cuts);
-  EXPECT_EQ(n_pieces(complex), 2u);
-  const auto followed = followed_nodes(body.grid, complex);
+  const Body body = support::with_copies(peeled(n, true));
+  EXPECT_EQ(n_pieces(body.complex), 2u);
+  const auto followed = followed_nodes(body);
   EXPECT_EQ(followed.size(), 2u * (n + 1));
   for (const Followed& f : followed) {
-    const int along = body.grid.index(body.grid.nodes(complex.copies[f.copy].cell)[0])[0];
+    const int along = body.grid.index(body.grid.nodes(body.complex.copies[f.copy].cell)[0])[0];
     EXPECT_LE(along, n);
     EXPECT_EQ(f.node, *body.grid.find_node({1, 1, 1})) << "the lowest, for all of the piece";
   }
@@ -169,7 +169,7 @@ TEST(Followed, AreWhatRindsWereCutOffFrom) {
 
 TEST(Followed, AreNoneWhereAllCopiesHaveNodes) {
   const Body body = support::block({2, 2, 2});
-  EXPECT_TRUE(followed_nodes(body.grid, build_complex(body.grid, body.cuts)).empty());
+  EXPECT_TRUE(followed_nodes(support::with_copies(body)).empty());
 }
 
 } // namespace

@@ -294,7 +294,7 @@ TEST(Parts, AreThoseOfAllWhoShareThem) {
     const slow::Material material = slow::material_of(body);
     const auto lattice_cell = [&](const CellId c) { return body.grid.index(body.grid.nodes(c)[0]); };
     for (const auto c : ids<CellId>(body.grid.n_cells()))
-      ASSERT_EQ(as_sets(parts_of(cuts_of(body.grid, body.cuts, c)), lattice_cell(c)),
+      ASSERT_EQ(as_sets(parts_of(cuts_of(body, c)), lattice_cell(c)),
                 as_sets(slow::parts(material, slow::closure(slow::cell_centre(lattice_cell(c))))));
     for (const auto f : ids<FaceId>(body.grid.n_faces())) {
       const auto& [below, above] = body.grid.cells(f);
@@ -302,7 +302,7 @@ TEST(Parts, AreThoseOfAllWhoShareThem) {
         continue;
       const auto faces = body.grid.faces(above);
       const int face = static_cast<int>(std::find(faces.begin(), faces.end(), f) - faces.begin());
-      const CellCuts lower = cuts_of(body.grid, body.cuts, below), upper = cuts_of(body.grid, body.cuts, above);
+      const CellCuts lower = cuts_of(body, below), upper = cuts_of(body, above);
       ASSERT_EQ(as_sets(parts_of(lower, face + 1), lattice_cell(below)),
                 as_sets(parts_of(upper, face), lattice_cell(above)));
       ASSERT_EQ(lower.has_two_points(face + 1), upper.has_two_points(face));

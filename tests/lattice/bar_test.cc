@@ -17,15 +17,13 @@ constexpr double density = 1000, h = 0.1, dt = 0.01;
 /// n[2] nodes along the bar, z; the skin passes midway between nodes, so that the bar is n h thick.
 struct Bar {
   support::Body body;
-  grid::CellComplex complex;
   Matching model;
   Points rest;
 
   Bar(const Index3& n, const int w, const double alpha = 1)
     : body(support::block(n, h)),
-      complex(grid::build_complex(body.grid, body.cuts)),
-      model(body.grid, body.cuts, complex, matching_options({.half_width = w, .alpha = alpha}, density, dt)),
-      rest(grid::rest_positions(body.grid, complex)) {}
+      model(body, matching_options({.half_width = w, .alpha = alpha}, density, dt)),
+      rest(grid::rest_positions(body)) {}
 
   double modulus() const { return youngs_modulus(model.stiffness(), density, h, model.lines().half_width()); }
   dynamics::State at_rest() const { return {rest, Points(rest.size(), Vec3::Zero()), 0}; }
@@ -34,8 +32,8 @@ struct Bar {
   dynamics::Loads clamped(const Vec3& gravity, const double damping) const {
     dynamics::Loads loads{.gravity = gravity, .mass_damping = damping, .supports = {}};
     dynamics::Support support{{}, {}, [](double) { return Vec3(Vec3::Zero()); }};
-    for (const auto c : ids<grid::CornerId>(complex.n_corners()))
-      if (body.grid.index(complex.node[c])[2] <= 1) {
+    for (const auto c : ids<grid::CornerId>(body.complex.n_corners()))
+      if (body.grid.index(body.complex.node[c])[2] <= 1) {
         support.corners.push_back(c.value);
         support.rest.push_back(rest[c.value]);
       }
@@ -45,7 +43,7 @@ struct Bar {
 
   /// The middle node of layer k along z, counted from 1.
   std::uint32_t middle(const int k, const Index3& n) const {
-    return complex.real_corner[*body.grid.find_node({(n[0] + 1) / 2, (n[1] + 1) / 2, k})].value;
+    return body.complex.real_corner[*body.grid.find_node({(n[0] + 1) / 2, (n[1] + 1) / 2, k})].value;
   }
 };
 
@@ -85,8 +83,8 @@ TEST(Bar, DoesNotContractSideways) {
   const Index3 n = {5, 5, 21};
   const Bar bar(n, 2);
   const auto state = settled(bar, bar.clamped(Vec3(0, 0, -1e-5 * bar.modulus() / density), 3), 3000);
-  const auto a = bar.complex.real_corner[*bar.body.grid.find_node({1, 3, 11})].value,
-             b = bar.complex.real_corner[*bar.body.grid.find_node({5, 3, 11})].value;
+  const auto a = bar.body.complex.real_corner[*bar.body.grid.find_node({1, 3, 11})].value,
+             b = bar.body.complex.real_corner[*bar.body.grid.find_node({5, 3, 11})].value;
   const double along = (state.x[bar.middle(12, n)][2] - state.x[bar.middle(11, n)][2]) / h - 1,
                across = (state.x[b] - state.x[a]).norm() / (4 * h) - 1;
   EXPECT_LT(std::abs(across), 1e-3 * std::abs(along));

@@ -72,7 +72,7 @@ struct Reference {
 
   Reference(const Body& body, const int w, const double density)
     : mass(body.complex.n_corners(), 0.0), rest(body.rest()) {
-    const auto shares = material_shares(body.grid, body.cuts, body.complex, density);
+    const auto shares = material_shares(body, density);
     std::vector<std::vector<grid::NodeId>> regions;
     std::map<grid::NodeId, double> n_holders;
     for (const auto n : ids<grid::NodeId>(body.grid.n_nodes()))

@@ -59,7 +59,7 @@ std::vector<std::vector<std::uint32_t>> transposed(const std::vector<std::vector
 }
 
 void expect_sums_by_definition(const Body& body, const int w, const unsigned seed) {
-  const Lines lines(body.grid, body.cuts, w);
+  const Lines lines(body, w);
   const auto sets = regions(body, lines, w);
   for (const std::size_t width : {12, 6}) {
     const auto f = random_field(width * lines.n_points(), seed);
@@ -94,7 +94,7 @@ TEST(Lines, RegionsOfAnUncutBlockAreBoxes) {
   Draw draw(2);
   const Body body = fem::make_block({7, 6, 5}, 0.1, draw, {0.5, 0.5});
   for (const int w : {1, 2, 4}) {
-    const Lines lines(body.grid, body.cuts, w);
+    const Lines lines(body, w);
     std::vector<double> n(6 * lines.n_points(), 1.0);
     lines.sum_over_regions(n);
     for (std::size_t r = 0; r < lines.n_points(); ++r) {
@@ -116,7 +116,7 @@ TEST(Lines, NoPointIsReachedTwiceAndNoneInAnotherPiece) {
     for (int v = 0; v < 8; ++v)
       if (body.complex.copies[c].nodes >> v & 1)
         piece[body.grid.nodes(body.complex.copies[c].cell)[v]] = pieces.piece[c];
-  const Lines lines(body.grid, body.cuts, 3);
+  const Lines lines(body, 3);
   for (const auto r : lines.nodes()) {
     const auto nodes = region(body, r, 3);
     EXPECT_EQ(std::set<grid::NodeId>(nodes.begin(), nodes.end()).size(), nodes.size());
@@ -143,7 +143,7 @@ TEST(Lines, OneAndTwoThreadsGiveTheSameBits) {
   std::array<std::vector<double>, 2> f;
   for (const int n : {1, 2}) {
     set_n_threads(n);
-    const Lines lines(body.grid, body.cuts, 2);
+    const Lines lines(body, 2);
     f[n - 1] = random_field(12 * lines.n_points(), 6);
     lines.sum_over_regions(f[n - 1]);
   }
@@ -156,7 +156,7 @@ TEST(Lines, RegionsOfNoWidthAreRefused) {
   const Body body = fem::make_block({2, 2, 2}, 0.1, draw, {0.5, 0.5});
   for (const int w : {0, -1})
     try {
-      const Lines lines(body.grid, body.cuts, w);
+      const Lines lines(body, w);
       FAIL() << w;
     } catch (const ParameterError& error) {
       EXPECT_EQ(error.complaint().path, "Half width [cells]");

@@ -19,7 +19,7 @@ TEST(Matching, GoalsAndEnergyAreThoseOfTheDefinition) {
   for (const double probability : {0.0, 0.1, 0.3, 0.6})
     for (const int w : {1, 2, 4}) {
       const Body body = cut_block(++seed, {4, 5, 3}, probability);
-      const Matching model(body.grid, body.cuts, body.complex, {.half_width = w, .stiffness = k});
+      const Matching model(body, {.half_width = w, .stiffness = k});
       const Reference reference(body, w, 1000);
       Draw draw(seed);
       const Points x = moved(body, draw, 0.1);
@@ -34,7 +34,7 @@ TEST(Matching, GoalsAndEnergyAreThoseOfTheDefinition) {
 
 TEST(Matching, ForceIsMinusTheGradient) {
   const Body body = cut_block(35, {3, 3, 3}, 0.3);
-  const Matching model(body.grid, body.cuts, body.complex, {.half_width = 1, .stiffness = k});
+  const Matching model(body, {.half_width = 1, .stiffness = k});
   Draw draw(36);
   Points x = moved(body, draw, 0.2), force;
   model.force(x, force);
@@ -56,7 +56,7 @@ TEST(Matching, ForceIsMinusTheGradient) {
 
 TEST(Matching, RigidMotionCostsNothing) {
   const Body body = cut_block(37, {5, 4, 4}, 0.3);
-  const Matching model(body.grid, body.cuts, body.complex, {.half_width = 2, .stiffness = k});
+  const Matching model(body, {.half_width = 2, .stiffness = k});
   Draw draw(38);
   const Points x = moved(body, draw, 0);
   Points g;
@@ -70,7 +70,7 @@ TEST(Matching, ForcesAndTorquesOfEachPieceVanish) {
   const Body body = cut_block(39, {5, 5, 5}, 0.5);
   const grid::Pieces pieces = grid::pieces(body.complex);
   ASSERT_GT(pieces.n_pieces, 5u);
-  const Matching model(body.grid, body.cuts, body.complex, {.half_width = 2, .stiffness = k});
+  const Matching model(body, {.half_width = 2, .stiffness = k});
   Draw draw(40);
   const Points x = moved(body, draw, 1);
   Points force;
@@ -97,7 +97,7 @@ TEST(Matching, PiecesDoNotFeelEachOther) {
   fem::cut_plane(body, 0, 3, 0.4);
   const grid::Pieces pieces = grid::pieces(body.complex);
   ASSERT_EQ(pieces.n_pieces, 2u);
-  const Matching model(body.grid, body.cuts, body.complex, {.half_width = 3, .stiffness = k});
+  const Matching model(body, {.half_width = 3, .stiffness = k});
   Points x = moved(body, draw, 0.2), before, after;
   model.force(x, before);
   std::vector<std::uint8_t> is_second(x.size(), 0);
@@ -121,7 +121,7 @@ TEST(Matching, PiecesDoNotFeelEachOther) {
 /// What the region damping relaxes to: keeps both momenta, loses energy, and leaves rigid motion alone.
 TEST(Matching, RigidVelocitiesKeepMomentum) {
   const Body body = cut_block(42, {5, 4, 4}, 0.3);
-  const Matching model(body.grid, body.cuts, body.complex, {.half_width = 2, .stiffness = k});
+  const Matching model(body, {.half_width = 2, .stiffness = k});
   Draw draw(43);
   const Points x = moved(body, draw, 0.3);
   Points v(x.size()), u;
@@ -142,7 +142,7 @@ TEST(Matching, RigidVelocitiesKeepMomentum) {
 /// To a point, a line, a plane, somewhere in space: what is left of the regions' extents is round-off.
 TEST(Matching, RigidVelocitiesOfCollapsedBodiesAreFinite) {
   const Body body = cut_block(44, {3, 3, 3}, 0.3);
-  const Matching model(body.grid, body.cuts, body.complex, {.half_width = 1, .stiffness = k});
+  const Matching model(body, {.half_width = 1, .stiffness = k});
   Draw draw(45);
   Points v(body.complex.n_corners());
   for (Vec3& velocity : v)
@@ -207,7 +207,7 @@ TEST(Matching, RefusesWhatMakesNoSense) {
   const Body body = cut_block(47, {2, 2, 2}, 0);
   const auto refused = [&](const MatchingOptions& options) -> std::string {
     try {
-      const Matching model(body.grid, body.cuts, body.complex, options);
+      const Matching model(body, options);
     } catch (const ParameterError& error) {
       return error.complaint().path;
     }

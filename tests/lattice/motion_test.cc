@@ -23,9 +23,7 @@ struct Flying {
   dynamics::State state;
 
   Flying(Body&& b, const ShapeMatchingParameters& parameters, const double noise)
-    : body(std::move(b)),
-      model(body.grid, body.cuts, body.complex, matching_options(parameters, 1000, dt)),
-      state{body.rest(), {}, 0} {
+    : body(std::move(b)), model(body, matching_options(parameters, 1000, dt)), state{body.rest(), {}, 0} {
     Draw draw(50);
     state.x = moved(body, draw, noise);
     for (const Vec3& x : state.x)
@@ -227,7 +225,7 @@ TEST(ShapeMatching, RemadeItGoesOnWithTheSameBits) {
   for (int i = 0; i < 20; ++i)
     stepper.step(f.state, {.supports = {}}, dt);
   for (int i = 0; i < 20; ++i) {
-    const Matching again(f.body.grid, f.body.cuts, f.body.complex, matching_options({}, 1000, dt));
+    const Matching again(f.body, matching_options({}, 1000, dt));
     ShapeMatching(again, 10).step(other, {.supports = {}}, dt);
   }
   EXPECT_EQ(f.state.x, other.x);

@@ -32,7 +32,7 @@ double shape_error(const Body& body, const Points& x) {
 double error_after(const int n_steps, const Mistreatment mistreatment, const int w, const unsigned seed) {
   Draw draw(seed);
   const Body body = fem::make_block({4, 4, 4}, 0.1, draw, {0.3, 0.7});
-  const Matching model(body.grid, body.cuts, body.complex, matching_options({.half_width = w}, 1000, dt));
+  const Matching model(body, matching_options({.half_width = w}, 1000, dt));
   ShapeMatching stepper(model, 5);
   dynamics::State state{body.rest(), Points(body.complex.n_corners(), Vec3::Zero()), 0};
   const Vec3 middle = body.grid.position(*body.grid.find_node({2, 2, 2}));
@@ -110,7 +110,7 @@ TEST(Robustness, AFirstCutMovesNoMass) {
   dynamics::State state{body.rest(), {}, 0};
   for (const Vec3& x : state.x)
     state.v.push_back(Vec3(1, 2, 3).cross(x) + 0.3 * draw.vector());
-  const Matching whole(body.grid, body.cuts, body.complex, matching_options({}, 1000, dt));
+  const Matching whole(body, matching_options({}, 1000, dt));
   const Momentum before = momentum(whole.lumped_mass(), state.x, state.v);
   const double kinetic = kinetic_energy(whole.lumped_mass(), state.v);
   const grid::CellComplex complex = body.complex;
@@ -122,7 +122,7 @@ TEST(Robustness, AFirstCutMovesNoMass) {
   const auto parents = support::parents(complex, body.complex);
   state.x = inherited(state.x, parents);
   state.v = inherited(state.v, parents);
-  const Matching model(body.grid, body.cuts, body.complex, matching_options({}, 1000, dt));
+  const Matching model(body, matching_options({}, 1000, dt));
   const Momentum after = momentum(model.lumped_mass(), state.x, state.v);
   EXPECT_LT((after.linear - before.linear).norm(), 1e-12 * before.linear.norm());
   EXPECT_LT((after.angular - before.angular).norm(), 1e-12 * before.angular.norm());
@@ -143,8 +143,7 @@ void expect_to_survive(const Mill& mill) {
   Draw draw(98);
   Body body = fem::make_block({mill.n_nodes, mill.n_nodes, mill.n_nodes}, 0.1, draw, {0.1, 0.9});
   const auto make = [&] {
-    return std::make_unique<Matching>(body.grid, body.cuts, body.complex,
-                                      matching_options({.half_width = mill.half_width}, 1000, dt));
+    return std::make_unique<Matching>(body, matching_options({.half_width = mill.half_width}, 1000, dt));
   };
   dynamics::State state{body.rest(), {}, 0};
   for (const Vec3& x : state.x)

@@ -37,10 +37,10 @@ double shape_integral(const fem::Moments& m, const int a) {
 TEST(Shares, CornersWeighTheIntegralsOfTheirShapeFunctions) {
   const Body body = rough_block(10, {0.02, 0.98});
   std::vector<double> mass(body.complex.n_corners(), 0.0), expected = mass;
-  for (const Share& share : material_shares(body.grid, body.cuts, body.complex, 1100))
+  for (const Share& share : material_shares(body, 1100))
     mass[share.corner.value] += share.mass;
   for (const grid::Copy& copy : body.complex.copies) {
-    const auto moments = fem::material_moments(body.grid, body.cuts, copy);
+    const auto moments = fem::material_moments(body, copy);
     for (int a = 0; a < 8; ++a)
       expected[copy.corners[a].value] += 1100 * 1e-3 * (copy.nodes == 0xff ? 1.0 / 8 : shape_integral(moments, a));
   }
@@ -60,14 +60,14 @@ TEST(Shares, MassAndCentreAreTheMaterials) {
     const grid::Copy& copy = body.complex.copies[c];
     for (const grid::CornerId corner : copy.corners)
       piece[corner.value] = pieces.piece[c];
-    grid::for_each_tetrahedron(body.grid, body.cuts, copy, [&](const grid::Tetrahedron& t, int) {
+    grid::for_each_tetrahedron(body, copy, [&](const grid::Tetrahedron& t, int) {
       const double m = density * h * h * h * support::volume(t);
       mass[pieces.piece[c]] += m;
       moment[pieces.piece[c]] += m * (body.grid.origin(copy.cell) + h / 4 * (t[0] + t[1] + t[2] + t[3]));
     });
   }
   const Points rest = body.rest();
-  for (const Share& share : material_shares(body.grid, body.cuts, body.complex, density)) {
+  for (const Share& share : material_shares(body, density)) {
     share_mass[piece[share.corner.value]] += share.mass;
     share_moment[piece[share.corner.value]] += share.mass * rest[share.corner.value];
   }
@@ -94,7 +94,7 @@ TEST(Shares, EveryCornerAndEveryNodeHasSome) {
   const Body body = rough_block(12, {1e-9, 1});
   std::set<grid::NodeId> nodes;
   std::set<grid::CornerId> corners;
-  for (const Share& share : material_shares(body.grid, body.cuts, body.complex, 1000)) {
+  for (const Share& share : material_shares(body, 1000)) {
     EXPECT_GT(share.mass, 0);
     EXPECT_TRUE(body.grid.is_material(share.node));
     nodes.insert(share.node);

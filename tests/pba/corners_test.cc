@@ -15,25 +15,23 @@ const support::Plane plane{Vec3(0.6, 0.8, 0), 0.03};
 
 struct Scene {
   support::Body body;
-  grid::CellComplex complex;
   Phyxels phyxels;
   NodePairs pairs;
   std::vector<Sight> sights;
   std::vector<grid::CopyId> copies;
 
-  CornerMap map() const { return build_corner_map(body.grid, complex, phyxels, copies, pairs, sights); }
-  std::vector<std::uint32_t> pieces() const { return phyxel_pieces(complex, copies); }
+  CornerMap map() const { return build_corner_map(body, phyxels, copies, pairs, sights); }
+  std::vector<std::uint32_t> pieces() const { return phyxel_pieces(body.complex, copies); }
 };
 
 Scene make_scene(const std::vector<grid::EdgeCut>& cuts, const support::Body& whole, const double spacing) {
-  Scene scene{whole, {}, {}, {}, {}, {}};
-  const auto uncut = grid::build_complex(whole.grid, whole.cuts);
-  scene.phyxels = fill(whole.grid, whole.cuts, uncut, {.sampling = {.spacing = spacing}, .n_neighbours = 20});
+  Scene scene{whole, {}, {}, {}, {}};
+  scene.phyxels = fill(support::with_copies(whole), {.sampling = {.spacing = spacing}, .n_neighbours = 20});
   support::cut(scene.body, cuts);
-  scene.complex = grid::build_complex(scene.body.grid, scene.body.cuts);
+  scene.body.complex = grid::build_complex(scene.body);
   scene.pairs = find_node_pairs(scene.body.grid, scene.phyxels);
   scene.sights = clear_sights(scene.pairs.rest, scene.phyxels.rest, scene.pairs.pairs);
-  scene.copies = copies_around(scene.body.grid, scene.body.cuts, scene.complex, scene.phyxels.rest);
+  scene.copies = copies_around(scene.body, scene.phyxels.rest);
   return scene;
 }
 
@@ -42,7 +40,7 @@ support::Body whole_ball() { return support::with_placed_skin(support::ball(0.5,
 Scene halved_ball() {
   const support::Body ball = whole_ball();
   Scene scene = make_scene(support::plane_cuts(ball, plane), ball, 0.14);
-  part(scene.pairs.pairs, node_pieces(scene.complex, scene.pairs), scene.pieces(), scene.sights);
+  part(scene.pairs.pairs, node_pieces(scene.body.complex, scene.pairs), scene.pieces(), scene.sights);
   return scene;
 }
 
@@ -64,7 +62,7 @@ TEST(Corners, ReproduceLinearFieldsRealAndVirtual) {
     const Points x = mapped(scene.phyxels.rest, G, shift);
     std::vector<Mat3> F;
     model.deformation(x, F);
-    const Points corners = followed(map, x, F), rest = grid::rest_positions(scene.body.grid, scene.complex);
+    const Points corners = followed(map, x, F), rest = grid::rest_positions(scene.body);
     ASSERT_EQ(corners.size(), rest.size());
     ASSERT_GT(corners.size(), scene.pairs.nodes.size()); // some are virtual
     for (std::size_t c = 0; c < corners.size(); ++c)
@@ -75,7 +73,7 @@ TEST(Corners, ReproduceLinearFieldsRealAndVirtual) {
 /// Each half moves by its own phyxels: real corners and virtual ones.
 TEST(Corners, FollowTheirOwnPiece) {
   const Scene scene = halved_ball();
-  const grid::Pieces all = grid::pieces(scene.complex);
+  const grid::Pieces all = grid::pieces(scene.body.complex);
   ASSERT_EQ(all.n_pieces, 2u);
   const CornerMap map = scene.map();
   EXPECT_EQ(map.n_orphans, 0u);
@@ -85,10 +83,10 @@ TEST(Corners, FollowTheirOwnPiece) {
     if (pieces[i] == 1)
       x[i] += Vec3(0, 0, 10);
   const std::vector<Mat3> F(x.size(), Mat3::Identity());
-  const Points corners = followed(map, x, F), rest = grid::rest_positions(scene.body.grid, scene.complex);
+  const Points corners = followed(map, x, F), rest = grid::rest_positions(scene.body);
   std::size_t n[2] = {0, 0};
-  for (const auto c : ids<grid::CopyId>(scene.complex.n_copies()))
-    for (const auto corner : scene.complex.copies[c].corners) {
+  for (const auto c : ids<grid::CopyId>(scene.body.complex.n_copies()))
+    for (const auto corner : scene.body.complex.copies[c].corners) {
       const auto piece = all.piece[c];
       EXPECT_LT((corners[corner.value] - rest[corner.value] - Vec3(0, 0, 10.0 * piece)).norm(), 1e-12);
       ++n[piece];
@@ -125,7 +123,7 @@ TEST(Corners, TakeTheWeightedMeanOfWhatTheySee) {
     }
     if (weights == 0)
       continue;
-    const auto corner = scene.complex.real_corner[scene.pairs.nodes[row]];
+    const auto corner = scene.body.complex.real_corner[scene.pairs.nodes[row]];
     EXPECT_LT((corners[corner.value] - sum / weights).norm(), 1e-12);
     ++n_checked;
   }
@@ -147,7 +145,7 @@ TEST(Corners, VirtualOnesAreExtrapolated) {
     if (map.source_start[c + 1] - map.source_start[c] != 1)
       continue;
     const auto row = map.source[map.source_start[c]];
-    const auto real = scene.complex.real_corner[scene.pairs.nodes[row]].value;
+    const auto real = scene.body.complex.real_corner[scene.pairs.nodes[row]].value;
     Mat3 J = Mat3::Zero();
     for (auto k = map.start[row]; k < map.start[row + 1]; ++k)
       J += map.weight[k] * F[map.phyxel[k]];
@@ -160,7 +158,7 @@ TEST(Corners, VirtualOnesAreExtrapolated) {
 
 TEST(Corners, ThatSeeNothingTakeWhatTheyCanReach) {
   Scene scene = halved_ball();
-  const auto pieces = scene.pieces(), nodes = node_pieces(scene.complex, scene.pairs);
+  const auto pieces = scene.pieces(), nodes = node_pieces(scene.body.complex, scene.pairs);
   for (std::size_t p = 0; p < scene.sights.size(); ++p)
     if (scene.pairs.pairs[p][0] % 3 == 0)
       scene.sights[p].factor = 0;
@@ -187,18 +185,18 @@ TEST(Corners, OrphansMoveAsOne) {
       cuts.push_back({e, 0.5, Vec3::Unit(ball.grid.axis(e)), 1});
   }
   Scene scene = make_scene(cuts, ball, 0.25);
-  part(scene.pairs.pairs, node_pieces(scene.complex, scene.pairs), scene.pieces(), scene.sights);
+  part(scene.pairs.pairs, node_pieces(scene.body.complex, scene.pairs), scene.pieces(), scene.sights);
   const CornerMap map = scene.map();
   EXPECT_GT(map.n_orphans, 10u);
   Draw draw(5);
   const Points x = disturbed(scene.phyxels.rest, 1, draw);
   const std::vector<Mat3> F(x.size(), Mat3::Identity());
   const Points corners = followed(map, x, F);
-  const auto nodes = node_pieces(scene.complex, scene.pairs), own = scene.pieces();
+  const auto nodes = node_pieces(scene.body.complex, scene.pairs), own = scene.pieces();
   const auto is_orphan = [&](const std::uint32_t piece) {
     return std::find(own.begin(), own.end(), piece) == own.end();
   };
-  const grid::Pieces all = grid::pieces(scene.complex);
+  const grid::Pieces all = grid::pieces(scene.body.complex);
   Points middle(all.n_pieces, Vec3::Zero());
   std::vector<int> n_nodes(all.n_pieces, 0);
   for (std::size_t row = 0; row < nodes.size(); ++row) {
@@ -207,12 +205,12 @@ TEST(Corners, OrphansMoveAsOne) {
   }
   EXPECT_EQ(*std::max_element(n_nodes.begin(), n_nodes.end()), 2);
   const PointGrid phyxels(scene.phyxels.rest, 0.25);
-  for (const auto c : ids<grid::CopyId>(scene.complex.n_copies())) {
+  for (const auto c : ids<grid::CopyId>(scene.body.complex.n_copies())) {
     const std::uint32_t piece = all.piece[c];
     if (!is_orphan(piece))
       continue;
     const auto carrier = phyxels.nearest(middle[piece] / n_nodes[piece]);
-    for (const auto corner : scene.complex.copies[c].corners) {
+    for (const auto corner : scene.body.complex.copies[c].corners) {
       const Vec3 moved = corners[corner.value] - map.corners[corner.value];
       EXPECT_LT((moved - (x[carrier] - scene.phyxels.rest[carrier])).norm(), 1e-12);
     }

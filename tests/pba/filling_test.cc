@@ -136,16 +136,15 @@ support::Body cut_ball() {
 }
 
 TEST(Region, CrumbsSumToTheBody) {
-  const support::Body body = cut_ball();
-  const auto complex = grid::build_complex(body.grid, body.cuts);
-  const auto volumes = support::octant_volumes(body, complex);
+  const support::Body body = support::with_copies(cut_ball());
+  const auto volumes = support::octant_volumes(body);
   const double expected = std::accumulate(volumes.begin(), volumes.end(), 0.0);
   for (const double size : {1.0, 0.1, 0.05}) {
     double sum = 0;
-    for (const Crumb& crumb : crumbs(body.grid, body.cuts, complex, size)) {
+    for (const Crumb& crumb : crumbs(body, size)) {
       EXPECT_GE(crumb.volume, 0);
       EXPECT_LE(crumb.volume, size * size * size);
-      EXPECT_TRUE(copy_around(body.grid, body.cuts, complex, crumb.centre).valid());
+      EXPECT_TRUE(copy_around(body, crumb.centre).valid());
       sum += crumb.volume;
     }
     EXPECT_NEAR(sum, expected, 1e-13);
@@ -153,16 +152,15 @@ TEST(Region, CrumbsSumToTheBody) {
 }
 
 TEST(Region, KnowsInsideFromOutsideAndSideFromSide) {
-  const support::Body body = cut_ball();
-  const auto complex = grid::build_complex(body.grid, body.cuts);
-  const grid::Pieces pieces = grid::pieces(complex);
+  const support::Body body = support::with_copies(cut_ball());
+  const grid::Pieces pieces = grid::pieces(body.complex);
   ASSERT_EQ(pieces.n_pieces, 2u);
   Draw draw(5);
   int n_inside = 0;
   std::uint32_t lower = 99, upper = 99;
   for (int n = 0; n < 3000; ++n) {
     const Vec3 p = 0.7 * draw.vector();
-    const auto copy = copy_around(body.grid, body.cuts, complex, p);
+    const auto copy = copy_around(body, p);
     const double height = Vec3(0.6, 0.8, 0).dot(p) - 0.11;
     if (std::abs(p.norm() - 0.5) < 0.03 || std::abs(height) < 1e-9)
       continue; // the skin is a polyhedron
@@ -179,14 +177,12 @@ TEST(Region, KnowsInsideFromOutsideAndSideFromSide) {
 }
 
 TEST(Phyxels, VolumesSumToTheBodys) {
-  const support::Body body = cut_ball();
-  const auto complex = grid::build_complex(body.grid, body.cuts);
-  const auto volumes = support::octant_volumes(body, complex);
+  const support::Body body = support::with_copies(cut_ball());
+  const auto volumes = support::octant_volumes(body);
   const double expected = std::accumulate(volumes.begin(), volumes.end(), 0.0);
   for (const char* const distribution : {"jittered grid", "Poisson disk"})
     for (const double spacing : {0.2, 0.1}) {
-      const Phyxels phyxels =
-        fill(body.grid, body.cuts, complex, {.sampling = {.distribution = distribution, .spacing = spacing}});
+      const Phyxels phyxels = fill(body, {.sampling = {.distribution = distribution, .spacing = spacing}});
       EXPECT_NEAR(std::accumulate(phyxels.volume.begin(), phyxels.volume.end(), 0.0), expected, 1e-13);
       for (const double volume : phyxels.volume)
         EXPECT_GT(volume, 0.05 * spacing * spacing * spacing);
@@ -201,23 +197,20 @@ TEST(Phyxels, VolumesSumToTheBodys) {
 
 /// A lattice in a block of cubes: each phyxel stands for its own cube.
 TEST(Phyxels, HaveTheirVoronoiVolumes) {
-  const support::Body body = support::with_placed_skin(support::block({4, 3, 3}, 0.1));
-  const auto complex = grid::build_complex(body.grid, body.cuts);
-  const Phyxels phyxels =
-    fill(body.grid, body.cuts, complex, {.sampling = {.spacing = 0.1, .jitter = 0}, .n_neighbours = 10});
+  const support::Body body = support::with_copies(support::with_placed_skin(support::block({4, 3, 3}, 0.1)));
+  const Phyxels phyxels = fill(body, {.sampling = {.spacing = 0.1, .jitter = 0}, .n_neighbours = 10});
   EXPECT_EQ(phyxels.size(), 36u);
   for (const double volume : phyxels.volume)
     EXPECT_NEAR(volume, 1e-3, 1e-14);
 }
 
 TEST(Phyxels, AreTheSameOnOneAndTwoThreads) {
-  const support::Body body = cut_ball();
-  const auto complex = grid::build_complex(body.grid, body.cuts);
+  const support::Body body = support::with_copies(cut_ball());
   Phyxels phyxels[2];
   const int n = n_threads();
   for (const int threads : {1, 2}) {
     set_n_threads(threads);
-    phyxels[threads - 1] = fill(body.grid, body.cuts, complex, {.sampling = {.spacing = 0.1}});
+    phyxels[threads - 1] = fill(body, {.sampling = {.spacing = 0.1}});
   }
   set_n_threads(n);
   EXPECT_EQ(phyxels[0].rest, phyxels[1].rest);
@@ -226,16 +219,15 @@ TEST(Phyxels, AreTheSameOnOneAndTwoThreads) {
 }
 
 TEST(Phyxels, FewerThanFourAreRefused) {
-  const support::Body body = cut_ball();
-  const auto complex = grid::build_complex(body.grid, body.cuts);
+  const support::Body body = support::with_copies(cut_ball());
   try {
-    fill(body.grid, body.cuts, complex, {.sampling = {.spacing = 2, .jitter = 0}});
+    fill(body, {.sampling = {.spacing = 2, .jitter = 0}});
     FAIL() << "no error";
   } catch (const ParameterError& error) {
     EXPECT_NE(std::string(error.what()).find("at least 4 phyxels"), std::string::npos) << error.what();
   }
   try {
-    fill(body.grid, body.cuts, complex, {.sampling = {.spacing = 0.1}, .support = 0.02});
+    fill(body, {.sampling = {.spacing = 0.1}, .support = 0.02});
     FAIL() << "no error";
   } catch (const ParameterError& error) {
     EXPECT_NE(std::string(error.what()).find("within its support"), std::string::npos) << error.what();

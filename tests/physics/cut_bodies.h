@@ -2,7 +2,7 @@
 
 /// A body that is cut again and again, with all that a backend sees of it.
 
-#include "cut/add_cuts.h"
+#include "cut/cutter.h"
 #include "dynamics/explicit_steppers.h"
 #include "physics/physics.h"
 #include "tests/support/placed.h"
@@ -11,23 +11,25 @@ namespace kerf::physics {
 
 struct GrowingCut {
   support::Body body;
-  grid::CellComplex complex = grid::build_complex(body.grid, body.cuts);
   surface::SurfaceIndex index = {};
-  surface::Surface surface = surface::build_surface(body.grid, body.cuts, complex, index);
+  surface::Surface surface;
+  cut::Cutter cutter{9};
 
-  explicit GrowingCut(const support::Body& whole) : body(support::with_placed_skin(whole)) {}
+  explicit GrowingCut(const support::Body& whole) : body(support::with_placed_skin(whole)) {
+    body.complex = grid::build_complex(body);
+    surface = surface::build_surface(body, index);
+    cutter.begin(body, rest());
+  }
 
-  CutBody seen() const { return {body.grid, body.cuts, complex, surface}; }
+  CutBody seen() const { return {body, surface}; }
+  Points rest() const { return grid::rest_positions(body); }
 
   /// Cuts edges, and lets physics and state follow. Returns what has changed.
-  grid::ComplexChange cut(const std::vector<grid::EdgeCut>& cuts, Physics& physics, dynamics::State& state) {
-    const auto edges =
-      cut::add_cuts(body.grid, body.cuts, complex, grid::rest_positions(body.grid, complex), cuts, cut::Front::possible)
-        .edges;
-    surface::place(body.grid, body.cuts, {});
-    const auto change = grid::update_complex(body.grid, body.cuts, edges, complex);
-    surface::update_surface(body.grid, body.cuts, complex, edges, change, surface, index);
-    physics.follow_cut(seen(), {edges, change}, state);
+  grid::CutChange cut(const std::vector<grid::EdgeCut>& cuts, Physics& physics, dynamics::State& state) {
+    const auto change = cutter.cut(body, cuts, cut::Front::possible, rest());
+    surface::place(body, change, {});
+    surface::update_surface(body, change, surface, index);
+    physics.follow_cut(seen(), change, state);
     return change;
   }
 };

@@ -12,8 +12,7 @@ namespace {
 support::Body whole_block() { return support::block({5, 4, 4}, 0.1); }
 
 std::unique_ptr<fem::Hexahedra> make_elements(const CutBody& b, const fem::Strain strain) {
-  return std::make_unique<fem::Hexahedra>(b.grid, b.cuts, b.complex,
-                                          fem::HexahedraOptions{.material = {}, .strain = strain});
+  return std::make_unique<fem::Hexahedra>(b.solid, fem::HexahedraOptions{.material = {}, .strain = strain});
 }
 
 /// Cuts at random, batch by batch, and asks that forces, energy and mass are those of a model made of the body now.
@@ -26,8 +25,8 @@ void expect_as_made_anew(const Make& make, const typename Corners::IntegratorMak
   for (int batch = 0; batch < 6; ++batch) {
     block.cut(support::random_cuts(random, block.body, 0.12), physics, state);
     const auto anew = make(block.seen());
-    const std::size_t n = block.complex.n_corners();
-    ASSERT_EQ(physics.rest(), grid::rest_positions(block.body.grid, block.complex));
+    const std::size_t n = block.body.complex.n_corners();
+    ASSERT_EQ(physics.rest(), grid::rest_positions(block.body));
     ASSERT_EQ(physics.model().lumped_mass().size(), n);
     Points x = physics.rest();
     const Points noise = random_points(n, random);
@@ -41,7 +40,7 @@ void expect_as_made_anew(const Make& make, const typename Corners::IntegratorMak
     for (std::size_t i = 0; i < n; ++i)
       EXPECT_EQ(physics.model().lumped_mass()[i], anew->lumped_mass()[i]);
   }
-  EXPECT_GT(grid::n_pieces(block.complex), 2u) << "the cuts were real";
+  EXPECT_GT(grid::n_pieces(block.body.complex), 2u) << "the cuts were real";
 }
 
 TEST(OnCorners, ElementsAfterCutsAreThoseMadeAnew) {
@@ -51,17 +50,13 @@ TEST(OnCorners, ElementsAfterCutsAreThoseMadeAnew) {
 
 TEST(OnCorners, SpringsAfterCutsAreThoseMadeAnew) {
   expect_as_made_anew<Springs>(
-    [](const CutBody& b) {
-      return std::make_unique<spring::MassSpring>(b.grid, b.cuts, b.complex, spring::MassSpringOptions{});
-    },
+    [](const CutBody& b) { return std::make_unique<spring::MassSpring>(b.solid, spring::MassSpringOptions{}); },
     verlet);
 }
 
 TEST(OnCorners, ShapeMatchingAfterCutsIsThatMadeAnew) {
   expect_as_made_anew<ShapeMatching>(
-    [](const CutBody& b) {
-      return std::make_unique<lattice::Matching>(b.grid, b.cuts, b.complex, lattice::MatchingOptions{});
-    },
+    [](const CutBody& b) { return std::make_unique<lattice::Matching>(b.solid, lattice::MatchingOptions{}); },
     [](lattice::Matching& model, const PiecesOfParticles&) {
       return std::make_unique<lattice::ShapeMatching>(model, 0);
     });
@@ -88,15 +83,15 @@ TEST(OnCorners, NewCornersInheritAllThatTheirParentsHave) {
   const dynamics::State before = state;
   const auto change = block.cut(support::plane_cuts(block.body, {Vec3::UnitX(), 0.27}), physics, state);
   ASSERT_GT(change.parents.size(), 10u);
-  ASSERT_EQ(state.x.size(), block.complex.n_corners());
+  ASSERT_EQ(state.x.size(), block.body.complex.n_corners());
   for (std::size_t i = 0; i < state.x.size(); ++i) {
     const std::size_t from = i < n ? i : change.parents[i - n].value;
     ASSERT_LT(from, i + 1);
     EXPECT_EQ(state.x[i], state.x[from]);
     EXPECT_EQ(state.v[i], state.v[from]);
     EXPECT_EQ(state.history.at("before")[i], state.history.at("before")[from]);
-    EXPECT_EQ(block.complex.node[grid::CornerId(static_cast<std::uint32_t>(i))],
-              block.complex.node[grid::CornerId(static_cast<std::uint32_t>(from))]);
+    EXPECT_EQ(block.body.complex.node[grid::CornerId(static_cast<std::uint32_t>(i))],
+              block.body.complex.node[grid::CornerId(static_cast<std::uint32_t>(from))]);
     if (i < n) {
       EXPECT_EQ(state.x[i], before.x[i]);
       EXPECT_EQ(state.history.at("before")[i], before.history.at("before")[i]);
@@ -137,9 +132,9 @@ TEST(OnCorners, PointsOfTheBodyFollowItsCorners) {
   const auto point = body_point(block.seen(), inside);
   ASSERT_EQ(point.n_points(), 1u);
   EXPECT_LT((point.at(0, physics.rest()) - inside).norm(), 1e-15);
-  EXPECT_EQ(physics.carry(point).weights, point.weights);
+  EXPECT_EQ(physics.carry(point).values, point.values);
   EXPECT_EQ(body_point(block.seen(), Vec3(0.04, 0.2, 0.2)).n_points(), 0u) << "5 mm outside";
-  const auto surface = surface_points(block.surface);
+  const auto surface = block.surface.weights;
   ASSERT_EQ(surface.n_points(), block.surface.rest.size());
   for (std::size_t i = 0; i < surface.n_points(); ++i)
     EXPECT_LT((surface.at(i, physics.rest()) - block.surface.rest[i]).norm(), 1e-14);

@@ -33,7 +33,7 @@ std::vector<grid::EdgeCut> cut_up_to(const support::Body& body, const support::P
 
 /// Sum of weights 1, weights times rest the point: so forces keep their sum and their torque.
 void expect_forces_kept(const GrowingCut& block, const Phyxels& physics, support::Random& random) {
-  const auto of_corners = surface_points(block.surface);
+  const auto of_corners = block.surface.weights;
   const auto carried = physics.carry(of_corners);
   ASSERT_EQ(carried.n_points(), block.surface.rest.size());
   Points forces(physics.rest().size(), Vec3::Zero());
@@ -41,7 +41,7 @@ void expect_forces_kept(const GrowingCut& block, const Phyxels& physics, support
   for (std::size_t i = 0; i < carried.n_points(); ++i) {
     double weight = 0;
     for (auto k = carried.start[i]; k < carried.start[i + 1]; ++k)
-      weight += carried.weights[k];
+      weight += carried.values[k];
     EXPECT_NEAR(weight, 1, 1e-12);
     EXPECT_LT((carried.at(i, physics.rest()) - block.surface.rest[i]).norm(), 1e-9);
     const Vec3 f = support::random_vector(random);
@@ -68,7 +68,7 @@ TEST(Phyxels, CarryForcesWithTheirSumAndTorque) {
     block.cut(cut_up_to(block.body, middle, 0.25), physics, state);
     expect_forces_kept(block, physics, random);
     block.cut(support::plane_cuts(block.body, middle), physics, state);
-    ASSERT_EQ(grid::n_pieces(block.complex), 2u);
+    ASSERT_EQ(grid::n_pieces(block.body.complex), 2u);
     expect_forces_kept(block, physics, random);
   }
 }
@@ -81,15 +81,15 @@ TEST(Phyxels, CarryForcesWithTheirSumAfterAnyCuts) {
   dynamics::State state = state_at_rest(physics);
   for (int batch = 0; batch < 5; ++batch) {
     block.cut(support::random_cuts(random, block.body, 0.15), physics, state);
-    const auto carried = physics.carry(surface_points(block.surface));
+    const auto carried = physics.carry(block.surface.weights);
     for (std::size_t i = 0; i < carried.n_points(); ++i) {
       double weight = 0;
       for (auto k = carried.start[i]; k < carried.start[i + 1]; ++k)
-        weight += carried.weights[k];
+        weight += carried.values[k];
       EXPECT_NEAR(weight, 1, 1e-9);
     }
   }
-  EXPECT_GT(grid::n_pieces(block.complex), 2u);
+  EXPECT_GT(grid::n_pieces(block.body.complex), 2u);
 }
 
 /// Phyxels of one piece are joined by bonds whose direction the model knows, wherever pairs reach: what the copies hold
@@ -101,8 +101,8 @@ TEST(Phyxels, PiecesThatStayWholeKeepABond) {
   dynamics::State state = state_at_rest(physics);
   for (int batch = 0; batch < 5; ++batch)
     block.cut(support::random_cuts(random, block.body, 0.15), physics, state);
-  const auto copies = pba::copies_around(block.body.grid, block.body.cuts, block.complex, physics.rest());
-  const auto pieces = pba::phyxel_pieces(block.complex, copies);
+  const auto copies = grid::copies_around(block.body, physics.rest());
+  const auto pieces = pba::phyxel_pieces(block.body.complex, copies);
   const pba::PhyxelModel& model = physics.model();
   const auto& pairs = model.neighbours().pairs;
   UnionFind parts(physics.rest().size());
@@ -148,7 +148,7 @@ TEST(Phyxels, LinearMotionMovesCornersLinearly) {
     state.x[i] = G * physics.rest()[i] + shift;
   const auto expect_linear = [&] {
     physics.follow(state);
-    const Points rest = grid::rest_positions(block.body.grid, block.complex);
+    const Points rest = grid::rest_positions(block.body);
     ASSERT_EQ(physics.corners(state).size(), rest.size());
     std::size_t n_known = 0;
     for (std::size_t c = 0; c < rest.size(); ++c)
@@ -175,8 +175,7 @@ TEST(Phyxels, PiecesPartAtOnce) {
   EXPECT_EQ(physics.n_waiting(), 0u);
   block.cut(support::plane_cuts(block.body, middle), physics, state);
   EXPECT_GT(physics.n_waiting(), 100u);
-  const auto piece = pba::phyxel_pieces(
-    block.complex, pba::copies_around(block.body.grid, block.body.cuts, block.complex, physics.rest()));
+  const auto piece = pba::phyxel_pieces(block.body.complex, grid::copies_around(block.body, physics.rest()));
   std::size_t n_across = 0, n_beside = 0;
   const auto& pairs = physics.model().neighbours().pairs;
   for (std::size_t p = 0; p < pairs.size(); ++p) {
@@ -199,8 +198,8 @@ TEST(Phyxels, PiecesPartAtOnce) {
     EXPECT_LT(f.norm(), 1e-9) << "pieces are free of each other";
   state.x = x;
   physics.follow(state);
-  const auto pieces = corner_pieces(block.complex);
-  const Points rest = grid::rest_positions(block.body.grid, block.complex);
+  const auto pieces = corner_pieces(block.body.complex);
+  const Points rest = grid::rest_positions(block.body);
   for (std::size_t c = 0; c < rest.size(); ++c)
     EXPECT_LT((physics.corners(state)[c] - rest[c] - (pieces[c] == 1 ? away : Vec3(Vec3::Zero()))).norm(), 1e-9);
 }

@@ -34,9 +34,9 @@ TEST(BackendScene, WhatIsCutOffFallsFreely) {
                      observe("pieces, momentum z, mass, reactions"));
     EXPECT_EQ(cube.last("pieces"), 2);
     const Body& body = cube.body();
-    const auto pieces = physics::corner_pieces(body.complex);
+    const auto pieces = physics::corner_pieces(body.solid.complex);
     const Points& x = corners(body);
-    const Points rest = grid::rest_positions(body.grid, body.complex);
+    const Points rest = grid::rest_positions(body.solid);
     std::map<std::uint32_t, std::pair<double, double>> fall; // of each piece: least and most
     for (std::size_t c = 0; c < x.size(); ++c) {
       const double way = rest[c][2] - x[c][2];
@@ -189,7 +189,7 @@ TEST(BackendScene, ABladePartsABarOfPhyxelsBetweenItsHeldEnds) {
                             "Positions [m] = 0.5, 0, 0.25; 0.5, 0, -0.3"}) +
     observe("pieces"));
   // It may leave splinters of the skin along those edges; all nodes are in two pieces.
-  const grid::CellComplex& complex = bar.body().complex;
+  const grid::CellComplex& complex = bar.body().solid.complex;
   const grid::Pieces pieces = grid::pieces(complex);
   std::map<std::uint32_t, int> n_copies;
   for (const auto c : ids<grid::CopyId>(complex.n_copies()))

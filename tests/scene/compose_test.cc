@@ -30,7 +30,7 @@ TEST(Compose, BuildsNothingThatTheSceneDoesNotWrite) {
   EXPECT_EQ(world.bodies[0].accounts, nullptr);
   EXPECT_TRUE(world.blades.empty());
   ASSERT_EQ(world.bodies.size(), 1u);
-  EXPECT_EQ(world.bodies[0].cutting, nullptr);
+  EXPECT_EQ(world.bodies[0].cutter, nullptr);
   EXPECT_TRUE(world.bodies[0].loads.supports.empty());
   EXPECT_EQ(world.bodies[0].loads.gravity, Vec3(Vec3::Zero()));
   for (const char* kind : optional_kinds)
@@ -44,8 +44,8 @@ TEST(Compose, BuildsWhatTheSceneWrites) {
   EXPECT_EQ(world.bodies.at(0).observables.size(), 7u);
   EXPECT_EQ(world.n_steps, 5);
   ASSERT_EQ(world.blades.size(), 1u);
-  ASSERT_NE(world.bodies.at(0).cutting, nullptr);
-  EXPECT_EQ(world.bodies[0].cutting->n_cut_edges, std::vector<std::size_t>{0});
+  ASSERT_NE(world.bodies.at(0).cutter, nullptr);
+  EXPECT_EQ(world.bodies[0].cutter->counts().n_cut_edges, std::vector<std::size_t>{0});
   EXPECT_EQ(world.bodies[0].loads.gravity, Vec3(0, 0, -9.81));
   for (const char* kind : optional_kinds)
     EXPECT_FALSE(says(world, std::string("left out: ") + kind)) << kind;
@@ -61,7 +61,7 @@ TEST(Compose, EveryBodyOfASceneWithABladeCanBeCut) {
   ASSERT_EQ(world.bodies.size(), 2u);
   EXPECT_EQ(world.bodies[1].name, "other");
   for (const Body& body : world.bodies)
-    EXPECT_NE(body.cutting, nullptr) << body.name;
+    EXPECT_NE(body.cutter, nullptr) << body.name;
 }
 
 TEST(Compose, TakesTheIntegratorThatIsNamed) {

@@ -47,20 +47,20 @@ TEST(CutSurfaceScene, CarriesStateAndCountsItsEdges) {
   ASSERT_EQ(world.cut_surfaces.size(), 1u);
   EXPECT_EQ(world.cut_surfaces[0].surface.label, 2) << "after the blade";
   Body& body = world.bodies[0];
-  body.state.v.assign(body.complex.n_corners(), Vec3(3, 1, -2));
+  body.state.v.assign(body.solid.complex.n_corners(), Vec3(3, 1, -2));
   const double mass = value(body, "mass"), energy = value(body, "kinetic energy");
   Timings timings;
   cut_at_once(body, world.cut_surfaces[0].surface, timings);
   EXPECT_EQ(value(body, "pieces"), 2);
   EXPECT_EQ(value(body, "cut edges"), 16);
-  EXPECT_EQ(body.cutting->n_cut_edges, (std::vector<std::size_t>{0, 16}));
+  EXPECT_EQ(body.cutter->counts().n_cut_edges, (std::vector<std::size_t>{0, 16}));
   EXPECT_NEAR(value(body, "mass"), mass, 1e-12 * mass);
   EXPECT_NEAR(value(body, "momentum x"), 3 * mass, 1e-12 * mass);
   EXPECT_NEAR(value(body, "kinetic energy"), energy, 1e-12 * energy);
-  EXPECT_EQ(body.cutting->x_before.size(), body.complex.n_corners()) << "the blade goes on from there";
+  EXPECT_EQ(body.cutter->stands_at().size(), body.solid.complex.n_corners()) << "the blade goes on from there";
   recut(body, world.blades, 0, 0.05, timings);
-  EXPECT_GT(body.cutting->n_cut_edges[0], 0u);
-  EXPECT_EQ(body.cutting->n_cut_edges[1], 16u);
+  EXPECT_GT(body.cutter->counts().n_cut_edges[0], 0u);
+  EXPECT_EQ(body.cutter->counts().n_cut_edges[1], 16u);
 }
 
 TEST(CutSurfaceScene, RunsBesideABladeAndSaysSo) {
@@ -139,15 +139,15 @@ TEST(CutSurfaceScene, AMeshThroughItselfCutsWhereItCrossesOddly) {
     cut_by(geometry::together(geometry::box_mesh(one.lower, one.upper), geometry::box_mesh(other.lower, other.upper)));
   const Body& body = world.bodies[0];
   const auto is_in_one = [&](const grid::NodeId n) {
-    const Vec3 X = body.grid.position(n);
+    const Vec3 X = body.solid.grid.position(n);
     return one.contains(X) != other.contains(X);
   };
   std::size_t n_wrong = 0, n_cut = 0;
-  for (const auto e : ids<grid::EdgeId>(body.grid.n_edges())) {
-    const auto& [a, b] = body.grid.ends(e);
-    if (body.grid.is_material(a) && body.grid.is_material(b)) {
-      n_wrong += body.cuts.is_cut(e) != (is_in_one(a) != is_in_one(b)) ? 1 : 0;
-      n_cut += body.cuts.is_cut(e) ? 1 : 0;
+  for (const auto e : ids<grid::EdgeId>(body.solid.grid.n_edges())) {
+    const auto& [a, b] = body.solid.grid.ends(e);
+    if (body.solid.grid.is_material(a) && body.solid.grid.is_material(b)) {
+      n_wrong += body.solid.cuts.is_cut(e) != (is_in_one(a) != is_in_one(b)) ? 1 : 0;
+      n_cut += body.solid.cuts.is_cut(e) ? 1 : 0;
     }
   }
   EXPECT_EQ(n_wrong, 0u);

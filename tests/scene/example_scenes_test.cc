@@ -54,7 +54,7 @@ void expect_outputs(const World& world, const fs::path& folder) {
     EXPECT_EQ(last.step, world.n_steps);
     EXPECT_EQ(last.positions, body.state.x);
     EXPECT_EQ(last.velocities, body.state.v);
-    EXPECT_EQ(reader.complex(body.name, last.complex).corners.size(), body.complex.n_copies());
+    EXPECT_EQ(reader.complex(body.name, last.complex).corners.size(), body.solid.complex.n_copies());
     for (const Observable& o : body.observables)
       EXPECT_EQ(reader.observable(body.name + " " + o.name).size(), world.n_steps + 1u) << o.name;
     EXPECT_EQ(fs::exists(folder / ("surface_" + body.name + ".vtkhdf")), world.surface_file.has_value());
@@ -84,7 +84,7 @@ std::size_t n_edges_met(const cut::Blade& blade, const World& world) {
   for (int step = 1; step <= world.n_steps; ++step) {
     const auto strip = cut::sweep(blade, (step - 1) * world.time_step, step * world.time_step);
     for (const Body& body : world.bodies)
-      n += cut::cut_edges(strip, body.grid, body.cuts, body.complex, body.state.x, blade.label).cuts.size();
+      n += cut::cut_edges(strip, body.solid, body.state.x, blade.label).cuts.size();
   }
   return n;
 }

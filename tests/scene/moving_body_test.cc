@@ -40,8 +40,8 @@ struct Motion {
     const double t = time - 0.5 * duration;
     const double angle = t * spin.norm();
     const Eigen::AngleAxisd turn(angle, spin.norm() > 0 ? Vec3(spin.normalized()) : Vec3::UnitX());
-    for (const auto c : ids<grid::CornerId>(body.complex.n_corners()))
-      body.state.x[c.value] = t * velocity + turn * (body.grid.position(body.complex.node[c]) - middle);
+    for (const auto c : ids<grid::CornerId>(body.solid.complex.n_corners()))
+      body.state.x[c.value] = t * velocity + turn * (body.solid.grid.position(body.solid.complex.node[c]) - middle);
   }
 };
 
@@ -50,8 +50,8 @@ void pass(World& world, const Motion& motion) {
   Body& body = world.bodies.at(0);
   Timings timings;
   motion.place(body, 0);
-  body.cutting->x_before = body.state.x;
-  for (int step = 1; step <= n_steps || body.cutting->pending.size() > 0; ++step) {
+  body.cutter->stand(body.state.x);
+  for (int step = 1; step <= n_steps || body.cutter->n_waiting() > 0; ++step) {
     const double t0 = (step - 1) * duration / n_steps, t1 = step * duration / n_steps;
     if (step <= n_steps)
       motion.place(body, t1);
@@ -67,11 +67,11 @@ bool is_above(const Vec3& node, const Vec3& relative_velocity) {
 /// Edges that are cut where they should not be, or the other way round.
 std::size_t n_wrong(const Body& body, const Vec3& relative_velocity) {
   std::size_t n = 0;
-  for (const auto e : ids<grid::EdgeId>(body.grid.n_edges())) {
-    const auto& [a, b] = body.grid.ends(e);
-    if (body.grid.is_material(a) && body.grid.is_material(b))
-      n += body.cuts.is_cut(e) !=
-           (is_above(body.grid.position(a), relative_velocity) != is_above(body.grid.position(b), relative_velocity));
+  for (const auto e : ids<grid::EdgeId>(body.solid.grid.n_edges())) {
+    const auto& [a, b] = body.solid.grid.ends(e);
+    if (body.solid.grid.is_material(a) && body.solid.grid.is_material(b))
+      n += body.solid.cuts.is_cut(e) != (is_above(body.solid.grid.position(a), relative_velocity) !=
+                                         is_above(body.solid.grid.position(b), relative_velocity));
   }
   return n;
 }
@@ -91,7 +91,7 @@ TEST(MovingBody, IsPartedAlongTheRelativeMotion) {
       World world = passing_world(share * relative);
       pass(world, {(share - 1) * relative, Vec3::Zero()});
       EXPECT_EQ(n_wrong(world.bodies[0], relative), 0u);
-      EXPECT_EQ(grid::n_pieces(world.bodies[0].complex), 2u);
+      EXPECT_EQ(grid::n_pieces(world.bodies[0].solid.complex), 2u);
     }
 }
 
@@ -102,22 +102,22 @@ TEST(MovingBody, IsPartedWhileItTurns) {
       const Vec3 relative = distance / duration * Vec3(0, 0, -1);
       World world = passing_world(share * relative);
       pass(world, {(share - 1) * relative, turn / duration * Vec3::UnitY()});
-      EXPECT_EQ(grid::n_pieces(world.bodies[0].complex), 2u);
+      EXPECT_EQ(grid::n_pieces(world.bodies[0].solid.complex), 2u);
     }
 }
 
 /// Faces in the body of which a sweep has cut an odd number of edges: it would have to end there.
 std::size_t n_torn_faces(const Body& body) {
   std::set<grid::FaceId> torn;
-  for (const auto c : ids<grid::CellId>(body.grid.n_cells()))
+  for (const auto c : ids<grid::CellId>(body.solid.grid.n_cells()))
     for (int face = 0; face < grid::cube::n_faces; ++face) {
       int n_cut = 0, n_material = 0;
       for (const int line : grid::cube::face_lines[face])
-        n_cut += body.cuts.is_cut(body.grid.edges(c)[line]) ? 1 : 0;
+        n_cut += body.solid.cuts.is_cut(body.solid.grid.edges(c)[line]) ? 1 : 0;
       for (const int vertex : grid::cube::face_vertices[face])
-        n_material += body.grid.is_material(body.grid.nodes(c)[vertex]) ? 1 : 0;
+        n_material += body.solid.grid.is_material(body.solid.grid.nodes(c)[vertex]) ? 1 : 0;
       if (n_material == 4 && n_cut % 2 == 1)
-        torn.insert(body.grid.faces(c)[face]);
+        torn.insert(body.solid.grid.faces(c)[face]);
     }
   return torn.size();
 }
@@ -131,17 +131,17 @@ TEST(MovingBody, IsPartedWithoutATearWhileItQuivers) {
       World world = passing_world(distance / duration * Vec3(0, 0, -1));
       Body& body = world.bodies.at(0);
       Timings timings;
-      const std::size_t n_nodes = body.grid.n_nodes();
-      for (int step = 1; step <= n_steps || body.cutting->pending.size() > 0; ++step) {
-        const Points offsets = random_points(n_nodes, deviation * body.grid.h(), 100 * seed + step);
-        for (const auto c : ids<grid::CornerId>(body.complex.n_corners())) {
-          const grid::NodeId node = body.complex.node[c];
-          body.state.x[c.value] = body.grid.position(node) + offsets[node.value];
+      const std::size_t n_nodes = body.solid.grid.n_nodes();
+      for (int step = 1; step <= n_steps || body.cutter->n_waiting() > 0; ++step) {
+        const Points offsets = random_points(n_nodes, deviation * body.solid.grid.h(), 100 * seed + step);
+        for (const auto c : ids<grid::CornerId>(body.solid.complex.n_corners())) {
+          const grid::NodeId node = body.solid.complex.node[c];
+          body.state.x[c.value] = body.solid.grid.position(node) + offsets[node.value];
         }
         recut(body, world.blades, (step - 1) * duration / n_steps, step * duration / n_steps, timings);
       }
       EXPECT_EQ(n_torn_faces(body), 0u);
-      EXPECT_GE(grid::n_pieces(body.complex), 2u);
+      EXPECT_GE(grid::n_pieces(body.solid.complex), 2u);
     }
 }
 
@@ -155,7 +155,7 @@ TEST(MovingBody, IsDrivenThroughARestingBlade) {
               "Body cube/Support all/Upper [m]=1,1,1", "Body cube/Support all/Displacement [m]=0;0;-0.8*t"});
   const output::TemporaryFolder folder;
   run_silently(world, folder / "out");
-  EXPECT_EQ(grid::n_pieces(world.bodies[0].complex), 2u);
+  EXPECT_EQ(grid::n_pieces(world.bodies[0].solid.complex), 2u);
   EXPECT_EQ(n_wrong(world.bodies[0], Vec3::UnitZ()), 0u); // the plane x = 0.003, as `middle` has it
 }
 
@@ -168,16 +168,16 @@ TEST(MovingBody, FallsThroughARestingBlade) {
                          {"Time/Time step [s]=0.01", "Time/End time [s]=0.4"});
   const output::TemporaryFolder folder;
   run_silently(world, folder / "out");
-  EXPECT_EQ(grid::n_pieces(world.bodies[0].complex), 2u);
+  EXPECT_EQ(grid::n_pieces(world.bodies[0].solid.complex), 2u);
   EXPECT_EQ(n_wrong(world.bodies[0], Vec3::UnitZ()), 0u);
 }
 
 /// The pieces of all nodes on one side, beyond `distance` [m] from the middle.
 std::set<std::uint32_t> pieces_beside(const Body& body, const double distance) {
-  const grid::Pieces all = grid::pieces(body.complex);
+  const grid::Pieces all = grid::pieces(body.solid.complex);
   std::set<std::uint32_t> pieces;
-  for (const auto c : ids<grid::CopyId>(body.complex.n_copies())) {
-    const double x = grid::centre(body.grid, body.complex.copies[c].cell)[0];
+  for (const auto c : ids<grid::CopyId>(body.solid.complex.n_copies())) {
+    const double x = grid::centre(body.solid.grid, body.solid.complex.copies[c].cell)[0];
     if (distance > 0 ? x > distance : x < distance)
       pieces.insert(all.piece[c]);
   }
@@ -198,7 +198,7 @@ TEST(MovingBody, IsPartedWhileItIsShaken) {
   std::ranges::set_intersection(pieces_beside(body, -0.06), pieces_beside(body, 0.06),
                                 std::back_inserter(on_both_sides));
   EXPECT_TRUE(on_both_sides.empty());
-  EXPECT_GE(grid::n_pieces(body.complex), 2u);
+  EXPECT_GE(grid::n_pieces(body.solid.complex), 2u);
 }
 
 } // namespace

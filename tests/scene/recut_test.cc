@@ -19,7 +19,7 @@ World tumbling_world(const std::string& blade, const std::string& integration) {
   for (std::size_t i = 0; i < state.x.size(); ++i)
     state.x[i] += jitter[i];
   state.v = random_points(state.x.size(), 3, 2);
-  world.bodies[0].cutting->x_before = state.x; // for the blade it has not moved
+  world.bodies[0].cutter->stand(state.x); // for the blade it has not moved
   return world;
 }
 
@@ -45,7 +45,7 @@ std::string long_blade() {
 void cut_through(World& world) {
   Body& body = world.bodies.at(0);
   Timings timings;
-  for (int step = 1; step <= world.n_steps || body.cutting->pending.size() > 0; ++step)
+  for (int step = 1; step <= world.n_steps || body.cutter->n_waiting() > 0; ++step)
     recut(body, world.blades, (step - 1) * world.time_step, step * world.time_step, timings);
 }
 
@@ -76,10 +76,10 @@ void expect_same(const Balance& before, const Balance& after, const double toler
 }
 
 bool meets_skin(const Body& body, const grid::EdgeId edge) {
-  for (const grid::CellId c : body.grid.cells(edge))
+  for (const grid::CellId c : body.solid.grid.cells(edge))
     if (c.valid())
-      for (const grid::NodeId n : body.grid.nodes(c))
-        if (!body.grid.is_material(n))
+      for (const grid::NodeId n : body.solid.grid.nodes(c))
+        if (!body.solid.grid.is_material(n))
           return true;
   return false;
 }
@@ -102,12 +102,12 @@ TEST(Recut, ACutInsideKeepsEveryBalance) {
     World world = tumbling_world(inner_blade(), integration);
     const Body& body = world.bodies[0];
     const Balance before = balance(body);
-    const std::size_t n_corners = body.complex.n_corners();
+    const std::size_t n_corners = body.solid.complex.n_corners();
     cut_through(world);
 
-    ASSERT_GT(body.complex.n_corners(), n_corners) << "the cut opens nowhere";
-    EXPECT_EQ(grid::n_pieces(body.complex), 1u);
-    for (const grid::EdgeCut& cut : body.cuts.all())
+    ASSERT_GT(body.solid.complex.n_corners(), n_corners) << "the cut opens nowhere";
+    EXPECT_EQ(grid::n_pieces(body.solid.complex), 1u);
+    for (const grid::EdgeCut& cut : body.solid.cuts.all())
       EXPECT_TRUE(cut.label == grid::skin_label || !meets_skin(body, cut.edge));
     if (integration == "octants")
       expect_same(before, balance(body), 1e-12);
@@ -120,25 +120,25 @@ TEST(Recut, ACompleteCutOfAPlaneSkinKeepsEveryBalance) {
   World world = tumbling_world(long_blade(), "octants");
   const Balance before = balance(world.bodies[0]);
   cut_through(world);
-  EXPECT_EQ(grid::n_pieces(world.bodies[0].complex), 2u);
-  EXPECT_EQ(world.bodies[0].cutting->n_double_crossings, 0u);
+  EXPECT_EQ(grid::n_pieces(world.bodies[0].solid.complex), 2u);
+  EXPECT_EQ(world.bodies[0].cutter->counts().n_double_crossings, 0u);
   expect_same(before, balance(world.bodies[0]), 1e-12);
 }
 
 TEST(Recut, TheStateIsInheritedCornerByCorner) {
   World world = tumbling_world(long_blade(), "octants");
   Body& body = world.bodies[0];
-  std::vector<Vec3> x_of_node(body.grid.n_nodes()), v_of_node(body.grid.n_nodes());
-  for (const auto c : ids<grid::CornerId>(body.complex.n_corners())) { // uncut: a corner is a node
-    x_of_node[body.complex.node[c].value] = body.state.x[c.value];
-    v_of_node[body.complex.node[c].value] = body.state.v[c.value];
+  std::vector<Vec3> x_of_node(body.solid.grid.n_nodes()), v_of_node(body.solid.grid.n_nodes());
+  for (const auto c : ids<grid::CornerId>(body.solid.complex.n_corners())) { // uncut: a corner is a node
+    x_of_node[body.solid.complex.node[c].value] = body.state.x[c.value];
+    v_of_node[body.solid.complex.node[c].value] = body.state.v[c.value];
   }
   cut_through(world);
-  ASSERT_EQ(body.state.x.size(), body.complex.n_corners());
-  ASSERT_EQ(body.state.v.size(), body.complex.n_corners());
-  for (const auto c : ids<grid::CornerId>(body.complex.n_corners())) {
-    EXPECT_EQ(body.state.x[c.value], x_of_node[body.complex.node[c].value]);
-    EXPECT_EQ(body.state.v[c.value], v_of_node[body.complex.node[c].value]);
+  ASSERT_EQ(body.state.x.size(), body.solid.complex.n_corners());
+  ASSERT_EQ(body.state.v.size(), body.solid.complex.n_corners());
+  for (const auto c : ids<grid::CornerId>(body.solid.complex.n_corners())) {
+    EXPECT_EQ(body.state.x[c.value], x_of_node[body.solid.complex.node[c].value]);
+    EXPECT_EQ(body.state.v[c.value], v_of_node[body.solid.complex.node[c].value]);
   }
 }
 
@@ -146,7 +146,7 @@ TEST(Recut, PiecesLetGoOfEachOther) {
   World world = tumbling_world(long_blade(), "octants");
   const Body& body = world.bodies[0];
   cut_through(world);
-  const auto piece = piece_of_corners(body.complex);
+  const auto piece = piece_of_corners(body.solid.complex);
 
   Points x = body.state.x, before, after;
   body.physics->model().force(x, before);
@@ -165,8 +165,8 @@ TEST(Recut, APieceMovedRigidlyIsWithoutForce) {
   World world = world_of(cube_scene() + long_blade(), {"Body cube/Cube edge [m]=0.025"});
   Body& body = world.bodies[0];
   cut_through(world);
-  ASSERT_EQ(grid::n_pieces(body.complex), 2u);
-  const auto piece = piece_of_corners(body.complex);
+  ASSERT_EQ(grid::n_pieces(body.solid.complex), 2u);
+  const auto piece = piece_of_corners(body.solid.complex);
   for (std::size_t i = 0; i < body.state.x.size(); ++i)
     if (piece[i] == 0)
       body.state.x[i] += Vec3(0.05, 0, 0.02);

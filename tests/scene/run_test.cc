@@ -70,8 +70,8 @@ TEST(Run, AFramesComplexAndSurfaceBelongToItsCorners) {
     const output::Frame frame = reader.frame("cube", i);
     EXPECT_EQ(reader.complex("cube", frame.complex).rest_positions.size(), frame.positions.size());
     const output::Surface surface = reader.surface("cube", frame.complex);
-    EXPECT_EQ(surface.weights.row_starts.size(), surface.rest_positions.size() + 1);
-    for (const std::uint32_t column : surface.weights.columns)
+    EXPECT_EQ(surface.weights.start.size(), surface.rest_positions.size() + 1);
+    for (const std::uint32_t column : surface.weights.corners)
       EXPECT_LT(column, frame.positions.size());
   }
 }

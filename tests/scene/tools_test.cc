@@ -71,7 +71,7 @@ TEST(ScissorsScene, AreTwoBladesWithTheirOwnLabels) {
   EXPECT_EQ(world.blades[2].name, "shears second");
   EXPECT_EQ(world.blades[1].spine, Vec3(-world.blades[2].spine));
   EXPECT_EQ(world.blades[1].hinge->axis, Vec3::UnitZ().eval());
-  EXPECT_EQ(world.bodies[0].cutting->n_cut_edges.size(), 3u);
+  EXPECT_EQ(world.bodies[0].cutter->counts().n_cut_edges.size(), 3u);
   ASSERT_EQ(world.scissors.size(), 1u);
   EXPECT_EQ(world.scissors[0].first_blade, 1u);
 }
@@ -82,10 +82,11 @@ TEST(ScissorsScene, PartWhatLiesBetweenThem) {
   const output::TemporaryFolder folder;
   run_silently(world, folder / "out");
   const Body& body = world.bodies[0];
-  EXPECT_EQ(grid::n_pieces(body.complex), 2u);
+  EXPECT_EQ(grid::n_pieces(body.solid.complex), 2u);
   EXPECT_EQ(value(body, "cut edges"), 16) << "those across the plane, once each";
-  EXPECT_GT(body.cutting->n_cut_edges[0], 0u);
-  EXPECT_EQ(body.cutting->n_cut_edges[0], body.cutting->n_cut_edges[1]) << "the cube lies in the middle";
+  EXPECT_GT(body.cutter->counts().n_cut_edges[0], 0u);
+  EXPECT_EQ(body.cutter->counts().n_cut_edges[0], body.cutter->counts().n_cut_edges[1])
+    << "the cube lies in the middle";
 }
 
 TEST(ScissorsScene, DoNotCutWhileTheyOpenOrMove) {
@@ -164,7 +165,7 @@ TEST(CurvedBlade, IsWrittenAsArcs) {
   EXPECT_EQ(world.blades.at(0).edge.size(), 37u);
   const output::TemporaryFolder folder;
   run_silently(world, folder / "out");
-  EXPECT_EQ(grid::n_pieces(world.bodies[0].complex), 2u) << "it carves a gutter along the upper side";
+  EXPECT_EQ(grid::n_pieces(world.bodies[0].solid.complex), 2u) << "it carves a gutter along the upper side";
   const auto refuse = [&](const std::string& edge, const std::string& rule) {
     expect_refused(section("Blade gouge", with(keys, "Edge [m]", edge)),
                    {"scene.prm:", "Blade gouge/Edge [m] = '" + edge + "'", rule});
@@ -180,7 +181,7 @@ void step_once(World& world, const int step) {
   Timings timings;
   const double dt = world.time_step;
   for (Body& body : world.bodies) {
-    if (body.cutting)
+    if (body.cutter)
       recut(body, world.blades, (step - 1) * dt, step * dt, timings);
     hold(body, world.forceps, step, (step - 1) * dt);
     body.report = body.physics->step(body.state, body.loads, dt);
@@ -190,9 +191,9 @@ void step_once(World& world, const int step) {
 /// Where the corners of each grid node are, by node: all of them in one place, if they are held.
 std::map<std::uint32_t, Points> places_of_held_nodes(const Body& body) {
   std::map<std::uint32_t, Points> places;
-  for (const auto c : ids<grid::CornerId>(body.complex.n_corners()))
-    if (body.grid.position(body.complex.node[c])[2] >= 0.06)
-      places[body.complex.node[c].value].push_back(body.state.x[c.value]);
+  for (const auto c : ids<grid::CornerId>(body.solid.complex.n_corners()))
+    if (body.solid.grid.position(body.solid.complex.node[c])[2] >= 0.06)
+      places[body.solid.complex.node[c].value].push_back(body.state.x[c.value]);
   return places;
 }
 
@@ -207,7 +208,7 @@ TEST(Forceps, CarryWhatTheyHoldRigidlyAcrossCuts) {
     Body& body = world.bodies[0];
     set_in_motion(body, Vec3(0.1, 0, 0), 0.05);
     std::map<std::uint32_t, Points> gripped;
-    const std::size_t n_corners = body.complex.n_corners();
+    const std::size_t n_corners = body.solid.complex.n_corners();
     for (int step = 1; step <= 8; ++step) {
       if (step == 2)
         gripped = places_of_held_nodes(body);
@@ -225,8 +226,8 @@ TEST(Forceps, CarryWhatTheyHoldRigidlyAcrossCuts) {
           EXPECT_LT((x - to(local)).norm(), 1e-15) << "step " << step;
         }
     }
-    EXPECT_GT(body.complex.n_corners(), n_corners) << "the blade has made new corners";
-    EXPECT_EQ(grid::n_pieces(body.complex), 2u);
+    EXPECT_GT(body.solid.complex.n_corners(), n_corners) << "the blade has made new corners";
+    EXPECT_EQ(grid::n_pieces(body.solid.complex), 2u);
   }
 }
 
@@ -268,7 +269,9 @@ TEST(Forceps, ComeAfterTheSupportsOfTheBody) {
     step_once(world, step);
     ASSERT_EQ(body.loads.supports.size(), step == 1 || step == 5 ? 1u : 2u) << "step " << step;
     for (const auto corner : body.loads.supports[0].corners)
-      EXPECT_LT((body.state.x[corner] - body.grid.position(body.complex.node[grid::CornerId(corner)])).norm(), 1e-15);
+      EXPECT_LT(
+        (body.state.x[corner] - body.solid.grid.position(body.solid.complex.node[grid::CornerId(corner)])).norm(),
+        1e-15);
   }
 }
 
@@ -314,7 +317,8 @@ TEST(Forceps, SayWhatIsWrong) {
   refuse("Release time [s]", "0.01", {"Release time [s] = '0.01'", "at least a step after Grip time [s]"});
   refuse("Times [s]", "0, 0.02, 0.01", {"Times [s] = '0, 0.02, 0.01'", "times must increase", "Sort"});
   refuse("Times [s]", "0, 0.02", {"Positions [m]", "as many as Times [s], which are 2"});
-  refuse("Rotations [degrees]", "0, 0, 0; 0, 0, 190; 0, 0, 0", {"Rotations [degrees] = '0, 0, 0; 0, 0, 190; 0, 0, 0'", "less than 180 degrees"});
+  refuse("Rotations [degrees]", "0, 0, 0; 0, 0, 190; 0, 0, 0",
+         {"Rotations [degrees] = '0, 0, 0; 0, 0, 190; 0, 0, 0'", "less than 180 degrees"});
 }
 
 } // namespace

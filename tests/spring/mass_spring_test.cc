@@ -63,7 +63,7 @@ Eigen::MatrixXd stiffness(const MassSpring& model) {
 
 TEST(MassSpring, ForceIsMinusTheGradient) {
   const Body body = cut_block(1, {3, 3, 3}, 0.3);
-  const MassSpring model(body.grid, body.cuts, body.complex, options);
+  const MassSpring model(body, options);
   Draw draw(2);
   Points x = moved(body, draw, 0.3), force;
   model.force(x, force);
@@ -83,7 +83,7 @@ TEST(MassSpring, ForceIsMinusTheGradient) {
 /// Where every spring is stretched nothing is left out of K.
 TEST(MassSpring, StiffnessOfStretchedSpringsIsTheDerivativeOfTheForce) {
   const Body body = cut_block(3, {2, 3, 2}, 0.2);
-  MassSpring model(body.grid, body.cuts, body.complex, options);
+  MassSpring model(body, options);
   Draw draw(4);
   Points x = body.rest(), after, before;
   for (Vec3& p : x)
@@ -106,7 +106,7 @@ TEST(MassSpring, StiffnessOfStretchedSpringsIsTheDerivativeOfTheForce) {
 
 TEST(MassSpring, StiffnessIsSymmetricAndNowhereNegative) {
   const Body body = cut_block(5, {2, 2, 2}, 0.3);
-  MassSpring model(body.grid, body.cuts, body.complex, options);
+  MassSpring model(body, options);
   for (const double noise : {0.0, 0.3, 3.0}) {
     Draw draw(6);
     model.linearise(moved(body, draw, noise));
@@ -123,7 +123,7 @@ TEST(MassSpring, StiffnessIsSymmetricAndNowhereNegative) {
 
 TEST(MassSpring, MatrixIsTheStiffness) {
   const Body body = cut_block(5, {2, 2, 2}, 0.3);
-  MassSpring model(body.grid, body.cuts, body.complex, options);
+  MassSpring model(body, options);
   Draw draw(6);
   const Points x = moved(body, draw, 0.3);
   model.linearise(x);
@@ -145,7 +145,7 @@ TEST(MassSpring, MatrixIsTheStiffness) {
 TEST(MassSpring, SixRigidModesAPiece) {
   for (const double probability : {0.0, 0.5, 1.0}) {
     const Body body = cut_block(7, {3, 2, 2}, probability);
-    MassSpring model(body.grid, body.cuts, body.complex, options);
+    MassSpring model(body, options);
     model.linearise(body.rest());
     // scaled by the masses, as a sliver's springs are soft
     Eigen::MatrixXd K = stiffness(model);
@@ -160,7 +160,7 @@ TEST(MassSpring, SixRigidModesAPiece) {
 
 TEST(MassSpring, RigidMotionCostsNothing) {
   const Body body = cut_block(8, {4, 3, 3}, 0.3);
-  const MassSpring model(body.grid, body.cuts, body.complex, options);
+  const MassSpring model(body, options);
   Draw draw(9);
   Points force;
   const Points x = moved(body, draw, 0);
@@ -175,7 +175,7 @@ TEST(MassSpring, PiecesDoNotFeelEachOther) {
   fem::cut_plane(body, 0, 2, 0.4);
   const grid::Pieces pieces = grid::pieces(body.complex);
   ASSERT_EQ(pieces.n_pieces, 2u);
-  const MassSpring model(body.grid, body.cuts, body.complex, options);
+  const MassSpring model(body, options);
   Points x = body.rest(), force;
   for (const auto c : ids<grid::CopyId>(body.complex.n_copies()))
     if (pieces.piece[c] == 1)
@@ -190,7 +190,7 @@ TEST(MassSpring, CutsDoubleNothing) {
   Draw draw(11);
   Body body = fem::make_block({4, 4, 4}, h, draw, {0.5, 0.5});
   const auto measure = [&] {
-    const MassSpring model(body.grid, body.cuts, body.complex, options);
+    const MassSpring model(body, options);
     Points x = body.rest();
     const Mat3 A = Mat3::Identity() + 0.1 * (Mat3() << 1, 0.5, 0, 0, -0.3, 0.2, 0.1, 0, 0.4).finished();
     for (Vec3& p : x)
@@ -218,15 +218,14 @@ TEST(MassSpring, CutsDoubleNothing) {
 
 /// Energy of uniform small strain: Hooke's law with nu = 1/4, whatever its directions.
 TEST(MassSpring, UniformStrainFollowsHooke) {
-  const auto body = support::block({4, 3, 3}, h);
-  const auto complex = grid::build_complex(body.grid, body.cuts);
-  const MassSpring model(body.grid, body.cuts, complex, options);
+  const auto body = support::with_copies(support::block({4, 3, 3}, h));
+  const MassSpring model(body, options);
   const double lambda = 0.4 * E, mu = 0.4 * E, volume = 36 * h * h * h;
   Draw draw(12);
   for (int trial = 0; trial < 20; ++trial) {
     Mat3 strain = draw.matrix();
     strain = 1e-7 * (strain + strain.transpose()).eval();
-    Points x = grid::rest_positions(body.grid, complex);
+    Points x = grid::rest_positions(body);
     for (Vec3& p : x)
       p += strain * p;
     const double expected = volume * (lambda / 2 * strain.trace() * strain.trace() + mu * strain.squaredNorm());
@@ -237,18 +236,19 @@ TEST(MassSpring, UniformStrainFollowsHooke) {
 /// A body of full cubes under uniform strain: no force on any inner corner, and on the surface that of the stress.
 TEST(MassSpring, FullCubesPassThePatchTest) {
   Draw draw(13);
-  const auto body = support::block({4, 4, 4}, h);
-  const auto complex = grid::build_complex(body.grid, body.cuts);
-  grid::CellComplex full; // without the skin's half cells
-  full.node = complex.node;
+  const auto body = support::with_copies(support::block({4, 4, 4}, h));
+  const auto& complex = body.complex;
+  auto full = body; // without the skin's half cells
+  full.complex = {};
+  full.complex.node = complex.node;
   for (const auto& copy : complex.copies)
     if (copy.nodes == 0xff)
-      full.copies.push_back(copy);
-  const MassSpring model(body.grid, body.cuts, full, options);
+      full.complex.copies.push_back(copy);
+  const MassSpring model(full, options);
   Mat3 strain = draw.matrix();
   strain = 1e-7 * (strain + strain.transpose()).eval();
   const Mat3 stress = 0.4 * E * (strain.trace() * Mat3::Identity() + 2 * strain);
-  Points x = grid::rest_positions(body.grid, complex), force;
+  Points x = grid::rest_positions(body), force;
   for (Vec3& p : x)
     p += strain * p;
   model.force(x, force);
@@ -282,10 +282,10 @@ TEST(MassSpring, BarsHangAsTheirModulusSays) {
         const double part = grid.axis(e) == 2 ? 0.5 : t;
         return grid::EdgeCut{e, is_upper ? part : 1 - part, Vec3::Unit(grid.axis(e)), grid::skin_label};
       });
-    const support::Body placed = support::with_placed_skin(body);
-    const auto complex = grid::build_complex(placed.grid, placed.cuts);
-    MassSpring model(placed.grid, placed.cuts, complex, options);
-    const Points rest = grid::rest_positions(placed.grid, complex);
+    const support::Body placed = support::with_copies(support::with_placed_skin(body));
+    const auto& complex = placed.complex;
+    MassSpring model(placed, options);
+    const Points rest = grid::rest_positions(placed);
     dynamics::Support support{{}, {}, [](double) { return Vec3(Vec3::Zero()); }};
     for (const auto c : ids<grid::CornerId>(complex.n_corners()))
       if (placed.grid.index(complex.node[c])[2] <= 1) {
@@ -316,7 +316,7 @@ TEST(MassSpring, SliversDoNotRaiseTheLargestFrequency) {
     Draw draw(14);
     Body body = fem::make_block({3, 3, 2}, h, draw, {0.5, 0.5});
     fem::cut_at_random(body, 0.4, draw, {t, t});
-    MassSpring model(body.grid, body.cuts, body.complex, options);
+    MassSpring model(body, options);
     model.linearise(body.rest());
     Eigen::MatrixXd K = stiffness(model);
     for (Eigen::Index i = 0; i < K.rows(); ++i)
@@ -332,7 +332,7 @@ TEST(MassSpring, SliversDoNotRaiseTheLargestFrequency) {
 
 TEST(MassSpring, IntegratorsKeepMomentum) {
   const Body body = cut_block(15, {3, 3, 3}, 0.3);
-  MassSpring model(body.grid, body.cuts, body.complex, options);
+  MassSpring model(body, options);
   Draw draw(16);
   dynamics::State state{moved(body, draw, 0.05), {}, 0};
   for (const Vec3& x : state.x)
@@ -352,7 +352,7 @@ TEST(MassSpring, IntegratorsKeepMomentum) {
 
 TEST(MassSpring, CollapsedBodiesStayFinite) {
   const Body body = cut_block(17, {3, 3, 3}, 0.2);
-  MassSpring model(body.grid, body.cuts, body.complex, options);
+  MassSpring model(body, options);
   dynamics::ImplicitEuler stepper(model, {});
   dynamics::State state{Points(body.complex.n_corners(), Vec3::Zero()), {}, 0};
   state.v = state.x;
@@ -370,7 +370,7 @@ TEST(MassSpring, DustCarriesOn) {
   dynamics::State state{body.rest(), {}, 0};
   for (const Vec3& x : state.x)
     state.v.push_back(Vec3(1, 2, 3).cross(x) + 0.3 * draw.vector());
-  auto model = std::make_unique<MassSpring>(body.grid, body.cuts, body.complex, options);
+  auto model = std::make_unique<MassSpring>(body, options);
   const auto energy = [&] {
     double sum = model->energy(state.x);
     for (std::size_t c = 0; c < state.v.size(); ++c)
@@ -389,7 +389,7 @@ TEST(MassSpring, DustCarriesOn) {
       state.x.push_back(whole.x[parent.value]);
       state.v.push_back(whole.v[parent.value]);
     }
-    model = std::make_unique<MassSpring>(body.grid, body.cuts, body.complex, options);
+    model = std::make_unique<MassSpring>(body, options);
     EXPECT_LT(energy(), 1.01 * before) << round;
     dynamics::ImplicitEuler stepper(*model, {});
     for (int i = 0; i < 3; ++i) {
@@ -408,7 +408,7 @@ TEST(MassSpring, OneAndTwoThreadsGiveTheSameBits) {
   for (const int n : {1, 2}) {
     set_n_threads(n);
     const Body body = cut_block(18, {16, 16, 16}, 0.1);
-    MassSpring model(body.grid, body.cuts, body.complex, options);
+    MassSpring model(body, options);
     Draw draw(19);
     const Points x = moved(body, draw, 0.2);
     model.force(x, force[n - 1]);
@@ -425,7 +425,7 @@ TEST(MassSpring, RefusesWhatMakesNoSense) {
   const Body body = cut_block(20, {2, 2, 2}, 0);
   const auto refused = [&](const MassSpringOptions& wrong) -> std::string {
     try {
-      const MassSpring model(body.grid, body.cuts, body.complex, wrong);
+      const MassSpring model(body, wrong);
     } catch (const ParameterError& error) {
       return error.complaint().path;
     }

@@ -2,7 +2,7 @@
 
 /// Bodies and cut sets that tests make themselves, with fixed seeds.
 
-#include "grid/cuts.h"
+#include "grid/solid.h"
 
 #include <cmath>
 #include <random>
@@ -12,10 +12,13 @@ namespace kerf::support {
 
 using Random = std::mt19937;
 
-struct Body {
-  grid::Grid grid;
-  grid::Cuts cuts;
-};
+using Body = grid::Solid;
+
+/// With its copies, which are those of its cuts.
+inline Body with_copies(Body body) {
+  body.complex = grid::build_complex(body);
+  return body;
+}
 
 inline double uniform(Random& random, const double from, const double to) {
   return std::uniform_real_distribution<double>(from, to)(random);

@@ -14,17 +14,17 @@ inline Vec3 point_in(const Body& body, const grid::Copy& copy) {
   if (copy.nodes != 0)
     return body.grid.position(body.grid.nodes(copy.cell)[std::countr_zero(copy.nodes)]);
   const auto edge = body.grid.edges(copy.cell)[std::countr_zero(copy.rinds)];
-  return 0.5 * (grid::edge_point(body.grid, body.cuts, edge) + grid::edge_skin_point(body.grid, body.cuts, edge));
+  return 0.5 * (grid::edge_point(body, edge) + grid::edge_skin_point(body, edge));
 }
 
 /// Volume [m^3] on the lower side of a plane that has cut the body, from the triangles of the copies whose material
 /// lies there.
-inline double volume_below(const Body& body, const Plane& plane) {
-  const auto complex = grid::build_complex(body.grid, body.cuts);
-  const auto surface = surface::build_surface(body.grid, body.cuts, complex);
+inline double volume_below(const Body& cut, const Plane& plane) {
+  const Body body = with_copies(cut);
+  const auto surface = surface::build_surface(body);
   double six_volumes = 0;
   for (std::size_t i = 0; i < surface.triangles.size(); ++i) {
-    const grid::Copy& copy = complex.copies[surface.copies[i]];
+    const grid::Copy& copy = body.complex.copies[surface.copies[i]];
     const auto& [a, b, c] = surface.triangles[i];
     if (plane.height(point_in(body, copy)) < 0)
       six_volumes += surface.rest[a].dot(surface.rest[b].cross(surface.rest[c]));

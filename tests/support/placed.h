@@ -2,7 +2,7 @@
 
 /// Embedded bodies with their skin placed, cuts with their vertices placed, and what tests ask of them.
 
-#include "cut/add_cuts.h"
+#include "cut/cutter.h"
 #include "cut/embed.h"
 #include "cut/fit.h"
 #include "geometry/solid.h"
@@ -25,15 +25,14 @@ inline geometry::TriangleMesh liver_mesh() {
 }
 
 inline Body with_placed_skin(Body body) {
-  surface::place(body.grid, body.cuts, {});
+  surface::place(body, {});
   return body;
 }
 
 /// As a scene embeds a body: cut by its mesh, placed, and fitted to it.
 inline Body embedded(const geometry::TriangleMesh& mesh, const double h, const Vec3& offset) {
-  cut::Embedding embedding = cut::embed(mesh, h, offset);
-  Body body = with_placed_skin({std::move(embedding.grid), std::move(embedding.cuts)});
-  cut::fit_skin(mesh, body.grid, body.cuts);
+  Body body = with_placed_skin(cut::embed(mesh, h, offset).solid);
+  cut::fit_skin(mesh, body);
   return body;
 }
 
@@ -41,24 +40,28 @@ inline Body embedded(const geometry::TriangleMesh& mesh, const double h, const V
 inline surface::PlacementCounts cut(Body& body, const std::span<const grid::EdgeCut> cuts) {
   for (const auto& cut : cuts)
     body.cuts.add(body.grid, cut);
-  return surface::place(body.grid, body.cuts, {});
+  return surface::place(body, {});
 }
 
 /// All that a surface without an end inside the body cuts.
 inline surface::PlacementCounts cut_through(Body& body, const std::span<const grid::EdgeCut> cuts) {
-  cut::add_cuts(body.grid, body.cuts, {}, {}, cuts, cut::Front::none);
-  return surface::place(body.grid, body.cuts, {});
+  body.complex = grid::build_complex(body);
+  const Points x = grid::rest_positions(body);
+  cut::Cutter cutter(9);
+  cutter.begin(body, x);
+  return surface::place(body, cutter.cut(body, cuts, cut::Front::none, x), {});
 }
 
 using grid::volume;
 
 /// Volume of each piece [m^3], from the octants.
-inline std::vector<double> octant_volumes(const Body& body, const grid::CellComplex& complex) {
+inline std::vector<double> octant_volumes(const Body& body) {
+  const grid::CellComplex& complex = body.complex;
   const grid::Pieces pieces = grid::pieces(complex);
   std::vector<double> volumes(pieces.n_pieces, 0.0);
   const double h = body.grid.h();
   for (const auto c : ids<grid::CopyId>(complex.n_copies()))
-    grid::for_each_tetrahedron(body.grid, body.cuts, complex.copies[c], [&](const grid::Tetrahedron& t, int) {
+    grid::for_each_tetrahedron(body, complex.copies[c], [&](const grid::Tetrahedron& t, int) {
       volumes[pieces.piece[c]] += h * h * h * volume(t);
     });
   return volumes;
@@ -66,7 +69,7 @@ inline std::vector<double> octant_volumes(const Body& body, const grid::CellComp
 
 /// Rest volume of the whole body [m^3], from the triangles.
 inline double surface_volume(const Body& body) {
-  const auto s = surface::build_surface(body.grid, body.cuts, grid::build_complex(body.grid, body.cuts));
+  const auto s = surface::build_surface(with_copies(body));
   return surface::enclosed_volume(s.rest, s.triangles);
 }
 

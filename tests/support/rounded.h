@@ -50,16 +50,13 @@ struct Enclosed {
 
 /// Cuts a unit cube of cube edge h by the surface.
 inline Enclosed cut_out(const RoundCut& round, const double h, const Vec3& offset) {
-  Body body = embedded(geometry::box_mesh(Vec3::Zero(), Vec3::Ones()), h, offset);
-  auto complex = grid::build_complex(body.grid, body.cuts);
-  const auto found = cut::cut_edges(cut::CutSurface{round.name, round.shape, 1}, body.grid, body.cuts, complex,
-                                    grid::rest_positions(body.grid, complex));
+  Body body = with_copies(embedded(geometry::box_mesh(Vec3::Zero(), Vec3::Ones()), h, offset));
+  const auto found = cut::cut_edges(cut::CutSurface{round.name, round.shape, 1}, body, grid::rest_positions(body));
   cut_through(body, found.cuts);
-  complex = grid::build_complex(body.grid, body.cuts);
-  const auto surface = surface::build_surface(body.grid, body.cuts, complex);
+  const auto surface = surface::build_surface(body);
   Enclosed result;
   for (std::size_t i = 0; i < surface.triangles.size(); ++i) {
-    const grid::Copy& copy = complex.copies[surface.copies[i]];
+    const grid::Copy& copy = body.complex.copies[surface.copies[i]];
     if (round.height(point_in(body, copy)) >= 0)
       continue; // of the part around it: no copy has material on both sides
     const auto& [a, b, c] = surface.triangles[i];

@@ -75,8 +75,8 @@ inline std::string described(const surface::Surface& s, const std::size_t t, con
     const std::uint32_t v = s.triangles[t][i];
     for (const double x : s.rest[v])
       add(vertices[i], x + 0.0); // one zero
-    for (auto k = s.weights.row_start[v]; k < s.weights.row_start[v + 1]; ++k) {
-      const grid::CornerId corner = s.weights.corners[k];
+    for (auto k = s.weights.start[v]; k < s.weights.start[v + 1]; ++k) {
+      const grid::CornerId corner(s.weights.corners[k]);
       add(vertices[i], (names ? names->corners[corner] : corner).value);
       add(vertices[i], s.weights.values[k]);
     }
@@ -93,8 +93,8 @@ inline std::string described(const surface::Surface& s, const std::size_t t, con
 inline bool is_same(const surface::Surface& a, const surface::Surface& b, const Renaming& names) {
   if (a.triangles.size() != b.triangles.size() || a.labels.size() != a.triangles.size() ||
       b.labels.size() != b.triangles.size() || a.copies.size() != a.triangles.size() ||
-      b.copies.size() != b.triangles.size() || a.weights.n_rows() != a.rest.size() ||
-      b.weights.n_rows() != b.rest.size())
+      b.copies.size() != b.triangles.size() || a.weights.n_points() != a.rest.size() ||
+      b.weights.n_points() != b.rest.size())
     return false;
   std::vector<std::string> of_a, of_b;
   for (std::size_t t = 0; t < a.triangles.size(); ++t) {

@@ -47,11 +47,11 @@ std::vector<double> heights(const Body& body, const grid::CutLabel label, const 
       continue;
     const unsigned lines = lines_cut_under(body, c, label);
     if (lines != 0)
-      add(grid::cell_point(body.grid, body.cuts, c));
+      add(grid::cell_point(body, c));
     for (int face = 0; face < grid::cube::n_faces; ++face) {
       const auto& of_face = grid::cube::face_lines[face];
       if (std::any_of(of_face.begin(), of_face.end(), [&](const int line) { return (lines >> line & 1) != 0; }))
-        add(grid::face_point(body.grid, body.cuts, body.grid.faces(c)[face]));
+        add(grid::face_point(body, body.grid.faces(c)[face]));
     }
   }
   return result;
@@ -165,7 +165,7 @@ TEST(LaterCuts, MeetWhereTheyCrossInsideTheCell) {
     Body body = support::with_placed_skin(support::block({7, 7, 7}));
     for (grid::CutLabel k = 1; k <= 3; ++k)
       support::cut_through(body, support::plane_cuts(body, {normals[k - 1], normals[k - 1].dot(p)}, k));
-    const Vec3 q = grid::cell_point(body.grid, body.cuts, *body.grid.find_cell({4, 4, 4}));
+    const Vec3 q = grid::cell_point(body, *body.grid.find_cell({4, 4, 4}));
     for (const Vec3& n : normals)
       EXPECT_NEAR(n.dot(q - p), 0, 1e-13) << degrees << " degrees";
   }

@@ -32,8 +32,8 @@ class Inside : public testing::Test {
   }
   /// The face at z = 2.
   FaceId face() const { return body.grid.faces(cell)[4]; }
-  Vec3 face_point() const { return grid::face_point(body.grid, body.cuts, face()); }
-  Vec3 cell_point() const { return grid::cell_point(body.grid, body.cuts, cell); }
+  Vec3 face_point() const { return grid::face_point(body, face()); }
+  Vec3 cell_point() const { return grid::cell_point(body, cell); }
   PlacementCounts cut(const std::vector<EdgeCut>& cuts) { return support::cut(body, cuts); }
 };
 
@@ -93,10 +93,10 @@ TEST_F(Inside, TheSharpAngleDecides) {
   // The planes' intersection: from (2.4, 2) along (-sin, cos) to y = 2.5.
   const Vec3 meeting(2.4 - 0.5 * std::tan(lean), 2.5, 2);
   const grid::Cuts unplaced = body.cuts;
-  place(body.grid, body.cuts, {.sharp_angle = 45});
+  place(body, {.sharp_angle = 45});
   expect_near(face_point(), 0.5 * meeting + 0.5 * Vec3(2.4, 2.5, 2));
   body.cuts = unplaced;
-  place(body.grid, body.cuts, {.sharp_angle = 35});
+  place(body, {.sharp_angle = 35});
   expect_near(face_point(), meeting);
 }
 
@@ -114,10 +114,10 @@ TEST_F(Inside, APlaneIsMetExactly) {
     for (const auto& c : cuts)
       for (const CellId around : body.grid.cells(c.edge))
         if (around.valid() && !support::is_skin_cell(body.grid, around)) {
-          EXPECT_NEAR(plane.height(grid::cell_point(body.grid, body.cuts, around)), 0, 1e-14);
+          EXPECT_NEAR(plane.height(grid::cell_point(body, around)), 0, 1e-14);
           for (const FaceId f : body.grid.faces(around))
             if (body.cuts.point(f)) {
-              EXPECT_NEAR(plane.height(grid::face_point(body.grid, body.cuts, f)), 0, 1e-14);
+              EXPECT_NEAR(plane.height(grid::face_point(body, f)), 0, 1e-14);
             }
         }
   }
@@ -173,7 +173,7 @@ TEST_F(Figure215, A_AFrontEndsWhereTheCentreMeetsThePlane) {
   cut({{edge(2, 2, 2, 0), 0.4, Vec3(0.8, 0.6, 0), 1}});
   // From the centre (2.5, 2.5) by 0.8 * 0.1 + 0.6 * 0.5 = 0.38 against the normal.
   expect_near(face_point(), {2.5 - 0.38 * 0.8, 2.5 - 0.38 * 0.6, 2});
-  EXPECT_EQ(grid::n_pieces(grid::build_complex(body.grid, body.cuts)), 1u);
+  EXPECT_EQ(grid::n_pieces(grid::build_complex(body)), 1u);
 }
 
 TEST_F(Figure215, B_ASmoothCutTakesTheMiddleOfTheBezierCurve) {
@@ -236,7 +236,7 @@ TEST_F(Inside, TheCentreMinimisesTheQuadricOfAllPlanes) {
   cut(cuts);
   const Vec3 pole(radius2 / to_chord, 2.5, 2.5);
   for (const auto& c : cuts)
-    EXPECT_NEAR(c.normal.dot(pole - grid::edge_point(body.grid, body.cuts, c.edge)), 0, 1e-15);
+    EXPECT_NEAR(c.normal.dot(pole - grid::edge_point(body, c.edge)), 0, 1e-15);
   expect_near(cell_point(), pole, 1e-14);
 }
 
@@ -256,9 +256,9 @@ void expect_all_inside(const Body& body) {
   for (const auto c : ids<CellId>(body.grid.n_cells())) {
     const Vec3 lower = body.grid.origin(c) + Vec3::Constant(margin);
     const Vec3 upper = body.grid.origin(c) + Vec3::Constant(h - margin);
-    ASSERT_TRUE((Box{lower, upper}.contains(grid::cell_point(body.grid, body.cuts, c))));
+    ASSERT_TRUE((Box{lower, upper}.contains(grid::cell_point(body, c))));
     for (int face = 0; face < 6; ++face) {
-      Vec3 p = grid::face_point(body.grid, body.cuts, body.grid.faces(c)[face]);
+      Vec3 p = grid::face_point(body, body.grid.faces(c)[face]);
       const int axis = face / 2;
       ASSERT_NEAR(p[axis], body.grid.origin(c)[axis] + (face & 1 ? h : 0), 1e-14 * (1 + std::abs(p[axis])));
       p[axis] = lower[axis];
@@ -287,7 +287,7 @@ TEST(Placement, NothingLeavesItsFaceOrCell) {
 void expect_positive_octants(const Body& body, std::size_t& n_tetrahedra, double& smallest) {
   for (const auto c : ids<CellId>(body.grid.n_cells()))
     for (int v = 0; v < 8; ++v)
-      for (const auto& t : grid::octant(body.grid, body.cuts, c, v)) {
+      for (const auto& t : grid::octant(body, c, v)) {
         const auto way = [&](const Vec3& p, const int axis) { return std::abs(p[axis] - (v >> axis & 1)); };
         // The point on the edge, then the one in the face: the order is turned where the octant is a mirror image.
         const bool in_order = (way(t[1], 0) > 0) + (way(t[1], 1) > 0) + (way(t[1], 2) > 0) == 1;
@@ -355,7 +355,7 @@ TEST(Placement, APlaneSkinStaysPlaneUnderArbitraryCuts) {
     Body body = support::embedded(geometry::box_mesh(box.lower, box.upper), 0.1, offset);
     for (grid::CutLabel label = 1; label <= 3; ++label) {
       support::cut(body, support::random_cuts(random, body, uniform(random, 0, 0.4), label));
-      const auto s = build_surface(body.grid, body.cuts, grid::build_complex(body.grid, body.cuts));
+      const auto s = build_surface(support::with_copies(body));
       worst = std::max(worst, worst_skin_distance(s, box));
       worst_volume = std::max(worst_volume, std::abs(enclosed_volume(s.rest, s.triangles) / 0.231556 - 1));
     }

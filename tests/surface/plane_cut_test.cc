@@ -49,10 +49,10 @@ std::size_t n_unresolved(const Body& body, const Plane& plane) {
   const auto is_below = [&](const Vec3& p) { return plane.height(p) < 0; };
   std::size_t n = 0;
   for (const auto c : ids<CellId>(body.grid.n_cells())) {
-    const grid::CellCuts cell = grid::cuts_of(body.grid, body.cuts, c);
+    const grid::CellCuts cell = grid::cuts_of(body, c);
     const auto edges = body.grid.edges(c);
     const auto faces = body.grid.faces(c);
-    const auto skin_at = [&](const int line) { return grid::edge_point(body.grid, body.cuts, edges[line]); };
+    const auto skin_at = [&](const int line) { return grid::edge_point(body, edges[line]); };
     std::size_t n_ends = 0, n_below = 0, n_bends = 0;
     for (int line = 0; line < 12; ++line)
       if (cell.skin >> line & 1) {
@@ -61,14 +61,14 @@ std::size_t n_unresolved(const Body& body, const Plane& plane) {
       }
     for (int face = 0; face < 6; ++face)
       for (const grid::SkinArc& arc : grid::skin_arcs(face, cell.material)) {
-        const bool tip = is_below(grid::face_point(body.grid, body.cuts, faces[face]));
+        const bool tip = is_below(grid::face_point(body, faces[face]));
         n += is_below(skin_at(arc.lines[0])) != tip && is_below(skin_at(arc.lines[1])) != tip;
         ++n_ends;
         n_below += tip;
         if (arc.vertices[0] == arc.vertices[1])
-          n_bends += tip != is_below(grid::cell_point(body.grid, body.cuts, c));
+          n_bends += tip != is_below(grid::cell_point(body, c));
       }
-    const bool tip = is_below(grid::cell_point(body.grid, body.cuts, c));
+    const bool tip = is_below(grid::cell_point(body, c));
     n += n_bends > 1;
     n += n_ends > 0 && n_below == (tip ? 0 : n_ends);
   }
@@ -76,11 +76,12 @@ std::size_t n_unresolved(const Body& body, const Plane& plane) {
 }
 
 /// Volume of the pieces on the lower side of a plane that cut them all.
-double cut_volume_below(const Body& body, const Plane& plane) {
-  const auto complex = grid::build_complex(body.grid, body.cuts);
+double cut_volume_below(const Body& cut, const Plane& plane) {
+  const Body body = support::with_copies(cut);
+  const auto& complex = body.complex;
   const grid::Pieces pieces = grid::pieces(complex);
   EXPECT_LE(pieces.n_pieces, 2u);
-  const auto volumes = piece_volumes(build_surface(body.grid, body.cuts, complex), complex);
+  const auto volumes = piece_volumes(build_surface(body), complex);
   std::vector<int> n_below(pieces.n_pieces, 0), n_copies = n_below;
   for (const auto c : ids<CopyId>(complex.n_copies())) {
     ++n_copies[pieces.piece[c]];
@@ -95,7 +96,7 @@ double cut_volume_below(const Body& body, const Plane& plane) {
 }
 
 double total_volume(const Body& body) {
-  const auto volumes = support::octant_volumes(body, grid::build_complex(body.grid, body.cuts));
+  const auto volumes = support::octant_volumes(support::with_copies(body));
   return std::accumulate(volumes.begin(), volumes.end(), 0.0);
 }
 
@@ -183,7 +184,7 @@ TEST(PlaneCut, IsAsExactInManySteps) {
     pending.push(cuts);
     int n_steps = 0;
     for (; pending.size() > 0; ++n_steps)
-      support::cut_through(body, pending.release(body.grid, body.cuts));
+      support::cut_through(body, pending.release(body));
     EXPECT_GT(n_steps, 1);
     worst = std::max(worst, std::abs(cut_volume_below(body, plane) - support::volume_below(box, plane)));
   }

@@ -134,14 +134,14 @@ struct Skin {
   TrianglesOfCells of_skin, of_cuts;
 };
 
-Skin skin_of(const Body& body) {
-  const auto complex = grid::build_complex(body.grid, body.cuts);
-  const Surface s = build_surface(body.grid, body.cuts, complex);
+Skin skin_of(const Body& cut) {
+  const Body body = support::with_copies(cut);
+  const Surface s = build_surface(body);
   Skin skin;
   for (std::size_t t = 0; t < s.triangles.size(); ++t) {
     const auto& [a, b, c] = s.triangles[t];
     auto& triangles = s.labels[t] == grid::skin_label ? skin.of_skin : skin.of_cuts;
-    triangles[complex.copies[s.copies[t]].cell.value].push_back({s.rest[a], s.rest[b], s.rest[c]});
+    triangles[body.complex.copies[s.copies[t]].cell.value].push_back({s.rest[a], s.rest[b], s.rest[c]});
   }
   return skin;
 }

@@ -22,15 +22,11 @@ using support::uniform;
 
 struct Cut {
   Body body;
-  CellComplex complex;
   grid::Pieces pieces;
   Surface surface;
 
   explicit Cut(Body b)
-    : body(std::move(b)),
-      complex(grid::build_complex(body.grid, body.cuts)),
-      pieces(grid::pieces(complex)),
-      surface(build_surface(body.grid, body.cuts, complex)) {}
+    : body(support::with_copies(std::move(b))), pieces(grid::pieces(body.complex)), surface(build_surface(body)) {}
 };
 
 /// Directed edges that are not met exactly once in each direction.
@@ -105,16 +101,16 @@ void expect_two_sides(const Cut& cut) {
 
 /// Rows sum to one, reproduce the rest positions, and ask only corners of the copies that the vertex bounds.
 void expect_weights(const Cut& cut) {
-  const Weights& w = cut.surface.weights;
-  ASSERT_EQ(w.n_rows(), cut.surface.rest.size());
-  ASSERT_EQ(w.row_start.back(), w.corners.size());
-  ASSERT_EQ(w.row_start.back(), w.values.size());
+  const Interpolation& w = cut.surface.weights;
+  ASSERT_EQ(w.n_points(), cut.surface.rest.size());
+  ASSERT_EQ(w.start.back(), w.corners.size());
+  ASSERT_EQ(w.start.back(), w.values.size());
   Points rest;
-  follow(cut.surface, grid::rest_positions(cut.body.grid, cut.complex), rest);
+  follow(cut.surface, grid::rest_positions(cut.body), rest);
   const double h = cut.body.grid.h();
-  for (std::size_t i = 0; i < w.n_rows(); ++i) {
+  for (std::size_t i = 0; i < w.n_points(); ++i) {
     double sum = 0, least = 1;
-    for (auto k = w.row_start[i]; k < w.row_start[i + 1]; ++k) {
+    for (auto k = w.start[i]; k < w.start[i + 1]; ++k) {
       sum += w.values[k];
       least = std::min(least, w.values[k]);
     }
@@ -124,10 +120,10 @@ void expect_weights(const Cut& cut) {
               1e-14 * h + 4e-16 * cut.surface.rest[i].lpNorm<Eigen::Infinity>());
   }
   for (std::size_t i = 0; i < cut.surface.triangles.size(); ++i) {
-    const auto& corners = cut.complex.copies[cut.surface.copies[i]].corners;
+    const auto& corners = cut.body.complex.copies[cut.surface.copies[i]].corners;
     for (const auto v : cut.surface.triangles[i])
-      for (auto k = w.row_start[v]; k < w.row_start[v + 1]; ++k)
-        ASSERT_NE(std::find(corners.begin(), corners.end(), w.corners[k]), corners.end());
+      for (auto k = w.start[v]; k < w.start[v + 1]; ++k)
+        ASSERT_NE(std::find(corners.begin(), corners.end(), grid::CornerId(w.corners[k])), corners.end());
   }
 }
 
@@ -152,15 +148,15 @@ void expect_affine(Random& random, const Cut& cut) {
       stretch.back().col(axis) += 0.3 * support::random_vector(random);
     shift.push_back(support::random_vector(random));
   }
-  const auto piece = piece_of_corner(cut.complex, cut.pieces);
-  Points corners = grid::rest_positions(cut.body.grid, cut.complex), x;
+  const auto piece = piece_of_corner(cut.body.complex, cut.pieces);
+  Points corners = grid::rest_positions(cut.body), x;
   for (std::size_t i = 0; i < corners.size(); ++i)
     corners[i] = (stretch[piece[i]] * corners[i] + shift[piece[i]]).eval();
   follow(cut.surface, corners, x);
 
   Surface moved = cut.surface;
   moved.rest = x;
-  const auto before = piece_volumes(cut.surface, cut.complex), after = piece_volumes(moved, cut.complex);
+  const auto before = piece_volumes(cut.surface, cut.body.complex), after = piece_volumes(moved, cut.body.complex);
   for (std::size_t i = 0; i < cut.surface.triangles.size(); ++i) {
     const auto p = cut.pieces.piece[cut.surface.copies[i]];
     for (const auto v : cut.surface.triangles[i])
@@ -175,7 +171,7 @@ void expect_affine(Random& random, const Cut& cut) {
 
 /// Under any motion of the corners each piece stays closed: its area vectors sum to zero.
 void expect_closed_when_deformed(Random& random, const Cut& cut) {
-  Points corners = grid::rest_positions(cut.body.grid, cut.complex), x;
+  Points corners = grid::rest_positions(cut.body), x;
   for (Vec3& p : corners)
     p += 0.4 * cut.body.grid.h() * support::random_vector(random);
   follow(cut.surface, corners, x);
@@ -237,26 +233,26 @@ TEST(Surface, IsClosedForRandomCutsOfEmbeddedBodies) {
 struct Updated {
   Body body;
   SurfaceIndex index = {};
-  CellComplex complex = grid::build_complex(body.grid, body.cuts);
-  Surface surface = build_surface(body.grid, body.cuts, complex, index);
+  Surface surface = build_surface(body, index);
+
+  Updated(Body whole) : body(support::with_copies(std::move(whole))) {}
 
   void cut(const std::vector<grid::EdgeCut>& cuts) {
     support::cut(body, cuts);
     std::vector<grid::EdgeId> edges;
     for (const auto& cut : cuts)
       edges.push_back(cut.edge);
-    const auto change = grid::update_complex(body.grid, body.cuts, edges, complex);
-    update_surface(body.grid, body.cuts, complex, edges, change, surface, index);
+    update_surface(body, grid::update_complex(body, edges), surface, index);
   }
 };
 
 void expect_as_built(Random& random, const Updated& updated) {
   Cut built(updated.body);
-  const auto names = support::renaming(updated.complex, built.complex);
+  const auto names = support::renaming(updated.body.complex, built.body.complex);
   ASSERT_TRUE(names.has_value());
   ASSERT_TRUE(support::is_same(updated.surface, built.surface, *names));
-  built.complex = updated.complex;
-  built.pieces = grid::pieces(updated.complex);
+  built.body.complex = updated.body.complex;
+  built.pieces = grid::pieces(updated.body.complex);
   built.surface = updated.surface;
   expect_good(random, built, Vertices::some_used);
 }
@@ -301,7 +297,7 @@ void expect_same_bits(const Cut& a, const Cut& b, const Points& x, const Points&
     ASSERT_EQ(a.body.cuts.all()[i].t, b.body.cuts.all()[i].t);
     ASSERT_EQ(a.body.cuts.all()[i].normal, b.body.cuts.all()[i].normal);
   }
-  ASSERT_EQ(a.complex.node.items(), b.complex.node.items());
+  ASSERT_EQ(a.body.complex.node.items(), b.body.complex.node.items());
   ASSERT_EQ(a.pieces.piece.items(), b.pieces.piece.items());
   ASSERT_EQ(a.surface.rest, b.surface.rest);
   ASSERT_EQ(a.surface.triangles, b.surface.triangles);
@@ -321,7 +317,7 @@ TEST(Surface, IsTheSameOnOneAndTwoThreads) {
     Body body = support::embedded(support::liver_mesh(), 0.012, {0.5, 0.5, 0.5});
     support::cut(body, support::random_cuts(random, body, 0.2));
     cuts.emplace_back(std::move(body));
-    Points corners = grid::rest_positions(cuts.back().body.grid, cuts.back().complex);
+    Points corners = grid::rest_positions(cuts.back().body);
     for (Vec3& p : corners)
       p += 0.001 * support::random_vector(random);
     follow(cuts.back().surface, corners, positions[n - 1]);

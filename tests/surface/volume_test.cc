@@ -23,8 +23,8 @@ using support::uniform;
 double sum(const std::vector<double>& values) { return std::accumulate(values.begin(), values.end(), 0.0); }
 
 std::vector<double> volumes_by_triangles(const Body& body) {
-  const auto complex = grid::build_complex(body.grid, body.cuts);
-  return piece_volumes(build_surface(body.grid, body.cuts, complex), complex);
+  const Body with_copies = support::with_copies(body);
+  return piece_volumes(build_surface(with_copies), with_copies.complex);
 }
 
 /// Every octant tetrahedron is positive, whole cells are tiled, and both ways to a piece's volume agree.
@@ -32,15 +32,14 @@ void expect_tiled(const Body& body) {
   for (const auto c : ids<CellId>(body.grid.n_cells())) {
     double cell = 0;
     for (int v = 0; v < 8; ++v)
-      for (const auto& t : grid::octant(body.grid, body.cuts, c, v)) {
+      for (const auto& t : grid::octant(body, c, v)) {
         ASSERT_GT(support::volume(t), 0);
         cell += support::volume(t);
       }
     ASSERT_NEAR(cell, 1, 1e-13);
   }
-  const auto complex = grid::build_complex(body.grid, body.cuts);
-  const auto by_octants = support::octant_volumes(body, complex);
-  const auto by_triangles = piece_volumes(build_surface(body.grid, body.cuts, complex), complex);
+  const auto by_octants = support::octant_volumes(support::with_copies(body));
+  const auto by_triangles = volumes_by_triangles(body);
   ASSERT_EQ(by_octants.size(), by_triangles.size());
   const double whole = sum(by_octants);
   for (std::size_t p = 0; p < by_octants.size(); ++p) {
@@ -86,8 +85,8 @@ TEST(Volume, IsKeptByEveryCutInsideTheBody) {
 }
 
 /// Lumped mass of each corner [m^3, at unit density]: its shape function over the octants, by a rule of degree 3.
-std::vector<double> corner_masses(const Body& body, const grid::CellComplex& complex) {
-  std::vector<double> mass(complex.n_corners(), 0);
+std::vector<double> corner_masses(const Body& body) {
+  std::vector<double> mass(body.complex.n_corners(), 0);
   const double h = body.grid.h();
   const auto add = [&](const grid::Copy& copy, const Vec3& p, const double weight) {
     for (int v = 0; v < 8; ++v) {
@@ -97,8 +96,8 @@ std::vector<double> corner_masses(const Body& body, const grid::CellComplex& com
       mass[copy.corners[v].value] += shape;
     }
   };
-  for (const auto& copy : complex.copies)
-    grid::for_each_tetrahedron(body.grid, body.cuts, copy, [&](const grid::Tetrahedron& t, int) {
+  for (const auto& copy : body.complex.copies)
+    grid::for_each_tetrahedron(body, copy, [&](const grid::Tetrahedron& t, int) {
       const double volume = h * h * h * support::volume(t);
       const Vec3 centre = 0.25 * (t[0] + t[1] + t[2] + t[3]);
       add(copy, centre, -0.8 * volume);
@@ -109,15 +108,17 @@ std::vector<double> corner_masses(const Body& body, const grid::CellComplex& com
 }
 
 /// Cuts and updates; returns the largest difference between a corner's mass and that of its heirs.
-double worst_inheritance(Body& body, grid::CellComplex& complex, const std::span<const EdgeCut> cuts,
+double worst_inheritance(Body& body, const std::span<const EdgeCut> cuts,
                          surface::PlacementCounts (*const cut)(Body&, std::span<const EdgeCut>)) {
-  const auto before = corner_masses(body, complex);
+  const auto before = corner_masses(body);
+  const grid::CellComplex uncut = body.complex;
   cut(body, cuts);
+  body.complex = uncut;
   std::vector<grid::EdgeId> edges;
   for (const EdgeCut& cut : cuts)
     edges.push_back(cut.edge);
-  const auto change = grid::update_complex(body.grid, body.cuts, edges, complex);
-  const auto after = corner_masses(body, complex);
+  const auto change = grid::update_complex(body, edges);
+  const auto after = corner_masses(body);
   std::vector<double> inherited(after.begin(), after.begin() + static_cast<std::ptrdiff_t>(before.size()));
   for (std::size_t i = 0; i < change.parents.size(); ++i)
     inherited[change.parents[i].value] += after[before.size() + i];
@@ -134,20 +135,17 @@ TEST(Volume, CornersShareTheMassOfTheirParent) {
   const double h = 0.13;
   for (int i = 0; i < 40; ++i) {
     const auto mesh = geometry::box_mesh({0, 0, 0}, {0.73, 0.61, 0.52});
-    const Body whole = support::embedded(mesh, h, random_offset(random));
+    const Body whole = support::with_copies(support::embedded(mesh, h, random_offset(random)));
     Body body = whole;
-    auto complex = grid::build_complex(body.grid, body.cuts);
-    EXPECT_LT(worst_inheritance(body, complex, support::random_cuts(random, body, 0.3), support::cut),
-              0.02 * h * h * h);
+    EXPECT_LT(worst_inheritance(body, support::random_cuts(random, body, 0.3), support::cut), 0.02 * h * h * h);
 
     body = whole;
-    complex = grid::build_complex(body.grid, body.cuts);
     for (grid::CutLabel label = 1; label <= 3; ++label) {
       const auto cuts = support::plane_cuts(body, {Vec3::Unit(label - 1), uniform(random, 0.2, 0.3)}, label);
-      EXPECT_LT(worst_inheritance(body, complex, cuts, support::cut_through), 1e-12 * h * h * h)
+      EXPECT_LT(worst_inheritance(body, cuts, support::cut_through), 1e-12 * h * h * h)
         << "box " << i << ", plane " << label;
     }
-    EXPECT_GE(grid::n_pieces(complex), 8u);
+    EXPECT_GE(grid::n_pieces(body.complex), 8u);
   }
 }
 
@@ -244,10 +242,8 @@ TEST(Volume, OfTheLiverApproachesItsMesh) {
   std::vector<double> fitted, placed;
   for (const double h : spacings) {
     const auto [mean, worst] = liver_error(exact, [&](const Vec3& at) { return support::embedded(mesh, h, at); });
-    const auto [mean_placed, worst_placed] = liver_error(exact, [&](const Vec3& at) {
-      cut::Embedding e = cut::embed(mesh, h, at);
-      return support::with_placed_skin({std::move(e.grid), std::move(e.cuts)});
-    });
+    const auto [mean_placed, worst_placed] =
+      liver_error(exact, [&](const Vec3& at) { return support::with_placed_skin(cut::embed(mesh, h, at).solid); });
     fitted.push_back(mean);
     placed.push_back(mean_placed);
     std::cout << "liver, h = " << h << " m: relative volume error " << mean << " (worst " << worst

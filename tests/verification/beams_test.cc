@@ -108,7 +108,7 @@ TEST(SplitBeam, MassOfTheLayersIsExactAtEveryOffset) {
     Body body = box({Vec3::Zero(), Vec3(1, 0.5, 1)}, 0.125, Vec3(shift, 0.3, 1 - shift));
     cut(body, {Vec3::UnitZ(), plane}, [](const Vec3&) { return true; });
     const auto options = hooke(1, 0.3);
-    const fem::Hexahedra model(body.grid, body.cuts, body.complex, options);
+    const fem::Hexahedra model(body, options);
     double below = 0, above = 0; // no copy has nodes on both sides
     for (const auto c : ids<grid::CopyId>(body.complex.n_copies())) {
       const grid::Copy& copy = body.complex.copies[c];

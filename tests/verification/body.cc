@@ -40,12 +40,12 @@ grid::EdgeCut leave(const grid::Grid& grid, const grid::EdgeId e, const std::vec
 }
 
 void place(Body& body) {
-  surface::place(body.grid, body.cuts, {});
-  body.complex = grid::build_complex(body.grid, body.cuts);
+  surface::place(body, {});
+  body.complex = grid::build_complex(body);
 }
 
 Body placed(support::Body&& made) {
-  Body body{std::move(made.grid), std::move(made.cuts), {}};
+  Body body{std::move(made)};
   place(body);
   return body;
 }
@@ -93,7 +93,7 @@ void cut(Body& body, const support::Plane& plane, const std::function<bool(const
 
 Points traction_forces(const Body& body, const std::function<Vec3(const SurfacePoint&)>& traction) {
   static const auto rule = fem::triangle_rule(5);
-  const auto skin = surface::build_surface(body.grid, body.cuts, body.complex);
+  const auto skin = surface::build_surface(body);
   Points forces(body.complex.n_corners(), Vec3::Zero());
   for (std::size_t i = 0; i < skin.triangles.size(); ++i) {
     const auto vertex = [&](const int k) { return skin.rest[skin.triangles[i][k]]; };

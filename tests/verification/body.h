@@ -16,12 +16,8 @@
 
 namespace kerf::verification {
 
-struct Body {
-  grid::Grid grid;
-  grid::Cuts cuts;
-  grid::CellComplex complex;
-
-  Points rest() const { return grid::rest_positions(grid, complex); }
+struct Body : grid::Solid {
+  Points rest() const { return grid::rest_positions(*this); }
 };
 
 /// Material where all heights are negative. At least one node must be.

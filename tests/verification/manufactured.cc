@@ -77,7 +77,7 @@ void for_each_point(const Body& body, const fem::Hexahedra& model, const Functio
   for (const auto c : ids<grid::CopyId>(body.complex.n_copies())) {
     const grid::Copy& copy = body.complex.copies[c];
     const bool is_full = model.element(c.value).volume > (1 - 1e-8) * volume;
-    for (const auto& [x, weight] : is_full ? full : fem::material_rule(body.grid, body.cuts, copy, 3))
+    for (const auto& [x, weight] : is_full ? full : fem::material_rule(body, copy, 3))
       f(copy, x, weight * volume);
   }
 }

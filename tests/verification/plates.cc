@@ -87,7 +87,7 @@ void compare(const Body& body, const Points& u, const Vec3& centre, PennyResult&
   for (const auto& cut : body.cuts.all()) {
     if (cut.label == grid::skin_label)
       continue;
-    const Vec3 X = grid::edge_point(body.grid, body.cuts, cut.edge);
+    const Vec3 X = grid::edge_point(body, cut.edge);
     const double found = jump(body, u, cut);
     const double exact =
       8 * (1 - nu * nu) / std::numbers::pi * std::sqrt(std::max(0.0, 1 - (X - centre).squaredNorm()));
@@ -129,7 +129,7 @@ PennyResult penny(const Penny& problem, const fem::HexahedraOptions& options) {
 Condition condition(const double depth, const fem::HexahedraOptions& options) {
   const Box block{Vec3::Zero(), Vec3(3, 2 + depth, 2 + depth)};
   const Body body = box(block, 1, Vec3::Zero());
-  const fem::Hexahedra model(body.grid, body.cuts, body.complex, options);
+  const fem::Hexahedra model(body, options);
   const Points rest = body.rest();
   const Eigen::MatrixXd K = model.stiffness_matrix(rest, dynamics::Tangent::exact);
   const auto free = corners_where(rest, [](const Vec3& X) { return X[0] > 1e-9; });

@@ -8,7 +8,7 @@ Built build(const std::function<Body()>& make_body, const fem::HexahedraOptions&
   const CpuTimer timer;
   Built built{make_body(), nullptr, {}};
   built.cost.body = timer.seconds();
-  built.model = std::make_unique<fem::Hexahedra>(built.body.grid, built.body.cuts, built.body.complex, options);
+  built.model = std::make_unique<fem::Hexahedra>(built.body, options);
   built.cost.elements = timer.seconds() - built.cost.body;
   return built;
 }

@@ -1,0 +1,90 @@
+#pragma once
+
+/// Who cuts a body: the one way for blades and surfaces, in scenes as in tests. It finds what they meet, keeps what
+/// waits and what may still go on, counts, and cuts the grid's edges and the copies. What it returns is all that a
+/// cut has changed: placement, surface and physics follow that (scene/body.cc).
+///
+/// Labels: of blades and surfaces, from 1 on.
+
+#include "cut/add_cuts.h"
+#include "cut/cut_surface.h"
+#include "cut/open_ends.h"
+#include "cut/passed.h"
+#include "cut/pending.h"
+#include "grid/solid.h"
+
+#include <optional>
+
+namespace kerf::cut {
+
+using Strip = std::vector<std::array<Vec3, 3>>;
+
+/// What a blade does in a step.
+struct Stroke {
+  grid::CutLabel label = 1;
+  SweepCuts found = {};   ///< that it meets
+  Strip swept = {};       ///< triangles [m, world frame]
+  Strip whereabouts = {}; ///< the same, or of a blade that rests its edge; nothing of one that has gone
+};
+
+/// All so far.
+struct CutCounts {
+  std::vector<std::size_t> n_cut_edges; ///< by label, from 1
+  std::size_t n_double_crossings = 0;   ///< edges that one cut crossed an even number of times: left uncut
+  std::size_t n_tips = 0;               ///< edges of the skin whose cuts would have cut a tip off alone: left uncut
+};
+
+/// What blades meet in a step: two edges of a cell at most are cut in it, the rest waits (pending.h); or all are.
+enum class Release { queued, at_once };
+
+class Cutter {
+ public:
+  explicit Cutter(std::size_t n_labels, Release release = Release::queued);
+
+  /// Before the first cut, with the corners at x [m, world frame; so below].
+  void begin(const grid::Solid& solid, const Points& x);
+  /// Blades take it that the corners have been at x until now.
+  void stand(const Points& x) { x_before_ = x; }
+  const Points& stands_at() const { return x_before_; }
+
+  /// Cuts with what the blades sweep between two times [s] while the corners go to x from where they were in the step
+  /// before. Throws NumericalError when a corner is not at a finite position.
+  grid::CutChange step(grid::Solid& solid, std::span<const Blade> blades, double t0, double t1, const Points& x);
+  /// The same with what blades have met.
+  grid::CutChange step(grid::Solid& solid, std::span<const Stroke> strokes, const Points& x);
+
+  /// Cuts with a surface, all of it at once.
+  grid::CutChange at_once(grid::Solid& solid, const CutSurface& surface, const Points& x);
+  /// After at_once(), when corners have followed that to x: ends the cuts where the surface ends inside the body.
+  grid::CutChange end(grid::Solid& solid, const CutSurface& surface, const Points& x);
+
+  /// Cuts edges that are known.
+  grid::CutChange cut(grid::Solid& solid, std::span<const grid::EdgeCut> cuts, Front front, const Points& x);
+
+  const CutCounts& counts() const { return counts_; }
+  /// Cuts that wait.
+  std::size_t n_waiting() const { return pending_.size(); }
+  /// Cells that blades have passed without a cut (passed.h).
+  std::size_t n_passed_cells() const;
+  /// Memory of what grows with the body [B].
+  std::size_t n_bytes() const { return boxes_->n_bytes() + sizeof(Vec3) * x_before_.capacity(); }
+
+ private:
+  Stroke stroke(const grid::Solid& solid, const Blade& blade, double t0, double t1, const Points& x) const;
+  grid::CutChange take(grid::Solid& solid, std::span<const Stroke> strokes, const Points& x);
+  std::vector<grid::EdgeCut> queue(const grid::Solid& solid, std::span<const Stroke> strokes, const Points& x);
+  std::vector<grid::EdgeId> close(grid::Solid& solid, std::span<const std::array<Vec3, 3>> whereabouts, const Points& x,
+                                  grid::CutLabel label);
+  grid::CutChange follow(grid::Solid& solid, std::vector<grid::EdgeId> edges);
+  std::vector<grid::EdgeId> add(grid::Solid& solid, std::span<const grid::EdgeCut> cuts, Front front, const Points& x);
+
+  Release release_;
+  PendingCuts pending_;
+  std::optional<EdgeBoxes> boxes_;  // around the edges; there from begin() on
+  std::vector<PassedCells> passed_; // by label, from 1
+  std::vector<OpenEnds> open_ends_; // by label, from 1
+  Points x_before_;                 // where the corners were when the blades were met last [m]
+  CutCounts counts_;
+};
+
+} // namespace kerf::cut
