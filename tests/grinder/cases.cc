@@ -1,5 +1,8 @@
 #include "tests/grinder/cases.h"
 
+#include "lattice/calibration.h"
+#include "tests/grinder/tools.h"
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -24,7 +27,7 @@ double random_extent(const double youngs_modulus, Chance& chance) {
   return std::min(load * youngs_modulus / (density * gravity), chance.log_between(0.05, 1));
 }
 
-double time_step(Chance& chance) { return chance.happens(0.8) ? 1.0 / 60 : chance.log_between(1e-3, 0.04); }
+double random_time_step(Chance& chance) { return chance.happens(0.8) ? 1.0 / 60 : chance.log_between(1e-3, 0.04); }
 
 Drawn draw(const Solid& solid, const Size& size, Chance& chance) {
   Drawn drawn;
@@ -41,7 +44,7 @@ Drawn draw(const Solid& solid, const Size& size, Chance& chance) {
   target.centre = 0.5 * drawn.unit * (solid.box.lower + solid.box.upper);
   target.radius = 0.5 * drawn.unit * diagonal.norm();
   target.cell = drawn.unit * std::cbrt(solid.volume / chance.log_between(size.least_cells, size.most_cells));
-  target.dt = time_step(chance);
+  target.dt = random_time_step(chance);
   target.n_steps = chance.number(size.least_steps, size.most_steps);
   target.fall = drawn.is_free ? Vec3(gravity * drawn.down) : Vec3(Vec3::Zero());
   target.mesh = solid.path.string();
@@ -62,10 +65,10 @@ std::string support(const Target& target, Chance& chance) {
                                   "Plane point [m] = " + text(Vec3(level * normal))});
 }
 
-std::vector<std::string> body(const Drawn& drawn, const Kind& kind, Chance& chance) {
+std::string body(const Drawn& drawn, const Kind& kind, Chance& chance) {
   const Target& target = drawn.target;
   std::vector<std::string> lines = {
-    "Mesh = " + target.mesh, "Mesh unit [m] = " + target.unit,
+    "Mesh = " + target.mesh, "Mesh unit [m] = " + target.unit, "Cube edge [m] = " + to_text(target.cell),
     "Lattice offset [1] = " + text(Vec3(chance.between(0, 1), chance.between(0, 1), chance.between(0, 1)))};
   std::vector<std::string> material = {"Density [kg/m^3] = " + to_text(density),
                                        "Young's modulus [Pa] = " + to_text(drawn.youngs_modulus),
@@ -77,7 +80,7 @@ std::vector<std::string> body(const Drawn& drawn, const Kind& kind, Chance& chan
     lines.push_back(section("Damping", {"Mass damping [1/s] = " + to_text(drawn.mass_damping)}));
   if (!drawn.is_free)
     lines.push_back(support(target, chance));
-  return lines;
+  return section("Body solid", lines);
 }
 
 std::vector<Stroke> strokes(const Target& target, Chance& chance) {
@@ -90,6 +93,16 @@ std::vector<Stroke> strokes(const Target& target, Chance& chance) {
   return all;
 }
 
+/// Shape matching of a half width reaches the material's stiffness with time steps up to 1 / sqrt(k); about half of
+/// that, since its energy swings by the step.
+double time_step(const Drawn& drawn, const Kind& kind) {
+  const Target& target = drawn.target;
+  if (kind.half_width == 0)
+    return target.dt;
+  const double k = lattice::stiffness_for(drawn.youngs_modulus, density, target.cell, kind.half_width);
+  return std::min(target.dt, 0.45 / std::sqrt(k));
+}
+
 } // namespace
 
 const std::vector<Kind>& kinds() {
@@ -99,7 +112,7 @@ const std::vector<Kind>& kinds() {
     {"fem-enhanced-corotational", {"Element = enhanced"}},
     {"fem-enhanced-neo-Hookean", {"Element = enhanced", "Law = neo-Hookean"}},
     {"pba", {"Backend = pba"}},
-    {"lattice", {"Backend = lattice", section("Lattice", {"Alpha [1] = 0.5"})}},
+    {"lattice", {"Backend = lattice", section("Lattice", {"Half width [cells] = 2"})}, 2},
     {"mass-spring", {"Backend = mass-spring"}},
   };
   return all;
@@ -112,35 +125,21 @@ const Kind& kind_named(const std::string& name) {
   throw std::out_of_range("no kind of physics is called " + name);
 }
 
-std::string text(const Scene& scene) {
-  std::vector<std::string> body = scene.body;
-  body.push_back("Cube edge [m] = " + to_text(scene.cell));
-  std::string all = section("Time", {"Time step [s] = " + to_text(scene.dt),
-                                     "End time [s] = " + to_text(scene.n_steps * scene.dt)}) +
-                    section("Gravity", {"Acceleration [m/s^2] = " + text(scene.gravity)}) +
-                    section("Body solid", body);
-  for (const std::string& one : scene.sections)
-    all += one;
-  return all + section("Observables", {"Names = missing energy, work of the cut, elastic energy, kinetic energy, "
-                                       "volume, rest volume, pieces"});
-}
-
 Scene random_scene(const Solid& solid, const Kind& kind, const unsigned seed, const Size& size) {
   Chance chance(solid.name, seed);
   const Drawn drawn = draw(solid, size, chance);
   const Target& target = drawn.target;
-  Scene scene{.dt = target.dt,
-              .n_steps = target.n_steps,
-              .cell = target.cell,
-              .gravity = gravity * drawn.down,
-              .body = body(drawn, kind, chance),
-              .story = drawn.is_free ? "free;" : "held;",
-              .extent = 2 * target.radius,
-              .wave_speed = std::sqrt(drawn.youngs_modulus / density)};
+  Scene scene{.sections = {section("Time", {"Time step [s] = " + to_text(time_step(drawn, kind)),
+                                            "End time [s] = " + to_text(target.n_steps * target.dt)}),
+                           section("Gravity", {"Acceleration [m/s^2] = " + text(Vec3(gravity * drawn.down))}),
+                           body(drawn, kind, chance)},
+              .story = drawn.is_free ? "free;" : "held;"};
   for (const Stroke& stroke : strokes(target, chance)) {
     scene.sections.insert(scene.sections.end(), stroke.sections.begin(), stroke.sections.end());
     scene.story += ' ' + stroke.tool;
   }
+  scene.sections.push_back(section("Observables", {"Names = missing energy, work of the cut, elastic energy, kinetic "
+                                                   "energy, volume, rest volume, pieces"}));
   return scene;
 }
 

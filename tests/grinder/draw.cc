@@ -64,11 +64,4 @@ std::string text(const std::vector<double>& numbers) {
   return all;
 }
 
-std::string section(const std::string& heading, const std::vector<std::string>& lines) {
-  std::string all = "subsection " + heading + "\n";
-  for (const std::string& line : lines)
-    all += line.starts_with("subsection") ? line : "  set " + line + "\n";
-  return all + "end\n";
-}
-
 } // namespace kerf::grinder

@@ -41,7 +41,4 @@ std::string text(const Points& points);
 /// "a, b"
 std::string text(const std::vector<double>& numbers);
 
-/// A section of a scene: its heading, and a line a key ("Key = value") or section inside.
-std::string section(const std::string& heading, const std::vector<std::string>& lines);
-
 } // namespace kerf::grinder

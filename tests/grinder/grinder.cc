@@ -6,6 +6,7 @@
 #include "scene/run.h"
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <sstream>
 
@@ -17,14 +18,15 @@ void run(scene::World& world, const Scene& scene, const Until until, Outcome& ou
   const scene::Body& body = world.bodies.at(0);
   Watch watch(scene, body);
   Timings timings;
-  const auto is_over = [&] {
-    return outcome.failure && (until == Until::first_failure || outcome.failure->is_final);
-  };
+  constexpr double least_between = 2e-3; // looks, which cost more than an explicit step [s]
+  const int every = static_cast<int>(std::ceil(least_between / world.time_step));
+  const auto is_over = [&] { return outcome.failure && (until == Until::first_failure || outcome.failure->is_final); };
   for (int step = 1; step <= world.n_steps && !is_over(); ++step) {
     std::optional<Failure> failure;
     try {
       scene::advance(world, step, timings);
-      failure = watch.after_step(body, step, world.time_step);
+      if (step % every == 0 || step == world.n_steps)
+        failure = watch.after_step(body, step, world.time_step);
     } catch (const Error& error) {
       failure = Failure{"stopped", step, error.what(), true};
     }
@@ -43,15 +45,13 @@ std::string first_line(const std::string& text) { return text.substr(0, text.fin
 
 } // namespace
 
-std::string name_of(const Case& one) {
-  return one.solid->name + ':' + one.kind->name + ':' + std::to_string(one.seed);
-}
+std::string name_of(const Case& one) { return one.solid->name + ':' + one.kind->name + ':' + std::to_string(one.seed); }
 
 Outcome run(const Scene& scene, const std::vector<std::string>& changes, const Until until) {
   Outcome outcome;
   std::optional<scene::World> world;
   try {
-    world = scene::compose(scene::scan_scene_text(text(scene), "scene.prm", changes));
+    world = scene::compose(scene::scan_scene_text(text(scene), scene.file, changes));
   } catch (const Error& error) {
     outcome.refused = error.what();
     return outcome;
@@ -62,13 +62,13 @@ Outcome run(const Scene& scene, const std::vector<std::string>& changes, const U
 
 namespace {
 
-/// The scene that a change leads to, up to its failure; nothing when that is not the same.
-std::optional<Scene> still_failing(Scene scene, const std::vector<std::string>& changes, const std::string& reason) {
+/// The scene up to its failure; nothing when that is another or none.
+std::optional<Scene> still_failing(const Scene& scene, const std::vector<std::string>& changes,
+                                   const std::string& reason) {
   const Outcome outcome = run(scene, changes, Until::first_failure);
   if (!outcome.failure || outcome.failure->reason != reason)
     return {};
-  scene.n_steps = outcome.failure->step;
-  return scene;
+  return with_number(scene, "End time [s]", outcome.failure->step * number_of(scene, "Time step [s]").value_or(1));
 }
 
 } // namespace
@@ -80,47 +80,47 @@ Scene shrunk(const Scene& scene, const std::vector<std::string>& changes, const 
     least = failing.value_or(least);
     return failing.has_value();
   };
-  for (std::size_t i = least.sections.size(); i-- > 0;) {
-    Scene smaller = least;
-    smaller.sections.erase(smaller.sections.begin() + static_cast<std::ptrdiff_t>(i));
-    try_out(smaller);
-  }
-  for (const double factor : {2.0, 1.5, 1.2, 1.07})
-    for (bool is_smaller = true; is_smaller;) {
+  for (std::size_t i = least.sections.size(); i-- > 0;)
+    if (is_tool(least.sections[i])) {
       Scene smaller = least;
-      smaller.cell *= factor;
-      is_smaller = try_out(smaller);
+      smaller.sections.erase(smaller.sections.begin() + static_cast<std::ptrdiff_t>(i));
+      try_out(smaller);
+    }
+  const std::string cell = "Cube edge [m]";
+  for (const double factor : {2.0, 1.5, 1.2, 1.07})
+    while (try_out(with_number(least, cell, factor * number_of(least, cell).value_or(1)))) {
     }
   return least;
 }
 
-void Harvest::add(const Case& one, const Scene& scene, const Outcome& outcome) {
+void Harvest::add(const std::string& name, const std::string& kind, const Scene& scene, const Outcome& outcome) {
   ++n_cases_;
-  auto& counts = counts_[one.kind->name];
+  auto& counts = counts_[kind];
   ++counts["cases"];
   if (outcome.refused) {
     ++n_refused_;
     ++counts["refused"];
-    refusals_.push_back(name_of(one) + ": " + first_line(*outcome.refused));
+    refusals_.push_back(name + ": " + first_line(*outcome.refused));
     return;
   }
-  Figures& most = healthy_[one.kind->name];
+  Figures& most = healthy_[kind];
   if (!outcome.failure) {
     const Figures& f = outcome.figures;
-    most = {std::max(most.fastest, f.fastest), std::max(most.runaway, f.runaway), std::max(most.outlier, f.outlier),
-            std::max(most.volume, f.volume),   std::max(most.reach, f.reach),     std::max(most.energy, f.energy),
+    most = {std::max(most.fastest, f.fastest),      std::max(most.runaway, f.runaway),
+            std::max(most.outlier, f.outlier),      std::max(most.volume, f.volume),
+            std::max(most.reach, f.reach),          std::max(most.energy, f.energy),
             std::max(most.cut_energy, f.cut_energy)};
     return;
   }
   ++counts[outcome.failure->reason];
-  failures_.push_back(name_of(one) + ": " + outcome.failure->reason + " in step " +
-                      std::to_string(outcome.failure->step) + ": " + outcome.failure->words + "; " +
-                      std::to_string(outcome.n_cells) + " cells, " + std::to_string(outcome.n_pieces) + " pieces; " +
-                      scene.story + "; at most " + to_text(outcome.figures.fastest) + " m/s");
+  failures_.push_back(name + ": " + outcome.failure->reason + " in step " + std::to_string(outcome.failure->step) +
+                      ": " + outcome.failure->words + "; " + std::to_string(outcome.n_cells) + " cells, " +
+                      std::to_string(outcome.n_pieces) + " pieces; " + scene.story + "; at most " +
+                      to_text(outcome.figures.fastest) + " m/s");
   if (folder_.empty())
     return;
   std::filesystem::create_directories(folder_);
-  std::string file = name_of(one) + ".prm";
+  std::string file = name + ".prm";
   std::replace(file.begin(), file.end(), ':', '.');
   std::ofstream(folder_ / file) << "# " << failures_.back() << '\n' << text(scene);
   std::ofstream(folder_ / "failures.txt", std::ios::app) << failures_.back() << '\n';

@@ -2,6 +2,7 @@
 
 /// Runs cases, and keeps what failed.
 
+#include "tests/grinder/cases.h"
 #include "tests/grinder/watch.h"
 
 #include <map>
@@ -40,7 +41,8 @@ class Harvest {
   /// Scenes of cases that fail go into `folder`, which is made; empty: nowhere.
   explicit Harvest(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
-  void add(const Case& one, const Scene& scene, const Outcome& outcome);
+  /// `kind` of physics, under which failures are counted; `name` of the case.
+  void add(const std::string& name, const std::string& kind, const Scene& scene, const Outcome& outcome);
 
   std::size_t n_cases() const { return n_cases_; }
   std::size_t n_refused() const { return n_refused_; }

@@ -6,9 +6,11 @@
 ///
 /// KERF_GRINDER_CASES: how many (1000). KERF_GRINDER_FIRST_SEED: another choice of them. KERF_GRINDER_KINDS: only kinds of physics whose name holds this.
 /// KERF_GRINDER_SET: keys of every scene that are set otherwise, as `kerf run --set` does, separated by semicolons.
-/// KERF_GRINDER_FAILURES: a folder for the scenes of cases that fail, which `kerf run` repeats. One case again:
+/// KERF_GRINDER_FAILURES: a folder for the scenes of cases that fail, which `kerf run` repeats. One case again, or a
+/// scene or all scenes of a folder; where it is one, the smallest scene found that fails like it:
 ///
 ///   KERF_GRINDER_CASE=mesh:kind:seed build/release/tests/test_grinder --gtest_filter=Grinder.Repeat
+///   KERF_GRINDER_SCENES=file.prm build/release/tests/test_grinder --gtest_filter=Grinder.Repeat
 
 #include "tests/grinder/grinder.h"
 
@@ -17,6 +19,7 @@
 #include <chrono>
 #include <cstdlib>
 #include <iostream>
+#include <map>
 #include <sstream>
 
 namespace kerf::grinder {
@@ -62,9 +65,11 @@ void grind(const Solids& solids, const std::size_t n_cases, const Size& size, Ha
     const Outcome outcome = run(scene, changes(), Until::end);
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     std::cout << ' ' << outcome.n_cells << " cells, " << outcome.n_steps << " steps, " << seconds << " s: "
-              << (outcome.refused ? "refused" : outcome.failure ? outcome.failure->reason : "well") << ", "
-              << outcome.figures.fastest << " m/s\n";
-    harvest.add(one, scene, outcome);
+              << (outcome.refused   ? "refused"
+                  : outcome.failure ? outcome.failure->reason
+                                    : "well")
+              << ", " << outcome.figures.fastest << " m/s\n";
+    harvest.add(name_of(one), one.kind->name, scene, outcome);
   }
 }
 
@@ -92,25 +97,48 @@ TEST(Grinder, Long) {
 }
 
 /// "mesh:kind:seed"
-TEST(Grinder, Repeat) {
-  const std::string name = setting("KERF_GRINDER_CASE", "");
-  if (name.empty())
-    GTEST_SKIP() << "KERF_GRINDER_CASE names no case";
+Scene scene_named(const std::string& name) {
   const std::size_t first = name.find(':'), last = name.rfind(':');
-  const Solids solids = solids_in(mesh_folder());
-  for (const Solid& solid : solids.usable)
-    if (solid.name == name.substr(0, first)) {
-      const Case one{&solid, &kind_named(name.substr(first + 1, last - first - 1)),
-                     static_cast<unsigned>(std::stoul(name.substr(last + 1)))};
-      const Scene scene = random_scene(solid, *one.kind, one.seed, {});
-      const Outcome outcome = run(scene, changes(), Until::end);
-      Harvest harvest(setting("KERF_GRINDER_FAILURES", ""));
-      harvest.add(one, scene, outcome);
-      std::cout << text(scene);
-      if (outcome.failure)
-        std::cout << "smallest:\n" << text(shrunk(scene, changes(), outcome.failure->reason));
-      report(solids, harvest);
-    }
+  for (const Solid& solid : solids_in(mesh_folder()).usable)
+    if (solid.name == name.substr(0, first))
+      return random_scene(solid, kind_named(name.substr(first + 1, last - first - 1)),
+                          static_cast<unsigned>(std::stoul(name.substr(last + 1))), {});
+  throw std::out_of_range("no mesh that can be used is called " + name.substr(0, first));
+}
+
+/// The scenes that a file or folder holds, by name.
+std::map<std::string, Scene> scenes_in(const std::filesystem::path& path) {
+  std::map<std::string, Scene> scenes;
+  if (!std::filesystem::is_directory(path))
+    return {{path.stem().string(), read_scene(path)}};
+  for (const auto& entry : std::filesystem::directory_iterator(path))
+    if (entry.path().extension() == ".prm")
+      scenes[entry.path().stem().string()] = read_scene(entry.path());
+  return scenes;
+}
+
+/// The smallest scene found that fails like this one: printed, and kept beside the others.
+void shrink(const std::string& name, const Scene& scene, const std::string& reason) {
+  const Scene least = shrunk(scene, changes(), reason);
+  Harvest harvest(setting("KERF_GRINDER_FAILURES", ""));
+  harvest.add(name + ".least", "smallest", least, run(least, changes(), Until::end));
+  std::cout << harvest.failures().at(0) << '\n' << text(least);
+}
+
+TEST(Grinder, Repeat) {
+  const std::string name = setting("KERF_GRINDER_CASE", ""), path = setting("KERF_GRINDER_SCENES", "");
+  if (name.empty() && path.empty())
+    GTEST_SKIP() << "neither KERF_GRINDER_CASE nor KERF_GRINDER_SCENES names one";
+  const auto scenes = path.empty() ? std::map<std::string, Scene>{{name, scene_named(name)}} : scenes_in(path);
+  Harvest harvest(setting("KERF_GRINDER_FAILURES", ""));
+  for (const auto& [which, scene] : scenes) {
+    const Outcome outcome = run(scene, changes(), Until::end);
+    std::cout << which << ": " << (outcome.failure ? outcome.failure->reason : "well") << '\n' << std::flush;
+    harvest.add(which, "repeated", scene, outcome);
+    if (outcome.failure && scenes.size() == 1)
+      shrink(which, scene, outcome.failure->reason);
+  }
+  report({}, harvest);
 }
 
 } // namespace

@@ -111,8 +111,8 @@ Look look_at(const scene::Body& body) {
 std::string about_particle(const scene::Body& body, const std::size_t particle) {
   const Vec3& rest = body.physics->rest()[particle];
   const double h = body.grid.h(), mass = body.physics->model().lumped_mass()[particle];
-  std::string words = "at rest at " + text(rest) + " m, of mass " + to_text(mass / (body.density * h * h * h)) +
-                      " cubes";
+  std::string words =
+    "at rest at " + text(rest) + " m, of mass " + to_text(mass / (body.density * h * h * h)) + " cubes";
   if (!particles_are_corners(body))
     return words;
   words += ", known to copies with";

@@ -9,9 +9,9 @@ namespace kerf::grinder {
 /// One piece: what the copies hold together.
 struct PieceLook {
   std::size_t n_particles = 0;
-  double fastest = 0;    ///< particle [m/s]
-  double ordinary = 0;   ///< 99th percentile of the speeds [m/s]
-  std::size_t who = 0;   ///< the fastest
+  double fastest = 0;                 ///< particle [m/s]
+  double ordinary = 0;                ///< 99th percentile of the speeds [m/s]
+  std::size_t who = 0;                ///< the fastest
   double rest_volume = 0, volume = 0; ///< that the surface encloses [m^3]
   double rest_reach = 0, reach = 0;   ///< of its farthest surface vertex from the mean of all [m]
 };

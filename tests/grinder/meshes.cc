@@ -48,8 +48,7 @@ Points points_on(const geometry::TriangleMesh& mesh, const std::size_t n) {
 
 Solid solid(const std::filesystem::path& path) {
   const auto mesh = geometry::require_solid(geometry::read_mesh(path.string(), 1), path.string());
-  return {path.stem().string(), path, geometry::volume(mesh), geometry::bounding_box(mesh),
-          points_on(mesh, 500)};
+  return {path.stem().string(), path, geometry::volume(mesh), geometry::bounding_box(mesh), points_on(mesh, 500)};
 }
 
 } // namespace

@@ -36,7 +36,8 @@ Way random_way(const Target& target, const Vec3& through, const Vec3& direction,
 /// Key frames of a way; every step of them where the tool follows a fall.
 std::vector<std::string> motion(const Target& target, const Way& way) {
   if (target.fall.isZero())
-    return {"Times [s] = " + text(std::vector{way.begin, way.end}), "Positions [m] = " + text(Points{way.from, way.to})};
+    return {"Times [s] = " + text(std::vector{way.begin, way.end}),
+            "Positions [m] = " + text(Points{way.from, way.to})};
   std::vector<double> times;
   Points positions;
   for (int step = 0; step <= target.n_steps; ++step) {
@@ -116,11 +117,10 @@ Stroke scissors(const Target& target, Chance& chance, const std::string& name) {
   Way way = random_way(target, Vec3::Zero(), along, chance);
   way.from = way.to = Vec3::Zero();
   auto lines = motion(target, way);
-  for (const std::string& line :
-       {"Pivot [m] = " + text(pivot), "Axis [1] = " + text(axis),
-        "Edge [m] = " + text(Points{pivot + 0.05 * length * along, pivot + length * along}),
-        "Opening times [s] = " + text(std::vector{way.begin, way.end}),
-        "Openings [degrees] = " + text(std::vector{opening, 0.0})})
+  for (const std::string& line : {"Pivot [m] = " + text(pivot), "Axis [1] = " + text(axis),
+                                  "Edge [m] = " + text(Points{pivot + 0.05 * length * along, pivot + length * along}),
+                                  "Opening times [s] = " + text(std::vector{way.begin, way.end}),
+                                  "Openings [degrees] = " + text(std::vector{opening, 0.0})})
     lines.push_back(line);
   return {"scissors", {section("Scissors " + name, lines)}};
 }
@@ -136,8 +136,7 @@ Stroke several(const Target& target, Chance& chance, const std::string& name) {
 
 std::vector<std::string> shape_keys(const Target& target, const Vec3& place, Chance& chance, const std::string& shape) {
   if (shape == "mesh") // the body's own mesh, a little smaller: sheets that its skin runs along
-    return {"Mesh = " + target.mesh,
-            "Mesh unit [m] = " + to_text(std::stod(target.unit) * chance.between(0.5, 0.97))};
+    return {"Mesh = " + target.mesh, "Mesh unit [m] = " + to_text(std::stod(target.unit) * chance.between(0.5, 0.97))};
   std::vector<std::string> lines = {"Point [m] = " + text(place)};
   if (shape == "plane" || shape == "disc")
     lines.push_back("Normal [1] = " + text(chance.direction()));

@@ -3,6 +3,7 @@
 /// Strokes of every tool of a scene through a body that sags or falls.
 
 #include "tests/grinder/draw.h"
+#include "tests/grinder/scene.h"
 
 namespace kerf::grinder {
 

@@ -2,9 +2,8 @@
 
 /// What no step of any case may do.
 
-#include "scene/world.h"
-#include "tests/grinder/cases.h"
 #include "tests/grinder/look.h"
+#include "tests/grinder/scene.h"
 
 #include <optional>
 
@@ -12,7 +11,8 @@ namespace kerf::grinder {
 
 /// Why a case failed, in one word, and the figures.
 struct Failure {
-  std::string reason; ///< "runaway", "outlier", "volume", "drawn out", "energy", "cut energy", "NaN", "pieces", "stopped"
+  std::string
+    reason; ///< "runaway", "outlier", "volume", "drawn out", "energy", "cut energy", "NaN", "pieces", "stopped"
   int step = 0;
   std::string words;
   bool is_final = false; ///< nothing can go on from there
@@ -27,6 +27,7 @@ struct Figures {
 /// Watches one body from its start to its end.
 class Watch {
  public:
+  /// The body as it is at the start of the scene.
   Watch(const Scene& scene, const scene::Body& body);
 
   /// After each step. Returns what has failed first of all there is.
@@ -40,7 +41,9 @@ class Watch {
   std::optional<Failure> watch_energy(const Look& look, int step, double dt);
   std::optional<Failure> watch_pieces(const scene::Body& body, const Look& look, int step);
 
-  const Scene& scene_;
+  bool is_explicit_;         ///< shape matching is symplectic Euler, of which no step is as the one before
+  double gravity_ = 0;       ///< [m/s^2]
+  double recoil_ = 0;        ///< [m/s]
   double mass_ = 0;          ///< [kg]
   double start_gravity_ = 0; ///< [J]
   double gained_ = 0, gained_by_cuts_ = 0, turnover_ = 0; ///< [J]
