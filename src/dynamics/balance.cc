@@ -158,7 +158,8 @@ bool BalanceSolver::bears_tests(const Problem& problem, const Points& end) {
 }
 
 Points BalanceSolver::unlike_flight(const Problem& problem) const {
-  return problem.constraints.held().empty() ? without_mean(problem.mass, correction_) : correction_;
+  const bool flies = problem.constraints.held().empty() && problem.loads.acting.empty();
+  return flies ? without_mean(problem.mass, correction_) : correction_;
 }
 
 bool BalanceSolver::turns_little(const Problem& problem, const Points& x) const {
@@ -180,7 +181,7 @@ bool BalanceSolver::turns_little(const Problem& problem, const Points& x) const 
     energy += m * v_0[i].squaredNorm();
     inertia += m * r[i].squaredNorm();
   }
-  constexpr double own = 1.5, unseen = 1e-4; // of what the method does; of all that the energy could be
+  constexpr double own = 1.1, unseen = 1e-4; // of what the method does; of all that the energy could be
   return turned.norm() * spin.norm() <= own * dt * dt * energy * energy + unseen * std::sqrt(energy * inertia) * spin.norm();
 }
 

@@ -22,7 +22,7 @@
 /// A correction that is tested (Trust) costs one evaluation of forces more, and is taken where its end bears it. Its
 /// quadratic model has little slope left there: the power of what is out of balance has fallen to a quarter (curvature
 /// condition of Wolfe 1969, Convergence conditions for ascent methods), uniform motion of a free body aside, which
-/// anything follows. And what is out of balance turns a body in free flight by no more than one and a half times what
+/// anything follows. And what is out of balance turns a body in free flight by hardly more than what
 /// implicit Euler itself does: with x_1 = x_0 + dt v_1, the sum of x x m v changes in a step by dt times the torque at
 /// x_1 and by dt times the sum of m v_1 x v_0, which is no torque of anything, and is dt^2 (2 T)^2 / L in a spin of
 /// energy T and angular momentum L. Tangents that know a stress, but not all of how it turns, fail there.
@@ -118,7 +118,7 @@ class BalanceSolver {
   /// Whether the end of the first correction bears the tests of Trust; moves to it.
   bool bears_tests(const Problem& problem, const Points& end);
   bool turns_little(const Problem& problem, const Points& x) const;
-  /// The correction, without its uniform part where nothing is held, as anything follows that.
+  /// The correction, without its uniform part where the body flies freely, as anything follows that.
   Points unlike_flight(const Problem& problem) const;
   /// Whether what is left to correct is small beside the way from the guess.
   bool is_small(const Problem& problem);
