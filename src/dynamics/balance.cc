@@ -98,6 +98,7 @@ NewtonReport BalanceSolver::solve(const Loads& loads, const Constraints& constra
   x = balance.start;
   way_ = 0;
   NewtonReport report;
+  Mixing mixing(static_cast<std::size_t>(options_.n_mixed));
   LineSearch line_search = options_.line_search;
   int most = options_.max_iterations;
   double first = 0;
@@ -124,7 +125,7 @@ NewtonReport BalanceSolver::solve(const Loads& loads, const Constraints& constra
       linearise_at(problem, x);
     }
     const bool is_last = report.distrusted && report.n_newton > 1 && is_small(problem);
-    const double length = line_search == LineSearch::none || is_last ? 1 : search(problem, x);
+    const double length = line_search == LineSearch::none || is_last ? 1 : mixed_search(problem, x, mixing);
     if (length == 0) {
       report.failure = "no step along the correction lowers the energy";
       break;
@@ -328,7 +329,9 @@ int BalanceSolver::correct_by_cg(const Problem& problem, const Points& guess, co
       d[i] = scaling_[i] * (blocks_[i] * (problem.constraints.freedom(i).project * guess[i]));
   }
   const double of_own = 0.5 * options_.step_tolerance; // the step's own error is half the way from the guess
-  const CgStop stop{.residual = std::max(options_.cg_tolerance * scale, scaled_round_off()),
+  constexpr double of_rest = 1e-2; // of what a correction may leave where others follow
+  const double left = options_.n_mixed > 0 ? of_rest * norm(rhs) : 0;
+  const CgStop stop{.residual = std::max({options_.cg_tolerance * scale, left, scaled_round_off()}),
                     .error = of_own * way_,
                     .of_way = guess.empty() ? 0 : of_own};
   const auto report = conjugate_gradients([&](const auto p, const auto y) { apply(problem, p, y); }, flat(rhs), stop,
@@ -357,6 +360,23 @@ void BalanceSolver::correct_directly(const Problem& problem, const Tangent kind)
   A.setFromTriplets(entries.begin(), entries.end());
   A += problem.stiffness_factor * matrix_->stiffness_matrix(x, kind);
   solve_directly(A, problem.constraints, residual_, correction_);
+}
+
+double BalanceSolver::mixed_search(const Problem& problem, const Points& x, Mixing& mixing) {
+  constexpr double far = 0.25; // a mixed correction that must be shorter knows nothing of what lies ahead
+  if (options_.n_mixed == 0)
+    return search(problem, x);
+  std::vector<double> weight(blocks_.size());
+  for (std::size_t i = 0; i < weight.size(); ++i)
+    weight[i] = blocks_[i].trace();
+  Points plain = correction_;
+  correction_ = mixing.mixed(x, plain, weight);
+  if (product(residual_, correction_) > 0)
+    if (const double length = search(problem, x); length >= far)
+      return length;
+  mixing.forget();
+  correction_ = std::move(plain);
+  return search(problem, x);
 }
 
 double BalanceSolver::search(const Problem& problem, const Points& x) {

@@ -32,6 +32,7 @@
 /// much better. Nothing is solved below the round-off of forces.
 
 #include "dynamics/constraints.h"
+#include "dynamics/mixing.h"
 
 #include <Eigen/SparseCore>
 
@@ -64,6 +65,7 @@ struct NewtonOptions {
   /// Error that conjugate gradients may leave over the step's own, in the energy norm of A [1]. 0: `cg_tolerance` alone.
   double step_tolerance = 0;
   Trust trust = Trust::blind;
+  int n_mixed = 0; ///< corrections before that are mixed into one, see mixing.h; asks for a line search
 };
 
 /// What is to be solved. `start` obeys the supports already; velocity and acceleration are those at `start`.
@@ -126,6 +128,8 @@ class BalanceSolver {
   int correct(const Problem& problem, const Points& guess, double scale);
   int correct_by_cg(const Problem& problem, const Points& guess, double scale);
   void correct_directly(const Problem& problem, Tangent kind);
+  /// Mixes the correction with those before, where that leads downhill and far; returns how much of it to take.
+  double mixed_search(const Problem& problem, const Points& x, Mixing& mixing);
   /// How much of the correction to take; 0 when nothing of it helps.
   double search(const Problem& problem, const Points& x);
   Change change(const Problem& problem, const Points& x, const Points& trial, double length,

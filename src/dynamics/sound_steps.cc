@@ -144,7 +144,7 @@ EnergyChange energy_change(ForceModel& model, const Loads& loads, const State& b
   constexpr double drowned = 1e-9; // see balance.cc: of energies whose difference counts
   return {.gained = elastic_1 - elastic_0 + (kinetic_1 - kinetic_0) + (load_1 - load_0) + (gravity_1 - gravity_0) - work,
           .dealt = inner_kinetic_energy(model, before.v) + inner_kinetic_energy(model, after.v) +
-                   std::abs(elastic_1 - elastic_0) + std::abs(load_1 - load_0) + work,
+                   elastic_0 + elastic_1 + std::abs(load_1 - load_0) + work,
           .shift = 4 * mass_of(model) * loads.gravity.squaredNorm() * dt * dt +
                    drowned * (kinetic_0 + kinetic_1 + elastic_0 + elastic_1 + std::abs(gravity_0) +
                               std::abs(gravity_1) + std::abs(load_0) + std::abs(load_1)),

@@ -5,8 +5,8 @@
 /// A step adds, in what nobody did: the growth of kinetic, elastic, gravity and load energy, less the work of supports,
 /// of driving loads and of potentials that change with time. Work is force times displacement with the forces of the
 /// start or of the end, whichever is more. A sound step gains at most a quarter of the energy that it deals with: what
-/// moves against the body's mean motion before and after, what the elastic energy changed by, and the work; beside the
-/// kick that gravity gives in one step, which first order shifts in time, and round-off. Implicit Euler gains where
+/// moves against the body's mean motion and what is elastic, before and after, and the work; beside the kick that
+/// gravity gives in one step, which first order shifts in time, and round-off. Implicit Euler gains where
 /// energy is concave along its way, of second order in dt; dissipation, its own too, counts as it should.
 ///
 /// Two things are done about a step that fails, gains energy or is no longer finite. It is taken again in 2, 4, ...
