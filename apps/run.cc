@@ -22,6 +22,9 @@ void print_body(const scene::Body& body) {
               100 * (volume / rest - 1));
   std::printf("  energy: elastic %.4e J, kinetic %.4e J\n", body.physics->model().energy(body.state.x),
               scene::find_observable("kinetic energy")->value(body));
+  if (body.n_divided > 0)
+    std::printf("  %d steps taken again in substeps: whole ones failed or gained energy that nothing gave\n",
+                body.n_divided);
   if (body.n_lost_shells > 0)
     std::printf("  %zu shells of the mesh hold no grid node and are lost: use a smaller cube edge\n",
                 body.n_lost_shells);

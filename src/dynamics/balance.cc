@@ -2,12 +2,14 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "base/parameters.h"
 #include "dynamics/conjugate_gradients.h"
 #include "dynamics/direct.h"
 #include "dynamics/forces.h"
 #include "dynamics/state.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Geometry>
 
 #include <cmath>
 #include <limits>
@@ -16,7 +18,8 @@ namespace kerf::dynamics {
 
 namespace {
 
-constexpr std::size_t worth = 4096; // corners from which on a second thread pays
+constexpr std::size_t worth = 4096;       // corners from which on a second thread pays
+constexpr int most_where_distrusted = 30; // Newton iterations
 
 Eigen::Map<const Vec3> at(const std::span<const double> values, const std::size_t i) {
   return Eigen::Map<const Vec3>(values.data() + 3 * i);
@@ -44,6 +47,24 @@ Mat3 inverse_factor(const Mat3& block, const Constraints::Freedom& freedom) {
 double norm(const Points& values) { return std::sqrt(dot(flat(values), flat(values))); }
 
 double product(const Points& a, const Points& b) { return dot(flat(a), flat(b)); }
+
+Points moved(const Points& x, const double length, const Points& d) {
+  Points end(x.size());
+  for (std::size_t i = 0; i < x.size(); ++i)
+    end[i] = x[i] + length * d[i];
+  return end;
+}
+
+/// Values a corner, less their mean by mass.
+Points without_mean(const std::span<const double> mass, const Points& values) {
+  Vec3 sum = Vec3::Zero();
+  double all = 0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    sum += mass[i] * values[i];
+    all += mass[i];
+  }
+  return moved(values, -1, Points(values.size(), sum / all));
+}
 
 } // namespace
 
@@ -75,43 +96,106 @@ NewtonReport BalanceSolver::solve(const Loads& loads, const Constraints& constra
                         balance.mass_factor + loads.mass_damping * omega,
                         1 + loads.stiffness_damping * omega};
   x = balance.start;
+  way_ = 0;
   NewtonReport report;
+  Mixing mixing(static_cast<std::size_t>(options_.n_mixed));
+  LineSearch line_search = options_.line_search;
+  int most = options_.max_iterations;
   double first = 0;
   for (;;) {
-    move_to(problem, x);
-    factorise(problem);
-    const double scale = assemble_residual(problem);
+    double scale = linearise_at(problem, x);
     if (options_.tolerance > 0) {
       const double left = norm(residual_);
       first = std::max(first, left);
-      const double most = std::max(first, balanced_forces(problem));
-      report.residual = most > 0 ? left / most : 0;
-      report.converged = left <= std::max(options_.tolerance * most, round_off_of_forces(x));
+      const double most_force = std::max(first, balanced_forces(problem));
+      report.residual = most_force > 0 ? left / most_force : 0;
+      report.converged = left <= std::max(options_.tolerance * most_force, round_off_of_forces(x));
       if (report.converged)
         return report;
     }
-    if (report.n_newton == options_.max_iterations)
+    if (report.n_newton == most)
       break;
     report.n_linear += correct(problem, report.n_newton == 0 ? balance.guess : Points(), scale);
     ++report.n_newton;
-    const double length = options_.line_search == LineSearch::none ? 1 : search(problem, x);
+    if (report.n_newton == 1 && options_.trust == Trust::tested && line_search == LineSearch::none &&
+        !bears_tests(problem, moved(x, 1, correction_))) {
+      report.distrusted = true;
+      line_search = LineSearch::backtracking;
+      most = std::max(most, most_where_distrusted);
+      linearise_at(problem, x);
+    }
+    const bool is_last = report.distrusted && report.n_newton > 1 && is_small(problem);
+    const double length = line_search == LineSearch::none || is_last ? 1 : mixed_search(problem, x, mixing);
     if (length == 0) {
       report.failure = "no step along the correction lowers the energy";
       break;
     }
-    for (std::size_t i = 0; i < x.size(); ++i)
-      x[i] += length * correction_[i];
-    if (options_.tolerance == 0 && report.n_newton == options_.max_iterations)
+    x = moved(x, length, correction_);
+    if (is_last || (options_.tolerance == 0 && report.n_newton == most))
       return report;
   }
-  report.converged = options_.tolerance == 0;
+  report.converged = options_.tolerance == 0 && !(report.distrusted && !report.failure.empty());
   return report;
+}
+
+double BalanceSolver::linearise_at(const Problem& problem, const Points& x) {
+  model_.linearise(x);
+  move_to(problem, x);
+  factorise(problem);
+  return assemble_residual(problem);
+}
+
+bool BalanceSolver::bears_tests(const Problem& problem, const Points& end) {
+  constexpr double part = 0.25; // of the slope at the start
+  const Points d = unlike_flight(problem);
+  const double at_start = product(residual_, d);
+  try {
+    move_to(problem, end);
+    assemble_residual(problem);
+  } catch (const NumericalError&) { // no forces there
+    return false;
+  }
+  return std::abs(product(residual_, d)) <= part * std::abs(at_start) && turns_little(problem, end);
+}
+
+Points BalanceSolver::unlike_flight(const Problem& problem) const {
+  const bool flies = problem.constraints.held().empty() && problem.loads.acting.empty();
+  return flies ? without_mean(problem.mass, correction_) : correction_;
+}
+
+bool BalanceSolver::turns_little(const Problem& problem, const Points& x) const {
+  const Balance& b = problem.balance;
+  if (!problem.constraints.held().empty() || !problem.loads.acting.empty() || b.velocity_factor == 0)
+    return true;
+  const double dt = 1 / b.velocity_factor;
+  Points before(x.size());
+  for (std::size_t i = 0; i < x.size(); ++i)
+    before[i] = b.velocity[i] - dt * b.acceleration[i];
+  const Points r = without_mean(problem.mass, x), v = without_mean(problem.mass, velocity_),
+               v_0 = without_mean(problem.mass, before);
+  Vec3 turned = Vec3::Zero(), spin = Vec3::Zero();
+  double energy = 0, inertia = 0; // twice the kinetic energy
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const double m = problem.mass[i];
+    turned += dt * (m * v[i].cross(v_0[i]) - r[i].cross(residual_[i]));
+    spin += m * r[i].cross(v_0[i]);
+    energy += m * v_0[i].squaredNorm();
+    inertia += m * r[i].squaredNorm();
+  }
+  constexpr double own = 1.1, unseen = 1e-4; // of what the method does; of all that the energy could be
+  return turned.norm() * spin.norm() <= own * dt * dt * energy * energy + unseen * std::sqrt(energy * inertia) * spin.norm();
+}
+
+bool BalanceSolver::is_small(const Problem& problem) {
+  constexpr double part = 0.03;
+  const double decrement = product(residual_, correction_); // the square of the way that is left
+  way_ = std::sqrt(way_ * way_ + std::max(0.0, decrement));
+  return decrement >= 0 && decrement <= part * part * way_ * way_ && problem.mass_factor > 0;
 }
 
 void BalanceSolver::move_to(const Problem& problem, const Points& x) {
   const Balance& b = problem.balance;
   position_ = x;
-  model_.linearise(x);
   model_.force(x, force_);
   velocity_.resize(x.size());
   acceleration_.resize(x.size());
@@ -189,6 +273,16 @@ double BalanceSolver::round_off_of_forces(const Points& x) const {
          }));
 }
 
+double BalanceSolver::scaled_round_off() const {
+  constexpr double round_off = 8 * std::numeric_limits<double>::epsilon(), nothing = 1e-100; // squares of less underflow
+  return std::max(nothing, round_off * std::sqrt(sum_of(position_.size(), [&](const std::size_t begin, const std::size_t end) {
+           double sum = 0;
+           for (std::size_t i = begin; i < end; ++i)
+             sum += blocks_[i].trace() * position_[i].squaredNorm();
+           return sum;
+         })));
+}
+
 void BalanceSolver::apply(const Problem& problem, const std::span<const double> p, const std::span<double> y) {
   scratch_.resize(p.size());
   const std::span<double> q = scratch_;
@@ -234,14 +328,20 @@ int BalanceSolver::correct_by_cg(const Problem& problem, const Points& guess, co
     if (!guess.empty())
       d[i] = scaling_[i] * (blocks_[i] * (problem.constraints.freedom(i).project * guess[i]));
   }
-  constexpr double nothing = 1e-100; // squares of less underflow
-  const auto report =
-    conjugate_gradients([&](const auto p, const auto y) { apply(problem, p, y); }, flat(rhs),
-                        std::max(nothing, options_.cg_tolerance * scale), options_.max_cg_iterations, flat(d));
+  const double of_own = 0.5 * options_.step_tolerance; // the step's own error is half the way from the guess
+  constexpr double of_rest = 1e-2; // of what a correction may leave where others follow
+  const double left = options_.n_mixed > 0 ? of_rest * norm(rhs) : 0;
+  const CgStop stop{.residual = std::max({options_.cg_tolerance * scale, left, scaled_round_off()}),
+                    .error = of_own * way_,
+                    .of_way = guess.empty() ? 0 : of_own};
+  const auto report = conjugate_gradients([&](const auto p, const auto y) { apply(problem, p, y); }, flat(rhs), stop,
+                                          options_.max_cg_iterations, flat(d));
   if (!report.converged && !report.indefinite)
-    throw NumericalError("conjugate gradients left a relative residual of " + std::to_string(report.residual / scale) +
+    throw NumericalError("conjugate gradients left a relative residual of " + to_text(report.residual / scale) +
                          " after " + std::to_string(report.n_iterations) +
-                         " iterations. Use a smaller time step, a larger sliver floor or more iterations");
+                         " iterations. Use a smaller time step, more CG iterations or a larger CG tolerance");
+  if (!guess.empty())
+    way_ = report.way;
   correction_.resize(n);
   for (std::size_t i = 0; i < n; ++i)
     correction_[i] = scaling_[i].transpose() * d[i];
@@ -260,6 +360,23 @@ void BalanceSolver::correct_directly(const Problem& problem, const Tangent kind)
   A.setFromTriplets(entries.begin(), entries.end());
   A += problem.stiffness_factor * matrix_->stiffness_matrix(x, kind);
   solve_directly(A, problem.constraints, residual_, correction_);
+}
+
+double BalanceSolver::mixed_search(const Problem& problem, const Points& x, Mixing& mixing) {
+  constexpr double far = 0.25; // a mixed correction that must be shorter knows nothing of what lies ahead
+  if (options_.n_mixed == 0)
+    return search(problem, x);
+  std::vector<double> weight(blocks_.size());
+  for (std::size_t i = 0; i < weight.size(); ++i)
+    weight[i] = blocks_[i].trace();
+  Points plain = correction_;
+  correction_ = mixing.mixed(x, plain, weight);
+  if (product(residual_, correction_) > 0)
+    if (const double length = search(problem, x); length >= far)
+      return length;
+  mixing.forget();
+  correction_ = std::move(plain);
+  return search(problem, x);
 }
 
 double BalanceSolver::search(const Problem& problem, const Points& x) {

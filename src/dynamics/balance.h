@@ -18,8 +18,21 @@
 /// gradient method with guaranteed descent, SIAM J. Optim. 16, sec. 3): elastic energy, gravity, conservative loads,
 /// (kappa + alpha omega) M |x - x_0|^2 / 2 and so on, and for loads without a potential their work along the
 /// correction, by the trapezoidal rule.
+///
+/// A correction that is tested (Trust) costs one evaluation of forces more, and is taken where its end bears it. Its
+/// quadratic model has little slope left there: the power of what is out of balance has fallen to a quarter (curvature
+/// condition of Wolfe 1969, Convergence conditions for ascent methods), uniform motion of a free body aside, which
+/// anything follows. And what is out of balance turns a body in free flight by hardly more than what
+/// implicit Euler itself does: with x_1 = x_0 + dt v_1, the sum of x x m v changes in a step by dt times the torque at
+/// x_1 and by dt times the sum of m v_1 x v_0, which is no torque of anything, and is dt^2 (2 T)^2 / L in a spin of
+/// energy T and angular momentum L. Tangents that know a stress, but not all of how it turns, fail there.
+///
+/// Where `guess` is free motion, half the way from it to x is the error of the step itself: x_1 - x_0 - dt v_0 = dt^2
+/// a_1, and implicit Euler is wrong by dt^2 a / 2. Conjugate gradients know that way in the energy norm and need not be
+/// much better. Nothing is solved below the round-off of forces.
 
 #include "dynamics/constraints.h"
+#include "dynamics/mixing.h"
 
 #include <Eigen/SparseCore>
 
@@ -30,6 +43,12 @@ namespace kerf::dynamics {
 
 enum class LineSearch { none, backtracking };
 enum class LinearSolver { conjugate_gradients, direct };
+
+/// What to make of a correction that no line search has looked at.
+enum class Trust {
+  blind, ///< take it
+  tested ///< test it where it leads; if it does not bear that, go on from the start with a line search
+};
 
 struct NewtonOptions {
   int max_iterations = 1;
@@ -43,6 +62,10 @@ struct NewtonOptions {
   /// right-hand side, which vanishes at rest and would be solved ever more exactly there.
   double cg_tolerance = 1e-6;
   int max_cg_iterations = 2000;
+  /// Error that conjugate gradients may leave over the step's own, in the energy norm of A [1]. 0: `cg_tolerance` alone.
+  double step_tolerance = 0;
+  Trust trust = Trust::blind;
+  int n_mixed = 0; ///< corrections before that are mixed into one, see mixing.h; asks for a line search
 };
 
 /// What is to be solved. `start` obeys the supports already; velocity and acceleration are those at `start`.
@@ -59,6 +82,7 @@ struct NewtonReport {
   int n_newton = 0, n_linear = 0;
   double residual = 0;      ///< at the last iterate that was tested, see NewtonOptions::tolerance [1]
   bool converged = true;    ///< always without a tolerance
+  bool distrusted = false;  ///< Trust::tested, and the first correction did not bear it
   std::string failure = {}; ///< why not
 };
 
@@ -80,18 +104,32 @@ class BalanceSolver {
     double slope;           ///< at the trial, by the length [J]
   };
 
+  /// Linearises at x; returns the scale of what balances there, in the scaled norm.
+  double linearise_at(const Problem& problem, const Points& x);
+  /// Forces, velocities and accelerations at x; the linearisation stays.
   void move_to(const Problem& problem, const Points& x);
   void factorise(const Problem& problem);
   /// Returns the scale of what balances, in the scaled norm.
   double assemble_residual(const Problem& problem);
   double balanced_forces(const Problem& problem) const;
   double round_off_of_forces(const Points& x) const;
+  /// The same in the scaled norm.
+  double scaled_round_off() const;
   /// y = S A S^T p with the scaling S.
   void apply(const Problem& problem, std::span<const double> p, std::span<double> y);
+  /// Whether the end of the first correction bears the tests of Trust; moves to it.
+  bool bears_tests(const Problem& problem, const Points& end);
+  bool turns_little(const Problem& problem, const Points& x) const;
+  /// The correction, without its uniform part where the body flies freely, as anything follows that.
+  Points unlike_flight(const Problem& problem) const;
+  /// Whether what is left to correct is small beside the way from the guess.
+  bool is_small(const Problem& problem);
   /// Returns the iterations of the linear solver.
   int correct(const Problem& problem, const Points& guess, double scale);
   int correct_by_cg(const Problem& problem, const Points& guess, double scale);
   void correct_directly(const Problem& problem, Tangent kind);
+  /// Mixes the correction with those before, where that leads downhill and far; returns how much of it to take.
+  double mixed_search(const Problem& problem, const Points& x, Mixing& mixing);
   /// How much of the correction to take; 0 when nothing of it helps.
   double search(const Problem& problem, const Points& x);
   Change change(const Problem& problem, const Points& x, const Points& trial, double length,
@@ -110,6 +148,7 @@ class BalanceSolver {
   std::vector<Mat3> stiffness_blocks_, blocks_; // diagonals of K and of A
   std::vector<Mat3> scaling_; // L^-1 from the free directions' basis, a row of zeros for each that is held
   std::vector<double> scratch_, load_product_;
+  double way_ = 0; // from the guess to the first iterate, in the energy norm; 0: unknown
 };
 
 } // namespace kerf::dynamics

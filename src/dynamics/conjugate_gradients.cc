@@ -3,7 +3,9 @@
 #include "base/parallel.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numeric>
 
 namespace kerf::dynamics {
 
@@ -11,6 +13,31 @@ namespace {
 
 constexpr std::size_t block = 4096;     // numbers a partial sum
 constexpr std::size_t worth_blocks = 3; // from which on a second thread pays
+
+/// Of the error, by what iterations take off its square.
+class Estimate {
+ public:
+  explicit Estimate(const CgStop& stop) : stop_(stop) {}
+
+  /// The start is nearer than what was given by so much, in squares.
+  void start_nearer(const double excess) { all_ += excess; }
+  void take_off(const double square) {
+    all_ += square;
+    last_[n_++ % last_.size()] = square;
+  }
+  double way() const { return std::sqrt(all_); }
+  bool says_enough() const {
+    const double most = std::max(stop_.error * stop_.error, stop_.of_way * stop_.of_way * all_);
+    constexpr double bound_is_low = 10; // squared: what these iterations left may be more than what they took
+    return n_ >= last_.size() && bound_is_low * std::accumulate(last_.begin(), last_.end(), 0.0) <= most;
+  }
+
+ private:
+  CgStop stop_;
+  std::array<double, 8> last_ = {};
+  std::size_t n_ = 0;
+  double all_ = 0;
+};
 
 } // namespace
 
@@ -38,23 +65,31 @@ double dot(const std::span<const double> a, const std::span<const double> b) {
   });
 }
 
-CgReport conjugate_gradients(const Product& A, const std::span<const double> b, const double tolerance,
+CgReport conjugate_gradients(const Product& A, const std::span<const double> b, const CgStop& stop,
                              const int max_iterations, const std::span<double> x) {
   const std::size_t n = b.size();
   std::vector<double> r(n), p(n), Ap(n);
-  const bool from_zero = std::all_of(x.begin(), x.end(), [](const double value) { return value == 0; });
-  if (!from_zero)
+  Estimate estimate(stop);
+  const bool given = std::any_of(x.begin(), x.end(), [](const double value) { return value != 0; });
+  if (given) {
     A(x, Ap);
+    const double excess = dot(x, Ap) - 2 * dot(b, x); // of the error's square over that of zero
+    if (excess > 0) {
+      estimate.start_nearer(excess);
+      std::fill(x.begin(), x.end(), 0);
+      std::fill(Ap.begin(), Ap.end(), 0);
+    }
+  }
   for (std::size_t i = 0; i < n; ++i)
-    p[i] = r[i] = b[i] - (from_zero ? 0 : Ap[i]);
+    p[i] = r[i] = b[i] - Ap[i];
   double rr = dot(r, r);
-  CgReport report{0, std::sqrt(rr), std::sqrt(rr) <= tolerance};
+  CgReport report{.residual = std::sqrt(rr), .way = estimate.way(), .converged = std::sqrt(rr) <= stop.residual};
   while (!report.converged && report.n_iterations < max_iterations) {
     A(p, Ap);
     const double pAp = dot(p, Ap);
     if (!(pAp > 0)) {
       report.indefinite = true;
-      if (report.n_iterations == 0 && from_zero)
+      if (report.n_iterations == 0 && std::all_of(x.begin(), x.end(), [](const double value) { return value == 0; }))
         std::copy(p.begin(), p.end(), x.begin());
       return report;
     }
@@ -68,11 +103,13 @@ CgReport conjugate_gradients(const Product& A, const std::span<const double> b, 
       }
       return sum;
     });
+    estimate.take_off(alpha * rr);
     const double beta = rr_new / rr;
     rr = rr_new;
     ++report.n_iterations;
     report.residual = std::sqrt(rr);
-    report.converged = report.residual <= tolerance;
+    report.way = estimate.way();
+    report.converged = report.residual <= stop.residual || estimate.says_enough();
     parallel_ranges(n, worth_blocks * block, [&](const std::size_t begin, const std::size_t end) {
       for (std::size_t i = begin; i < end; ++i)
         p[i] = r[i] + beta * p[i];

@@ -16,18 +16,31 @@ namespace kerf::dynamics {
 double sum_of(std::size_t n, const std::function<double(std::size_t begin, std::size_t end)>& of_range);
 double dot(std::span<const double> a, std::span<const double> b);
 
+/// Where to stop: at whichever comes first. Errors are in the energy norm |e|_A = sqrt(e.Ae).
+struct CgStop {
+  double residual = 0; ///< Euclidean norm of b - A x
+  double error = 0;    ///< of x
+  double of_way = 0;   ///< error of x over the way from the x that was given to the solution [1]
+};
+
 struct CgReport {
   int n_iterations = 0;
   double residual = 0;     ///< Euclidean norm of b - A x
-  bool converged = false;  ///< residual <= tolerance
+  double way = 0;          ///< |x - x that was given|_A
+  bool converged = false;  ///< as the stop says
   bool indefinite = false; ///< stopped by a direction that the matrix does not resist
 };
 
 /// y = A p.
 using Product = std::function<void(std::span<const double> p, std::span<double> y)>;
 
-/// Solves A x = b from the x that is given, until the residual's norm is at most `tolerance`.
-CgReport conjugate_gradients(const Product& A, std::span<const double> b, double tolerance, int max_iterations,
+/// Solves A x = b from the x that is given, or from zero where that is nearer in the energy norm.
+///
+/// An iteration takes alpha |r|^2 off the error's square, exactly (Hestenes and Stiefel 1952, theorem 6:3), so what the
+/// last few took is a lower bound for the error before them that round-off does not spoil (Strakos and Tichy 2002, On
+/// error estimation in the conjugate gradient method and why it works in finite precision computations, ETNA 13), and
+/// the sum of all is the square of the way.
+CgReport conjugate_gradients(const Product& A, std::span<const double> b, const CgStop& stop, int max_iterations,
                              std::span<double> x);
 
 } // namespace kerf::dynamics

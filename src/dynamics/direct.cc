@@ -5,6 +5,9 @@
 #include <Eigen/SparseCholesky>
 #include <Eigen/SparseLU>
 
+#include <cmath>
+#include <limits>
+
 namespace kerf::dynamics {
 
 namespace {
@@ -32,13 +35,43 @@ bool is_symmetric(const Matrix& A) {
   return (A - Matrix(A.transpose())).norm() <= round_off * A.norm();
 }
 
+/// 1 / sqrt(|diagonal|): entries of any unit and size become comparable.
+Eigen::VectorXd scaling(const Matrix& A) {
+  Eigen::VectorXd s = A.diagonal().cwiseAbs();
+  for (double& value : s)
+    value = value > 0 ? 1 / std::sqrt(value) : 1;
+  return s;
+}
+
+[[noreturn]] void refuse_singular() {
+  throw NumericalError("the stiffness is singular: a part of the body is free to move, or has lost all stiffness");
+}
+
+/// A matrix with a unit diagonal has pivots between its smallest and largest eigenvalue, and a kernel leaves one that is
+/// round-off. Where the condition is bad, what the first solution leaves is solved for again.
+void require_regular(const Eigen::SimplicialLDLT<Matrix>& solver) {
+  constexpr double round_off = 64 * std::numeric_limits<double>::epsilon();
+  if (solver.info() != Eigen::Success || !(solver.vectorD().cwiseAbs().minCoeff() > round_off))
+    refuse_singular();
+}
+void require_regular(const Eigen::SparseLU<Matrix>& solver) {
+  if (solver.info() != Eigen::Success)
+    refuse_singular();
+}
+
 template <class Solver>
 Eigen::VectorXd solve_with(const Matrix& A, const Eigen::VectorXd& b) {
+  if (b.size() == 0)
+    return b;
   const Solver solver(A);
-  const Eigen::VectorXd x = solver.info() == Eigen::Success ? Eigen::VectorXd(solver.solve(b)) : Eigen::VectorXd();
+  require_regular(solver);
+  constexpr int n_refinements = 3;
   constexpr double solved = 1e-6; // what a regular matrix leaves is far below
-  if (x.size() != b.size() || !x.allFinite() || (A * x - b).norm() > solved * b.norm())
-    throw NumericalError("the stiffness is singular: a part of the body is free to move, or has lost all stiffness");
+  Eigen::VectorXd x = solver.solve(b);
+  for (int k = 0; k < n_refinements && x.allFinite(); ++k)
+    x += Eigen::VectorXd(solver.solve(b - A * x));
+  if (!x.allFinite() || (A * x - b).norm() > solved * b.norm())
+    refuse_singular();
   return x;
 }
 
@@ -46,14 +79,16 @@ Eigen::VectorXd solve_with(const Matrix& A, const Eigen::VectorXd& b) {
 
 void solve_directly(const Matrix& A, const Constraints& constraints, const Points& force, Points& d) {
   const Matrix T = free_directions(constraints);
-  const Matrix reduced = T.transpose() * A * T;
+  Matrix reduced = T.transpose() * A * T;
+  const Eigen::VectorXd scale = scaling(reduced);
+  reduced = scale.asDiagonal() * reduced * scale.asDiagonal();
   const Eigen::Map<const Eigen::VectorXd> f(force.empty() ? nullptr : force[0].data(),
                                             static_cast<Eigen::Index>(3 * force.size()));
-  const Eigen::VectorXd b = T.transpose() * f;
+  const Eigen::VectorXd b = scale.cwiseProduct(T.transpose() * f);
   const Eigen::VectorXd y = is_symmetric(reduced) ? solve_with<Eigen::SimplicialLDLT<Matrix>>(reduced, b)
                                                   : solve_with<Eigen::SparseLU<Matrix>>(reduced, b);
   d.resize(force.size());
-  Eigen::Map<Eigen::VectorXd>(d.empty() ? nullptr : d[0].data(), f.size()) = T * y;
+  Eigen::Map<Eigen::VectorXd>(d.empty() ? nullptr : d[0].data(), f.size()) = T * scale.cwiseProduct(y);
 }
 
 } // namespace kerf::dynamics

@@ -4,7 +4,16 @@ namespace kerf::dynamics {
 
 ImplicitEulerOptions implicit_euler_options(const NewtonParameters& parameters) {
   const NewtonOptions o = parameters.options();
-  return {o.max_iterations, o.cg_tolerance, o.max_cg_iterations, o.tolerance, o.line_search, o.solver, o.tangent};
+  constexpr double of_step = 1e3; // what is left of forces over what is left of the step's own error
+  return {.n_newton = o.max_iterations,
+          .cg_tolerance = o.cg_tolerance,
+          .max_cg_iterations = o.max_cg_iterations,
+          .newton_tolerance = o.tolerance,
+          .line_search = o.line_search,
+          .solver = o.solver,
+          .tangent = o.tangent,
+          .step_tolerance = of_step * o.cg_tolerance,
+          .trust = Trust::tested};
 }
 
 ImplicitEuler::ImplicitEuler(ElasticModel& model, const ImplicitEulerOptions& o)
@@ -14,7 +23,9 @@ ImplicitEuler::ImplicitEuler(ElasticModel& model, const ImplicitEulerOptions& o)
                                  .solver = o.solver,
                                  .tangent = o.tangent,
                                  .cg_tolerance = o.cg_tolerance,
-                                 .max_cg_iterations = o.max_cg_iterations}) {}
+                                 .max_cg_iterations = o.max_cg_iterations,
+                                 .step_tolerance = o.step_tolerance,
+                                 .trust = o.trust}) {}
 
 StepReport ImplicitEuler::step(State& state, const Loads& loads, const double dt) {
   const std::size_t n = state.x.size();

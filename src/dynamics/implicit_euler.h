@@ -5,8 +5,8 @@
 ///     M (x - x_n - dt v_n) / dt^2 + (alpha M + beta K) (x - x_n) / dt = f(x) + M g + loads
 ///
 /// for x at the end of the step by Newton's method from x_n (balance.h), with free motion as first guess of conjugate
-/// gradients. First order, dissipative, stable for every dt. With a tolerance and a line search it unfolds what one
-/// iteration does not.
+/// gradients. First order, dissipative, stable for every dt. A scene's step tests its first correction, and goes on with a
+/// line search where that does not bear it (Trust::tested).
 
 #include "dynamics/newton_parameters.h"
 #include "dynamics/stepper.h"
@@ -21,6 +21,8 @@ struct ImplicitEulerOptions {
   LineSearch line_search = LineSearch::none;
   LinearSolver solver = LinearSolver::conjugate_gradients;
   Tangent tangent = Tangent::positive; ///< what the direct solver factorises
+  double step_tolerance = 0;           ///< NewtonOptions::step_tolerance
+  Trust trust = Trust::blind;          ///< NewtonOptions::trust
 };
 ImplicitEulerOptions implicit_euler_options(const NewtonParameters& parameters);
 

@@ -49,6 +49,8 @@ QuasiStaticOptions QuasiStaticParameters::options() const {
   o.newton.tangent = tangent == "exact" ? Tangent::exact : Tangent::positive;
   o.newton.cg_tolerance = cg_tolerance;
   o.newton.max_cg_iterations = max_cg_iterations;
+  if (o.newton.tangent == Tangent::exact)
+    o.newton.n_mixed = 0;
   return o;
 }
 

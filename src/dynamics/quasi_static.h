@@ -1,7 +1,8 @@
 #pragma once
 
 /// Statics: a step goes to the equilibrium of the loads and supports of its end, whatever inertia and damping would
-/// say, by Newton's method with a line search (balance.h).
+/// say, by Newton's method with a line search (balance.h), whose corrections are mixed (mixing.h) unless the tangent is
+/// the exact one.
 ///
 /// When it does not converge, the way is divided: with r_0 the forces out of balance at the start and s from 0 to 1,
 /// supports go the part s of their way and r = (1 - s) r_0 is solved, so that s = 0 is where the body stands. Forces
@@ -22,7 +23,8 @@ struct QuasiStaticOptions {
                        .tolerance = 1e-7,
                        .line_search = LineSearch::backtracking,
                        .cg_tolerance = 1e-9,
-                       .max_cg_iterations = 20000};
+                       .max_cg_iterations = 20000,
+                       .n_mixed = 8};
   FreeModes free_modes = FreeModes::refuse;
   std::vector<std::uint32_t> piece = {}; ///< of each corner, 0, 1, ...; empty: one piece
 };

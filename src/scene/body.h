@@ -64,6 +64,7 @@ struct Body {
   dynamics::State state = {}; ///< of the particles of its physics
   dynamics::Loads loads = {};
   dynamics::StepReport report = {}; ///< of the last step
+  int n_divided = 0;                ///< steps so far that were taken again in substeps
   std::vector<SupportRegion> regions = {};
   std::vector<LoadMaker> load_makers = {};
   std::vector<std::size_t> first_load = {}; ///< of each maker in loads.acting, and their end

@@ -3,6 +3,7 @@
 #include "dynamics/bdf2.h"
 #include "dynamics/explicit_steppers.h"
 #include "dynamics/implicit_euler.h"
+#include "dynamics/sound_steps.h"
 #include "dynamics/symplectic_euler.h"
 #include "scene/grammar_physics.h"
 
@@ -19,6 +20,15 @@ struct Implicit {
   int order; ///< of its error
 };
 
+/// Watches the energy of an integrator's steps, and divides those that gain some.
+physics::StepperMaker sound(const physics::StepperMaker& make, const dynamics::SoundOptions& options) {
+  return [=](ElasticModel& model, const PiecesOfParticles& pieces) -> Stepper {
+    return std::make_unique<dynamics::SoundSteps>(model, make(model, pieces), options);
+  };
+}
+
+constexpr dynamics::SoundOptions as_they_are{.most_substeps = 1};
+
 /// `make` gets the model, and the integrator's own settings.
 template <class Fields, class Make>
 Implicit implicit(const Section& body, const std::string& section, const int order, const Make& make) {
@@ -29,8 +39,10 @@ Implicit implicit(const Section& body, const std::string& section, const int ord
 template <class Explicit>
 Integrator explicit_integrator(const Section& body, const std::string& section) {
   const auto options = read_if_written<dynamics::ExplicitParameters>(body, section).options();
-  return {[=](ElasticModel& model, const PiecesOfParticles&) { return std::make_unique<Explicit>(model, options); },
-          fem::Inertia::extended};
+  const auto make = [=](ElasticModel& model, const PiecesOfParticles&) -> Stepper {
+    return std::make_unique<Explicit>(model, options);
+  };
+  return {sound(make, as_they_are), fem::Inertia::extended};
 }
 
 Integrator quasi_static(const Section& body) {
@@ -69,13 +81,16 @@ Implicit implicit_integrator(const Section& body, const std::string& name) {
 }
 
 Integrator with_adaptive_step(const Section& body, const Implicit& implicit) {
-  if (!body.find("Adaptive step"))
-    return implicit.integrator;
+  if (!body.find("Adaptive step")) {
+    Integrator divided = implicit.integrator;
+    divided.make = sound(implicit.integrator.make, {});
+    return divided;
+  }
   const auto parameters = read_if_written<dynamics::AdaptiveParameters>(body, "Adaptive step");
   Integrator adaptive = implicit.integrator;
   adaptive.make = [=](ElasticModel& model, const PiecesOfParticles& pieces) {
-    return std::make_unique<dynamics::AdaptiveStepper>(implicit.integrator.make(model, pieces), implicit.order,
-                                                       parameters);
+    return std::make_unique<dynamics::AdaptiveStepper>(sound(implicit.integrator.make, as_they_are)(model, pieces),
+                                                       implicit.order, parameters);
   };
   return adaptive;
 }

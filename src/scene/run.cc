@@ -1,27 +1,12 @@
 #include "scene/run.h"
 
 #include "base/error.h"
-#include "base/parameters.h"
-
-#include <algorithm>
-#include <cmath>
+#include "dynamics/sound_steps.h"
+#include "scene/soundness.h"
 
 namespace kerf::scene {
 
 namespace {
-
-/// A step that throws a corner across a whole neighbourhood of its body has diverged, long before numbers overflow.
-void require_sound(const Body& body, const double dt) {
-  constexpr double cells_per_step = 1e4;
-  double fastest = 0, sum = 0;
-  for (std::size_t i = 0; i < body.state.x.size(); ++i) {
-    sum += body.state.x[i].sum();
-    fastest = std::max(fastest, body.state.v[i].norm());
-  }
-  if (!std::isfinite(sum) || fastest * dt > cells_per_step * body.solid.grid.h())
-    throw NumericalError("the motion has diverged: the fastest corner moves at " + to_text(fastest) +
-                         " m/s. Use a smaller time step");
-}
 
 /// Runs `action` on a body; an error says which body, step and time, and where the scene sets a time step that is
 /// refused.
@@ -32,6 +17,9 @@ void on(const World& world, const Body& body, const int step, const double time,
   };
   try {
     action();
+  } catch (const dynamics::StepError& error) {
+    throw NumericalError(place() + error.what() + ". It shows most at " + particle_at(body, error.particle()) +
+                         ". Use a smaller time step or a stiffer material, or smaller loads");
   } catch (const NumericalError& error) {
     throw NumericalError(place() + error.what());
   } catch (const ParameterError& error) {
@@ -80,14 +68,17 @@ void advance(World& world, const int step, Timings& seconds) {
       if (body.accounts)
         body.accounts->before_step(body.state);
       body.report = body.physics->step(body.state, body.loads, dt);
-      require_sound(body, dt);
+      require_sound_motion(body, dt);
+      body.n_divided += body.report.n_substeps > 1 && body.report.n_rejected > 0 ? 1 : 0;
       if (body.accounts)
         body.accounts->after_step(*body.physics, body.loads, body.state);
     });
   }
-  for (Body& body : world.bodies) {
+  world.watches.resize(world.bodies.size());
+  for (std::size_t b = 0; b < world.bodies.size(); ++b) {
     const ScopedTimer timer(seconds, "surface");
-    follow(body);
+    follow(world.bodies[b]);
+    on(world, world.bodies[b], step, t1, [&] { require_sound_volume(world.bodies[b], world.watches[b]); });
   }
 }
 

@@ -7,6 +7,7 @@
 #include "scene/forceps.h"
 #include "scene/grammar.h"
 #include "scene/observables.h"
+#include "scene/soundness.h"
 
 #include <memory>
 #include <optional>
@@ -46,6 +47,7 @@ struct World {
   Place time_step_place = {};
   int n_steps = 0;
   std::vector<Body> bodies;
+  std::vector<Watch> watches = {}; ///< of the bodies, from the first step on
   std::vector<cut::Blade> blades; ///< those of scissors come last, in pairs
   std::vector<ScissorsHandles> scissors;
   std::vector<Forceps> forceps;

@@ -1,0 +1,212 @@
+#include "dynamics/sound_steps.h"
+
+#include "base/error.h"
+#include "dynamics/constraints.h"
+#include "dynamics/forces.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+
+namespace kerf::dynamics {
+
+namespace {
+
+void add(StepReport& sum, const StepReport& part) {
+  sum.n_iterations += part.n_iterations;
+  sum.n_newton += part.n_newton;
+  sum.n_substeps += part.n_substeps;
+  sum.n_rejected += part.n_rejected;
+  sum.stable_step = part.stable_step;
+  sum.residual = std::max(sum.residual, part.residual);
+}
+
+/// Of the motion beside the mean one [J].
+double inner_kinetic_energy(const ForceModel& model, const Points& v) {
+  Vec3 momentum = Vec3::Zero();
+  double mass = 0;
+  const auto masses = model.lumped_mass();
+  for (std::size_t i = 0; i < v.size(); ++i) {
+    momentum += masses[i] * v[i];
+    mass += masses[i];
+  }
+  return std::max(0.0, kinetic_energy(model, v) - (mass > 0 ? 0.5 * momentum.squaredNorm() / mass : 0));
+}
+
+bool drives(const Loads& loads) {
+  return std::any_of(loads.acting.begin(), loads.acting.end(),
+                     [](const auto& load) { return load->nature() == Nature::driving; });
+}
+
+/// Work that driving loads would do along the step with their forces at a state.
+double work_of_driving_loads(const Loads& loads, const State& at, const State& before, const State& after) {
+  Points forces(at.x.size(), Vec3::Zero());
+  for (const auto& load : loads.acting)
+    if (load->nature() == Nature::driving)
+      load->add_force({at.time, at.x, at.v}, forces);
+  double sum = 0;
+  for (std::size_t i = 0; i < forces.size(); ++i)
+    sum += forces[i].dot(after.x[i] - before.x[i]);
+  return sum;
+}
+
+/// Work of supports along the step with what the balance of forces lacks at a state.
+double work_of_supports(const ForceModel& model, const Loads& loads, const Constraints& constraints, const State& at,
+                        const State& before, const State& after) {
+  Points forces;
+  model.force(at.x, forces);
+  add_load_forces(loads, {at.time, at.x, at.v}, forces);
+  const auto mass = model.lumped_mass();
+  const double dt = after.time - before.time;
+  double sum = 0;
+  for (const auto& held : constraints.held()) {
+    const auto i = held.corner;
+    const Vec3 moved = after.x[i] - before.x[i];
+    sum -= (forces[i] + mass[i] * loads.gravity).dot(moved - constraints.freedom(i).project * moved);
+    const Vec3 v = 0.5 * (after.v[i] + before.v[i]); // the kinetic energy's growth, see Accounts of a scene
+    sum += mass[i] * (after.v[i] - before.v[i]).dot(v - constraints.freedom(i).project * v);
+    sum += dt * loads.mass_damping * mass[i] * after.v[i].squaredNorm();
+  }
+  return sum;
+}
+
+bool supports_move(const Constraints& constraints, const State& before, const State& after) {
+  return std::any_of(constraints.held().begin(), constraints.held().end(), [&](const auto& held) {
+    const auto i = held.corner;
+    const Vec3 moved = after.x[i] - before.x[i];
+    return moved != constraints.freedom(i).project * moved || before.v[i] != after.v[i];
+  });
+}
+
+double work_on(const ForceModel& model, const Loads& loads, const State& before, const State& after) {
+  double work = 0;
+  if (drives(loads))
+    work += std::max({0.0, work_of_driving_loads(loads, before, before, after),
+                      work_of_driving_loads(loads, after, before, after)});
+  const Constraints constraints(loads, after.x.size());
+  if (supports_move(constraints, before, after))
+    work += std::max({0.0, work_of_supports(model, loads, constraints, before, before, after),
+                      work_of_supports(model, loads, constraints, after, before, after)});
+  const auto by_time = [&](const Points& x) { // of potentials that change with time
+    return load_energy(loads, after.time, x) - load_energy(loads, before.time, x);
+  };
+  return loads.acting.empty() ? work : work + std::max({0.0, by_time(before.x), by_time(after.x)});
+}
+
+double mass_of(const ForceModel& model) {
+  double sum = 0;
+  for (const double m : model.lumped_mass())
+    sum += m;
+  return sum;
+}
+
+/// The particle that leaves free motion most.
+std::size_t most_thrown(const State& before, const State& after) {
+  std::size_t most = 0;
+  double largest = 0;
+  for (std::size_t i = 0; i < after.x.size(); ++i)
+    if (const double change = (after.v[i] - before.v[i]).squaredNorm(); change > largest) {
+      largest = change;
+      most = i;
+    }
+  return most;
+}
+
+std::size_t fastest(const State& state) {
+  const auto slower = [](const Vec3& a, const Vec3& b) { return a.squaredNorm() < b.squaredNorm(); };
+  return static_cast<std::size_t>(std::max_element(state.v.begin(), state.v.end(), slower) - state.v.begin());
+}
+
+std::string in_short(const double value) {
+  std::array<char, 32> text;
+  std::snprintf(text.data(), text.size(), "%.3g", value);
+  return text.data();
+}
+
+std::string per_cent(const double part) { return in_short(100 * part) + " %"; }
+
+} // namespace
+
+void require_finite(const State& state) {
+  for (std::size_t i = 0; i < state.x.size(); ++i)
+    if (!state.x[i].allFinite() || !state.v[i].allFinite())
+      throw StepError("a position or a velocity is no longer finite", i);
+}
+
+EnergyChange energy_change(ForceModel& model, const Loads& loads, const State& before, const State& after) {
+  const double elastic_0 = model.energy(before.x), elastic_1 = model.energy(after.x),
+               kinetic_0 = kinetic_energy(model, before.v), kinetic_1 = kinetic_energy(model, after.v),
+               load_0 = load_energy(loads, before.time, before.x), load_1 = load_energy(loads, after.time, after.x),
+               gravity_0 = gravity_energy(model, loads, before.x), gravity_1 = gravity_energy(model, loads, after.x),
+               work = work_on(model, loads, before, after), dt = after.time - before.time;
+  constexpr double drowned = 1e-9; // see balance.cc: of energies whose difference counts
+  return {.gained = elastic_1 - elastic_0 + (kinetic_1 - kinetic_0) + (load_1 - load_0) + (gravity_1 - gravity_0) - work,
+          .dealt = inner_kinetic_energy(model, before.v) + inner_kinetic_energy(model, after.v) +
+                   elastic_0 + elastic_1 + std::abs(load_1 - load_0) + work,
+          .shift = 4 * mass_of(model) * loads.gravity.squaredNorm() * dt * dt +
+                   drowned * (kinetic_0 + kinetic_1 + elastic_0 + elastic_1 + std::abs(gravity_0) +
+                              std::abs(gravity_1) + std::abs(load_0) + std::abs(load_1)),
+          .inner = kinetic_1 + elastic_1};
+}
+
+StepReport SoundSteps::checked(State& state, const Loads& loads, const double dt) {
+  constexpr double most = 0.25, most_in_sum = 0.9;
+  State after = state;
+  const StepReport report = stepper_->step(after, loads, dt);
+  require_finite(after);
+  const EnergyChange change = energy_change(model_, loads, state, after);
+  if (!(change.gained <= most * change.dealt + change.shift))
+    throw StepError("the step gained " + in_short(change.gained) + " J that no load and no support gave, " +
+                      per_cent(change.gained / change.dealt) + " of the energy that it dealt with",
+                    most_thrown(state, after));
+  double& sum = after.numbers["energy gained [J]"];
+  sum = std::max(0.0, sum + change.gained);
+  if (!(sum <= most_in_sum * change.inner + change.shift))
+    throw StepError("the integrator has gained " + per_cent(sum / change.inner) +
+                      " of the body's kinetic and elastic energy, step by step: the motion is no more the body's",
+                    most_thrown(state, after));
+  state = std::move(after);
+  return report;
+}
+
+StepReport SoundSteps::divided(State& state, const Loads& loads, const double dt, const int n) {
+  const double start = state.time;
+  StepReport sum;
+  for (int k = 1; k <= n; ++k)
+    add(sum, checked(state, loads, (start + k * dt / n) - state.time));
+  state.time = start + dt;
+  if (n > 1)
+    sum.n_substeps = n;
+  return sum;
+}
+
+StepReport SoundSteps::step(State& state, const Loads& loads, const double dt) {
+  std::optional<StepError> first;
+  const auto keep = [&](const std::string& reason, const std::size_t particle) {
+    if (!first)
+      first.emplace(reason, particle);
+  };
+  int n_rejected = 0;
+  for (int n = 1; n <= options_.most_substeps; n *= 2, ++n_rejected) {
+    State trial = state;
+    try {
+      StepReport report = divided(trial, loads, dt, n);
+      report.n_rejected += n_rejected;
+      state = std::move(trial);
+      return report;
+    } catch (const StepError& error) {
+      keep(error.what(), error.particle());
+    } catch (const NumericalError& error) {
+      keep(error.what(), fastest(state));
+    }
+  }
+  if (options_.most_substeps == 1)
+    throw *first;
+  throw StepError(std::string(first->what()) + ". " + std::to_string(options_.most_substeps) +
+                    " substeps do not mend it",
+                  first->particle());
+}
+
+} // namespace kerf::dynamics

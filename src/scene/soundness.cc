@@ -1,0 +1,133 @@
+#include "scene/soundness.h"
+
+#include "base/error.h"
+#include "dynamics/forces.h"
+#include "grid/shape.h"
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace kerf::scene {
+
+namespace {
+
+std::string in_short(const double value) {
+  std::array<char, 32> text;
+  std::snprintf(text.data(), text.size(), "%.4g", value);
+  return text.data();
+}
+
+std::string place(const Vec3& p) {
+  return "(" + in_short(p[0]) + ", " + in_short(p[1]) + ", " + in_short(p[2]) + ") m";
+}
+
+Vec3 mean_velocity(const dynamics::ForceModel& model, const Points& v) {
+  const auto mass = model.lumped_mass();
+  Vec3 momentum = Vec3::Zero();
+  double all = 0;
+  for (std::size_t i = 0; i < v.size(); ++i) {
+    momentum += mass[i] * v[i];
+    all += mass[i];
+  }
+  return all > 0 ? Vec3(momentum / all) : Vec3(Vec3::Zero());
+}
+
+/// Signed volume of each piece that the surface bounds, with its vertices at `points`.
+std::vector<double> piece_volumes(const Body& body, const Watch& watch, const Points& points) {
+  std::vector<double> volumes(watch.rest_volumes.size(), 0);
+  for (std::size_t t = 0; t < body.surface.triangles.size(); ++t) {
+    const Triangle& v = body.surface.triangles[t];
+    volumes[watch.piece_of_triangle[t]] += points[v[0]].dot(points[v[1]].cross(points[v[2]])) / 6;
+  }
+  return volumes;
+}
+
+void bring_up_to_date(const Body& body, Watch& watch) {
+  if (watch.n_recuts == body.n_recuts)
+    return;
+  watch.n_recuts = body.n_recuts;
+  const std::vector<std::uint32_t> pieces = physics::corner_pieces(body.complex);
+  watch.piece_of_triangle.clear();
+  for (const grid::CopyId copy : body.surface.copies)
+    watch.piece_of_triangle.push_back(pieces[body.complex.copies[copy].corners[0].value]);
+  watch.rest_volumes.assign(pieces.empty() ? 0 : 1 + *std::max_element(pieces.begin(), pieces.end()), 0);
+  watch.rest_volumes = piece_volumes(body, watch, body.surface.rest);
+}
+
+/// det F in the middle of a copy.
+double volume_ratio(const Body& body, const grid::Copy& copy) {
+  Mat3 F = Mat3::Zero();
+  for (int v = 0; v < 8; ++v)
+    F += corners(body)[copy.corners[v].value] *
+         (grid::shape_gradient(v, Vec3::Constant(0.5)) / body.grid.h()).transpose();
+  return F.determinant();
+}
+
+std::string worst_copy(const Body& body, const Watch& watch, const std::uint32_t piece) {
+  std::size_t worst = 0;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t t = 0; t < watch.piece_of_triangle.size(); ++t)
+    if (watch.piece_of_triangle[t] == piece) {
+      const grid::CopyId copy = body.surface.copies[t];
+      if (const double ratio = volume_ratio(body, body.complex.copies[copy]); ratio < least) {
+        least = ratio;
+        worst = copy.value;
+      }
+    }
+  const grid::CellId cell = body.complex.copies[grid::CopyId(static_cast<std::uint32_t>(worst))].cell;
+  const Vec3 middle = body.grid.position(body.grid.nodes(cell)[0]) + Vec3::Constant(0.5 * body.grid.h());
+  return "copy " + std::to_string(worst) + ", whose cube rests around " + place(middle);
+}
+
+} // namespace
+
+std::string particle_at(const Body& body, const std::size_t particle) {
+  const Points& rest = body.physics->rest();
+  return "particle " + std::to_string(particle) +
+         (particle < rest.size() ? ", which rests at " + place(rest[particle]) : "");
+}
+
+void require_sound_motion(const Body& body, const double dt) {
+  const dynamics::ForceModel& model = body.physics->model();
+  const Vec3 mean = mean_velocity(model, body.state.v);
+  const auto held = dynamics::held_corners(body.loads, body.state.x.size());
+  std::size_t fastest = 0;
+  double speed = 0;
+  for (std::size_t i = 0; i < body.state.x.size(); ++i) {
+    if (!body.state.x[i].allFinite() || !body.state.v[i].allFinite())
+      throw NumericalError("the motion has diverged: " + particle_at(body, i) + ", has no finite place any more");
+    if (const double own = (body.state.v[i] - mean).norm(); !held[i] && own > speed) {
+      speed = own;
+      fastest = i;
+    }
+  }
+  if (speed * dt <= body.grid.h())
+    return;
+  const double eighth = body.density * std::pow(body.grid.h(), 3) / 8,
+               energy = dynamics::kinetic_energy(model, body.state.v) + model.energy(body.state.x);
+  if (0.5 * eighth * speed * speed > energy)
+    throw NumericalError("the motion has diverged: " + particle_at(body, fastest) + ", moves at " + in_short(speed) +
+                         " m/s, faster than all energy of the body (" + in_short(energy) +
+                         " J) could move an eighth of a cube. Use a smaller time step");
+}
+
+void require_sound_volume(const Body& body, Watch& watch) {
+  constexpr double most = 10;
+  bring_up_to_date(body, watch);
+  const std::vector<double> now = piece_volumes(body, watch, body.positions);
+  for (std::uint32_t p = 0; p < now.size(); ++p) {
+    const double rest = watch.rest_volumes[p], ratio = now[p] / rest;
+    if (rest < std::pow(body.grid.h(), 3) || (ratio > 0 && ratio < most))
+      continue;
+    throw NumericalError("piece " + std::to_string(p) + " is " + (ratio > 0 ? "blown up" : "inside out") +
+                         ": its volume is " + in_short(100 * ratio) + " % of that at rest. Worst is " +
+                         worst_copy(body, watch, p) +
+                         ". What acts on it is more than its material bears: use a stiffer material or smaller loads");
+  }
+}
+
+} // namespace kerf::scene

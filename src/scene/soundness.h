@@ -1,0 +1,30 @@
+#pragma once
+
+/// Whether a body may still be what it says: asked after each step, of every backend and integrator.
+///
+/// Three things no elastic body does. A particle without a finite place. A particle that crosses more than a cube in a
+/// step against the mean motion while all kinetic and elastic energy of the body could not move an eighth of a full
+/// cube, which is the least that a corner of whole cubes has, that fast: what moves so is lighter than anything that
+/// the grid resolves. And a piece that is inside out, or blown up to ten times its volume.
+
+#include "scene/body.h"
+
+namespace kerf::scene {
+
+/// What is known of the pieces of a body's surface; brought up to date after cuts.
+struct Watch {
+  int n_recuts = -1;
+  std::vector<std::uint32_t> piece_of_triangle;
+  std::vector<double> rest_volumes; ///< of each piece [m^3]
+};
+
+/// After a step of dt [s], before the surface follows. Throws NumericalError that names the particle and its place.
+void require_sound_motion(const Body& body, double dt);
+/// After the surface followed. Pieces below a cube's volume are left out. Throws NumericalError that names the piece,
+/// its worst copy and its place.
+void require_sound_volume(const Body& body, Watch& watch);
+
+/// "particle 12, which rests at (0.1, 0.2, 0.3) m".
+std::string particle_at(const Body& body, std::size_t particle);
+
+} // namespace kerf::scene

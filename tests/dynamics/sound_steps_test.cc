@@ -1,0 +1,176 @@
+/// Steps that are watched: gains of energy, where they show, and what linear solves may leave.
+
+#include "dynamics/sound_steps.h"
+
+#include "dynamics/conjugate_gradients.h"
+#include "dynamics/explicit_steppers.h"
+#include "dynamics/forces.h"
+#include "dynamics/implicit_euler.h"
+#include "dynamics/mixing.h"
+#include "tests/dynamics/chain.h"
+#include "tests/dynamics/truss.h"
+
+#include <gtest/gtest.h>
+#include <Eigen/Dense>
+#include <Eigen/Geometry>
+
+#include <cmath>
+#include <random>
+
+namespace kerf::dynamics {
+namespace {
+
+constexpr ExplicitOptions go_on{BeyondStable::go_on};
+
+double energy(const ForceModel& model, const State& state) {
+  return model.energy(state.x) + kinetic_energy(model, state.v);
+}
+
+/// Explicit Euler multiplies a vibration's energy by 1 + (w dt)^2 a step: divided by n, by (1 + (w dt / n)^2)^n.
+TEST(SoundSteps, DivideAStepThatGainsEnergy) {
+  Chain model({1, 1, 1}, {.anchor = 100});
+  SoundSteps stepper(model, std::make_unique<ExplicitEuler>(model, go_on), {});
+  State state = model.state();
+  state.x[1] += Vec3(0.1, 0, 0);
+  const double before = energy(model, state), square = 100 * 0.2 * 0.2;
+  const StepReport report = stepper.step(state, {}, 0.2);
+  const double n = report.n_substeps;
+  EXPECT_GT(n, 1);
+  EXPECT_EQ(report.n_rejected, std::log2(n));
+  EXPECT_NEAR(energy(model, state) / before, std::pow(1 + square / (n * n), n), 1e-9);
+  EXPECT_NEAR(state.time, 0.2, 1e-15);
+}
+
+TEST(SoundSteps, SayWhereAStepCannotBeMended) {
+  Chain model({1, 1, 1}, {.anchor = 100});
+  SoundSteps stepper(model, std::make_unique<ExplicitEuler>(model, go_on), {.most_substeps = 1});
+  State state = model.state();
+  state.x[1] += Vec3(0.1, 0, 0);
+  const State before = state;
+  try {
+    stepper.step(state, {}, 0.2);
+    FAIL() << "a step of 16 times the energy passed";
+  } catch (const StepError& error) {
+    EXPECT_EQ(error.particle(), 1u);
+    EXPECT_NE(std::string(error.what()).find("gained"), std::string::npos) << error.what();
+  }
+  EXPECT_EQ(state.x, before.x);
+  EXPECT_EQ(state.time, before.time);
+}
+
+/// Each step gains less than anyone would mind; together they do.
+TEST(SoundSteps, RefuseAMotionThatGrowsStepByStep) {
+  Chain model({1}, {.anchor = 100});
+  SoundSteps stepper(model, std::make_unique<ExplicitEuler>(model, go_on), {.most_substeps = 1});
+  State state = model.state();
+  state.x[0] += Vec3(0.1, 0, 0);
+  const double before = energy(model, state);
+  EXPECT_THROW(
+    for (int i = 0; i < 3000; ++i) stepper.step(state, {}, 0.005);, StepError);
+  EXPECT_LT(energy(model, state), 15 * before); // else it grows to 1e3 times and more
+  EXPECT_GT(energy(model, state), 5 * before);
+}
+
+/// Gravity, moving supports and dampers give and take: none of it passes for a gain.
+TEST(SoundSteps, LetWorkPass) {
+  for (const double dt : {1e-3, 0.01, 0.1}) {
+    Chain model({1, 2, 1}, {.neighbour = 100});
+    SoundSteps stepper(model, std::make_unique<ImplicitEuler>(model, ImplicitEulerOptions{.cg_tolerance = 1e-12}),
+                       {.most_substeps = 1});
+    Loads loads{.gravity = Vec3(0, 0, -9.81), .mass_damping = 0.2, .stiffness_damping = 0.01, .supports = {}};
+    loads.supports = {{{0}, {model.rest()[0]}, [](const double t) { return Vec3(std::sin(20 * t), t * t, t); }}};
+    State state = model.state();
+    for (int i = 0; i < 300; ++i)
+      ASSERT_NO_THROW(stepper.step(state, loads, dt)) << "dt " << dt << ", step " << i;
+  }
+}
+
+TEST(SoundSteps, NameAParticleThatIsNowhere) {
+  State state{{Vec3::Zero(), Vec3::Zero()}, {Vec3::Zero(), Vec3(0, std::nan(""), 0)}, 0};
+  try {
+    require_finite(state);
+    FAIL() << "passed";
+  } catch (const StepError& error) {
+    EXPECT_EQ(error.particle(), 1u);
+  }
+}
+
+struct System {
+  Eigen::MatrixXd A;
+  Eigen::VectorXd b, solution;
+  explicit System(const unsigned seed, const Eigen::Index n = 300) {
+    std::mt19937 random(seed);
+    std::normal_distribution<double> normal;
+    A = Eigen::MatrixXd::Zero(n, n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      A(i, i) = 2 + 1e-4 * (1 + i % 7);
+      if (i > 0)
+        A(i, i - 1) = A(i - 1, i) = -1;
+    }
+    solution = Eigen::VectorXd(n).unaryExpr([&](double) { return normal(random); });
+    b = A * solution;
+  }
+  double size(const Eigen::VectorXd& e) const { return std::sqrt(e.dot(A * e)); }
+  CgReport solve(const CgStop& stop, Eigen::VectorXd& x) const {
+    return conjugate_gradients(
+      [&](const auto p, const auto y) {
+        Eigen::Map<Eigen::VectorXd>(y.data(), b.size()) = A * Eigen::Map<const Eigen::VectorXd>(p.data(), b.size());
+      },
+      {b.data(), static_cast<std::size_t>(b.size())}, stop, 10000, {x.data(), static_cast<std::size_t>(x.size())});
+  }
+};
+
+/// The error that is left is what was asked for, in the norm in which it was asked for; and it did cost less.
+TEST(ConjugateGradients, StopByTheErrorInEnergy) {
+  for (const unsigned seed : {1u, 2u, 3u})
+    for (const double part : {1e-1, 1e-2, 1e-3, 1e-4}) {
+      const System system(seed);
+      Eigen::VectorXd x = 0.9 * system.solution, start = x, exact = x;
+      const CgReport report = system.solve({.of_way = part}, x), full = system.solve({.residual = 1e-10}, exact);
+      EXPECT_TRUE(report.converged);
+      EXPECT_LE(system.size(x - system.solution), part * system.size(start - system.solution));
+      EXPECT_LT(report.n_iterations, full.n_iterations);
+      EXPECT_NEAR(report.way, system.size(x - start), 1e-6 * report.way);
+    }
+}
+
+/// From a guess that is worse than nothing it starts at zero, and knows how far that was.
+TEST(ConjugateGradients, StartNearer) {
+  const System system(4);
+  Eigen::VectorXd x = 100 * Eigen::VectorXd::Random(system.b.size()), zero = Eigen::VectorXd::Zero(x.size());
+  const Eigen::VectorXd start = x;
+  const CgReport report = system.solve({.residual = 1e-8}, x), from_zero = system.solve({.residual = 1e-8}, zero);
+  EXPECT_EQ(report.n_iterations, from_zero.n_iterations);
+  EXPECT_NEAR(report.way, system.size(start - system.solution), 1e-6 * report.way);
+}
+
+/// A stiff bar that turns by a fifth of a turn in a step: the tangent sends its end on straight, the equation does not.
+TEST(ImplicitEuler, DoesNotStretchWhatTurns) {
+  const auto length_after = [](const Trust trust) {
+    Truss bar({Vec3(-1, 0, 0), Vec3(1, 0, 0)}, {{0, 1}}, 1e6);
+    ImplicitEuler stepper(bar, {.cg_tolerance = 1e-10, .trust = trust});
+    State state = bar.state();
+    state.v = {Vec3(0, -1.2, 0), Vec3(0, 1.2, 0)};
+    const StepReport report = stepper.step(state, {}, 1);
+    EXPECT_EQ(report.n_newton > 1, trust == Trust::tested);
+    return (state.x[1] - state.x[0]).norm();
+  };
+  EXPECT_GT(length_after(Trust::blind), 3);
+  EXPECT_NEAR(length_after(Trust::tested), 2, 0.02);
+}
+
+/// A linear fixed-point map x -> x + d(x) with as many slow directions as it remembers: solved after one more.
+TEST(Mixing, SolvesWhatItHasSeen) {
+  const Vec3 rates(0.01, 0.05, 0.2), answer(1, -2, 3);
+  const std::vector<double> weight = {1};
+  Mixing mixing(4);
+  Points x = {Vec3::Zero()};
+  for (int k = 0; k < 5; ++k) {
+    const Points d = {rates.cwiseProduct(answer - x[0])};
+    x[0] += mixing.mixed(x, d, weight)[0];
+  }
+  EXPECT_LT((x[0] - answer).norm(), 1e-8); // plain steps would leave 95 % of the slowest
+}
+
+} // namespace
+} // namespace kerf::dynamics
