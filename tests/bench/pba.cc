@@ -5,6 +5,7 @@
 #include "base/parallel.h"
 #include "dynamics/implicit_euler.h"
 #include "dynamics/symplectic_euler.h"
+#include "grid/locate.h"
 #include "pba/corners.h"
 #include "pba/model.h"
 #include "tests/support/bodies.h"

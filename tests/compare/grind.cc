@@ -1,8 +1,7 @@
 #include "tests/compare/grind.h"
 
-#include "grid/complex.h"
 #include "grid/followed.h"
-#include "pba/region.h"
+#include "grid/locate.h"
 
 #include <Eigen/Geometry>
 

@@ -23,10 +23,8 @@ struct WrongArcs {
 void count_arcs(const Patient& patient, const std::vector<support::Plane>& planes, WrongArcs& wrong) {
   const grid::Grid& grid = patient.body.grid;
   for (const auto c : ids<grid::CellId>(grid.n_cells())) {
-    const grid::CellCuts cell = grid::cuts_of(grid, patient.body.cuts, c);
-    const auto end = [&](const int line) {
-      return grid::edge_skin_point(grid, patient.body.cuts, grid.edges(c)[line]);
-    };
+    const grid::CellCuts cell = grid::cuts_of(patient.body, c);
+    const auto end = [&](const int line) { return grid::edge_skin_point(patient.body, grid.edges(c)[line]); };
     for (int face = 0; face < grid::cube::n_faces; ++face)
       for (const grid::SkinArc& arc : grid::skin_arcs(face, cell.material)) {
         if ((cell.blades() & grid::CellCuts::beside(arc)) == 0)

@@ -141,7 +141,7 @@ TEST(Fit, IsTheSameWithOneAndTwoThreads) {
   const int n_before = n_threads();
   for (int n = 1; n <= 2; ++n) {
     set_n_threads(n);
-    fit_skin(mesh, bodies[n - 1].grid, bodies[n - 1].cuts);
+    fit_skin(mesh, bodies[n - 1]);
   }
   set_n_threads(n_before);
   for (const CellId c : ids<CellId>(bodies[0].grid.n_cells())) {

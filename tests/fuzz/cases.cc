@@ -77,7 +77,7 @@ void require_on_plane(const Subject& subject, const cut::Plane& plane, const std
 /// Where nothing had been cut before, a plane leaves nothing joined across it: not by edges, nor by the skin.
 void require_parted(const Subject& subject, const cut::Plane& plane) {
   const grid::Grid& grid = subject.grid();
-  const Items items(grid, subject.solid.cuts, subject.specimen.arcs);
+  const Items items(subject.solid, subject.specimen.arcs);
   std::vector<bool> is_above(items.n_names());
   for (const auto n : ids<grid::NodeId>(grid.n_nodes()))
     if (grid.is_material(n))

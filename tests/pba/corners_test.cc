@@ -1,6 +1,7 @@
 #include "pba/corners.h"
 
 #include "base/parallel.h"
+#include "grid/locate.h"
 #include "pba/point_grid.h"
 #include "tests/pba/clouds.h"
 #include "tests/support/placed.h"

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "grid/locate.h"
 #include "pba/point_grid.h"
 #include "pba/region.h"
 #include "tests/pba/clouds.h"

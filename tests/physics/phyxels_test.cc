@@ -3,6 +3,7 @@
 #include "physics/phyxels.h"
 
 #include "base/union_find.h"
+#include "grid/locate.h"
 #include "pba/region.h"
 #include "tests/physics/cut_bodies.h"
 
