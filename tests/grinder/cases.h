@@ -22,7 +22,7 @@ const Kind& kind_named(const std::string& name);
 
 /// How large the cases are.
 struct Size {
-  double least_cells = 300, most_cells = 1500; ///< in a body, about
+  double least_cells = 300, most_cells = 1500; ///< cubes of the body's volume; with those at its skin up to three times
   int least_steps = 20, most_steps = 40;
 };
 

@@ -11,8 +11,8 @@ namespace kerf::grinder {
 
 /// Why a case failed, in one word, and the figures.
 struct Failure {
-  std::string
-    reason; ///< "runaway", "outlier", "volume", "drawn out", "energy", "cut energy", "NaN", "pieces", "stopped"
+  /// "runaway", "outlier", "volume", "drawn out", "energy", "cut energy", "NaN", "pieces", "stopped"
+  std::string reason;
   int step = 0;
   std::string words;
   bool is_final = false; ///< nothing can go on from there
