@@ -47,7 +47,7 @@ struct World {
   Place time_step_place = {};
   int n_steps = 0;
   std::vector<Body> bodies;
-  std::vector<Watch> watches = {}; ///< of the bodies, from the first step on
+  std::vector<Watch> watches; ///< of the bodies, from the first step on
   std::vector<cut::Blade> blades; ///< those of scissors come last, in pairs
   std::vector<ScissorsHandles> scissors;
   std::vector<Forceps> forceps;
