@@ -50,10 +50,10 @@ void bring_up_to_date(const Body& body, Watch& watch) {
   if (watch.n_recuts == body.n_recuts)
     return;
   watch.n_recuts = body.n_recuts;
-  const std::vector<std::uint32_t> pieces = physics::corner_pieces(body.complex);
+  const std::vector<std::uint32_t> pieces = physics::corner_pieces(body.solid.complex);
   watch.piece_of_triangle.clear();
   for (const grid::CopyId copy : body.surface.copies)
-    watch.piece_of_triangle.push_back(pieces[body.complex.copies[copy].corners[0].value]);
+    watch.piece_of_triangle.push_back(pieces[body.solid.complex.copies[copy].corners[0].value]);
   watch.rest_volumes.assign(pieces.empty() ? 0 : 1 + *std::max_element(pieces.begin(), pieces.end()), 0);
   watch.rest_volumes = piece_volumes(body, watch, body.surface.rest);
 }
@@ -63,7 +63,7 @@ double volume_ratio(const Body& body, const grid::Copy& copy) {
   Mat3 F = Mat3::Zero();
   for (int v = 0; v < 8; ++v)
     F += corners(body)[copy.corners[v].value] *
-         (grid::shape_gradient(v, Vec3::Constant(0.5)) / body.grid.h()).transpose();
+         (grid::shape_gradient(v, Vec3::Constant(0.5)) / body.solid.grid.h()).transpose();
   return F.determinant();
 }
 
@@ -73,13 +73,13 @@ std::string worst_copy(const Body& body, const Watch& watch, const std::uint32_t
   for (std::size_t t = 0; t < watch.piece_of_triangle.size(); ++t)
     if (watch.piece_of_triangle[t] == piece) {
       const grid::CopyId copy = body.surface.copies[t];
-      if (const double ratio = volume_ratio(body, body.complex.copies[copy]); ratio < least) {
+      if (const double ratio = volume_ratio(body, body.solid.complex.copies[copy]); ratio < least) {
         least = ratio;
         worst = copy.value;
       }
     }
-  const grid::CellId cell = body.complex.copies[grid::CopyId(static_cast<std::uint32_t>(worst))].cell;
-  const Vec3 middle = body.grid.position(body.grid.nodes(cell)[0]) + Vec3::Constant(0.5 * body.grid.h());
+  const grid::CellId cell = body.solid.complex.copies[grid::CopyId(static_cast<std::uint32_t>(worst))].cell;
+  const Vec3 middle = body.solid.grid.origin(cell) + Vec3::Constant(0.5 * body.solid.grid.h());
   return "copy " + std::to_string(worst) + ", whose cube rests around " + place(middle);
 }
 
@@ -105,9 +105,9 @@ void require_sound_motion(const Body& body, const double dt) {
       fastest = i;
     }
   }
-  if (speed * dt <= body.grid.h())
+  if (speed * dt <= body.solid.grid.h())
     return;
-  const double eighth = body.density * std::pow(body.grid.h(), 3) / 8,
+  const double eighth = body.density * std::pow(body.solid.grid.h(), 3) / 8,
                energy = dynamics::kinetic_energy(model, body.state.v) + model.energy(body.state.x);
   if (0.5 * eighth * speed * speed > energy)
     throw NumericalError("the motion has diverged: " + particle_at(body, fastest) + ", moves at " + in_short(speed) +
@@ -121,7 +121,7 @@ void require_sound_volume(const Body& body, Watch& watch) {
   const std::vector<double> now = piece_volumes(body, watch, body.positions);
   for (std::uint32_t p = 0; p < now.size(); ++p) {
     const double rest = watch.rest_volumes[p], ratio = now[p] / rest;
-    if (rest < std::pow(body.grid.h(), 3) || (ratio > 0 && ratio < most))
+    if (rest < std::pow(body.solid.grid.h(), 3) || (ratio > 0 && ratio < most))
       continue;
     throw NumericalError("piece " + std::to_string(p) + " is " + (ratio > 0 ? "blown up" : "inside out") +
                          ": its volume is " + in_short(100 * ratio) + " % of that at rest. Worst is " +

@@ -95,7 +95,7 @@ TEST(SoundScene, ARunawayCornerEndsTheRun) {
   const auto lightest =
     static_cast<std::size_t>(std::min_element(mass.begin(), mass.end()) - mass.begin());
   body.state.v[lightest] = Vec3(500, 0, 0);
-  if (mass[lightest] < 1000 * std::pow(body.grid.h(), 3) / 16) {
+  if (mass[lightest] < 1000 * std::pow(body.solid.grid.h(), 3) / 16) {
     EXPECT_THROW(require_sound_motion(body, 1e-3), NumericalError);
   }
   body.state.v[lightest][1] = std::nan("");
