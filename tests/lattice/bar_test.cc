@@ -21,7 +21,7 @@ struct Bar {
   Points rest;
 
   Bar(const Index3& n, const int w, const double alpha = 1)
-    : body(support::block(n, h)),
+    : body(support::with_copies(support::block(n, h))),
       model(body, matching_options({.half_width = w, .alpha = alpha}, density, dt)),
       rest(grid::rest_positions(body)) {}
 

@@ -4,7 +4,6 @@
 
 #include "base/union_find.h"
 #include "grid/locate.h"
-#include "pba/region.h"
 #include "tests/physics/cut_bodies.h"
 
 #include <gtest/gtest.h>
