@@ -329,7 +329,7 @@ int BalanceSolver::correct_by_cg(const Problem& problem, const Points& guess, co
       d[i] = scaling_[i] * (blocks_[i] * (problem.constraints.freedom(i).project * guess[i]));
   }
   const double of_own = 0.5 * options_.step_tolerance; // the step's own error is half the way from the guess
-  constexpr double of_rest = 1e-2; // of what a correction may leave where others follow
+  constexpr double of_rest = 1e-3; // of what a correction may leave where others follow
   const double left = options_.n_mixed > 0 ? of_rest * norm(rhs) : 0;
   const CgStop stop{.residual = std::max({options_.cg_tolerance * scale, left, scaled_round_off()}),
                     .error = of_own * way_,

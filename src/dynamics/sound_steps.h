@@ -4,10 +4,11 @@
 ///
 /// A step adds, in what nobody did: the growth of kinetic, elastic, gravity and load energy, less the work of supports,
 /// of driving loads and of potentials that change with time. Work is force times displacement with the forces of the
-/// start or of the end, whichever is more. A sound step gains at most a quarter of the energy that it deals with: what
+/// start or of the end, whichever is more. A sound step gains at most a part of the energy that it deals with: what
 /// moves against the body's mean motion and what is elastic, before and after, and the work; beside the kick that
 /// gravity gives in one step, which first order shifts in time, and round-off. Implicit Euler gains where
-/// energy is concave along its way, of second order in dt; dissipation, its own too, counts as it should.
+/// energy is concave along its way, of second order in dt; symplectic integrators take and give it back, up to a multiple near their stable step, and
+/// are to be allowed more. Dissipation, the integrator's own too, counts as it should.
 ///
 /// Two things are done about a step that fails, gains energy or is no longer finite. It is taken again in 2, 4, ...
 /// substeps, which remove any error of second order. And an integrator that gains a little in each step is watched by
@@ -35,7 +36,8 @@ class StepError : public NumericalError {
 };
 
 struct SoundOptions {
-  int most_substeps = 64; ///< a power of 2; 1: no step is taken again
+  int most_substeps = 64;  ///< a power of 2; 1: no step is taken again
+  double most_gain = 0.25; ///< in a step, of the energy that it deals with [1]
 };
 
 class SoundSteps : public Stepper {
@@ -47,6 +49,8 @@ class SoundSteps : public Stepper {
   /// Counts substeps where there are several, and steps tried and thrown away. Throws StepError when the shortest
   /// substeps fail too, with the reason of the whole step.
   StepReport step(State& state, const Loads& loads, double dt) override;
+
+  const Stepper& watched() const { return *stepper_; }
 
  private:
   /// All in `n` substeps.

@@ -28,6 +28,7 @@ physics::StepperMaker sound(const physics::StepperMaker& make, const dynamics::S
 }
 
 constexpr dynamics::SoundOptions as_they_are{.most_substeps = 1};
+constexpr dynamics::SoundOptions explicit_ones{.most_substeps = 1, .most_gain = 0.75};
 
 /// `make` gets the model, and the integrator's own settings.
 template <class Fields, class Make>
@@ -42,7 +43,7 @@ Integrator explicit_integrator(const Section& body, const std::string& section) 
   const auto make = [=](ElasticModel& model, const PiecesOfParticles&) -> Stepper {
     return std::make_unique<Explicit>(model, options);
   };
-  return {sound(make, as_they_are), fem::Inertia::extended};
+  return {sound(make, explicit_ones), fem::Inertia::extended};
 }
 
 Integrator quasi_static(const Section& body) {

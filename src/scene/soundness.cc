@@ -8,8 +8,11 @@
 #include <Eigen/LU>
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 
 namespace kerf::scene {
 
@@ -36,12 +39,16 @@ Vec3 mean_velocity(const dynamics::ForceModel& model, const Points& v) {
   return all > 0 ? Vec3(momentum / all) : Vec3(Vec3::Zero());
 }
 
+const grid::Copy& copy_of(const Body& body, const std::size_t c) {
+  return body.solid.complex.copies[grid::CopyId(static_cast<std::uint32_t>(c))];
+}
+
 /// Signed volume of each piece that the surface bounds, with its vertices at `points`.
 std::vector<double> piece_volumes(const Body& body, const Watch& watch, const Points& points) {
   std::vector<double> volumes(watch.rest_volumes.size(), 0);
   for (std::size_t t = 0; t < body.surface.triangles.size(); ++t) {
     const Triangle& v = body.surface.triangles[t];
-    volumes[watch.piece_of_triangle[t]] += points[v[0]].dot(points[v[1]].cross(points[v[2]])) / 6;
+    volumes[watch.piece_of_copy[body.surface.copies[t].value]] += points[v[0]].dot(points[v[1]].cross(points[v[2]])) / 6;
   }
   return volumes;
 }
@@ -51,9 +58,9 @@ void bring_up_to_date(const Body& body, Watch& watch) {
     return;
   watch.n_recuts = body.n_recuts;
   const std::vector<std::uint32_t> pieces = physics::corner_pieces(body.solid.complex);
-  watch.piece_of_triangle.clear();
-  for (const grid::CopyId copy : body.surface.copies)
-    watch.piece_of_triangle.push_back(pieces[body.solid.complex.copies[copy].corners[0].value]);
+  watch.piece_of_copy.clear();
+  for (std::size_t c = 0; c < body.solid.complex.n_copies(); ++c)
+    watch.piece_of_copy.push_back(pieces[copy_of(body, c).corners[0].value]);
   watch.rest_volumes.assign(pieces.empty() ? 0 : 1 + *std::max_element(pieces.begin(), pieces.end()), 0);
   watch.rest_volumes = piece_volumes(body, watch, body.surface.rest);
 }
@@ -67,21 +74,33 @@ double volume_ratio(const Body& body, const grid::Copy& copy) {
   return F.determinant();
 }
 
-std::string worst_copy(const Body& body, const Watch& watch, const std::uint32_t piece) {
+/// The copy whose cube has turned inside out most, of a piece or of all.
+std::string worst_copy(const Body& body, const std::function<bool(std::size_t)>& is_meant) {
   std::size_t worst = 0;
   double least = std::numeric_limits<double>::infinity();
-  for (std::size_t t = 0; t < watch.piece_of_triangle.size(); ++t)
-    if (watch.piece_of_triangle[t] == piece) {
-      const grid::CopyId copy = body.surface.copies[t];
-      if (const double ratio = volume_ratio(body, body.solid.complex.copies[copy]); ratio < least) {
+  for (std::size_t c = 0; c < body.solid.complex.n_copies(); ++c)
+    if (is_meant(c))
+      if (const double ratio = volume_ratio(body, copy_of(body, c)); ratio < least) {
         least = ratio;
-        worst = copy.value;
+        worst = c;
       }
-    }
-  const grid::CellId cell = body.solid.complex.copies[grid::CopyId(static_cast<std::uint32_t>(worst))].cell;
-  const Vec3 middle = body.solid.grid.origin(cell) + Vec3::Constant(0.5 * body.solid.grid.h());
+  const grid::Grid& grid = body.solid.grid;
+  const Vec3 middle = grid.origin(copy_of(body, worst).cell) + Vec3::Constant(0.5 * grid.h());
   return "copy " + std::to_string(worst) + ", whose cube rests around " + place(middle);
 }
+
+/// Part of the nodes whose copies are inside out in their middle: nodes count, so near-empty copies hardly do.
+double inverted_part(const Body& body) {
+  double inverted = 0, all = 0;
+  for (std::size_t c = 0; c < body.solid.complex.n_copies(); ++c) {
+    const double n = std::popcount(static_cast<unsigned>(copy_of(body, c).nodes));
+    all += n;
+    inverted += volume_ratio(body, copy_of(body, c)) < 0 ? n : 0;
+  }
+  return all > 0 ? inverted / all : 0;
+}
+
+constexpr char remedy[] = ". What acts on it is more than its material bears: use a stiffer material or smaller loads";
 
 } // namespace
 
@@ -116,18 +135,23 @@ void require_sound_motion(const Body& body, const double dt) {
 }
 
 void require_sound_volume(const Body& body, Watch& watch) {
-  constexpr double most = 10;
+  constexpr double most = 10, most_inverted = 0.1;
   bring_up_to_date(body, watch);
   const std::vector<double> now = piece_volumes(body, watch, body.positions);
   for (std::uint32_t p = 0; p < now.size(); ++p) {
     const double rest = watch.rest_volumes[p], ratio = now[p] / rest;
-    if (rest < std::pow(body.solid.grid.h(), 3) || (ratio > 0 && ratio < most))
+    if (rest < std::pow(body.solid.grid.h(), 3) || (ratio > 1 / most && ratio < most))
       continue;
-    throw NumericalError("piece " + std::to_string(p) + " is " + (ratio > 0 ? "blown up" : "inside out") +
+    throw NumericalError("piece " + std::to_string(p) + " is " +
+                         (ratio > 1   ? "blown up"
+                          : ratio > 0 ? "crushed"
+                                      : "inside out") +
                          ": its volume is " + in_short(100 * ratio) + " % of that at rest. Worst is " +
-                         worst_copy(body, watch, p) +
-                         ". What acts on it is more than its material bears: use a stiffer material or smaller loads");
+                         worst_copy(body, [&](const std::size_t c) { return watch.piece_of_copy[c] == p; }) + remedy);
   }
+  if (const double part = inverted_part(body); part > most_inverted)
+    throw NumericalError(in_short(100 * part) + " % of the body are inside out. Worst is " +
+                         worst_copy(body, [](std::size_t) { return true; }) + remedy);
 }
 
 } // namespace kerf::scene

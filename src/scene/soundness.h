@@ -5,7 +5,8 @@
 /// Three things no elastic body does. A particle without a finite place. A particle that crosses more than a cube in a
 /// step against the mean motion while all kinetic and elastic energy of the body could not move an eighth of a full
 /// cube, which is the least that a corner of whole cubes has, that fast: what moves so is lighter than anything that
-/// the grid resolves. And a piece that is inside out, or blown up to ten times its volume.
+/// the grid resolves. And a piece that is inside out, or crushed to a tenth or blown up to ten times its volume, which no
+/// law here is meant for, or a body with a tenth of its copies inside out.
 
 #include "scene/body.h"
 
@@ -14,7 +15,7 @@ namespace kerf::scene {
 /// What is known of the pieces of a body's surface; brought up to date after cuts.
 struct Watch {
   int n_recuts = -1;
-  std::vector<std::uint32_t> piece_of_triangle;
+  std::vector<std::uint32_t> piece_of_copy;
   std::vector<double> rest_volumes; ///< of each piece [m^3]
 };
 

@@ -60,10 +60,11 @@ TEST(SoundSteps, SayWhereAStepCannotBeMended) {
 
 /// Each step gains less than anyone would mind; together they do.
 TEST(SoundSteps, RefuseAMotionThatGrowsStepByStep) {
-  Chain model({1}, {.anchor = 100});
+  Chain model({1, 1}, {.anchor = 100});
   SoundSteps stepper(model, std::make_unique<ExplicitEuler>(model, go_on), {.most_substeps = 1});
   State state = model.state();
   state.x[0] += Vec3(0.1, 0, 0);
+  state.x[1] -= Vec3(0.1, 0, 0);
   const double before = energy(model, state);
   EXPECT_THROW(
     for (int i = 0; i < 3000; ++i) stepper.step(state, {}, 0.005);, StepError);

@@ -4,6 +4,7 @@
 #include "dynamics/explicit_steppers.h"
 #include "dynamics/generalised_alpha.h"
 #include "dynamics/implicit_euler.h"
+#include "dynamics/sound_steps.h"
 #include "dynamics/symplectic_euler.h"
 #include "physics/on_corners.h"
 #include "tests/scene/worlds.h"
@@ -68,7 +69,7 @@ TEST(Compose, TakesTheIntegratorThatIsNamed) {
   const auto is = [](const std::string& name, const auto& made) {
     const World world = world_of(cube_scene(), {"Body cube/Integrator=" + name});
     const auto& elements = dynamic_cast<const physics::Elements&>(*world.bodies.at(0).physics);
-    return made(elements.stepper());
+    return made(dynamic_cast<const dynamics::SoundSteps&>(elements.stepper()).watched());
   };
   const auto kind = []<class Kind>(const Kind*) {
     return [](const dynamics::Stepper& stepper) { return dynamic_cast<const Kind*>(&stepper) != nullptr; };

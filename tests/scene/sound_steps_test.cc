@@ -76,8 +76,10 @@ TEST(SoundScene, LongStepsKeepTheVolume) {
 
 /// Weight that its law cannot bear turns a body inside out: it is told, and where.
 TEST(SoundScene, ABodyThatTurnsInsideOutEndsTheRun) {
-  World world = world_of(steps(1.0 / 60, 240) + section("Gravity", {"Acceleration [m/s^2] = 0, 0, -9.81"}) +
-                         section("Body bar", bar_keys(), material(100, 0.3) + clamped_end()));
+  World world =
+    world_of(steps(1.0 / 60, 240) + section("Gravity", {"Acceleration [m/s^2] = 0, 0, -9.81"}) +
+             section("Body bar", bar_keys(),
+                     material(100, 0.3) + clamped_end() + section("Damping", {"Mass damping [1/s] = 2"})));
   const std::string why = why_it_fails(world);
   EXPECT_NE(why.find("body bar, step "), std::string::npos) << why;
   EXPECT_NE(why.find("rests a"), std::string::npos) << why;
@@ -104,7 +106,7 @@ TEST(SoundScene, ARunawayCornerEndsTheRun) {
 
 /// With no load there is nothing to solve for, with or without a support.
 TEST(SoundScene, ABodyAtRestCostsNothing) {
-  for (const std::string held : {std::string(), clamped_end()})
+  for (const std::string& held : {std::string(), clamped_end()})
     for (const std::string law : {"corotational", "neo-Hookean"}) {
       const Trial bar(steps(1.0 / 60, 5) +
                       section("Body bar", bar_keys(), material(1e6, 0.45, law) + held) +
@@ -117,14 +119,14 @@ TEST(SoundScene, ABodyAtRestCostsNothing) {
 
 /// Under its weight it settles, and then costs nothing either; it hangs as far down as statics says.
 TEST(SoundScene, ABodyThatHasSettledCostsNothing) {
-  const std::string body = material(1e5, 0.3) + clamped_end() + section("Damping", {"Mass damping [1/s] = 20"}),
+  const std::string body = material(1e5, 0.3) + clamped_end() + section("Damping", {"Mass damping [1/s] = 4"}),
                     gravity = section("Gravity", {"Acceleration [m/s^2] = 0, 0, -0.981"}),
                     names = observe("solver iterations, largest displacement");
   const Trial moving(steps(1.0 / 60, 600) + gravity + section("Body bar", bar_keys(), body) + names),
     still(steps(1, 1) + gravity + section("Body bar", bar_keys() + statics(), body) + names);
   EXPECT_EQ(moving.last("solver iterations"), 0);
   EXPECT_NEAR(moving.last("largest displacement"), still.last("largest displacement"),
-              1e-4 * still.last("largest displacement"));
+              1e-3 * still.last("largest displacement"));
 }
 
 /// Nearly incompressible elements: a factorisation solves what conjugate gradients solve.
