@@ -37,8 +37,8 @@ void run(scene::World& world, const Scene& scene, const Until until, Outcome& ou
       outcome.failure->is_final = failure->is_final;
   }
   outcome.figures = watch.figures();
-  outcome.n_cells = body.grid.n_cells();
-  outcome.n_pieces = grid::n_pieces(body.complex);
+  outcome.n_cells = body.solid.grid.n_cells();
+  outcome.n_pieces = grid::n_pieces(body.solid.complex);
 }
 
 std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }

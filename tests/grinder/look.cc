@@ -1,7 +1,7 @@
 #include "tests/grinder/look.h"
 
 #include "base/parameters.h"
-#include "pba/region.h"
+#include "grid/locate.h"
 #include "scene/observables.h"
 #include "tests/grinder/draw.h"
 
@@ -17,14 +17,14 @@ namespace {
 
 double observed(const scene::Body& body, const std::string& name) { return scene::find_observable(name)->value(body); }
 
-bool particles_are_corners(const scene::Body& body) { return body.state.x.size() == body.complex.n_corners(); }
+bool particles_are_corners(const scene::Body& body) { return body.state.x.size() == body.solid.complex.n_corners(); }
 
 std::vector<std::uint32_t> pieces_of_particles(const scene::Body& body, const grid::Pieces& pieces) {
   if (particles_are_corners(body))
-    return physics::corner_pieces(body.complex);
+    return physics::corner_pieces(body.solid.complex);
   std::vector<std::uint32_t> piece;
   for (const Vec3& rest : body.physics->rest())
-    piece.push_back(pieces.piece[pba::copy_around(body.grid, body.cuts, body.complex, rest)]);
+    piece.push_back(pieces.piece[grid::copy_around(body.solid, rest)]);
   return piece;
 }
 
@@ -96,7 +96,7 @@ Look look_at(const scene::Body& body) {
   Look look{.is_finite = is_finite(body)};
   if (!look.is_finite)
     return look;
-  const grid::Pieces pieces = grid::pieces(body.complex);
+  const grid::Pieces pieces = grid::pieces(body.solid.complex);
   look.pieces.resize(pieces.n_pieces);
   look_at_speeds(body, pieces, look.pieces);
   look_at_surface(body, pieces, look.pieces);
@@ -110,20 +110,20 @@ Look look_at(const scene::Body& body) {
 
 std::string about_particle(const scene::Body& body, const std::size_t particle) {
   const Vec3& rest = body.physics->rest()[particle];
-  const double h = body.grid.h(), mass = body.physics->model().lumped_mass()[particle];
+  const double h = body.solid.grid.h(), mass = body.physics->model().lumped_mass()[particle];
   std::string words =
     "at rest at " + text(rest) + " m, of mass " + to_text(mass / (body.density * h * h * h)) + " cubes";
   if (!particles_are_corners(body))
     return words;
   words += ", known to copies with";
-  for (const auto c : ids<grid::CopyId>(body.complex.n_copies())) {
-    const grid::Copy& copy = body.complex.copies[c];
+  for (const auto c : ids<grid::CopyId>(body.solid.complex.n_copies())) {
+    const grid::Copy& copy = body.solid.complex.copies[c];
     for (const grid::CornerId corner : copy.corners)
       if (corner.value == particle)
         words += " [" + std::to_string(std::popcount(copy.nodes)) + " nodes, " +
                  std::to_string(std::popcount(copy.rinds)) + " rinds]";
   }
-  const grid::CornerId real = body.complex.real_corner[body.complex.node[grid::CornerId(particle)]];
+  const grid::CornerId real = body.solid.complex.real_corner[body.solid.complex.node[grid::CornerId(particle)]];
   return words + (real.value == particle ? ", real" : ", virtual");
 }
 

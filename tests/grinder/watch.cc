@@ -45,7 +45,7 @@ Watch::Watch(const Scene& scene, const scene::Body& body)
     recoil_(gravity_ * extent(body) / wave_speed(scene)),
     mass_(scene::find_observable("mass")->value(body)),
     start_gravity_(scene::find_observable("gravity energy")->value(body)),
-    n_pieces_(grid::n_pieces(body.complex)),
+    n_pieces_(grid::n_pieces(body.solid.complex)),
     n_recuts_(body.n_recuts) {}
 
 /// What falls has g t. What has sagged and is let go recoils: by no more than g t again, as no more momentum has come
@@ -77,7 +77,7 @@ std::optional<Failure> Watch::watch_speeds(const scene::Body& body, const Look& 
 }
 
 std::optional<Failure> Watch::watch_shapes(const scene::Body& body, const Look& look, const int step) {
-  const double h = body.grid.h(), least_volume = 1e-9 * h * h * h;
+  const double h = body.solid.grid.h(), least_volume = 1e-9 * h * h * h;
   std::optional<Failure> failure;
   for (const PieceLook& piece : look.pieces) {
     if (piece.rest_volume < least_volume)
