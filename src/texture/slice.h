@@ -6,6 +6,8 @@
 #include "image/image.h"
 #include "texture/plane.h"
 
+#include <Eigen/Geometry>
+
 #include <array>
 #include <cmath>
 

@@ -10,7 +10,7 @@ namespace kerf::warp {
 struct FitOptions {
   Regularity inside = Regularity::rigid; ///< jacobian: harmonic
   int n_cells = 32;                      ///< of the finest lattice along the longer side of the rectangle
-  double stiffness = 1e-3;
+  double stiffness = 1e-3; ///< of the finest lattice; the coarser are stiffer
 };
 
 /// The similarity, without reflection, that takes `from` to `to` best in the least squares sense. At least two different points.

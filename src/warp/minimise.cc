@@ -62,8 +62,12 @@ double minimise(const Function& f, VectorXd& x, const MinimiseOptions& options) 
     if (!(largest > 0))
       break;
     // The first step knows no scale: it moves the farthest variable by one unit.
-    if (!search(f, now, along, changes.empty() ? 1 / largest : 1, next))
-      break;
+    if (!search(f, now, along, changes.empty() ? 1 / largest : 1, next)) {
+      if (changes.empty())
+        break;
+      changes.clear(); // what was learnt leads nowhere: straight down once more
+      continue;
+    }
     Change change{next.x - now.x, next.gradient - now.gradient, 0};
     const double curvature = change.step.dot(change.gradient);
     if (curvature > 1e-12 * change.step.norm() * change.gradient.norm()) {

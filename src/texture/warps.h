@@ -1,0 +1,58 @@
+#pragma once
+
+/// Warps between the faces of a cell (thesis §3.4.3.1.1), as tables of where a pixel of one face goes on the others.
+///
+/// Two faces of a cell are aligned by the rotation that takes the one through the cell into the other, about the line in
+/// which their planes meet, or along the normal where they are parallel; then their axis-aligned boxes are made
+/// to match, one axis being that line; then features are matched (warp/match.h). One direction is matched, the
+/// other is its inverse.
+
+#include "texture/partition.h"
+#include "warp/match.h"
+
+namespace kerf::texture {
+
+struct WarpOptions {
+  warp::MatchOptions match;
+  int pixels = 96; ///< of the longer side of what is matched
+  std::vector<std::array<std::string, 2>> pinned_exemplars; ///< of each pin: the exemplars it joins
+  std::vector<std::array<Vec3, 2>> pinned_points;           ///< rest frame [m]
+};
+
+/// The rectangle of a face as a partner sees it.
+struct Aligned {
+  Vec2 lower;      ///< of the box, along `a` and `b` [m]
+  Vec2 size;       ///< [m]
+  Vec3 a, b;       ///< unit, in the plane
+};
+struct AlignedPair {
+  Aligned from, to;
+  int width = 0, height = 0; ///< [pixels] of both
+};
+AlignedPair align(const Face& from, const Chart& from_chart, const Face& to, const Chart& to_chart, int pixels);
+
+/// A map between the pixels of two aligned boxes. Throws ParameterError about "Pin" if a pin lies outside of a face.
+warp::LatticeMap match_faces(const Face& from, const Chart& from_chart, const Face& to, const Chart& to_chart,
+                             const AlignedPair& pair, const WarpOptions& options);
+
+/// Where the pixels of a face go on all faces of its cell: a lattice over the face's box, with one target a face at each
+/// node.
+struct WarpTable {
+  int n_columns = 0, n_rows = 0, n_faces = 0;
+  float left = 0, top = 0;       ///< of the first node [pixels of the chart]
+  float columns_by_pixel = 0, rows_by_pixel = 0;
+  std::vector<float> targets;    ///< node by node: x, y on each face [pixels of its chart]; zero for the face itself
+
+  const float* node(const int c, const int r) const { return &targets[2 * n_faces * (r * n_columns + c)]; }
+};
+
+/// All warps of a cell. `known` are the maps of pairs (i, j), i < j in order of i, then j, found earlier; what was used is
+/// left in `used`.
+std::vector<WarpTable> make_warps(const Cell& cell, const std::vector<Exemplar>& exemplars,
+                                  const std::vector<Chart>& charts, const WarpOptions& options,
+                                  const std::vector<warp::LatticeMap>& known, std::vector<warp::LatticeMap>& used);
+
+/// The linear part of the map from chart pixels of face `from` to those of face `to`, before features are matched.
+Mat2 aligned_linear(const AlignedPair& pair, const Chart& from, const Chart& to);
+
+} // namespace kerf::texture
