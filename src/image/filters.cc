@@ -135,7 +135,7 @@ Colours filled(const Colours& colours, const Grey& mask) {
   std::vector<Raster<Covered>> levels = {Raster<Covered>(colours.width, colours.height, Covered::Zero())};
   for (std::size_t i = 0; i < colours.values.size(); ++i)
     if (mask.values[i] >= 0.5f)
-      levels[0].values[i] << colours.values[i], 1;
+      levels[0].values[i] = Covered(colours.values[i][0], colours.values[i][1], colours.values[i][2], 1);
   while (levels.back().width > 1 || levels.back().height > 1)
     levels.push_back(halved(levels.back()));
   for (std::size_t k = levels.size() - 1; k > 0; --k)

@@ -13,6 +13,7 @@
 #include "grid/complex.h"
 #include "physics/physics.h"
 #include "scene/accounts.h"
+#include "scene/interior.h"
 #include "scene/region.h"
 #include "surface/placement.h"
 
@@ -92,6 +93,8 @@ struct Body {
   std::vector<Probe> probes = {};
   std::vector<Observable> observables = {};
   std::unique_ptr<Accounts> accounts = nullptr; ///< null when no observable needs them
+
+  std::unique_ptr<BodyInterior> interior = nullptr; ///< null in a scene that does not say what is inside
 
   std::unique_ptr<Cutting> cutting = nullptr; ///< null in a scene that cuts nothing
   int n_recuts = 0;                           ///< how often the complex has changed

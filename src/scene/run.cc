@@ -84,8 +84,12 @@ void advance(World& world, const int step, Timings& seconds) {
     });
   }
   for (Body& body : world.bodies) {
-    const ScopedTimer timer(seconds, "surface");
-    follow(body);
+    {
+      const ScopedTimer timer(seconds, "surface");
+      follow(body);
+    }
+    if (body.interior)
+      paint(*body.interior, body.surface, seconds);
   }
 }
 

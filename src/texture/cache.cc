@@ -11,7 +11,7 @@ namespace kerf::texture {
 
 namespace {
 
-constexpr std::uint64_t version = 3; ///< of the file and of the methods that find maps
+constexpr std::uint64_t version = 3;                   ///< of the file and of the methods that find maps
 constexpr std::uint64_t magic = 0x5350414d4652454bull; // "KERFMAPS"
 
 class Hash {
@@ -59,12 +59,11 @@ void add(Hash& hash, const InteriorOptions& options) {
     hash.add(value);
   for (const double value : {match.edges, match.brightness, match.outline, match.stiffness})
     hash.add(value);
-  for (const auto& names : options.warps.pinned_exemplars)
-    for (const std::string& name : names)
-      hash.add(name);
-  for (const auto& points : options.warps.pinned_points)
-    for (const Vec3& point : points)
-      hash.add(point);
+  for (const ExemplarPin& pin : options.warps.pins)
+    for (const int end : {0, 1}) {
+      hash.add(pin.exemplars[end]);
+      hash.add(pin.points[end]);
+    }
 }
 
 using Bytes = std::vector<char>;

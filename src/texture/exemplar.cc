@@ -108,8 +108,10 @@ void paint(const image::Image& picture, const Grey& mask, const ToPicture& to_pi
     }
   colours = image::filled(colours, chart.shown);
   chart.colours = image::Raster<Eigen::Array4f>(width, height, Eigen::Array4f::Zero());
-  for (std::size_t i = 0; i < colours.values.size(); ++i)
-    chart.colours.values[i] << colours.values[i], image::luminance(colours.values[i]);
+  for (std::size_t i = 0; i < colours.values.size(); ++i) {
+    const image::Rgb& rgb = colours.values[i];
+    chart.colours.values[i] = Eigen::Array4f(rgb[0], rgb[1], rgb[2], image::luminance(rgb));
+  }
 }
 
 } // namespace
@@ -144,14 +146,16 @@ Chart make_chart(const Exemplar& exemplar, const geometry::TriangleMesh& body,
                                    .rule = "the body's section is smaller than 16 pixels of this exemplar",
                                    .remedy = "Check the unit of the steps, or take a finer picture"});
   if (exemplar.fit == Fit::none) {
-    paint(exemplar.picture, mask, [&](const Vec2& p) { return Vec2(p + box.lower); }, chart);
+    paint(
+      exemplar.picture, mask, [&](const Vec2& p) { return Vec2(p + box.lower); }, chart);
     return chart;
   }
   const auto pairs = boundary_pairs(chart.inside, box.lower, mask);
   const auto inside = exemplar.fit == Fit::rigid ? warp::Regularity::rigid : warp::Regularity::jacobian;
   used = known ? *known : warp::fit(pairs, box.lower, box.upper, {.inside = inside});
   chart.fit_error = mean_error(*used, pairs);
-  paint(exemplar.picture, mask, [&](const Vec2& p) { return (*used)(p + box.lower); }, chart);
+  paint(
+    exemplar.picture, mask, [&](const Vec2& p) { return (*used)(p + box.lower); }, chart);
   return chart;
 }
 

@@ -14,9 +14,9 @@ namespace kerf::texture {
 
 /// What becomes of a picture that does not quite cover the body's own section.
 enum class Fit {
-  none,     ///< pixels stay where the plane puts them; what lacks goes on from its border
-  rigid,    ///< the mask's boundary goes to the section's, the inside as rigidly as possible
-  harmonic  ///< the same, the inside harmonic
+  none,    ///< pixels stay where the plane puts them; what lacks goes on from its border
+  rigid,   ///< the mask's boundary goes to the section's, the inside as rigidly as possible
+  harmonic ///< the same, the inside harmonic
 };
 
 /// How an exemplar's plane is swept through the body to find source points (§3.4.2.2).
@@ -43,12 +43,12 @@ struct Exemplar {
 
 /// A fitted exemplar. Its pixels are those of the picture's plane, moved by whole pixels so that they cover the section.
 struct Chart {
-  SectionPlane plane;              ///< pixel (0, 0) of the chart is its origin
+  SectionPlane plane;                    ///< pixel (0, 0) of the chart is its origin
   image::Raster<Eigen::Array4f> colours; ///< red, green, blue, luminance; defined everywhere
-  image::Grey shown;               ///< 1 where the picture shows the section
-  image::Grey inside;              ///< 1 where the body's own section is
-  std::vector<Segment> outline;    ///< of the body's section, local coordinates [m]
-  double fit_error = 0;            ///< mean distance of the fitted boundary [pixels]; 0 without a fit
+  image::Grey shown;                     ///< 1 where the picture shows the section
+  image::Grey inside;                    ///< 1 where the body's own section is
+  std::vector<Segment> outline;          ///< of the body's section, local coordinates [m]
+  double fit_error = 0;                  ///< mean distance of the fitted boundary [pixels]; 0 without a fit
 };
 
 /// Fits an exemplar to the body. `known` is the map found earlier for the same input; the map that was used is left in

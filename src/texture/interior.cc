@@ -16,9 +16,9 @@ namespace {
 /// The map of the table at a point [pixels], to all faces at once: 2 n floats.
 template <class Use>
 void look_up(const WarpTable& table, const Vec2& p, const Use& use) {
-  const image::Footing f = image::footing(table.n_columns, table.n_rows,
-                                          (static_cast<float>(p[0]) - table.left) * table.columns_by_pixel,
-                                          (static_cast<float>(p[1]) - table.top) * table.rows_by_pixel);
+  const image::Footing f =
+    image::footing(table.n_columns, table.n_rows, (static_cast<float>(p[0]) - table.left) * table.columns_by_pixel,
+                   (static_cast<float>(p[1]) - table.top) * table.rows_by_pixel);
   const float* const a = table.node(f.column, f.row);
   const float* const b = a + 2 * table.n_faces;
   const float* const c = a + 2 * table.n_faces * table.n_columns;
@@ -34,16 +34,29 @@ struct Image {
 
 Image image_of(const WarpTable& table, const int target, const Vec2& p) {
   Image result;
-  look_up(table, p, [&](const float* a, const float* b, const float* c, const float* d, const double u, const double v) {
-    for (int k = 0; k < 2; ++k) {
-      const int i = 2 * target + k;
-      const double top = a[i] + u * (b[i] - a[i]), bottom = c[i] + u * (d[i] - c[i]);
-      result.at[k] = top + v * (bottom - top);
-      result.gradient(k, 0) = ((1 - v) * (b[i] - a[i]) + v * (d[i] - c[i])) * table.columns_by_pixel;
-      result.gradient(k, 1) = (bottom - top) * table.rows_by_pixel;
-    }
-  });
+  look_up(table, p,
+          [&](const float* a, const float* b, const float* c, const float* d, const double u, const double v) {
+            for (int k = 0; k < 2; ++k) {
+              const int i = 2 * target + k;
+              const double top = a[i] + u * (b[i] - a[i]), bottom = c[i] + u * (d[i] - c[i]);
+              result.at[k] = top + v * (bottom - top);
+              result.gradient(k, 0) = ((1 - v) * (b[i] - a[i]) + v * (d[i] - c[i])) * table.columns_by_pixel;
+              result.gradient(k, 1) = (bottom - top) * table.rows_by_pixel;
+            }
+          });
   return result;
+}
+
+/// The complaint about a chart, with the exemplar's name.
+Chart chart_of(const Exemplar& exemplar, const geometry::TriangleMesh& body,
+               const std::optional<warp::LatticeMap>& known, std::optional<warp::LatticeMap>& used) {
+  try {
+    return make_chart(exemplar, body, known, used);
+  } catch (const ParameterError& error) {
+    Complaint complaint = error.complaint();
+    complaint.value = "exemplar " + exemplar.name + (complaint.value.empty() ? "" : ", " + complaint.value);
+    throw ParameterError(complaint);
+  }
 }
 
 /// A cell without faces, which holds no more of the body than some pixels, sees the exemplar that parted it last, whole.
@@ -68,18 +81,18 @@ Interior::Interior(const std::vector<Exemplar>& exemplars, const geometry::Trian
                                    .remedy = "Add a section 'subsection Exemplar NAME'"});
   maps_.fits.resize(exemplars.size());
   for (std::size_t i = 0; i < exemplars.size(); ++i) {
-    charts_.push_back(
-      make_chart(exemplars[i], body, known ? known->fits[i] : std::optional<warp::LatticeMap>(), maps_.fits[i]));
+    charts_.push_back(chart_of(exemplars[i], body, known ? known->fits[i] : std::nullopt, maps_.fits[i]));
     pixel_ += charts_.back().plane.pixel() / static_cast<double>(exemplars.size());
   }
   partition_.emplace(exemplars, charts_, options.components);
+  check_pins(options.warps.pins, partition_->cells(), exemplars, charts_);
   cells_.resize(partition_->cells().size());
   maps_.warps.resize(cells_.size());
   parallel_for(cells_.size(), [&](const std::size_t i) { build_cell(static_cast<int>(i), exemplars, body, known); });
 }
 
-void Interior::build_cell(const int number, const std::vector<Exemplar>& exemplars,
-                          const geometry::TriangleMesh& body, const Maps* known) {
+void Interior::build_cell(const int number, const std::vector<Exemplar>& exemplars, const geometry::TriangleMesh& body,
+                          const Maps* known) {
   const Cell cell = with_a_face(partition_->cells()[number], charts_);
   CellData& data = cells_[number];
   const std::size_t n = cell.faces.size();

@@ -79,8 +79,8 @@ class Interior {
   struct CellData {
     std::vector<Source> sources;
     std::vector<WarpTable> tables;
-    std::vector<Mat2> linear;       ///< [j * n + i]: from chart pixels of face j to those of face i, before matching
-    std::vector<Triple> triangles;  ///< between source points; empty where the cell touches the skin
+    std::vector<Mat2> linear;      ///< [j * n + i]: from chart pixels of face j to those of face i, before matching
+    std::vector<Triple> triangles; ///< between source points; empty where the cell touches the skin
   };
   /// The source points of one question.
   struct Found {

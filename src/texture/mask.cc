@@ -65,8 +65,7 @@ Grey mask_of(const image::Image& picture, const Background background) {
     for (std::size_t i = 0; i < mask.values.size(); ++i)
       mask.values[i] = picture.alpha.values[i] >= 0.5f ? 1.0f : 0.0f;
   if (std::accumulate(mask.values.begin(), mask.values.end(), 0.0) < 16)
-    throw refusal(picture, "no part of it is section: its mask is empty",
-                  "Check its alpha, or the key Background");
+    throw refusal(picture, "no part of it is section: its mask is empty", "Check its alpha, or the key Background");
   return mask;
 }
 

@@ -21,8 +21,7 @@ std::vector<Tile> tiles_of(const Patch& patch) {
   std::vector<Tile> tiles;
   for (int top = 0; top < patch.height; top += tile_size)
     for (int left = 0; left < patch.width; left += tile_size)
-      tiles.push_back(
-        {left, top, std::min(tile_size, patch.width - left), std::min(tile_size, patch.height - top)});
+      tiles.push_back({left, top, std::min(tile_size, patch.width - left), std::min(tile_size, patch.height - top)});
   return tiles;
 }
 
@@ -35,7 +34,7 @@ void paint_plain(const Interior& interior, const Patch& patch, const Blending& h
 /// Luminance in a tile and around it, and what its windows say.
 struct Windows {
   int width, height, gutter, stride;
-  std::vector<float> luminance;            ///< with the gutter
+  std::vector<float> luminance;              ///< with the gutter
   std::vector<float> mean, sharpness, place; ///< of the tile alone
 
   float* row(const int r) { return &luminance[static_cast<std::size_t>(r + gutter) * (width + 2 * gutter) + gutter]; }
@@ -127,6 +126,30 @@ Painted paint(const Interior& interior, const Patch& patch, const Detail* detail
 
 Painted paint(const Interior& interior, const Patch& patch, const Detail* detail) {
   return paint(interior, patch, detail, interior.options().blending);
+}
+
+Patch patch_over(const geometry::TriangleMesh& body, const Frame& frame, const double pixel) {
+  Vec2 lower = Vec2::Constant(1e300), upper = -lower;
+  for (const Segment& segment : slice(body, frame))
+    for (const Vec2& p : segment) {
+      lower = lower.cwiseMin(p);
+      upper = upper.cwiseMax(p);
+    }
+  if (!(upper[0] > lower[0]))
+    return {};
+  const Vec2 size = (upper - lower) / pixel;
+  return {frame.origin + lower[0] * frame.x + lower[1] * frame.y, pixel * frame.x, pixel * frame.y,
+          static_cast<int>(std::ceil(size[0])) + 1, static_cast<int>(std::ceil(size[1])) + 1};
+}
+
+image::Image picture_of(const Interior& interior, const geometry::TriangleMesh& body, const Patch& patch,
+                        const Detail* detail, const Blending& how) {
+  const double pixel = patch.column.norm();
+  std::vector<Segment> curves = slice(body, {patch.origin, patch.column / pixel, patch.row / pixel});
+  for (Segment& segment : curves)
+    for (Vec2& p : segment)
+      p /= pixel;
+  return {colours_of(paint(interior, patch, detail, how)), inside_of(curves, patch.width, patch.height)};
 }
 
 image::Colours colours_of(const Painted& painted) {

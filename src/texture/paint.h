@@ -20,6 +20,14 @@ image::Raster<Eigen::Array4f> paint(const Interior& interior, const Patch& patch
                                     const Blending& how);
 image::Raster<Eigen::Array4f> paint(const Interior& interior, const Patch& patch, const Detail* detail = nullptr);
 
+/// The patch of square pixels that just covers where a plane cuts the body; without pixels where it misses it. Columns run
+/// along the frame's x, rows along y.
+Patch patch_over(const geometry::TriangleMesh& body, const Frame& frame, double pixel);
+
+/// The patch as a picture: transparent outside of the body.
+image::Image picture_of(const Interior& interior, const geometry::TriangleMesh& body, const Patch& patch,
+                        const Detail* detail, const Blending& how);
+
 /// Red, green and blue alone.
 image::Colours colours_of(const image::Raster<Eigen::Array4f>& painted);
 

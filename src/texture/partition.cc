@@ -92,7 +92,8 @@ void Partition::divide(const int exemplar, const std::vector<Chart>& charts) {
   for (int i = 0; i < n_cells; ++i) {
     const Grey section = section_in(cells_[i], chart, -1);
     const std::size_t n = count(section);
-    if (n < least_pixels || static_cast<double>(count_shown(section, chart.shown)) < least_share * static_cast<double>(n))
+    if (n < least_pixels ||
+        static_cast<double>(count_shown(section, chart.shown)) < least_share * static_cast<double>(n))
       continue;
     const int other = static_cast<int>(cells_.size());
     cells_.push_back(cells_[i]);

@@ -19,14 +19,14 @@ enum class Components {
 /// A part of an exemplar that bounds a cell.
 struct Face {
   int exemplar = 0;
-  double side = 1;     ///< +1: the cell lies where the plane's normal points, -1 opposite
-  image::Grey pixels;  ///< 1 what is part of it; of the chart
+  double side = 1;      ///< +1: the cell lies where the plane's normal points, -1 opposite
+  image::Grey pixels;   ///< 1 what is part of it; of the chart
   std::size_t area = 0; ///< [pixels]
 };
 
 struct Cell {
-  std::vector<HalfSpace> halves;  ///< whose intersection it is
-  std::vector<int> exemplars;     ///< of each half space
+  std::vector<HalfSpace> halves; ///< whose intersection it is
+  std::vector<int> exemplars;    ///< of each half space
   std::vector<double> sides;
   std::vector<Face> faces;
 };

@@ -126,7 +126,8 @@ void Source::tabulate(const Cell& cell, const Exemplar& exemplar, const geometry
   steps_by_t_ = (n_steps - 1) / t_max;
   std::vector<HalfSpace> halves = cell.halves;
   for (HalfSpace& half : halves)
-    if (std::abs(half.normal.dot(normal_)) > 1 - 1e-12 && std::abs(half.normal.dot(plane_.origin) - half.offset) < 1e-12)
+    if (std::abs(half.normal.dot(normal_)) > 1 - 1e-12 &&
+        std::abs(half.normal.dot(plane_.origin) - half.offset) < 1e-12)
       half = HalfSpace{}; // its own plane bounds no ray in it
   Vec2 middle = middles_[0];
   double least = 0;

@@ -28,8 +28,8 @@ class Source {
  private:
   /// A point as the swept plane sees it.
   struct Swept {
-    double t;    ///< how far the plane has gone [m] or [radians]
-    Vec2 local;  ///< in the swept plane [m]
+    double t;   ///< how far the plane has gone [m] or [radians]
+    Vec2 local; ///< in the swept plane [m]
   };
   Swept sweep(const Vec3& p) const {
     const Vec3 d = p - plane_.origin;
@@ -52,9 +52,9 @@ class Source {
   double side_ = 1;
   bool turns_ = false;
   Vec3 centre_ = Vec3::Zero(), axis_ = Vec3::Zero(), outward_ = Vec3::Zero(), inward_ = Vec3::Zero();
-  double steps_by_t_ = 0;               ///< rows of the table a unit of t
-  std::vector<float> radii_;            ///< n_steps rows of n_directions + 1, the last of a row is its first [m]
-  std::vector<Vec2> middles_;           ///< the swept barycentre, by step [m]
+  double steps_by_t_ = 0;     ///< rows of the table a unit of t
+  std::vector<float> radii_;  ///< n_steps rows of n_directions + 1, the last of a row is its first [m]
+  std::vector<Vec2> middles_; ///< the swept barycentre, by step [m]
 };
 
 } // namespace kerf::texture

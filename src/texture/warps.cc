@@ -76,15 +76,17 @@ warp::Picture picture_of(const Face& face, const Chart& chart, const Aligned& al
   return picture;
 }
 
-/// A pinned point in pixels of the matched picture.
-Vec2 pinned(const Vec3& p, const Face& face, const Chart& chart, const Aligned& aligned, const AlignedPair& pair) {
+bool is_in(const Face& face, const Chart& chart, const Vec3& p) {
   const Vec2 pixel = chart.plane.to_pixels(chart.plane.local(p));
   const int c = static_cast<int>(std::lround(pixel[0])), r = static_cast<int>(std::lround(pixel[1]));
-  if (c < 0 || r < 0 || c >= face.pixels.width || r >= face.pixels.height || face.pixels(c, r) < 0.5f)
-    throw ParameterError(Complaint{.path = "Pin",
-                                   .rule = "a pinned point lies outside of the part of its section that bounds the cell",
-                                   .remedy = "Move it inside"});
-  return from_raster(aligned, pair).inverse()(along(aligned, p));
+  return c >= 0 && r >= 0 && c < face.pixels.width && r < face.pixels.height && face.pixels(c, r) > 0.5f;
+}
+
+/// A pin as seen from two faces: which of its ends lies on the first; -1 if it does not join them.
+int first_end(const ExemplarPin& pin, const std::string& from, const std::string& to) {
+  return pin.exemplars[0] == from && pin.exemplars[1] == to   ? 0
+         : pin.exemplars[1] == from && pin.exemplars[0] == to ? 1
+                                                              : -1;
 }
 
 } // namespace
@@ -97,7 +99,8 @@ AlignedPair align(const Face& from, const Chart& from_chart, const Face& to, con
                                      : Vec3((from_chart.plane.x() - n.dot(from_chart.plane.x()) * n).normalized());
   pair.to.a = (pair.from.a - n.dot(pair.from.a) * n).normalized();
   pair.from.b = m.cross(pair.from.a);
-  pair.to.b = from.exemplar == to.exemplar ? pair.from.b : Vec3((-n).cross(pair.to.a)); // components of one: as they lie
+  pair.to.b =
+    from.exemplar == to.exemplar ? pair.from.b : Vec3((-n).cross(pair.to.a)); // components of one: as they lie
   find_box(from, from_chart, pair.from);
   find_box(to, to_chart, pair.to);
   const Vec2 size = 0.5 * (pair.from.size / from_chart.plane.pixel() + pair.to.size / to_chart.plane.pixel());
@@ -112,25 +115,26 @@ Mat2 aligned_linear(const AlignedPair& pair, const Chart& from, const Chart& to)
 }
 
 warp::LatticeMap match_faces(const Face& from, const Chart& from_chart, const Face& to, const Chart& to_chart,
-                             const AlignedPair& pair, const WarpOptions& options) {
-  return warp::match(picture_of(from, from_chart, pair.from, pair), picture_of(to, to_chart, pair.to, pair),
-                     options.match);
+                             const AlignedPair& pair, const warp::MatchOptions& options) {
+  return warp::match(picture_of(from, from_chart, pair.from, pair), picture_of(to, to_chart, pair.to, pair), options);
 }
 
 namespace {
 
-/// The pins between two exemplars, from the first to the second.
+/// The pins between two faces, in pixels of the matched pictures.
 std::vector<warp::Pin> pins_between(const Face& from, const Face& to, const std::vector<Exemplar>& exemplars,
                                     const std::vector<Chart>& charts, const AlignedPair& pair,
-                                    const WarpOptions& options) {
+                                    const std::vector<ExemplarPin>& all) {
   std::vector<warp::Pin> pins;
-  for (std::size_t i = 0; i < options.pinned_exemplars.size(); ++i)
-    for (const int first : {0, 1})
-      if (options.pinned_exemplars[i][first] == exemplars[from.exemplar].name &&
-          options.pinned_exemplars[i][1 - first] == exemplars[to.exemplar].name)
-        pins.push_back(
-          {pinned(options.pinned_points[i][first], from, charts[from.exemplar], pair.from, pair),
-           pinned(options.pinned_points[i][1 - first], to, charts[to.exemplar], pair.to, pair)});
+  for (const ExemplarPin& pin : all) {
+    const int end = first_end(pin, exemplars[from.exemplar].name, exemplars[to.exemplar].name);
+    if (end < 0)
+      continue;
+    const Vec3 &a = pin.points[end], &b = pin.points[1 - end];
+    if (is_in(from, charts[from.exemplar], a) && is_in(to, charts[to.exemplar], b))
+      pins.push_back({from_raster(pair.from, pair).inverse()(along(pair.from, a)),
+                      from_raster(pair.to, pair).inverse()(along(pair.to, b))});
+  }
   return pins;
 }
 
@@ -145,9 +149,12 @@ WarpTable empty_table(const Face& face, const int n_faces) {
         top = std::min(top, r);
         bottom = std::max(bottom, r);
       }
-  const auto n_nodes = [](const int length) { return std::max(2, static_cast<int>(std::ceil(length / pixels_a_node)) + 1); };
+  const auto n_nodes = [](const int length) {
+    return std::max(2, static_cast<int>(std::ceil(length / pixels_a_node)) + 1);
+  };
   const int width = std::max(1, right - left), height = std::max(1, bottom - top);
-  WarpTable table{n_nodes(width), n_nodes(height), n_faces, static_cast<float>(left), static_cast<float>(top), 0, 0, {}};
+  WarpTable table{
+    n_nodes(width), n_nodes(height), n_faces, static_cast<float>(left), static_cast<float>(top), 0, 0, {}};
   table.columns_by_pixel = static_cast<float>(table.n_columns - 1) / static_cast<float>(width);
   table.rows_by_pixel = static_cast<float>(table.n_rows - 1) / static_cast<float>(height);
   table.targets.assign(2 * n_faces * table.n_columns * table.n_rows, 0.0f);
@@ -170,6 +177,30 @@ void fill(WarpTable& table, const int target, const warp::LatticeMap& map, const
 
 } // namespace
 
+void check_pins(const std::vector<ExemplarPin>& pins, const std::vector<Cell>& cells,
+                const std::vector<Exemplar>& exemplars, const std::vector<Chart>& charts) {
+  for (const ExemplarPin& pin : pins) {
+    std::array<bool, 2> is_inside = {false, false};
+    bool joined = false;
+    for (const Cell& cell : cells)
+      for (const Face& from : cell.faces)
+        for (const Face& to : cell.faces)
+          if (pin.exemplars[0] == exemplars[from.exemplar].name && pin.exemplars[1] == exemplars[to.exemplar].name) {
+            const bool a = is_in(from, charts[from.exemplar], pin.points[0]);
+            const bool b = is_in(to, charts[to.exemplar], pin.points[1]);
+            is_inside = {is_inside[0] || a, is_inside[1] || b};
+            joined = joined || (a && b);
+          }
+    if (!joined)
+      throw ParameterError(
+        Complaint{.path = is_inside[0] ? "To [m]" : "From [m]",
+                  .value = "pin " + pin.name,
+                  .rule = is_inside[0] && is_inside[1] ? "the two points bound no common cell"
+                                                       : "the pinned point lies outside of its exemplar's section",
+                  .remedy = "Move it inside, on the exemplar's plane, where both exemplars bound the same cell"});
+  }
+}
+
 std::vector<WarpTable> make_warps(const Cell& cell, const std::vector<Exemplar>& exemplars,
                                   const std::vector<Chart>& charts, const WarpOptions& options,
                                   const std::vector<warp::LatticeMap>& known, std::vector<warp::LatticeMap>& used) {
@@ -183,8 +214,8 @@ std::vector<WarpTable> make_warps(const Cell& cell, const std::vector<Exemplar>&
       const Face &from = cell.faces[i], &to = cell.faces[j];
       const Chart &a = charts[from.exemplar], &b = charts[to.exemplar];
       const AlignedPair pair = align(from, a, to, b, options.pixels);
-      WarpOptions of_pair = options;
-      of_pair.match.pins = pins_between(from, to, exemplars, charts, pair, options);
+      warp::MatchOptions of_pair = options.match;
+      of_pair.pins = pins_between(from, to, exemplars, charts, pair, options.pins);
       used.push_back(number < known.size() ? known[number] : match_faces(from, a, to, b, pair, of_pair));
       const warp::LatticeMap& map = used.back();
       const warp::LatticeMap back = warp::inverse(map, map.lower, map.upper, map.n_columns, map.n_rows);

@@ -12,18 +12,29 @@
 
 namespace kerf::texture {
 
-struct WarpOptions {
-  warp::MatchOptions match;
-  int pixels = 96; ///< of the longer side of what is matched
-  std::vector<std::array<std::string, 2>> pinned_exemplars; ///< of each pin: the exemplars it joins
-  std::vector<std::array<Vec3, 2>> pinned_points;           ///< rest frame [m]
+/// A point of one exemplar that goes to a point of another, wherever both bound a cell.
+struct ExemplarPin {
+  std::string name;
+  std::array<std::string, 2> exemplars; ///< their names
+  std::array<Vec3, 2> points;           ///< rest frame [m]
 };
+
+struct WarpOptions {
+  warp::MatchOptions match; ///< its pins are those below
+  int pixels = 96;          ///< of the longer side of what is matched
+  std::vector<ExemplarPin> pins;
+};
+
+/// Throws ParameterError about the key "From [m]" or "To [m]", its value the pin's name, if the exemplars share no cell or a point lies
+/// outside of the parts of its exemplar that bound those cells.
+void check_pins(const std::vector<ExemplarPin>& pins, const std::vector<Cell>& cells,
+                const std::vector<Exemplar>& exemplars, const std::vector<Chart>& charts);
 
 /// The rectangle of a face as a partner sees it.
 struct Aligned {
-  Vec2 lower;      ///< of the box, along `a` and `b` [m]
-  Vec2 size;       ///< [m]
-  Vec3 a, b;       ///< unit, in the plane
+  Vec2 lower; ///< of the box, along `a` and `b` [m]
+  Vec2 size;  ///< [m]
+  Vec3 a, b;  ///< unit, in the plane
 };
 struct AlignedPair {
   Aligned from, to;
@@ -31,17 +42,17 @@ struct AlignedPair {
 };
 AlignedPair align(const Face& from, const Chart& from_chart, const Face& to, const Chart& to_chart, int pixels);
 
-/// A map between the pixels of two aligned boxes. Throws ParameterError about "Pin" if a pin lies outside of a face.
+/// A map between the pixels of two aligned boxes.
 warp::LatticeMap match_faces(const Face& from, const Chart& from_chart, const Face& to, const Chart& to_chart,
-                             const AlignedPair& pair, const WarpOptions& options);
+                             const AlignedPair& pair, const warp::MatchOptions& options);
 
 /// Where the pixels of a face go on all faces of its cell: a lattice over the face's box, with one target a face at each
 /// node.
 struct WarpTable {
   int n_columns = 0, n_rows = 0, n_faces = 0;
-  float left = 0, top = 0;       ///< of the first node [pixels of the chart]
+  float left = 0, top = 0; ///< of the first node [pixels of the chart]
   float columns_by_pixel = 0, rows_by_pixel = 0;
-  std::vector<float> targets;    ///< node by node: x, y on each face [pixels of its chart]; zero for the face itself
+  std::vector<float> targets; ///< node by node: x, y on each face [pixels of its chart]; zero for the face itself
 
   const float* node(const int c, const int r) const { return &targets[2 * n_faces * (r * n_columns + c)]; }
 };

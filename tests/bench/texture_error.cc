@@ -1,0 +1,225 @@
+/// How far painted insides are from the truth.
+///
+///     bench_texture_error [FOLDER]
+///
+/// A brain of which one of nine sections is left out at a time and painted from the others; and solids whose colour is
+/// known everywhere, painted on planes that are no exemplar's from 2 to 9 exemplars. By method: PSNR [dB] and SSIM against
+/// the truth, distance of the histograms of luminance, and the power of octaves (wavelengths around 4, 8, 16, 32
+/// pixels) over the truth's. FOLDER gets pictures: truth, nearest, blend, first order, exact inverse, small features.
+
+#include "base/parallel.h"
+#include "image/compare.h"
+#include "image/file.h"
+#include "tests/texture/solids.h"
+
+#include <cstdio>
+#include <string>
+
+namespace {
+
+using namespace kerf;
+using namespace kerf::texture;
+using image::Grey;
+
+struct Method {
+  std::string name;
+  Morph morph;
+  bool small_features;
+};
+const std::vector<Method> methods = {{"nearest", Morph::nearest, false},
+                                     {"blend", Morph::blend, false},
+                                     {"first order", Morph::first_order, false},
+                                     {"exact inverse", Morph::exact_inverse, false},
+                                     {"first order + small", Morph::first_order, true}};
+constexpr int n_bands = 4;
+
+struct Score {
+  double psnr = 0, ssim = 0, histogram = 0;
+  std::array<double, n_bands> power = {};
+
+  void add(const Score& other, const double share) {
+    psnr += share * other.psnr;
+    ssim += share * other.ssim;
+    histogram += share * other.histogram;
+    for (int k = 0; k < n_bands; ++k)
+      power[k] += share * other.power[k];
+  }
+};
+
+Score score(const image::Colours& painted, const image::Colours& truth, const Grey& mask) {
+  const Grey a = image::luminance(painted), b = image::luminance(truth);
+  Score s{image::psnr(painted, truth, mask),
+          image::ssim(a, b, mask),
+          image::histogram_distance(image::histogram(a, mask, 64), image::histogram(b, mask, 64)),
+          {}};
+  const auto pa = image::band_power(a, mask, n_bands), pb = image::band_power(b, mask, n_bands);
+  for (int k = 0; k < n_bands; ++k)
+    s.power[k] = pa[k] / pb[k];
+  return s;
+}
+
+void print(const std::string& what, const std::string& method, const Score& s) {
+  std::printf("%-16s %-20s %7.2f %7.3f %9.4f  ", what.c_str(), method.c_str(), s.psnr, s.ssim, s.histogram);
+  for (const double ratio : s.power)
+    std::printf(" %6.2f", ratio);
+  std::printf("\n");
+}
+
+void print_head() {
+  std::printf("%-16s %-20s %7s %7s %9s   %s\n", "", "", "PSNR", "SSIM", "histogram",
+              "power over the truth's by octave, from the finest");
+}
+
+/// Pictures side by side, what is outside of the mask in grey.
+void write_strip(const std::vector<image::Colours>& pictures, const Grey& mask, const std::string& path) {
+  const int w = mask.width, h = mask.height;
+  image::Colours strip(static_cast<int>(pictures.size()) * (w + 4), h, image::Rgb::Constant(0.85f));
+  for (std::size_t i = 0; i < pictures.size(); ++i)
+    for (int r = 0; r < h; ++r)
+      for (int c = 0; c < w; ++c)
+        if (mask(c, r) > 0.5f)
+          strip(static_cast<int>(i) * (w + 4) + c, r) = pictures[i](c, r);
+  image::write_image(strip, path);
+}
+
+/// The scores of all methods on one patch.
+std::vector<Score> compare(const Interior& interior, const Detail& detail, const Patch& patch,
+                           const image::Colours& truth, const Grey& mask, const std::string& path) {
+  std::vector<Score> scores;
+  std::vector<image::Colours> pictures = {truth};
+  for (const Method& method : methods) {
+    Blending how = interior.options().blending;
+    how.morph = method.morph;
+    pictures.push_back(colours_of(paint(interior, patch, method.small_features ? &detail : nullptr, how)));
+    scores.push_back(score(pictures.back(), truth, mask));
+  }
+  if (!path.empty())
+    write_strip(pictures, mask, path);
+  return scores;
+}
+
+struct BrainSection {
+  std::string file;
+  Vec3 origin, column, row; ///< [mm]
+};
+
+/// As sections.json of the data says.
+std::vector<BrainSection> brain_sections() {
+  std::vector<BrainSection> sections;
+  const Vec3 x = 0.5 * Vec3::UnitX(), y = 0.5 * Vec3::UnitY(), z = 0.5 * Vec3::UnitZ();
+  for (const int at : {35, 55, 75, 95, 115})
+    sections.push_back({"axial_z" + std::to_string(at), Vec3(15, 18, at), x, y});
+  for (const int at : {60, 118})
+    sections.push_back({"sagittal_x" + std::to_string(at), Vec3(at, 18, 1.5), y, z});
+  for (const int at : {70, 140})
+    sections.push_back({"coronal_y" + std::to_string(at), Vec3(15, at, 1.5), x, z});
+  return sections;
+}
+
+Exemplar brain_exemplar(const BrainSection& s) {
+  constexpr double mm = 1e-3;
+  return {s.file, image::read_image(std::string(KERF_SOURCE_DIR) + "/params/sections/brain/" + s.file + ".png"),
+          Background::black, SectionPlane(mm * s.origin, mm * s.column, mm * s.row)};
+}
+
+InteriorOptions brain_options() {
+  InteriorOptions options;
+  options.components = Components::together;
+  return options;
+}
+
+void study_brain(const std::string& folder, const Sweep::Path path) {
+  const auto body = geometry::read_mesh(std::string(KERF_SOURCE_DIR) + "/params/meshes/brain_40k.off", 1e-3);
+  const auto sections = brain_sections();
+  std::vector<Score> means(methods.size());
+  print_head();
+  for (std::size_t out = 0; out < sections.size(); ++out) {
+    std::vector<Exemplar> others;
+    for (std::size_t i = 0; i < sections.size(); ++i)
+      if (i != out) {
+        others.push_back(brain_exemplar(sections[i]));
+        others.back().sweep.path = path;
+      }
+    const Interior interior(others, body, brain_options());
+    const Exemplar left_out = brain_exemplar(sections[out]);
+    const SectionPlane& plane = left_out.plane;
+    const Patch patch{plane.origin(), plane.point(plane.to_local(Vec2(1, 0))) - plane.origin(),
+                      plane.point(plane.to_local(Vec2(0, 1))) - plane.origin(), left_out.picture.width(),
+                      left_out.picture.height()};
+    // Inside the section: of the body, and of what the picture shows.
+    Grey mask = picture_of(interior, body, patch, nullptr, {.morph = Morph::nearest}).alpha;
+    const Grey shown = mask_of(left_out.picture, Background::black);
+    for (std::size_t i = 0; i < mask.values.size(); ++i)
+      mask.values[i] *= shown.values[i];
+    const auto scores = compare(interior, Detail(interior), patch, left_out.picture.colours, mask,
+                                folder.empty() ? "" : folder + "/" + sections[out].file + ".png");
+    for (std::size_t m = 0; m < methods.size(); ++m) {
+      print(sections[out].file, methods[m].name, scores[m]);
+      means[m].add(scores[m], 1.0 / static_cast<double>(sections.size()));
+    }
+  }
+  for (std::size_t m = 0; m < methods.size(); ++m)
+    print("mean", methods[m].name, means[m]);
+}
+
+/// Planes that are no exemplar's: along the axes between them, and tilted.
+std::vector<Patch> test_patches() {
+  constexpr int n = 200;
+  constexpr double half = 0.052, pixel = 2 * half / (n - 1);
+  const auto patch = [&](const Vec3& middle, const Vec3& x, const Vec3& y) {
+    return Patch{middle - half * x - half * y, pixel * x, pixel * y, n, n};
+  };
+  const Vec3 a = Vec3(1, 0.4, 0.3).normalized(), b = Vec3(-0.4, 1, 0).normalized();
+  return {patch(Vec3(0, 0, 0.012), Vec3::UnitX(), Vec3::UnitY()),
+          patch(Vec3(-0.013, 0, 0), Vec3::UnitY(), Vec3::UnitZ()), patch(Vec3(0.002, 0, 0.008), a, b)};
+}
+
+Grey ball_mask(const Patch& patch) {
+  Grey mask(patch.width, patch.height, 0);
+  for (int r = 0; r < patch.height; ++r)
+    for (int c = 0; c < patch.width; ++c)
+      mask(c, r) = patch.point(c, r).norm() < 0.0495 ? 1.0f : 0.0f;
+  return mask;
+}
+
+image::Colours truth_of(const Solid& solid, const Patch& patch) {
+  image::Colours truth(patch.width, patch.height, image::Rgb::Zero());
+  for (int r = 0; r < patch.height; ++r)
+    for (int c = 0; c < patch.width; ++c)
+      truth(c, r) = solid(patch.point(c, r));
+  return truth;
+}
+
+void study_solid(const std::string& name, const Solid& solid, const std::string& folder) {
+  std::printf("\n%s\n", name.c_str());
+  print_head();
+  const auto patches = test_patches();
+  for (int n = 2; n <= 9; ++n) {
+    const Interior interior(axis_exemplars(solid, n), ball(5), {});
+    const Detail detail(interior);
+    std::vector<Score> means(methods.size());
+    for (std::size_t i = 0; i < patches.size(); ++i) {
+      const std::string file = folder + "/" + name + "_" + std::to_string(n) + "_plane_" + std::to_string(i) + ".png";
+      const auto scores = compare(interior, detail, patches[i], truth_of(solid, patches[i]), ball_mask(patches[i]),
+                                  folder.empty() || (n != 3 && n != 9) ? "" : file);
+      for (std::size_t m = 0; m < methods.size(); ++m)
+        means[m].add(scores[m], 1.0 / static_cast<double>(patches.size()));
+    }
+    for (std::size_t m = 0; m < methods.size(); ++m)
+      print(std::to_string(n) + " exemplars", methods[m].name, means[m]);
+  }
+}
+
+} // namespace
+
+int main(const int argc, char** const argv) {
+  const std::string folder = argc > 1 ? argv[1] : "";
+  std::printf("brain, one section left out, planes swept along their normals\n");
+  study_brain(folder, Sweep::Path::normal);
+  std::printf("\nthe same, swept through the middles of parallel sections\n");
+  study_brain("", Sweep::Path::middles);
+  study_solid("onion", onion, folder);
+  study_solid("wood", wood, folder);
+  study_solid("citrus", citrus, folder);
+  return 0;
+}
