@@ -90,6 +90,7 @@ texture::InteriorOptions options_of(const InteriorParameters& p) {
   match.outline = p.outline;
   match.stiffness = p.stiffness;
   match.global = meant(p.global, motions);
+  options.warps.partners = p.warps == "all" ? texture::Partners::all : texture::Partners::facing;
   options.warps.pixels = p.match_pixels;
   return options;
 }

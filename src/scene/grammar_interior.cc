@@ -13,6 +13,8 @@ void InteriorParameters::describe(Parameters& p) {
            "Of source points. Mean value coordinates where these enclose the point, which they do in cells that do not "
            "touch the skin; Shepard's elsewhere.");
   p.number("Weight power [1]", power, positive, "Of the distances in Shepard's weights.");
+  p.choice("Warps", warps, {"all", "facing"},
+           "Between all exemplars that bound a cell, or only between those that face each other within 45 degrees.");
   p.choice("Components", components, {"one", "each", "together"},
            "When an exemplar's section has several components in a cell: refused; an exemplar each; one exemplar.");
   p.boolean("Small features", small_features,

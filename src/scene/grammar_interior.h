@@ -14,6 +14,7 @@ struct InteriorParameters {
   std::string morph = "first order";
   std::string weights = "Shepard";
   double power = 1; ///< [1]
+  std::string warps = "all";
   std::string components = "one";
   bool small_features = false;
   double relief = 0; ///< [m]

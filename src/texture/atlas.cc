@@ -123,8 +123,11 @@ std::size_t Atlas::fill(const SurfaceView& surface, const Paint& paint) {
   std::vector<std::size_t> fresh;
   std::size_t end = colours_.size();
   for (std::size_t t = 0; t < n; ++t) {
-    if (surface.labels[t] == 0 && !paint.skin)
+    if (surface.labels[t] == 0 && !paint.skin) {
+      first_[t] = none; // it may have been revealed before: later cuts can give a triangle at a rim to the skin
+      parts_[t] = 0;
       continue;
+    }
     const Corners corners = corners_of(surface, t);
     if (first_[t] != none && filled_[t] == corners && labels_[t] == surface.labels[t])
       continue;

@@ -54,6 +54,7 @@ void add(Hash& hash, const Exemplar& exemplar) {
 void add(Hash& hash, const InteriorOptions& options) {
   const warp::MatchOptions& match = options.warps.match;
   hash.add(options.components);
+  hash.add(options.warps.partners);
   hash.add(options.warps.pixels);
   for (const int value : {match.n_levels, match.n_cells, match.n_iterations, static_cast<int>(match.global)})
     hash.add(value);

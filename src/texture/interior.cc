@@ -111,6 +111,7 @@ void Interior::build_cell(const int number, const std::vector<Exemplar>& exempla
       const Chart &a = charts_[from.exemplar], &b = charts_[to.exemplar];
       const Mat2 linear =
         i == j ? Mat2(Mat2::Identity()) : aligned_linear(align(from, a, to, b, options_.warps.pixels), a, b);
+      data.apart.push_back(i == j || !are_partners(from, a, to, b, options_.warps.partners) ? 1 : 0);
       data.linear.push_back(j <= i ? linear : Mat2(linear.inverse()));
     }
   data.triangles = enclosing_triangles(cell, body);
@@ -148,7 +149,15 @@ void Interior::morph(const CellData& cell, const Found& found, std::array<Vec2, 
             });
   }
   for (int i = 0; i < n; ++i)
-    q[i] = found.shares[i] * found.pixels[i] + Vec2(sum[2 * i], sum[2 * i + 1]);
+    q[i] = own_share(cell, found, i) * found.pixels[i] + Vec2(sum[2 * i], sum[2 * i + 1]);
+}
+
+double Interior::own_share(const CellData& cell, const Found& found, const int i) {
+  const int n = static_cast<int>(cell.sources.size());
+  double share = 0;
+  for (int j = 0; j < n; ++j)
+    share += cell.apart[j * n + i] ? found.shares[j] : 0;
+  return share;
 }
 
 /// Newton's method from q, as long as it gets nearer.
@@ -157,10 +166,11 @@ Vec2 Interior::solve_inverse(const CellData& cell, const Found& found, const int
   double before = 1e300;
   Vec2 best = q;
   for (int round = 0; round < 20; ++round) {
-    Vec2 error = found.shares[i] * (q - found.pixels[i]);
-    Mat2 gradient = found.shares[i] * Mat2::Identity();
+    const double own = own_share(cell, found, i);
+    Vec2 error = own * (q - found.pixels[i]);
+    Mat2 gradient = own * Mat2::Identity();
     for (int j = 0; j < n; ++j)
-      if (j != i) {
+      if (!cell.apart[j * n + i]) {
         const Image image = image_of(cell.tables[i], j, q);
         const Mat2 back = found.shares[j] * cell.linear[j * n + i];
         error += back * (image.at - found.pixels[j]);

@@ -7,7 +7,7 @@
 ///
 ///     q_i = w_i p_i + sum_{j != i} w_j f_ji(p_j),     c = sum_i w_i c_i(q_i),                       (3.14)
 ///
-/// without allocation, the same bits on any thread. In a face its own source point is the point itself and its weight
+/// (for faces j that are no partners of i, f_ji(p_j) is p_i) without allocation, the same bits on any thread. In a face its own source point is the point itself and its weight
 /// 1: so the colour there is the picture's, and colours are continuous across planes.
 
 #include "texture/source.h"
@@ -79,6 +79,7 @@ class Interior {
   struct CellData {
     std::vector<Source> sources;
     std::vector<WarpTable> tables;
+    std::vector<char> apart;       ///< [j * n + i]: 1 where faces j and i are no partners, or one face
     std::vector<Mat2> linear;      ///< [j * n + i]: from chart pixels of face j to those of face i, before matching
     std::vector<Triple> triangles; ///< between source points; empty where the cell touches the skin
   };
@@ -93,6 +94,8 @@ class Interior {
                   const Maps* known);
   void find_sources(const CellData& cell, const Vec3& p, const Blending& how, Found& found) const;
   void morph(const CellData& cell, const Found& found, std::array<Vec2, max_sources>& q) const;
+  /// The weight of what stays where it is on face i: of itself, and of those that are no partners of it.
+  static double own_share(const CellData& cell, const Found& found, int i);
   Vec2 solve_inverse(const CellData& cell, const Found& found, int i, Vec2 q) const;
 
   InteriorOptions options_;

@@ -164,8 +164,10 @@ Vec2 Source::find(const Swept& swept) const {
   };
   const double there = (1 - s) * radius(i) + s * radius(i + 1);
   const double length = arm.norm();
-  // Beyond the boundary, outside of the body, the source point stays on it.
-  const double ratio = length > there ? radius(0) / length : radius(0) / there;
+  // Far beyond the boundary, outside of the body, the source point stays there. How far is far falls from infinity in the
+  // face itself, where interpolated radii may cut a corner off and the source point must still be the point itself.
+  const double beyond = there * (1 + 0.02 * (n_steps - 1) / std::max(step, 1e-12));
+  const double ratio = radius(0) / there * (length > beyond ? beyond / length : 1);
   return middles_[0] + ratio * arm;
 }
 

@@ -110,6 +110,11 @@ AlignedPair align(const Face& from, const Chart& from_chart, const Face& to, con
   return pair;
 }
 
+bool are_partners(const Face& from, const Chart& from_chart, const Face& to, const Chart& to_chart,
+                  const Partners partners) {
+  return partners == Partners::all || inward(from, from_chart).dot(inward(to, to_chart)) < -0.7;
+}
+
 Mat2 aligned_linear(const AlignedPair& pair, const Chart& from, const Chart& to) {
   return raster_to_chart(pair.to, pair, to).linear * raster_to_chart(pair.from, pair, from).linear.inverse();
 }
@@ -210,13 +215,15 @@ std::vector<WarpTable> make_warps(const Cell& cell, const std::vector<Exemplar>&
     tables.push_back(empty_table(face, n));
   std::size_t number = 0;
   for (int i = 0; i < n; ++i)
-    for (int j = i + 1; j < n; ++j, ++number) {
+    for (int j = i + 1; j < n; ++j) {
       const Face &from = cell.faces[i], &to = cell.faces[j];
       const Chart &a = charts[from.exemplar], &b = charts[to.exemplar];
+      if (!are_partners(from, a, to, b, options.partners))
+        continue;
       const AlignedPair pair = align(from, a, to, b, options.pixels);
       warp::MatchOptions of_pair = options.match;
       of_pair.pins = pins_between(from, to, exemplars, charts, pair, options.pins);
-      used.push_back(number < known.size() ? known[number] : match_faces(from, a, to, b, pair, of_pair));
+      used.push_back(number < known.size() ? known[number++] : match_faces(from, a, to, b, pair, of_pair));
       const warp::LatticeMap& map = used.back();
       const warp::LatticeMap back = warp::inverse(map, map.lower, map.upper, map.n_columns, map.n_rows);
       const warp::Affine place_a = raster_to_chart(pair.from, pair, a), place_b = raster_to_chart(pair.to, pair, b);

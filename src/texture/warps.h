@@ -19,7 +19,14 @@ struct ExemplarPin {
   std::array<Vec3, 2> points;           ///< rest frame [m]
 };
 
+/// Which faces of a cell are warped to each other.
+enum class Partners {
+  all,   ///< all, as in the thesis
+  facing ///< those that face each other, within 45 degrees: what lies at an angle is mixed as it is
+};
+
 struct WarpOptions {
+  Partners partners = Partners::all;
   warp::MatchOptions match; ///< its pins are those below
   int pixels = 96;          ///< of the longer side of what is matched
   std::vector<ExemplarPin> pins;
@@ -46,18 +53,22 @@ AlignedPair align(const Face& from, const Chart& from_chart, const Face& to, con
 warp::LatticeMap match_faces(const Face& from, const Chart& from_chart, const Face& to, const Chart& to_chart,
                              const AlignedPair& pair, const warp::MatchOptions& options);
 
+/// Whether two faces are warped to each other.
+bool are_partners(const Face& from, const Chart& from_chart, const Face& to, const Chart& to_chart, Partners partners);
+
 /// Where the pixels of a face go on all faces of its cell: a lattice over the face's box, with one target a face at each
 /// node.
 struct WarpTable {
   int n_columns = 0, n_rows = 0, n_faces = 0;
   float left = 0, top = 0; ///< of the first node [pixels of the chart]
   float columns_by_pixel = 0, rows_by_pixel = 0;
-  std::vector<float> targets; ///< node by node: x, y on each face [pixels of its chart]; zero for the face itself
+  std::vector<float>
+    targets; ///< node by node: x, y on each face [pixels of its chart]; zero for itself and for no partners
 
   const float* node(const int c, const int r) const { return &targets[2 * n_faces * (r * n_columns + c)]; }
 };
 
-/// All warps of a cell. `known` are the maps of pairs (i, j), i < j in order of i, then j, found earlier; what was used is
+/// All warps of a cell: of its partners alone. `known` are the maps of pairs (i, j), i < j in order of i, then j, found earlier; what was used is
 /// left in `used`.
 std::vector<WarpTable> make_warps(const Cell& cell, const std::vector<Exemplar>& exemplars,
                                   const std::vector<Chart>& charts, const WarpOptions& options,

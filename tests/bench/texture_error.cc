@@ -1,9 +1,9 @@
 /// How far painted insides are from the truth.
 ///
-///     bench_texture_error [brain|middles|onion|wood|citrus|all] [FOLDER]
+///     bench_texture_error [brain|facing|middles|onion|wood|citrus|all] [FOLDER [STIFFNESS]]
 ///
 /// A brain of which one of nine sections is left out at a time and painted from the others; and solids whose colour is
-/// known everywhere, painted on planes that are no exemplar's from 2 to 9 exemplars. By method: PSNR [dB] and SSIM against
+/// known everywhere, painted on planes between 2 to 9 parallel exemplars. By method: PSNR [dB] and SSIM against
 /// the truth, distance of the histograms of luminance, and the power of octaves (wavelengths around 4, 8, 16, 32
 /// pixels) over the truth's. FOLDER gets pictures: truth, nearest, blend, first order, exact inverse, small features.
 
@@ -31,6 +31,8 @@ const std::vector<Method> methods = {{"nearest", Morph::nearest, false},
                                      {"first order", Morph::first_order, false},
                                      {"exact inverse", Morph::exact_inverse, false},
                                      {"first order + small", Morph::first_order, true}};
+/// Of the warps between faces, for all subjects.
+warp::MatchOptions match_options;
 constexpr int n_bands = 4;
 
 struct Score {
@@ -122,13 +124,15 @@ Exemplar brain_exemplar(const BrainSection& s) {
           Background::black, SectionPlane(mm * s.origin, mm * s.column, mm * s.row)};
 }
 
-InteriorOptions brain_options() {
+InteriorOptions brain_options(const Partners partners) {
   InteriorOptions options;
   options.components = Components::together;
+  options.warps.partners = partners;
+  options.warps.match = match_options;
   return options;
 }
 
-void study_brain(const std::string& folder, const Sweep::Path path) {
+void study_brain(const std::string& folder, const Sweep::Path path, const Partners partners) {
   const auto body = geometry::read_mesh(std::string(KERF_SOURCE_DIR) + "/params/meshes/brain_40k.off", 1e-3);
   const auto sections = brain_sections();
   std::vector<Score> means(methods.size());
@@ -140,7 +144,7 @@ void study_brain(const std::string& folder, const Sweep::Path path) {
         others.push_back(brain_exemplar(sections[i]));
         others.back().sweep.path = path;
       }
-    const Interior interior(others, body, brain_options());
+    const Interior interior(others, body, brain_options(partners));
     const Exemplar left_out = brain_exemplar(sections[out]);
     const SectionPlane& plane = left_out.plane;
     const Patch patch{plane.origin(), plane.point(plane.to_local(Vec2(1, 0))) - plane.origin(),
@@ -162,23 +166,34 @@ void study_brain(const std::string& folder, const Sweep::Path path) {
     print("mean", methods[m].name, means[m]);
 }
 
-/// Planes that are no exemplar's: along the axes between them, and tilted.
+/// Planes between the exemplars: two along them, one tilted.
 std::vector<Patch> test_patches() {
   constexpr int n = 200;
   constexpr double half = 0.052, pixel = 2 * half / (n - 1);
   const auto patch = [&](const Vec3& middle, const Vec3& x, const Vec3& y) {
     return Patch{middle - half * x - half * y, pixel * x, pixel * y, n, n};
   };
-  const Vec3 a = Vec3(1, 0.4, 0.3).normalized(), b = Vec3(-0.4, 1, 0).normalized();
-  return {patch(Vec3(0, 0, 0.012), Vec3::UnitX(), Vec3::UnitY()),
-          patch(Vec3(-0.013, 0, 0), Vec3::UnitY(), Vec3::UnitZ()), patch(Vec3(0.002, 0, 0.008), a, b)};
+  const Vec3 a = Vec3(1, 0.1, 0.3).normalized(), b = Vec3(-0.1, 1, 0).normalized();
+  return {patch(Vec3(0, 0, 0.0052), Vec3::UnitX(), Vec3::UnitY()),
+          patch(Vec3(0, 0, -0.0137), Vec3::UnitX(), Vec3::UnitY()), patch(Vec3(0.002, 0, 0.004), a, b)};
+}
+
+/// n sections at right angles to z, evenly from -0.03 to 0.03 m.
+std::vector<Exemplar> sections_along_z(const Solid& solid, const int n) {
+  std::vector<Exemplar> exemplars;
+  for (int i = 0; i < n; ++i)
+    exemplars.push_back(exemplar_of("e" + std::to_string(i), solid, Vec3(0, 0, 0.03 * (2.0 * i / (n - 1) - 1)),
+                                    Vec3::UnitX(), Vec3::UnitY()));
+  return exemplars;
 }
 
 Grey ball_mask(const Patch& patch) {
   Grey mask(patch.width, patch.height, 0);
   for (int r = 0; r < patch.height; ++r)
-    for (int c = 0; c < patch.width; ++c)
-      mask(c, r) = patch.point(c, r).norm() < 0.0495 ? 1.0f : 0.0f;
+    for (int c = 0; c < patch.width; ++c) {
+      const Vec3 p = patch.point(c, r);
+      mask(c, r) = p.norm() < 0.0495 && std::abs(p[2]) < 0.03 ? 1.0f : 0.0f;
+    }
   return mask;
 }
 
@@ -195,7 +210,9 @@ void study_solid(const std::string& name, const Solid& solid, const std::string&
   print_head();
   const auto patches = test_patches();
   for (int n = 2; n <= 9; ++n) {
-    const Interior interior(axis_exemplars(solid, n), ball(5), {});
+    InteriorOptions options;
+    options.warps.match = match_options;
+    const Interior interior(sections_along_z(solid, n), ball(5), options);
     const Detail detail(interior);
     std::vector<Score> means(methods.size());
     for (std::size_t i = 0; i < patches.size(); ++i) {
@@ -215,16 +232,22 @@ void study_solid(const std::string& name, const Solid& solid, const std::string&
 int main(const int argc, char** const argv) {
   const std::string subject = argc > 1 ? argv[1] : "all", folder = argc > 2 ? argv[2] : "";
   const auto is_asked = [&](const std::string& name) { return subject == "all" || subject == name; };
+  match_options.stiffness = argc > 3 ? std::atof(argv[3]) : match_options.stiffness;
   std::setvbuf(stdout, nullptr, _IOLBF, 0);
   if (is_asked("brain")) {
     std::printf("brain, one section left out\n");
-    study_brain(folder, Sweep::Path::normal);
+    study_brain(folder, Sweep::Path::normal, Partners::all);
+  }
+  if (is_asked("facing")) {
+    std::printf("\nbrain, warps only between sections that face each other\n");
+    study_brain(folder, Sweep::Path::normal, Partners::facing);
   }
   if (is_asked("middles")) {
-    std::printf("\nbrain, one section left out, planes swept through the middles of parallel sections\n");
-    study_brain("", Sweep::Path::middles);
+    std::printf("\nthe same, planes swept through the middles of parallel sections\n");
+    study_brain("", Sweep::Path::middles, Partners::facing);
   }
-  for (const auto& [name, solid] : {std::pair("onion", onion), std::pair("wood", wood), std::pair("citrus", citrus)})
+  const std::vector<std::pair<std::string, Solid>> solids = {{"onion", onion}, {"wood", wood}, {"citrus", citrus}};
+  for (const auto& [name, solid] : solids)
     if (is_asked(name))
       study_solid(name, solid, folder);
   return 0;
