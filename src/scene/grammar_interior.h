@@ -21,7 +21,7 @@ struct InteriorParameters {
   std::string skin_image;
   Vec3 skin_axis = Vec3::UnitZ(); ///< [1]
   int levels = 4, cells = 24, match_pixels = 96;
-  double edges = 1, brightness = 1, outline = 1, stiffness = 0.2; ///< [1]
+  double edges = 1, brightness = 1, outline = 1, stiffness = 8; ///< [1]
   std::string global = "none";
   void describe(Parameters& p);
 };

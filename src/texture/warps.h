@@ -27,8 +27,9 @@ enum class Partners {
 
 struct WarpOptions {
   Partners partners = Partners::all;
-  warp::MatchOptions match; ///< its pins are those below
-  int pixels = 96;          ///< of the longer side of what is matched
+  /// No pins. Stiff, so that features that come and go do not grasp at their neighbours.
+  warp::MatchOptions match = {.stiffness = 8};
+  int pixels = 96; ///< of the longer side of what is matched
   std::vector<ExemplarPin> pins;
 };
 

@@ -29,7 +29,7 @@ struct MatchOptions {
   double stiffness = 0.2;       ///< of the lattice against the features, whose mean square is 1 [1]
   Global global = Global::none; ///< other than none: the border of the rectangle is free
   int n_iterations = 50;        ///< a level
-  std::vector<Pin> pins;        ///< in pixels of the two pictures
+  std::vector<Pin> pins = {};   ///< in pixels of the two pictures
 };
 
 /// Level by level, from the finest: what is compared, scaled so that each channel's mean square is its weight squared.

@@ -32,7 +32,7 @@ const std::vector<Method> methods = {{"nearest", Morph::nearest, false},
                                      {"exact inverse", Morph::exact_inverse, false},
                                      {"first order + small", Morph::first_order, true}};
 /// Of the warps between faces, for all subjects.
-warp::MatchOptions match_options;
+warp::MatchOptions match_options = WarpOptions().match;
 constexpr int n_bands = 4;
 
 struct Score {
