@@ -58,9 +58,9 @@ void measure(const int n_exemplars) {
   Blending exact;
   exact.morph = Morph::exact_inverse;
   const double inverse = best_of(2, [&] { paint(*interior, patch, nullptr, exact); });
-  std::printf("%9d %8zu %8zu %9.2f %12.3g %12.3g %12.3g %11.2f %11.2f %9.4f\n", n_exemplars,
+  std::printf("%9d %8zu %8zu %9.2f %12.3g %12.3g %12.3g %11.2f %11.2f %9.1e\n", n_exemplars,
               interior->partition().cells().size(), interior->n_pairs(), mean_sources(*interior, patch), n / plain,
-              n / detailed, n / inverse, preparing, histograms, interior->smallest_determinant());
+              n / detailed, n / inverse, preparing, histograms, interior->n_pairs() > 0 ? interior->smallest_determinant() : 1.0);
 }
 
 } // namespace
