@@ -18,7 +18,8 @@ Grey blurred_inside(const Grey& grey, const Grey& mask, double sigma);
 /// 2005, which the thesis cites in §3.4.3.1).
 std::vector<Colours> gaussian_stack(const Colours& colours, int n_levels);
 
-/// Level 0 is the image; each level is the one before it, blurred and with every second pixel left out; down to 2 pixels.
+/// Level 0 is the image; each level is the one before it, blurred and with every second pixel left out; down to 2
+/// pixels.
 std::vector<Grey> pyramid(const Grey& grey, int n_levels);
 
 /// The value between pixels for another size: pixel (c, r) of the result lies at the same part of the width and height.

@@ -2,8 +2,9 @@
 
 /// Pictures in memory.
 ///
-/// Pixel (c, r) is a sample at the point (c, r): columns run to the right, rows down. Values between pixels are bilinear;
-/// outside, the nearest pixel of the border counts. Colours are those of the file (sRGB for photographs), in [0, 1].
+/// Pixel (c, r) is a sample at the point (c, r): columns run to the right, rows down. Values between pixels are
+/// bilinear; outside, the nearest pixel of the border counts. Colours are those of the file (sRGB for photographs), in
+/// [0, 1].
 
 #include "base/vec.h"
 

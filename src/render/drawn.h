@@ -11,8 +11,8 @@
 
 namespace kerf::render {
 
-/// Colours finer than the triangles: triangle t has (n + 1)(n + 2) / 2 samples from first[t] on, n = parts[t], at the points
-/// a + i/n (b - a) + j/n (c - a), i slower than j. Without triangles: none.
+/// Colours finer than the triangles: triangle t has (n + 1)(n + 2) / 2 samples from first[t] on, n = parts[t], at the
+/// points a + i/n (b - a) + j/n (c - a), i slower than j. Without triangles: none.
 struct DrawnSamples {
   static constexpr std::uint32_t none = 0xffffffff;     ///< of a triangle without samples
   std::span<const std::uint32_t> first;                 ///< one a triangle

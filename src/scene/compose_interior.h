@@ -19,8 +19,8 @@ struct InteriorInput {
 /// Reads the section with its exemplars and pins. Throws ParameterError or DataError at the key that is to blame.
 InteriorInput read_interior(const Section& section);
 
-/// The interior of a body. Warps are read from the folder `cache` beside the scene where they are known, and left there. Adds
-/// lines to `composition`.
+/// The interior of a body. Warps are read from the folder `cache` beside the scene where they are known, and left
+/// there. Adds lines to `composition`.
 std::unique_ptr<BodyInterior> compose_interior(const Section& section, const std::string& body_name,
                                                const geometry::TriangleMesh& mesh,
                                                std::vector<std::string>& composition);

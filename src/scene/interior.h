@@ -22,8 +22,8 @@ struct BodyInterior {
 /// Colours what is new of a surface.
 void paint(BodyInterior& interior, const surface::Surface& surface, Timings& timings);
 
-/// One colour a vertex of the surface, row by row: the mean of the samples of its triangles there; `otherwise` where it has
-/// none.
+/// One colour a vertex of the surface, row by row: the mean of the samples of its triangles there; `otherwise` where it
+/// has none.
 std::vector<double> vertex_colours(const texture::Atlas& atlas, const surface::Surface& surface, const Vec3& otherwise);
 
 } // namespace kerf::scene

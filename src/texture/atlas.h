@@ -2,9 +2,10 @@
 
 /// The colours of revealed triangles, finer than the triangles (thesis §3.4.1, §3.5).
 ///
-/// A triangle that is divided into n parts a side has a colour at each of the (n + 1)(n + 2) / 2 points of its lattice, its
-/// corners included: so neighbours agree at what they share, and nothing is packed or distorted. Samples are
-/// only ever appended. A triangle is filled when it appears, and again only if its corners have moved in the rest configuration or its label has changed.
+/// A triangle that is divided into n parts a side has a colour at each of the (n + 1)(n + 2) / 2 points of its lattice,
+/// its corners included: so neighbours agree at what they share, and nothing is packed or distorted. Samples are only
+/// ever appended. A triangle is filled when it appears, and again only if its corners have moved in the rest
+/// configuration or its label has changed.
 
 #include "texture/paint.h"
 #include "texture/skin.h"

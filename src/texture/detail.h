@@ -1,10 +1,11 @@
 #pragma once
 
-/// Small features (thesis §3.4.3.3): what a blend of several exemplars has lost is put back by matching local histograms.
+/// Small features (thesis §3.4.3.3): what a blend of several exemplars has lost is put back by matching local
+/// histograms.
 ///
-/// Beforehand, each pixel of an exemplar gets the distribution of luminance about its mean in the 7 x 7 pixels around it, as
-/// quantiles. A point of a surface gets the same of the 7 x 7 points around it *on the surface*; its own place in that
-/// distribution picks the value at the same place in the exemplars' distributions, mixed by their weights.
+/// Beforehand, each pixel of an exemplar gets the distribution of luminance about its mean in the 7 x 7 pixels around
+/// it, as quantiles. A point of a surface gets the same of the 7 x 7 points around it *on the surface*; its own place
+/// in that distribution picks the value at the same place in the exemplars' distributions, mixed by their weights.
 
 #include "texture/interior.h"
 
@@ -30,7 +31,8 @@ class Detail {
  public:
   explicit Detail(const Interior& interior);
 
-  /// The luminance about the local mean that a point with this blend, at this place of its window's distribution, should have.
+  /// The luminance about the local mean that a point with this blend, at this place of its window's distribution,
+  /// should have.
   float luminance(const Blend& blend, float place) const;
 
  private:

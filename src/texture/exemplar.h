@@ -1,7 +1,7 @@
 #pragma once
 
-/// Exemplars: pictures of sections on planes in the body's rest frame (thesis §3.4.2.3), and their charts, which is what
-/// they become once they fit the body.
+/// Exemplars: pictures of sections on planes in the body's rest frame (thesis §3.4.2.3), and their charts, which is
+/// what they become once they fit the body.
 
 #include "texture/mask.h"
 #include "texture/slice.h"
@@ -41,7 +41,8 @@ struct Exemplar {
   Sweep sweep = {};
 };
 
-/// A fitted exemplar. Its pixels are those of the picture's plane, moved by whole pixels so that they cover the section.
+/// A fitted exemplar. Its pixels are those of the picture's plane, moved by whole pixels so that they cover the
+/// section.
 struct Chart {
   SectionPlane plane;                    ///< pixel (0, 0) of the chart is its origin
   image::Raster<Eigen::Array4f> colours; ///< red, green, blue, luminance; defined everywhere

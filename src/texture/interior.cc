@@ -59,7 +59,8 @@ Chart chart_of(const Exemplar& exemplar, const geometry::TriangleMesh& body,
   }
 }
 
-/// A cell without faces, which holds no more of the body than some pixels, sees the exemplar that parted it last, whole.
+/// A cell without faces, which holds no more of the body than some pixels, sees the exemplar that parted it last,
+/// whole.
 Cell with_a_face(Cell cell, const std::vector<Chart>& charts) {
   if (cell.faces.empty()) {
     const int e = cell.exemplars.back();

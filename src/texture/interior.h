@@ -7,8 +7,9 @@
 ///
 ///     q_i = w_i p_i + sum_{j != i} w_j f_ji(p_j),     c = sum_i w_i c_i(q_i),                       (3.14)
 ///
-/// (for faces j that are no partners of i, f_ji(p_j) is p_i) without allocation, the same bits on any thread. In a face its own source point is the point itself and its weight
-/// 1: so the colour there is the picture's, and colours are continuous across planes.
+/// (for faces j that are no partners of i, f_ji(p_j) is p_i) without allocation, the same bits on any thread. In a face
+/// its own source point is the point itself and its weight 1: so the colour there is the picture's, and colours are
+/// continuous across planes.
 
 #include "texture/source.h"
 #include "texture/warps.h"
@@ -55,8 +56,9 @@ struct Blend {
 
 class Interior {
  public:
-  /// At least one exemplar; the body must be closed. `known` are the maps of an earlier interior of the same input. Throws
-  /// ParameterError as the parts do; the complaint's path is a key of a scene's section, its value may name the exemplar.
+  /// At least one exemplar; the body must be closed. `known` are the maps of an earlier interior of the same input.
+  /// Throws ParameterError as the parts do; the complaint's path is a key of a scene's section, its value may name the
+  /// exemplar.
   Interior(const std::vector<Exemplar>& exemplars, const geometry::TriangleMesh& body, const InteriorOptions& options,
            const Maps* known = nullptr);
 

@@ -20,8 +20,8 @@ image::Raster<Eigen::Array4f> paint(const Interior& interior, const Patch& patch
                                     const Blending& how);
 image::Raster<Eigen::Array4f> paint(const Interior& interior, const Patch& patch, const Detail* detail = nullptr);
 
-/// The patch of square pixels that just covers where a plane cuts the body; without pixels where it misses it. Columns run
-/// along the frame's x, rows along y.
+/// The patch of square pixels that just covers where a plane cuts the body; without pixels where it misses it. Columns
+/// run along the frame's x, rows along y.
 Patch patch_over(const geometry::TriangleMesh& body, const Frame& frame, double pixel);
 
 /// The patch as a picture: transparent outside of the body.

@@ -2,8 +2,8 @@
 
 /// The binary space partition of the body's inside by the planes of an ordered list of exemplars (thesis §3.4.2.1).
 ///
-/// Each exemplar divides those cells that its picture shows at least half of; a whole section divides all that its plane
-/// meets. The part of an exemplar that bounds a cell, all of it or one of its components, is a face of the cell.
+/// Each exemplar divides those cells that its picture shows at least half of; a whole section divides all that its
+/// plane meets. The part of an exemplar that bounds a cell, all of it or one of its components, is a face of the cell.
 
 #include "texture/exemplar.h"
 
@@ -39,8 +39,9 @@ struct PartitionNode {
 
 class Partition {
  public:
-  /// Throws ParameterError: about "Origin [m]" if two exemplars lie in one plane, or an exemplar shows too little to divide
-  /// any cell; about "Components" if a face has several and `components` is one. The complaint's value names the exemplar.
+  /// Throws ParameterError: about "Origin [m]" if two exemplars lie in one plane, or an exemplar shows too little to
+  /// divide any cell; about "Components" if a face has several and `components` is one. The complaint's value names the
+  /// exemplar.
   Partition(const std::vector<Exemplar>& exemplars, const std::vector<Chart>& charts, Components components);
 
   const std::vector<Cell>& cells() const { return cells_; }

@@ -10,8 +10,8 @@ namespace kerf::texture {
 
 class SectionPlane {
  public:
-  /// Columns and rows of pixels [m a pixel]. Throws ParameterError about the key "Column [m]" or "Row [m]" if one has no
-  /// length, or they are within 1 degree of parallel.
+  /// Columns and rows of pixels [m a pixel]. Throws ParameterError about the key "Column [m]" or "Row [m]" if one has
+  /// no length, or they are within 1 degree of parallel.
   SectionPlane(const Vec3& origin, const Vec3& column, const Vec3& row);
 
   const Vec3& origin() const { return origin_; }

@@ -23,8 +23,8 @@ inline Frame frame_of(const SectionPlane& plane) { return {plane.origin(), plane
 /// Both ends in the frame's coordinates [m].
 using Segment = std::array<Vec2, 2>;
 
-/// The closed curves in which a plane cuts a closed mesh, in pieces without order. A vertex in the plane counts as above it, so that
-/// curves always close.
+/// The closed curves in which a plane cuts a closed mesh, in pieces without order. A vertex in the plane counts as
+/// above it, so that curves always close.
 std::vector<Segment> slice(const geometry::TriangleMesh& mesh, const Frame& frame);
 
 /// An allowed half of space: normal . p <= offset.

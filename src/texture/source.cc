@@ -110,7 +110,8 @@ double Source::farthest(const Cell& cell, const geometry::TriangleMesh& body, co
   }
   if (turns_)
     return std::min(std::max(t, 0.1), M_PI);
-  // Other faces: the plane cannot go beyond where the cell's half spaces leave the body's box. Rays of the box are enough.
+  // Other faces: the plane cannot go beyond where the cell's half spaces leave the body's box. Rays of the box are
+  // enough.
   const double reach = (box.upper - box.lower).norm();
   double bound = t;
   for (const HalfSpace& half : cell.halves)
@@ -164,8 +165,8 @@ Vec2 Source::find(const Swept& swept) const {
   };
   const double there = (1 - s) * radius(i) + s * radius(i + 1);
   const double length = arm.norm();
-  // Far beyond the boundary, outside of the body, the source point stays there. How far is far falls from infinity in the
-  // face itself, where interpolated radii may cut a corner off and the source point must still be the point itself.
+  // Far beyond the boundary, outside of the body, the source point stays there. How far is far falls from infinity in
+  // the face itself, where interpolated radii may cut a corner off and the source point must still be the point itself.
   const double beyond = there * (1 + 0.02 * (n_steps - 1) / std::max(step, 1e-12));
   const double ratio = radius(0) / there * (length > beyond ? beyond / length : 1);
   return middles_[0] + ratio * arm;

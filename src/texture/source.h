@@ -2,10 +2,10 @@
 
 /// Source points on the faces of a cell (thesis §3.4.2.2).
 ///
-/// The plane of a face is swept through the cell until it contains the point p; then the ray from the swept barycentre to p is taken back
-/// to the face, and the source point divides it in the same ratio between barycentre and boundary. Distances to the boundary are
-/// tabulated by sweep and direction, the boundary being the outermost one where a ray meets several, and bilinear in
-/// between: continuous, and exact in the face itself, whatever the table's resolution.
+/// The plane of a face is swept through the cell until it contains the point p; then the ray from the swept barycentre
+/// to p is taken back to the face, and the source point divides it in the same ratio between barycentre and boundary.
+/// Distances to the boundary are tabulated by sweep and direction, the boundary being the outermost one where a ray
+/// meets several, and bilinear in between: continuous, and exact in the face itself, whatever the table's resolution.
 
 #include "texture/partition.h"
 

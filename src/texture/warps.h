@@ -2,10 +2,10 @@
 
 /// Warps between the faces of a cell (thesis §3.4.3.1.1), as tables of where a pixel of one face goes on the others.
 ///
-/// Two faces of a cell are aligned by the rotation that takes the one through the cell into the other, about the line in
-/// which their planes meet, or along the normal where they are parallel; then their axis-aligned boxes are made
-/// to match, one axis being that line; then features are matched (warp/match.h). One direction is matched, the
-/// other is its inverse.
+/// Two faces of a cell are aligned by the rotation that takes the one through the cell into the other, about the line
+/// in which their planes meet, or along the normal where they are parallel; then their axis-aligned boxes are made to
+/// match, one axis being that line; then features are matched (warp/match.h). One direction is matched, the other is
+/// its inverse.
 
 #include "texture/partition.h"
 #include "warp/match.h"
@@ -33,8 +33,8 @@ struct WarpOptions {
   std::vector<ExemplarPin> pins;
 };
 
-/// Throws ParameterError about the key "From [m]" or "To [m]", its value the pin's name, if the exemplars share no cell or a point lies
-/// outside of the parts of its exemplar that bound those cells.
+/// Throws ParameterError about the key "From [m]" or "To [m]", its value the pin's name, if the exemplars share no cell
+/// or a point lies outside of the parts of its exemplar that bound those cells.
 void check_pins(const std::vector<ExemplarPin>& pins, const std::vector<Cell>& cells,
                 const std::vector<Exemplar>& exemplars, const std::vector<Chart>& charts);
 
@@ -57,8 +57,8 @@ warp::LatticeMap match_faces(const Face& from, const Chart& from_chart, const Fa
 /// Whether two faces are warped to each other.
 bool are_partners(const Face& from, const Chart& from_chart, const Face& to, const Chart& to_chart, Partners partners);
 
-/// Where the pixels of a face go on all faces of its cell: a lattice over the face's box, with one target a face at each
-/// node.
+/// Where the pixels of a face go on all faces of its cell: a lattice over the face's box, with one target a face at
+/// each node.
 struct WarpTable {
   int n_columns = 0, n_rows = 0, n_faces = 0;
   float left = 0, top = 0; ///< of the first node [pixels of the chart]
@@ -69,8 +69,8 @@ struct WarpTable {
   const float* node(const int c, const int r) const { return &targets[2 * n_faces * (r * n_columns + c)]; }
 };
 
-/// All warps of a cell: of its partners alone. `known` are the maps of pairs (i, j), i < j in order of i, then j, found earlier; what was used is
-/// left in `used`.
+/// All warps of a cell: of its partners alone. `known` are the maps of pairs (i, j), i < j in order of i, then j, found
+/// earlier; what was used is left in `used`.
 std::vector<WarpTable> make_warps(const Cell& cell, const std::vector<Exemplar>& exemplars,
                                   const std::vector<Chart>& charts, const WarpOptions& options,
                                   const std::vector<warp::LatticeMap>& known, std::vector<warp::LatticeMap>& used);

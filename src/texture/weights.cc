@@ -17,8 +17,8 @@ void normalise(Shares& shares, const std::size_t n) {
     shares[i] /= sum;
 }
 
-/// Adds one triangle's part; u are unit vectors to its corners, d their distances. False if p lies in the triangle, where
-/// `shares` then are those in the plane.
+/// Adds one triangle's part; u are unit vectors to its corners, d their distances. False if p lies in the triangle,
+/// where `shares` then are those in the plane.
 bool add_triangle(const Triple& triangle, const std::array<Vec3, 3>& u, const std::array<double, 3>& d,
                   Shares& shares) {
   std::array<double, 3> theta, c, s;

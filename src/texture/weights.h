@@ -22,9 +22,9 @@ void shepard(std::span<const double> distances, double power, Shares& shares);
 /// A triangle of source points, counter-clockwise seen from outside of the cell.
 using Triple = std::array<int, 3>;
 
-/// Mean value coordinates of p with respect to the closed surface of triangles between source points (Ju, Schaefer, Warren, Mean value
-/// coordinates for closed triangular meshes, 2005). False, and nothing set, where p is not enclosed by them (a
-/// coordinate below zero).
+/// Mean value coordinates of p with respect to the closed surface of triangles between source points (Ju, Schaefer,
+/// Warren, Mean value coordinates for closed triangular meshes, 2005). False, and nothing set, where p is not enclosed
+/// by them (a coordinate below zero).
 bool mean_value(const Vec3& p, std::span<const Vec3> sources, const std::vector<Triple>& triangles, Shares& shares);
 
 } // namespace kerf::texture

@@ -8,9 +8,9 @@
 ///          + barrier * mean_triangles -(d - 1/2)^2 ln(2 d), d < 1/2  infinite where a triangle would flip (d = det J)
 ///          + pin weight * mean_pins |f(p) - q|^2 / unit^2
 ///
-/// Unknowns are the images of a lattice's nodes; triangles are those at the four corners of its cells. J is the gradient of
-/// a triangle after the global motion G has been taken out: J = G^-1 grad f. The barrier is that of incremental potential
-/// contact (Li et al. 2020), on areas.
+/// Unknowns are the images of a lattice's nodes; triangles are those at the four corners of its cells. J is the
+/// gradient of a triangle after the global motion G has been taken out: J = G^-1 grad f. The barrier is that of
+/// incremental potential contact (Li et al. 2020), on areas.
 
 #include "image/image.h"
 #include "warp/lattice_map.h"

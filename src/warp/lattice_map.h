@@ -2,9 +2,9 @@
 
 /// A map of a rectangle into the plane: the images of a lattice's nodes, bilinear in each of its cells.
 ///
-/// A bilinear cell maps one to one if the four triangles at its corners keep their orientation (its determinant is linear
-/// along each side, so smallest at a corner). So a map whose corner triangles all do is locally one to one, and one to one as a whole if
-/// its border is (thesis §3.4.3.1.1 asks for a bijection).
+/// A bilinear cell maps one to one if the four triangles at its corners keep their orientation (its determinant is
+/// linear along each side, so smallest at a corner). So a map whose corner triangles all do is locally one to one, and
+/// one to one as a whole if its border is (thesis §3.4.3.1.1 asks for a bijection).
 
 #include "base/vec.h"
 
@@ -47,15 +47,15 @@ LatticeMap lattice_of(const Map& map, const Vec2& lower, const Vec2& upper, cons
   return result;
 }
 
-/// The smallest determinant of the triangles at the corners of the cells, over that of `reference` [1]. Positive: nothing is
-/// folded.
+/// The smallest determinant of the triangles at the corners of the cells, over that of `reference` [1]. Positive:
+/// nothing is folded.
 double smallest_determinant(const LatticeMap& map, const Mat2& reference = Mat2::Identity());
 
 /// The point that goes to `target`, by Newton's method from `start`, then cell by cell; empty where there is none.
 std::optional<Vec2> inverse_at(const LatticeMap& map, const Vec2& target, const Vec2& start);
 
-/// The inverse on a lattice over a rectangle of the target. Where nothing goes to a node, it is the point whose image, going on over
-/// the border, comes closest.
+/// The inverse on a lattice over a rectangle of the target. Where nothing goes to a node, it is the point whose image,
+/// going on over the border, comes closest.
 LatticeMap inverse(const LatticeMap& map, const Vec2& lower, const Vec2& upper, int n_columns, int n_rows);
 
 } // namespace kerf::warp

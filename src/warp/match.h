@@ -3,9 +3,9 @@
 /// Warps between two pictures by multilevel feature matching (thesis §3.4.3.1.1).
 ///
 /// An edge detector runs on every level of a Gaussian stack of each picture, and what it finds is then sampled as
-/// coarsely as the level is blurred; beside edges, brightness and the outline of what is section may count. The coarsest level
-/// moves a lattice of few cells, each finer level starts from the one before it with more of them. Both pictures have the same size: whoever
-/// calls has made their axis-aligned boxes match.
+/// coarsely as the level is blurred; beside edges, brightness and the outline of what is section may count. The
+/// coarsest level moves a lattice of few cells, each finer level starts from the one before it with more of them. Both
+/// pictures have the same size: whoever calls has made their axis-aligned boxes match.
 
 #include "warp/energy.h"
 
@@ -35,8 +35,8 @@ struct MatchOptions {
 /// Level by level, from the finest: what is compared, scaled so that each channel's mean square is its weight squared.
 std::vector<FeatureLevel> features(const Picture& a, const Picture& b, const MatchOptions& options);
 
-/// The map from pixels of `a` to pixels of `b` over the whole rectangle of `a`. No triangle of its lattice is flipped. Throws
-/// ParameterError if the pictures differ in size or are smaller than 4 x 4, or if a pin starts or ends outside.
+/// The map from pixels of `a` to pixels of `b` over the whole rectangle of `a`. No triangle of its lattice is flipped.
+/// Throws ParameterError if the pictures differ in size or are smaller than 4 x 4, or if a pin starts or ends outside.
 LatticeMap match(const Picture& a, const Picture& b, const MatchOptions& options);
 
 } // namespace kerf::warp

@@ -1,7 +1,8 @@
 #pragma once
 
 /// Minimisation of smooth functions with barriers, by the limited-memory method of Broyden, Fletcher, Goldfarb, Shanno
-/// (Nocedal and Wright, Numerical Optimization, 2006, algorithms 7.4 and 7.5) with steps cut back until the value falls.
+/// (Nocedal and Wright, Numerical Optimization, 2006, algorithms 7.4 and 7.5) with steps cut back until the value
+/// falls.
 
 #include <Eigen/Core>
 

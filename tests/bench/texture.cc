@@ -1,5 +1,5 @@
-/// Colours of the inside, points a second on one core: painted planes of a ball by 1 to 9 exemplars of 400 x 400 pixels,
-/// without and with small features; and seconds to prepare each. Processor time, the best of several runs.
+/// Colours of the inside, points a second on one core: painted planes of a ball by 1 to 9 exemplars of 400 x 400
+/// pixels, without and with small features; and seconds to prepare each. Processor time, the best of several runs.
 
 #include "base/parallel.h"
 #include "tests/texture/solids.h"
@@ -60,7 +60,8 @@ void measure(const int n_exemplars) {
   const double inverse = best_of(2, [&] { paint(*interior, patch, nullptr, exact); });
   std::printf("%9d %8zu %8zu %9.2f %12.3g %12.3g %12.3g %11.2f %11.2f %9.1e\n", n_exemplars,
               interior->partition().cells().size(), interior->n_pairs(), mean_sources(*interior, patch), n / plain,
-              n / detailed, n / inverse, preparing, histograms, interior->n_pairs() > 0 ? interior->smallest_determinant() : 1.0);
+              n / detailed, n / inverse, preparing, histograms,
+              interior->n_pairs() > 0 ? interior->smallest_determinant() : 1.0);
 }
 
 } // namespace

@@ -96,6 +96,27 @@ TEST_F(InteriorScene, IsInTheRunFile) {
   H5Fclose(file);
 }
 
+TEST_F(InteriorScene, IsInTheSurfaceFile) {
+  const std::string text = scene_with(interior(folder / "stripes.png")) + "subsection Surface file\nend\n";
+  World world = compose(scan_scene_text(text, (folder / "scene.prm").string(), {}));
+  run_silently(world, folder / "out");
+  const hid_t file = H5Fopen((folder / "out" / "surface_cube.vtkhdf").c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+  ASSERT_GE(file, 0);
+  const hid_t set = H5Dopen2(file, "/VTKHDF/PointData/colour", H5P_DEFAULT);
+  ASSERT_GE(set, 0);
+  const hid_t space = H5Dget_space(set);
+  const Body& body = world.bodies.front();
+  std::vector<float> rows(static_cast<std::size_t>(H5Sget_simple_extent_npoints(space)));
+  ASSERT_GE(rows.size(), 3 * body.surface.rest.size());
+  H5Dread(set, H5T_NATIVE_FLOAT, H5S_ALL, H5S_ALL, H5P_DEFAULT, rows.data());
+  const auto last = vertex_colours(body.interior->atlas, body.surface, render::Look().skin);
+  for (std::size_t i = 0; i < last.size(); ++i)
+    ASSERT_EQ(rows[rows.size() - last.size() + i], static_cast<float>(last[i])) << i;
+  H5Sclose(space);
+  H5Dclose(set);
+  H5Fclose(file);
+}
+
 TEST_F(InteriorScene, WarpsAreKeptBesideTheSceneAndReadAgain) {
   const auto said = [](const World& world, const std::string& words) {
     return std::any_of(world.composition.begin(), world.composition.end(),

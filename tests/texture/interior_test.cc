@@ -339,6 +339,7 @@ TEST(Detail, PutsBackWhatBlendingLoses) {
   };
   const double exact = 0.4 / std::sqrt(12.0), off = spread(nullptr, Vec3::UnitX(), Vec3::UnitY());
   const double on = spread(&detail, Vec3::UnitX(), Vec3::UnitY());
+  EXPECT_NE(on, spread(&detail, Vec3::UnitX(), Vec3::UnitZ())); // they follow the surface
   EXPECT_LT(off, 0.8 * exact);
   EXPECT_NEAR(on, exact, 0.15 * exact);
 }

@@ -1,7 +1,7 @@
 #pragma once
 
-/// Solids whose colour is known everywhere, and exemplars cut from them. All are made for a ball of radius 0.05 m around
-/// the origin.
+/// Solids whose colour is known everywhere, and exemplars cut from them. All are made for a ball of radius 0.05 m
+/// around the origin.
 
 #include "tests/geometry/meshes.h"
 #include "texture/paint.h"
