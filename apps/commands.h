@@ -14,6 +14,7 @@ int check(const Arguments& arguments);
 int study(const Arguments& arguments);
 int weights(const Arguments& arguments);
 int params(const Arguments& arguments);
+int texture(const Arguments& arguments);
 int table(const Arguments& arguments);
 
 } // namespace kerf::apps

@@ -16,6 +16,8 @@ constexpr const char* usage = R"(usage:
   kerf study STUDY.prm [--set ...] [--output DIR] [--threads N]
                                                           a scene in variants: error against run time, as a table
   kerf weights WEIGHTS.prm [--set ...] [--output DIR]     weights of points near cuts, as images and a table
+  kerf texture SCENE.prm --plane "x, y, z; normal x, y, z" [--pixel M] [--output FILE.png] [--set ...] [--threads N]
+                                                          the inside of its first body that has one, on any plane
   kerf params [study]                                     every section and key of a scene, or of a study
   kerf table --output FILE.h5                             the Splitting Cubes table as a file
 )";
@@ -24,7 +26,8 @@ int dispatch(const kerf::apps::Arguments& arguments) {
   using Command = int (*)(const kerf::apps::Arguments&);
   const std::map<std::string, Command> commands = {{"run", kerf::apps::run},       {"check", kerf::apps::check},
                                                    {"study", kerf::apps::study},   {"weights", kerf::apps::weights},
-                                                   {"params", kerf::apps::params}, {"table", kerf::apps::table}};
+                                                   {"params", kerf::apps::params}, {"texture", kerf::apps::texture},
+                                                   {"table", kerf::apps::table}};
   if (arguments.empty() || arguments[0] == "help" || arguments[0] == "--help") {
     std::printf("%s", usage);
     return arguments.empty() ? 1 : 0;

@@ -10,7 +10,9 @@
 
 namespace kerf {
 
+using Vec2 = Eigen::Vector2d;
 using Vec3 = Eigen::Vector3d;
+using Mat2 = Eigen::Matrix2d;
 using Mat3 = Eigen::Matrix3d;
 
 /// Lattice coordinates (i, j, k) of a node, or of the lowest node of an edge, face or cell.

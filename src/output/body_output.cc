@@ -60,6 +60,20 @@ void write_surface(const h5::Object& group, const Surface& surface) {
   write_table<double>(weights, "value", surface.weights.values, {"1", "weight of each entry"});
 }
 
+/// The samples go behind those of earlier surfaces.
+void write_colours(const h5::Object& root, const h5::Object& surface, const std::string& body, const Colours& colours) {
+  write_table<std::uint32_t>(surface, "first_sample", colours.first,
+                             {"1", "row of the body's colours where each triangle's begin; 2^32 - 1 without"});
+  write_table<std::uint16_t>(surface, "parts", colours.parts,
+                             {"1", "n: the triangle a, b, c has samples at a + i/n (b - a) + j/n (c - a), i slower "
+                                   "than j; 0 without"});
+  constexpr h5::Layout layout = {h5::Number::uint8, 3};
+  const auto path = body_path(body, "colours");
+  if (!h5::exists(root, path))
+    describe(h5::create_series(root, path, layout, 4096), {"1", "sRGB samples of revealed triangles"});
+  h5::append_rows(h5::open_dataset(root, path), layout, colours.samples.data(), colours.samples.size());
+}
+
 void write_frame(const h5::Object& frame, const BodyStep& step) {
   write_points(frame, "position", step.positions, position_label, "current");
   if (!step.velocities.empty())
@@ -120,6 +134,10 @@ void check(const BodyStep& step, const BodyCounts& counts, const std::string& fi
     checks.equal("frames/fields/" + field.name, field.values.size(), n_corners * field.n_components);
   if (step.surface != nullptr)
     check_surface(*step.surface, checks);
+  if (step.surface != nullptr && step.colours != nullptr) {
+    checks.equal("surface/first_sample", step.colours->first.size(), step.surface->triangles.size());
+    checks.equal("surface/parts", step.colours->parts.size(), step.surface->triangles.size());
+  }
 }
 
 void write_body(const h5::Object& root, const BodyStep& step, const double time, const std::int64_t number,
@@ -129,8 +147,12 @@ void write_body(const h5::Object& root, const BodyStep& step, const double time,
     write_complex(h5::create_group(root, path("complex/", counts.n_complexes++)), *step.complex);
     counts.n_corners = step.complex->rest_positions.size();
   }
-  if (step.surface != nullptr)
-    write_surface(h5::create_group(root, path("surface/", counts.n_surfaces++)), *step.surface);
+  if (step.surface != nullptr) {
+    const auto group = h5::create_group(root, path("surface/", counts.n_surfaces++));
+    write_surface(group, *step.surface);
+    if (step.colours != nullptr)
+      write_colours(root, group, step.body, *step.colours);
+  }
 
   const auto frame = h5::create_group(root, path("frames/", counts.n_frames++));
   h5::set_attribute(frame, "time", time);

@@ -61,6 +61,15 @@ struct Complex {
   Points rest_positions;            ///< per corner [m], rest configuration
 };
 
+/// Colours of revealed triangles, finer than the triangles: triangle t has (n + 1)(n + 2) / 2 samples from first[t] on,
+/// n = parts[t], at the points a + i/n (b - a) + j/n (c - a) of the triangle a, b, c, i slower than j. Samples are only
+/// ever appended.
+struct Colours {
+  std::vector<std::uint32_t> first;                 ///< per triangle; 2^32 - 1 without samples
+  std::vector<std::uint16_t> parts;                 ///< per triangle; 0 without samples
+  std::vector<std::array<std::uint8_t, 3>> samples; ///< sRGB: those that the file does not have yet
+};
+
 /// A body's closed surface; it follows the corners by x_surface = W x_corners.
 struct Surface {
   std::vector<Triangle> triangles;
@@ -77,6 +86,7 @@ struct BodyStep {
   std::span<const Field> fields;    ///< may be empty
   const Complex* complex = nullptr; ///< null when unchanged since the body's last frame
   const Surface* surface = nullptr; ///< null when unchanged or not wanted
+  const Colours* colours = nullptr; ///< of that surface; null when it has none
 };
 
 /// One output step, for writing.

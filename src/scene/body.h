@@ -7,6 +7,7 @@
 #include "geometry/triangle_mesh.h"
 #include "physics/physics.h"
 #include "scene/accounts.h"
+#include "scene/interior.h"
 #include "scene/region.h"
 #include "surface/placement.h"
 
@@ -73,6 +74,8 @@ struct Body {
   std::vector<Probe> probes = {};
   std::vector<Observable> observables = {};
   std::unique_ptr<Accounts> accounts = nullptr; ///< null when no observable needs them
+
+  std::unique_ptr<BodyInterior> interior = nullptr; ///< null in a scene that does not say what is inside
 
   std::unique_ptr<cut::Cutter> cutter = nullptr; ///< null in a scene that cuts nothing; labels: blades, then surfaces
   int n_recuts = 0;                              ///< how often the complex has changed

@@ -6,6 +6,7 @@
 #include "scene/compose_output.h"
 #include "scene/compose_tools.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace kerf::scene {
@@ -42,6 +43,8 @@ void say_what_there_is(const Section& root, World& world) {
   say("Forceps", "", "nothing is gripped");
   say("Cut surface", "", "nothing is cut at once");
   say("Observables", line(world.bodies.front().observables.size(), " series of the first body"), "no series but time");
+  if (std::none_of(world.bodies.begin(), world.bodies.end(), [](const Body& body) { return body.interior != nullptr; }))
+    world.composition.push_back("left out: Interior (revealed faces have one colour)");
   say("Surface file", "surface files for ParaView", "no file for ParaView");
   say("Images", "images: off-screen OpenGL", "no GL context");
 }

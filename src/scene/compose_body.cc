@@ -4,14 +4,13 @@
 #include "geometry/solid.h"
 #include "material/elastic.h"
 #include "physics/phyxels.h"
+#include "scene/compose_interior.h"
 #include "scene/compose_loads.h"
 #include "scene/compose_physics.h"
 
 #include <cmath>
 
 namespace kerf::scene {
-
-namespace {
 
 geometry::TriangleMesh read_body_mesh(const Section& section, const BodyParameters& parameters) {
   const std::string path = resolved(parameters.mesh, section);
@@ -21,6 +20,8 @@ geometry::TriangleMesh read_body_mesh(const Section& section, const BodyParamete
     throw DataError(section.complaint("Mesh", clause(error.what()), "").complaint());
   }
 }
+
+namespace {
 
 cut::Embedding embed_mesh(const Section& section, const BodyParameters& parameters,
                           const geometry::TriangleMesh& mesh) {
@@ -86,6 +87,13 @@ Body compose_body(const Section& section, const GravityParameters* gravity, cons
   if (const std::size_t n_cuts = world.blades.size() + world.cut_surfaces.size(); n_cuts > 0)
     body.cutter = std::make_unique<cut::Cutter>(n_cuts);
   start(body, mesh, physics_maker(section, parameters, world.time_step), world.setup_seconds);
+  if (const Section* interior = section.find("Interior")) {
+    {
+      const ScopedTimer timer(world.setup_seconds, "colour");
+      body.interior = compose_interior(*interior, body.name, mesh, world.composition);
+    }
+    paint(*body.interior, body.surface, world.setup_seconds);
+  }
   require_sound_loads(section, world.n_steps * world.time_step, body);
   world.composition.push_back(line("body ", body.name, ": ", mesh.triangles.size(), " mesh triangles in ",
                                    body.solid.grid.n_cells(), " cells of ", parameters.cube_edge, " m, ",

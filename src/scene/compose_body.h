@@ -12,4 +12,7 @@ namespace kerf::scene {
 Body compose_body(const Section& section, const GravityParameters* gravity, const std::vector<const Section*>& floors,
                   World& world);
 
+/// The body's mesh, oriented as the skin of a solid. Throws DataError at the key Mesh.
+geometry::TriangleMesh read_body_mesh(const Section& section, const BodyParameters& parameters);
+
 } // namespace kerf::scene

@@ -77,13 +77,20 @@ void add_forceps(const Forceps& forceps, const int step, const double time, Rods
   }
 }
 
+render::DrawnSamples samples_of(const Body& body) {
+  if (!body.interior)
+    return {};
+  const texture::Atlas& atlas = body.interior->atlas;
+  return {atlas.first(), atlas.parts(), atlas.colours(), atlas.slopes()};
+}
+
 } // namespace
 
 render::DrawnScene drawing(const World& world, const int step) {
   const double time = step * world.time_step;
   render::DrawnScene scene;
   for (const Body& body : world.bodies)
-    scene.surfaces.push_back({body.positions, body.surface.triangles, body.surface.labels});
+    scene.surfaces.push_back({body.positions, body.surface.triangles, body.surface.labels, samples_of(body)});
   for (const cut::Blade& blade : world.blades)
     scene.blades.push_back({cut::world_points(blade, time), cut::pose(blade, time).rotation * blade.spine});
   for (const ScissorsHandles& handles : world.scissors)

@@ -6,6 +6,7 @@
 #include "dynamics/loads.h"
 #include "dynamics/surface_load.h"
 #include "material/elastic.h"
+#include "scene/grammar_interior.h"
 #include "scene/grammar_physics.h"
 #include "scene/region.h"
 
@@ -105,6 +106,7 @@ std::vector<SectionKind> body_kinds() {
      {}}};
   const auto physics = physics_kinds();
   inside.insert(inside.begin() + 2, physics.begin(), physics.end());
+  inside.push_back(interior_kind());
   return {{"Body", Occurrence::named, "A deformable solid.", keys_of<BodyParameters>(), inside},
           {"Floor",
            Occurrence::named,

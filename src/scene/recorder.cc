@@ -76,6 +76,19 @@ output::Surface to_record(const surface::Surface& surface) {
   return {surface.triangles, surface.labels, surface.rest, surface.weights};
 }
 
+/// The samples from `first` on, which the file does not have yet.
+output::Colours to_record(const texture::Atlas& atlas, const std::size_t first) {
+  return {atlas.first(), atlas.parts(), {atlas.colours().begin() + first, atlas.colours().end()}};
+}
+
+/// What every step of a body's surface file brings.
+std::vector<output::Field> announced_of(const Body& body, const std::vector<std::string>& names) {
+  std::vector<output::Field> fields = announced(names);
+  if (body.interior)
+    fields.push_back({"colour", "1", 3, {}});
+  return fields;
+}
+
 /// Of the corners, where they are the particles of the body's physics.
 std::span<const Vec3> velocities(const Body& body) {
   return body.state.v.size() == body.solid.complex.n_corners() && &corners(body) == &body.state.x
@@ -89,7 +102,7 @@ bool is_due(const int step, const int every, const World& world) { return step %
 
 const std::vector<std::string>& stages() {
   static const std::vector<std::string> names = {"cut",   "topology", "assemble", "visibility",
-                                                 "solve", "surface",  "output",   "images"};
+                                                 "solve", "surface",  "colour",   "output",     "images"};
   return names;
 }
 
@@ -112,7 +125,7 @@ Recorder::Recorder(const std::filesystem::path& folder, const World& world, cons
   if (world.surface_file)
     for (std::size_t b = 0; b < bodies_.size(); ++b)
       bodies_[b].surface_file.emplace(folder_ / ("surface_" + world.bodies[b].name + ".vtkhdf"),
-                                      announced(world.fields));
+                                      announced_of(world.bodies[b], world.fields));
 }
 
 void Recorder::record(const World& world, const int step, Timings& seconds) {
@@ -140,6 +153,7 @@ void Recorder::append_step(const World& world, const int step, const Timings& se
   output::StepRecord record{step * world.time_step, step, seconds, values, {}};
   std::vector<output::Complex> complexes(world.bodies.size());
   std::vector<output::Surface> surfaces(world.bodies.size());
+  std::vector<output::Colours> colours(world.bodies.size());
   if (with_frames)
     for (std::size_t b = 0; b < world.bodies.size(); ++b) {
       const Body& body = world.bodies[b];
@@ -149,6 +163,11 @@ void Recorder::append_step(const World& world, const int step, const Timings& se
         surfaces[b] = to_record(body.surface);
         body_step.complex = &complexes[b];
         body_step.surface = &surfaces[b];
+        if (body.interior) {
+          colours[b] = to_record(body.interior->atlas, bodies_[b].n_samples_written);
+          body_step.colours = &colours[b];
+          bodies_[b].n_samples_written = body.interior->atlas.colours().size();
+        }
         bodies_[b].complex_written = body.n_recuts;
       }
       record.bodies.push_back(body_step);
@@ -160,7 +179,9 @@ void Recorder::append_surfaces(const World& world, const int step) {
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     const Body& body = world.bodies[b];
     const bool changed = bodies_[b].surface_written != body.n_recuts;
-    const auto fields = at_vertices(body.surface, bodies_[b].fields);
+    auto fields = at_vertices(body.surface, bodies_[b].fields);
+    if (body.interior)
+      fields.push_back({"colour", "1", 3, vertex_colours(body.interior->atlas, body.surface, render::Look().skin)});
     bodies_[b].surface_file->append({step * world.time_step, body.positions, body.surface.rest, body.surface.triangles,
                                      body.surface.labels,
                                      changed ? output::Topology::changed : output::Topology::unchanged, fields});

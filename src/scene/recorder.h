@@ -31,6 +31,7 @@ class Recorder {
  private:
   struct BodyFiles {
     int complex_written = -1, surface_written = -1; ///< Body::n_recuts of what the files hold last
+    std::size_t n_samples_written = 0;              ///< of the atlas of what is inside
     std::optional<output::SurfaceFile> surface_file;
     std::vector<output::Field> fields; ///< of the corners, at the step that is recorded
   };

@@ -76,9 +76,14 @@ void advance(World& world, const int step, Timings& seconds) {
   }
   world.watches.resize(world.bodies.size());
   for (std::size_t b = 0; b < world.bodies.size(); ++b) {
-    const ScopedTimer timer(seconds, "surface");
-    follow(world.bodies[b]);
-    on(world, world.bodies[b], step, t1, [&] { require_sound_volume(world.bodies[b], world.watches[b]); });
+    Body& body = world.bodies[b];
+    {
+      const ScopedTimer timer(seconds, "surface");
+      follow(body);
+      on(world, body, step, t1, [&] { require_sound_volume(body, world.watches[b]); });
+    }
+    if (body.interior)
+      paint(*body.interior, body.surface, seconds);
   }
 }
 

@@ -39,11 +39,14 @@ const std::vector<Room> rooms = {
   {"visibility", {"base", "geometry", "gl", "pba"}},
   {"physics",
    {"base", "grid", "surface", "material", "dynamics", "fem", "lattice", "spring", "pba", "visibility"}},
+  {"image", {"base"}},
+  {"warp", {"base", "image"}},
+  {"texture", {"base", "geometry", "image", "warp"}},
   {"render", {"base", "gl"}},
   {"output", {"base"}},
   {"scene",
    {"base", "geometry", "grid", "cut", "surface", "material", "dynamics", "fem", "lattice", "spring", "pba", "visibility",
-    "physics", "gl", "render", "output"}},
+    "physics", "gl", "image", "warp", "texture", "render", "output"}},
   {"study", {"base", "output", "scene"}},
 };
 
@@ -60,6 +63,8 @@ const std::vector<Heavy> heavy_headers = {
   {"GL/", {"gl"}},
   {"EGL/", {"gl"}},
   {"GLES", {"gl"}},
+  {"jpeglib", {"image"}},
+  {"png.h", {"image", "render"}},
 };
 
 const Names ends_of_process = {"abort", "exit", "_exit", "_Exit", "quick_exit", "terminate"};

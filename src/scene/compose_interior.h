@@ -1,0 +1,38 @@
+#pragma once
+
+/// The inside of a body from its section `Interior`.
+
+#include "scene/composing.h"
+#include "scene/grammar.h"
+#include "scene/interior.h"
+
+#include <filesystem>
+
+namespace kerf::scene {
+
+/// What an interior is made of, as the scene writes it.
+struct InteriorInput {
+  std::vector<texture::Exemplar> exemplars;
+  texture::InteriorOptions options;
+};
+
+/// Reads the section with its exemplars and pins. Throws ParameterError or DataError at the key that is to blame.
+InteriorInput read_interior(const Section& section);
+
+/// The interior of a body. Warps are read from the folder `cache` beside the scene where they are known, and left
+/// there. Adds lines to `composition`.
+std::unique_ptr<BodyInterior> compose_interior(const Section& section, const std::string& body_name,
+                                               const geometry::TriangleMesh& mesh,
+                                               std::vector<std::string>& composition);
+
+/// A body that is only looked into.
+struct LookedInto {
+  geometry::TriangleMesh mesh;
+  std::unique_ptr<BodyInterior> interior;
+  std::vector<std::string> composition;
+};
+
+/// The first body of a scene that has an interior, without grid and physics. Throws ParameterError if there is none.
+LookedInto compose_inside(const SceneText& text);
+
+} // namespace kerf::scene

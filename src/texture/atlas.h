@@ -1,0 +1,73 @@
+#pragma once
+
+/// The colours of revealed triangles, finer than the triangles (thesis §3.4.1, §3.5).
+///
+/// A triangle that is divided into n parts a side has a colour at each of the (n + 1)(n + 2) / 2 points of its lattice,
+/// its corners included: so neighbours agree at what they share, and nothing is packed or distorted. Samples are only
+/// ever appended. A triangle is filled when it appears, and again only if its corners have moved in the rest
+/// configuration or its label has changed.
+
+#include "texture/paint.h"
+#include "texture/skin.h"
+
+#include <cstdint>
+#include <span>
+
+namespace kerf::texture {
+
+/// A surface in the rest configuration.
+struct SurfaceView {
+  std::span<const Vec3> rest; ///< vertices [m]
+  std::span<const Triangle> triangles;
+  std::span<const std::uint16_t> labels; ///< one a triangle; 0 is the skin
+};
+
+/// What triangles are painted with.
+struct Paint {
+  const Interior* inside = nullptr; ///< revealed triangles
+  const Detail* detail = nullptr;   ///< null: without small features
+  const Skin* skin = nullptr;       ///< null: the skin gets no samples
+  double relief = 0;                ///< height of white above black [m]; 0: no slopes are kept
+};
+
+class Atlas {
+ public:
+  static constexpr std::uint32_t none = 0xffffffff;
+  static constexpr int max_parts = 64; ///< a side
+
+  /// Samples are at most `resolution` apart [m].
+  explicit Atlas(const double resolution) : resolution_(resolution) {}
+
+  /// Fills what is new. Returns the number of triangles filled. The cost beside them: one look at each triangle.
+  std::size_t fill(const SurfaceView& surface, const Paint& paint);
+
+  const std::vector<std::uint32_t>& first() const { return first_; } ///< sample of each triangle; none
+  const std::vector<std::uint16_t>& parts() const { return parts_; } ///< n of each triangle; 0 without samples
+  const std::vector<std::array<std::uint8_t, 3>>& colours() const { return colours_; } ///< samples, sRGB
+  /// By how much the relief rises along the triangle's first and second edge, at each sample [m]; empty without relief.
+  const std::vector<std::array<float, 2>>& slopes() const { return slopes_; }
+
+ private:
+  void fill_triangle(std::size_t t, const SurfaceView& surface, const Paint& paint);
+
+  double resolution_;
+  std::vector<std::uint32_t> first_;
+  std::vector<std::uint16_t> parts_;
+  std::vector<std::array<std::uint8_t, 3>> colours_;
+  std::vector<std::array<float, 2>> slopes_;
+  std::vector<std::array<Vec3, 3>> filled_; // the corners that each triangle was filled for
+  std::vector<std::uint16_t> labels_;
+};
+
+/// Samples of a triangle with n parts a side.
+inline std::size_t n_samples(const int n) { return static_cast<std::size_t>(n + 1) * (n + 2) / 2; }
+
+/// Calls f(i, j) for each sample in their order: the point a + i/n (b - a) + j/n (c - a) of the triangle a, b, c.
+template <class Function>
+void for_each_sample(const int n, const Function& f) {
+  for (int i = 0; i <= n; ++i)
+    for (int j = 0; i + j <= n; ++j)
+      f(i, j);
+}
+
+} // namespace kerf::texture

@@ -1,0 +1,162 @@
+#include "texture/exemplar.h"
+
+#include "base/error.h"
+#include "image/filters.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace kerf::texture {
+
+namespace {
+
+using image::Grey;
+
+constexpr int n_directions = 256;
+constexpr double margin = 3; ///< pixels around the section
+
+/// The box of the body's section, in pixels of the picture.
+struct PixelBox {
+  Vec2 lower = Vec2::Constant(1e300), upper = Vec2::Constant(-1e300);
+};
+
+std::vector<Segment> in_pixels(const std::vector<Segment>& outline, const SectionPlane& plane) {
+  std::vector<Segment> result;
+  for (const Segment& segment : outline)
+    result.push_back({plane.to_pixels(segment[0]), plane.to_pixels(segment[1])});
+  return result;
+}
+
+PixelBox box_of(const std::vector<Segment>& curves) {
+  PixelBox box;
+  for (const Segment& segment : curves)
+    for (const Vec2& p : segment) {
+      box.lower = box.lower.cwiseMin(p);
+      box.upper = box.upper.cwiseMax(p);
+    }
+  box.lower = (box.lower.array().floor() - margin).matrix();
+  box.upper = (box.upper.array().ceil() + margin).matrix();
+  return box;
+}
+
+void check_size(const PixelBox& box) {
+  constexpr double most = 8192;
+  if ((box.upper - box.lower).maxCoeff() > most)
+    throw ParameterError(Complaint{.path = "Column [m]",
+                                   .rule = "pixels are so small that the body's section spans more than 8192 of them",
+                                   .remedy = "Check the unit, or take a coarser picture"});
+}
+
+/// Signed area of the mask's or the section's pixels, and their middle.
+Vec2 middle(const Grey& mask) {
+  Vec2 sum = Vec2::Zero();
+  double n = 0;
+  for (int r = 0; r < mask.height; ++r)
+    for (int c = 0; c < mask.width; ++c)
+      if (mask(c, r) > 0.5f) {
+        sum += Vec2(c, r);
+        ++n;
+      }
+  return sum / std::max(n, 1.0);
+}
+
+/// How far the pixels of a mask reach from a centre in a direction [pixels].
+double reach(const Grey& mask, const Vec2& centre, const Vec2& along) {
+  for (double s = std::hypot(mask.width, mask.height); s > 0; s -= 0.25) {
+    const Vec2 p = centre + s * along;
+    const int c = static_cast<int>(std::lround(p[0])), r = static_cast<int>(std::lround(p[1]));
+    if (c >= 0 && r >= 0 && c < mask.width && r < mask.height && mask(c, r) > 0.5f)
+      return s;
+  }
+  return 0;
+}
+
+/// Boundary points of the section and of the mask that lie in the same direction from their middles [pixels].
+std::vector<warp::Pin> boundary_pairs(const Grey& inside, const Vec2& offset, const Grey& mask) {
+  const Grey section = largest_component(inside), shown = largest_component(mask);
+  const Vec2 from = middle(section), to = middle(shown);
+  std::vector<warp::Pin> pairs = {{from + offset, to}};
+  for (int k = 0; k < n_directions; ++k) {
+    const Vec2 along = direction(k, n_directions);
+    pairs.push_back({from + offset + reach(section, from, along) * along, to + reach(shown, to, along) * along});
+  }
+  return pairs;
+}
+
+double mean_error(const warp::LatticeMap& map, const std::vector<warp::Pin>& pairs) {
+  double sum = 0;
+  for (const warp::Pin& pair : pairs)
+    sum += (map(pair.from) - pair.to).norm();
+  return sum / static_cast<double>(pairs.size());
+}
+
+/// Fills colours and what is shown: chart pixel (c, r) shows the picture at to_picture(c, r).
+template <class ToPicture>
+void paint(const image::Image& picture, const Grey& mask, const ToPicture& to_picture, Chart& chart) {
+  const int width = chart.inside.width, height = chart.inside.height;
+  const image::Colours there = image::filled(picture.colours, mask);
+  image::Colours colours(width, height, image::Rgb::Zero());
+  chart.shown = Grey(width, height, 0);
+  for (int r = 0; r < height; ++r)
+    for (int c = 0; c < width; ++c) {
+      const Vec2 p = to_picture(Vec2(c, r));
+      const bool is_in = p[0] >= -0.5 && p[1] >= -0.5 && p[0] <= mask.width - 0.5 && p[1] <= mask.height - 0.5;
+      const auto x = static_cast<float>(p[0]), y = static_cast<float>(p[1]);
+      colours(c, r) = image::sample(there, x, y);
+      chart.shown(c, r) = is_in && image::sample(mask, x, y) >= 0.5f ? 1.0f : 0.0f;
+    }
+  colours = image::filled(colours, chart.shown);
+  chart.colours = image::Raster<Eigen::Array4f>(width, height, Eigen::Array4f::Zero());
+  for (std::size_t i = 0; i < colours.values.size(); ++i) {
+    const image::Rgb& rgb = colours.values[i];
+    chart.colours.values[i] = Eigen::Array4f(rgb[0], rgb[1], rgb[2], image::luminance(rgb));
+  }
+}
+
+} // namespace
+
+Chart make_chart(const Exemplar& exemplar, const geometry::TriangleMesh& body,
+                 const std::optional<warp::LatticeMap>& known, std::optional<warp::LatticeMap>& used) {
+  const Grey mask = mask_of(exemplar.picture, exemplar.background);
+  const SectionPlane& plane = exemplar.plane;
+  const auto curves = in_pixels(slice(body, frame_of(plane)), plane);
+  if (curves.empty())
+    throw ParameterError(Complaint{.path = "Origin [m]",
+                                   .rule = "the plane of this exemplar misses the body",
+                                   .remedy = "Move the plane into the body, rest frame"});
+  const PixelBox box = box_of(curves);
+  check_size(box);
+  std::vector<Segment> shifted;
+  for (const Segment& segment : curves)
+    shifted.push_back({segment[0] - box.lower, segment[1] - box.lower});
+  const Vec2 size = box.upper - box.lower;
+  const auto step = [&](const Vec2& pixels) { return Vec3(plane.point(plane.to_local(pixels))); };
+  Chart chart{SectionPlane(step(box.lower), step(box.lower + Vec2(1, 0)) - step(box.lower),
+                           step(box.lower + Vec2(0, 1)) - step(box.lower)),
+              {},
+              {},
+              inside_of(shifted, static_cast<int>(size[0]) + 1, static_cast<int>(size[1]) + 1),
+              {},
+              0};
+  chart.outline = slice(body, frame_of(chart.plane));
+  used.reset();
+  if (std::accumulate(chart.inside.values.begin(), chart.inside.values.end(), 0.0) < 16)
+    throw ParameterError(Complaint{.path = "Column [m]",
+                                   .rule = "the body's section is smaller than 16 pixels of this exemplar",
+                                   .remedy = "Check the unit of the steps, or take a finer picture"});
+  if (exemplar.fit == Fit::none) {
+    paint(
+      exemplar.picture, mask, [&](const Vec2& p) { return Vec2(p + box.lower); }, chart);
+    return chart;
+  }
+  const auto pairs = boundary_pairs(chart.inside, box.lower, mask);
+  const auto inside = exemplar.fit == Fit::rigid ? warp::Regularity::rigid : warp::Regularity::jacobian;
+  used = known ? *known : warp::fit(pairs, box.lower, box.upper, {.inside = inside});
+  chart.fit_error = mean_error(*used, pairs);
+  paint(
+    exemplar.picture, mask, [&](const Vec2& p) { return (*used)(p + box.lower); }, chart);
+  return chart;
+}
+
+} // namespace kerf::texture

@@ -1,0 +1,240 @@
+#include "texture/interior.h"
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "texture/enclosed.h"
+
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <cmath>
+
+namespace kerf::texture {
+
+namespace {
+
+/// The map of the table at a point [pixels], to all faces at once: 2 n floats.
+template <class Use>
+void look_up(const WarpTable& table, const Vec2& p, const Use& use) {
+  const image::Footing f =
+    image::footing(table.n_columns, table.n_rows, (static_cast<float>(p[0]) - table.left) * table.columns_by_pixel,
+                   (static_cast<float>(p[1]) - table.top) * table.rows_by_pixel);
+  const float* const a = table.node(f.column, f.row);
+  const float* const b = a + 2 * table.n_faces;
+  const float* const c = a + 2 * table.n_faces * table.n_columns;
+  const float* const d = c + 2 * table.n_faces;
+  use(a, b, c, d, f.right, f.down);
+}
+
+/// Where a point goes on face `target`, and how that changes with the point.
+struct Image {
+  Vec2 at;
+  Mat2 gradient;
+};
+
+Image image_of(const WarpTable& table, const int target, const Vec2& p) {
+  Image result;
+  look_up(table, p,
+          [&](const float* a, const float* b, const float* c, const float* d, const double u, const double v) {
+            for (int k = 0; k < 2; ++k) {
+              const int i = 2 * target + k;
+              const double top = a[i] + u * (b[i] - a[i]), bottom = c[i] + u * (d[i] - c[i]);
+              result.at[k] = top + v * (bottom - top);
+              result.gradient(k, 0) = ((1 - v) * (b[i] - a[i]) + v * (d[i] - c[i])) * table.columns_by_pixel;
+              result.gradient(k, 1) = (bottom - top) * table.rows_by_pixel;
+            }
+          });
+  return result;
+}
+
+/// The complaint about a chart, with the exemplar's name.
+Chart chart_of(const Exemplar& exemplar, const geometry::TriangleMesh& body,
+               const std::optional<warp::LatticeMap>& known, std::optional<warp::LatticeMap>& used) {
+  try {
+    return make_chart(exemplar, body, known, used);
+  } catch (const ParameterError& error) {
+    Complaint complaint = error.complaint();
+    complaint.value = "exemplar " + exemplar.name + (complaint.value.empty() ? "" : ", " + complaint.value);
+    throw ParameterError(complaint);
+  }
+}
+
+/// A cell without faces, which holds no more of the body than some pixels, sees the exemplar that parted it last,
+/// whole.
+Cell with_a_face(Cell cell, const std::vector<Chart>& charts) {
+  if (cell.faces.empty()) {
+    const int e = cell.exemplars.back();
+    cell.faces.push_back({e, cell.sides.back(), charts[e].inside, 0});
+    for (const float value : charts[e].inside.values)
+      cell.faces.back().area += value > 0 ? 1 : 0;
+  }
+  return cell;
+}
+
+} // namespace
+
+Interior::Interior(const std::vector<Exemplar>& exemplars, const geometry::TriangleMesh& body,
+                   const InteriorOptions& options, const Maps* known)
+  : options_(options) {
+  if (exemplars.empty())
+    throw ParameterError(Complaint{.path = "Exemplar",
+                                   .rule = "an interior needs at least one exemplar",
+                                   .remedy = "Add a section 'subsection Exemplar NAME'"});
+  maps_.fits.resize(exemplars.size());
+  for (std::size_t i = 0; i < exemplars.size(); ++i) {
+    charts_.push_back(chart_of(exemplars[i], body, known ? known->fits[i] : std::nullopt, maps_.fits[i]));
+    pixel_ += charts_.back().plane.pixel() / static_cast<double>(exemplars.size());
+  }
+  partition_.emplace(exemplars, charts_, options.components);
+  check_pins(options.warps.pins, partition_->cells(), exemplars, charts_);
+  cells_.resize(partition_->cells().size());
+  maps_.warps.resize(cells_.size());
+  parallel_for(cells_.size(), [&](const std::size_t i) { build_cell(static_cast<int>(i), exemplars, body, known); });
+}
+
+void Interior::build_cell(const int number, const std::vector<Exemplar>& exemplars, const geometry::TriangleMesh& body,
+                          const Maps* known) {
+  const Cell cell = with_a_face(partition_->cells()[number], charts_);
+  CellData& data = cells_[number];
+  const std::size_t n = cell.faces.size();
+  if (n > max_sources)
+    throw ParameterError(Complaint{.path = "Components",
+                                   .value = std::to_string(n) + " faces of one cell",
+                                   .rule = "at most " + std::to_string(max_sources) + " are allowed",
+                                   .remedy = "Use fewer exemplars, or set Components to together"});
+  for (const Face& face : cell.faces)
+    data.sources.emplace_back(face, cell, exemplars[face.exemplar], charts_[face.exemplar], body);
+  data.tables = make_warps(cell, exemplars, charts_, options_.warps,
+                           known ? known->warps[number] : std::vector<warp::LatticeMap>(), maps_.warps[number]);
+  for (std::size_t j = 0; j < n; ++j)
+    for (std::size_t i = 0; i < n; ++i) {
+      const Face &from = cell.faces[std::min(i, j)], &to = cell.faces[std::max(i, j)];
+      const Chart &a = charts_[from.exemplar], &b = charts_[to.exemplar];
+      const Mat2 linear =
+        i == j ? Mat2(Mat2::Identity()) : aligned_linear(align(from, a, to, b, options_.warps.pixels), a, b);
+      data.apart.push_back(i == j || !are_partners(from, a, to, b, options_.warps.partners) ? 1 : 0);
+      data.linear.push_back(j <= i ? linear : Mat2(linear.inverse()));
+    }
+  data.triangles = enclosing_triangles(cell, body);
+}
+
+void Interior::find_sources(const CellData& cell, const Vec3& p, const Blending& how, Found& found) const {
+  const std::size_t n = cell.sources.size();
+  std::array<double, max_sources> distances;
+  for (std::size_t i = 0; i < n; ++i) {
+    const Source& source = cell.sources[i];
+    const SectionPlane& plane = charts_[source.exemplar()].plane;
+    const Vec2 local = source.find(p);
+    found.points[i] = plane.point(local);
+    found.pixels[i] = plane.to_pixels(local);
+    distances[i] = (found.points[i] - p).norm();
+  }
+  if (how.weights == Weights::mean_value && !cell.triangles.empty() &&
+      mean_value(p, std::span(found.points).first(n), cell.triangles, found.shares))
+    return;
+  shepard(std::span(distances).first(n), how.power, found.shares);
+}
+
+/// (3.14) for all sources at once: each table says where its source point goes on every face.
+void Interior::morph(const CellData& cell, const Found& found, std::array<Vec2, max_sources>& q) const {
+  const int n = static_cast<int>(cell.sources.size());
+  std::array<float, 2 * max_sources> sum = {};
+  for (int j = 0; j < n; ++j) {
+    const auto share = static_cast<float>(found.shares[j]);
+    look_up(cell.tables[j], found.pixels[j],
+            [&](const float* a, const float* b, const float* c, const float* d, const float u, const float v) {
+              const float wa = share * (1 - u) * (1 - v), wb = share * u * (1 - v);
+              const float wc = share * (1 - u) * v, wd = share * u * v;
+              for (int k = 0; k < 2 * n; ++k)
+                sum[k] += wa * a[k] + wb * b[k] + wc * c[k] + wd * d[k];
+            });
+  }
+  for (int i = 0; i < n; ++i)
+    q[i] = own_share(cell, found, i) * found.pixels[i] + Vec2(sum[2 * i], sum[2 * i + 1]);
+}
+
+double Interior::own_share(const CellData& cell, const Found& found, const int i) {
+  const int n = static_cast<int>(cell.sources.size());
+  double share = 0;
+  for (int j = 0; j < n; ++j)
+    share += cell.apart[j * n + i] ? found.shares[j] : 0;
+  return share;
+}
+
+/// Newton's method from q, as long as it gets nearer.
+Vec2 Interior::solve_inverse(const CellData& cell, const Found& found, const int i, Vec2 q) const {
+  const int n = static_cast<int>(cell.sources.size());
+  double before = 1e300;
+  Vec2 best = q;
+  for (int round = 0; round < 20; ++round) {
+    const double own = own_share(cell, found, i);
+    Vec2 error = own * (q - found.pixels[i]);
+    Mat2 gradient = own * Mat2::Identity();
+    for (int j = 0; j < n; ++j)
+      if (!cell.apart[j * n + i]) {
+        const Image image = image_of(cell.tables[i], j, q);
+        const Mat2 back = found.shares[j] * cell.linear[j * n + i];
+        error += back * (image.at - found.pixels[j]);
+        gradient += back * image.gradient;
+      }
+    if (error.norm() < before) {
+      before = error.norm();
+      best = q;
+    }
+    if (before < 1e-6 || !(std::abs(gradient.determinant()) > 1e-9))
+      break;
+    const Vec2 step = gradient.inverse() * error;
+    q -= step * std::min(1.0, 20 / step.norm());
+  }
+  return best;
+}
+
+Blend Interior::blend(const Vec3& p, const Blending& how) const {
+  const CellData& cell = cells_[partition_->find(p)];
+  Found found;
+  find_sources(cell, p, how, found);
+  std::array<Vec2, max_sources> q = found.pixels;
+  Blend blend;
+  blend.n = static_cast<int>(cell.sources.size());
+  if (how.morph == Morph::first_order || how.morph == Morph::exact_inverse)
+    morph(cell, found, q);
+  if (how.morph == Morph::exact_inverse)
+    for (int i = 0; i < blend.n; ++i)
+      q[i] = solve_inverse(cell, found, i, q[i]);
+  const auto last = found.shares.begin() + blend.n;
+  const auto nearest = std::max_element(found.shares.begin(), last) - found.shares.begin();
+  for (int i = 0; i < blend.n; ++i) {
+    blend.exemplars[i] = static_cast<std::uint8_t>(cell.sources[i].exemplar());
+    blend.weights[i] = how.morph == Morph::nearest ? (i == nearest ? 1.0f : 0.0f) : static_cast<float>(found.shares[i]);
+    blend.x[i] = static_cast<float>(q[i][0]);
+    blend.y[i] = static_cast<float>(q[i][1]);
+  }
+  return blend;
+}
+
+Eigen::Array4f Interior::colour(const Blend& blend) const {
+  Eigen::Array4f sum = Eigen::Array4f::Zero();
+  for (int i = 0; i < blend.n; ++i)
+    sum += blend.weights[i] * image::sample(charts_[blend.exemplars[i]].colours, blend.x[i], blend.y[i]);
+  return sum;
+}
+
+std::size_t Interior::n_pairs() const {
+  std::size_t n = 0;
+  for (const auto& maps : maps_.warps)
+    n += maps.size();
+  return n;
+}
+
+double Interior::smallest_determinant() const {
+  double smallest = 1e300;
+  for (const auto& maps : maps_.warps)
+    for (const warp::LatticeMap& map : maps)
+      smallest = std::min(smallest, warp::smallest_determinant(map));
+  for (const auto& fit : maps_.fits)
+    if (fit)
+      smallest = std::min(smallest, warp::smallest_determinant(*fit));
+  return smallest;
+}
+
+} // namespace kerf::texture

@@ -1,0 +1,175 @@
+#include "texture/source.h"
+
+#include "base/error.h"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+
+namespace kerf::texture {
+
+namespace {
+
+Vec2 middle_of(const Face& face, const Chart& chart) {
+  Vec2 sum = Vec2::Zero();
+  double n = 0;
+  for (int r = 0; r < face.pixels.height; ++r)
+    for (int c = 0; c < face.pixels.width; ++c)
+      if (face.pixels(c, r) > 0.5f) {
+        sum += Vec2(c, r);
+        ++n;
+      }
+  return chart.plane.to_local(sum / std::max(n, 1.0));
+}
+
+ParameterError refusal(const Exemplar& exemplar, const std::string& key, const std::string& rule,
+                       const std::string& remedy) {
+  return ParameterError(Complaint{.path = key, .value = "exemplar " + exemplar.name, .rule = rule, .remedy = remedy});
+}
+
+/// No radius is zero: what would be divided by it lies outside of the body.
+void raise(std::vector<double>& radii, const double least) {
+  for (double& radius : radii)
+    radius = std::max(radius, least);
+}
+
+} // namespace
+
+Source::Source(const Face& face, const Cell& cell, const Exemplar& exemplar, const Chart& chart,
+               const geometry::TriangleMesh& body)
+  : exemplar_(face.exemplar), plane_(frame_of(chart.plane)), normal_(chart.plane.normal()), side_(face.side) {
+  middles_.assign(n_steps, middle_of(face, chart));
+  turns_ = exemplar.sweep.path == Sweep::Path::arc || exemplar.sweep.path == Sweep::Path::axis;
+  if (turns_)
+    prepare_turning(face, exemplar);
+  tabulate(cell, exemplar, body, farthest(cell, body, face, chart));
+}
+
+/// The plane turns about the line centre_ + s axis_, which lies in it; outward_ points from the line to the barycentre.
+void Source::prepare_turning(const Face& face, const Exemplar& exemplar) {
+  const Vec3 barycentre = plane_.origin + middles_[0][0] * plane_.x + middles_[0][1] * plane_.y;
+  const Sweep& sweep = exemplar.sweep;
+  inward_ = side_ * normal_;
+  centre_ = sweep.point - normal_.dot(sweep.point - plane_.origin) * normal_;
+  const double size = (barycentre - plane_.origin).norm() + std::sqrt(static_cast<double>(face.area));
+  const Vec3 away = barycentre - centre_;
+  if (sweep.path == Sweep::Path::arc) {
+    if (!(away.norm() > 1e-6 * size))
+      throw refusal(exemplar, "Centre [m]", "the barycentre of a face lies at the centre of its great arc",
+                    "Divide the section by another exemplar through the centre first, or sweep along the normal");
+    outward_ = away.normalized();
+    axis_ = outward_.cross(normal_);
+    return;
+  }
+  const Vec3 in_plane = sweep.axis - normal_.dot(sweep.axis) * normal_;
+  if (!(in_plane.norm() > 0.9 * sweep.axis.norm()) || !(sweep.axis.norm() > 0))
+    throw refusal(exemplar, "Axis [1]", "the axis of the sweep must lie in the plane",
+                  "Give an axis at a right angle to the plane's normal");
+  axis_ = in_plane.normalized();
+  outward_ = away - axis_.dot(away) * axis_;
+  if (!(outward_.norm() > 1e-6 * size))
+    throw refusal(exemplar, "Axis [1]", "the axis passes through the barycentre of a face: it has no side to turn to",
+                  "Divide the section by another exemplar through the axis first, or sweep along the normal");
+  outward_.normalize();
+}
+
+Source::Swept Source::turn(const Vec3& p) const {
+  const Vec3 d = p - centre_;
+  const double along = axis_.dot(d), out = outward_.dot(d), in = inward_.dot(d);
+  const Vec3 back = centre_ + along * axis_ + std::hypot(out, in) * outward_ - plane_.origin;
+  return {std::max(0.0, std::atan2(in, out)), Vec2(plane_.x.dot(back), plane_.y.dot(back))};
+}
+
+/// The plane where it has gone by t, with the coordinates that turn() and sweep() give.
+Frame Source::frame(const double t) const {
+  if (!turns_)
+    return {plane_.origin + t * side_ * normal_, plane_.x, plane_.y};
+  const double sense = axis_.cross(outward_).dot(inward_) > 0 ? 1 : -1;
+  const Mat3 turned = Eigen::AngleAxisd(sense * t, axis_).toRotationMatrix();
+  return {centre_ + turned * (plane_.origin - centre_), turned * plane_.x, turned * plane_.y};
+}
+
+/// How far the plane goes until it has passed the cell: over its part of the skin and its other faces.
+double Source::farthest(const Cell& cell, const geometry::TriangleMesh& body, const Face& face,
+                        const Chart& chart) const {
+  double t = 4 * chart.plane.pixel();
+  if (turns_)
+    t /= std::sqrt(static_cast<double>(face.area)) * chart.plane.pixel();
+  const auto is_in = [&](const Vec3& p) {
+    return std::all_of(cell.halves.begin(), cell.halves.end(), [&](const HalfSpace& half) { return half.contains(p); });
+  };
+  Box box;
+  box.lower = Vec3::Constant(1e300);
+  box.upper = Vec3::Constant(-1e300);
+  for (const Vec3& v : body.vertices) {
+    box.lower = box.lower.cwiseMin(v);
+    box.upper = box.upper.cwiseMax(v);
+    if (is_in(v))
+      t = std::max(t, sweep(v).t);
+  }
+  if (turns_)
+    return std::min(std::max(t, 0.1), M_PI);
+  // Other faces: the plane cannot go beyond where the cell's half spaces leave the body's box. Rays of the box are
+  // enough.
+  const double reach = (box.upper - box.lower).norm();
+  double bound = t;
+  for (const HalfSpace& half : cell.halves)
+    if (const double rate = half.normal.dot(side_ * normal_); rate > 0.2) {
+      const Vec3 barycentre = plane_.origin + middles_[0][0] * plane_.x + middles_[0][1] * plane_.y;
+      bound = std::max(bound, std::min(reach, (half.offset - half.normal.dot(barycentre)) / rate));
+    }
+  return bound;
+}
+
+void Source::tabulate(const Cell& cell, const Exemplar& exemplar, const geometry::TriangleMesh& body,
+                      const double t_max) {
+  steps_by_t_ = (n_steps - 1) / t_max;
+  std::vector<HalfSpace> halves = cell.halves;
+  for (HalfSpace& half : halves)
+    if (std::abs(half.normal.dot(normal_)) > 1 - 1e-12 &&
+        std::abs(half.normal.dot(plane_.origin) - half.offset) < 1e-12)
+      half = HalfSpace{}; // its own plane bounds no ray in it
+  Vec2 middle = middles_[0];
+  double least = 0;
+  for (int i = 0; i < n_steps; ++i) {
+    const Frame at = frame(i / steps_by_t_);
+    const auto curves = slice(body, at);
+    std::vector<double> row = radii(curves, at, halves, middle, n_directions);
+    if (i > 0 && exemplar.sweep.path == Sweep::Path::middles)
+      for (int round = 0; round < 2; ++round) {
+        middle = star_middle(middle, row);
+        row = radii(curves, at, halves, middle, n_directions);
+      }
+    if (i == 0)
+      least = 1e-3 * *std::max_element(row.begin(), row.end()) + 1e-300;
+    raise(row, least);
+    middles_[i] = middle;
+    radii_.insert(radii_.end(), row.begin(), row.end());
+    radii_.push_back(static_cast<float>(row.front()));
+  }
+}
+
+Vec2 Source::find(const Swept& swept) const {
+  const double step = std::clamp(swept.t * steps_by_t_, 0.0, n_steps - 1 - 1e-9);
+  const int i = static_cast<int>(step);
+  const double s = step - i;
+  const Vec2 arm = swept.local - ((1 - s) * middles_[i] + s * middles_[i + 1]);
+  const double number = direction_number(arm[0], arm[1], n_directions);
+  const int k = static_cast<int>(number);
+  const double u = number - k;
+  constexpr int row = n_directions + 1;
+  const auto radius = [&](const int step_number) {
+    const float* const r = &radii_[step_number * row + k];
+    return (1 - u) * r[0] + u * r[1];
+  };
+  const double there = (1 - s) * radius(i) + s * radius(i + 1);
+  const double length = arm.norm();
+  // Far beyond the boundary, outside of the body, the source point stays there. How far is far falls from infinity in
+  // the face itself, where interpolated radii may cut a corner off and the source point must still be the point itself.
+  const double beyond = there * (1 + 0.02 * (n_steps - 1) / std::max(step, 1e-12));
+  const double ratio = radius(0) / there * (length > beyond ? beyond / length : 1);
+  return middles_[0] + ratio * arm;
+}
+
+} // namespace kerf::texture

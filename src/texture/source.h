@@ -1,0 +1,60 @@
+#pragma once
+
+/// Source points on the faces of a cell (thesis §3.4.2.2).
+///
+/// The plane of a face is swept through the cell until it contains the point p; then the ray from the swept barycentre
+/// to p is taken back to the face, and the source point divides it in the same ratio between barycentre and boundary.
+/// Distances to the boundary are tabulated by sweep and direction, the boundary being the outermost one where a ray
+/// meets several, and bilinear in between: continuous, and exact in the face itself, whatever the table's resolution.
+
+#include "texture/partition.h"
+
+namespace kerf::texture {
+
+class Source {
+ public:
+  /// Throws ParameterError about "Axis [1]" or "Centre [m]" if the sweep's axis does not fit the face.
+  Source(const Face& face, const Cell& cell, const Exemplar& exemplar, const Chart& chart,
+         const geometry::TriangleMesh& body);
+
+  int exemplar() const { return exemplar_; }
+
+  /// The source point of p [m], in local coordinates of the plane [m].
+  Vec2 find(const Vec3& p) const {
+    const Swept swept = sweep(p);
+    return find(swept);
+  }
+
+ private:
+  /// A point as the swept plane sees it.
+  struct Swept {
+    double t;   ///< how far the plane has gone [m] or [radians]
+    Vec2 local; ///< in the swept plane [m]
+  };
+  Swept sweep(const Vec3& p) const {
+    const Vec3 d = p - plane_.origin;
+    if (!turns_)
+      return {side_ * normal_.dot(d), Vec2(plane_.x.dot(d), plane_.y.dot(d))};
+    return turn(p);
+  }
+  Swept turn(const Vec3& p) const;
+  Vec2 find(const Swept& swept) const;
+  Frame frame(double t) const;
+  void prepare_turning(const Face& face, const Exemplar& exemplar);
+  double farthest(const Cell& cell, const geometry::TriangleMesh& body, const Face& face, const Chart& chart) const;
+  void tabulate(const Cell& cell, const Exemplar& exemplar, const geometry::TriangleMesh& body, double t_max);
+
+  static constexpr int n_directions = 256, n_steps = 33;
+
+  int exemplar_ = 0;
+  Frame plane_;
+  Vec3 normal_ = Vec3::Zero();
+  double side_ = 1;
+  bool turns_ = false;
+  Vec3 centre_ = Vec3::Zero(), axis_ = Vec3::Zero(), outward_ = Vec3::Zero(), inward_ = Vec3::Zero();
+  double steps_by_t_ = 0;     ///< rows of the table a unit of t
+  std::vector<float> radii_;  ///< n_steps rows of n_directions + 1, the last of a row is its first [m]
+  std::vector<Vec2> middles_; ///< the swept barycentre, by step [m]
+};
+
+} // namespace kerf::texture

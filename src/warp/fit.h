@@ -1,0 +1,23 @@
+#pragma once
+
+/// A map that takes given points to given points and relaxes between them, without a fold: how a photographed section
+/// is drawn to the outline of another (thesis §3.4.2.3).
+
+#include "warp/energy.h"
+
+namespace kerf::warp {
+
+struct FitOptions {
+  Regularity inside = Regularity::rigid; ///< jacobian: harmonic
+  int n_cells = 32;                      ///< of the finest lattice along the longer side of the rectangle
+  double stiffness = 1e-3; ///< of the finest lattice; the coarser are stiffer
+};
+
+/// The similarity, without reflection, that takes `from` to `to` best in the least squares sense. At least two
+/// different points.
+Affine best_similarity(const std::vector<Pin>& pairs);
+
+/// The map of a rectangle, from the best similarity coarse to fine. No triangle of its lattice is flipped.
+LatticeMap fit(const std::vector<Pin>& pairs, const Vec2& lower, const Vec2& upper, const FitOptions& options);
+
+} // namespace kerf::warp

@@ -1,0 +1,42 @@
+#pragma once
+
+/// Warps between two pictures by multilevel feature matching (thesis §3.4.3.1.1).
+///
+/// An edge detector runs on every level of a Gaussian stack of each picture, and what it finds is then sampled as
+/// coarsely as the level is blurred; beside edges, brightness and the outline of what is section may count. The
+/// coarsest level moves a lattice of few cells, each finer level starts from the one before it with more of them. Both
+/// pictures have the same size: whoever calls has made their axis-aligned boxes match.
+
+#include "warp/energy.h"
+
+namespace kerf::warp {
+
+/// A picture to be matched.
+struct Picture {
+  image::Colours colours;
+  image::Grey mask; ///< 1 what is section
+};
+
+/// What is taken out of each triangle's Jacobian, estimated from the mean of them by polar decomposition.
+enum class Global { none, rotation, rotation_and_scale };
+
+struct MatchOptions {
+  int n_levels = 4;             ///< of the Gaussian stack
+  int n_cells = 24;             ///< of the finest lattice along the longer side
+  double edges = 1;             ///< weight of the edges [1]
+  double brightness = 1;        ///< weight of blurred luminance [1]
+  double outline = 1;           ///< weight of the blurred mask [1]
+  double stiffness = 0.2;       ///< of the lattice against the features, whose mean square is 1 [1]
+  Global global = Global::none; ///< other than none: the border of the rectangle is free
+  int n_iterations = 50;        ///< a level
+  std::vector<Pin> pins = {};   ///< in pixels of the two pictures
+};
+
+/// Level by level, from the finest: what is compared, scaled so that each channel's mean square is its weight squared.
+std::vector<FeatureLevel> features(const Picture& a, const Picture& b, const MatchOptions& options);
+
+/// The map from pixels of `a` to pixels of `b` over the whole rectangle of `a`. No triangle of its lattice is flipped.
+/// Throws ParameterError if the pictures differ in size or are smaller than 4 x 4, or if a pin starts or ends outside.
+LatticeMap match(const Picture& a, const Picture& b, const MatchOptions& options);
+
+} // namespace kerf::warp
