@@ -63,7 +63,7 @@ TEST_F(ProgramTest, SumsUpTheRun) {
     {R"(step 5/5  t = 0\.050/0\.050 s)", R"(body cube: 125 cells, 150 copies, 2 pieces, \d+ surface triangles)",
      R"(volume: mesh 8\.000000e-03 m\^3; grid [+-]0\.000 %; cuts changed the rest volume by [+-]\d\.\d\de-1\d)",
      R"(energy: elastic \S+ J, kinetic \S+ J)", R"(blade knife: cut 16 grid edges\n)",
-     R"(time per stage \[s\]:  cut \S+  topology \S+  assemble \S+  visibility \S+  solve \S+  surface \S+  output \S+  images \S+\n)",
+     R"(time per stage \[s\]:  cut \S+  topology \S+  assemble \S+  visibility \S+  solve \S+  surface \S+  colour \S+  output \S+  images \S+\n)",
      R"([\d.]+ steps/s without images and files, [\d.]+ with\n)", R"(results in out\n$)"})
     EXPECT_TRUE(std::regex_search(result.out, std::regex(pattern))) << pattern << " in:\n" << result.out;
   EXPECT_EQ(result.out.find("waiting"), std::string::npos);

@@ -32,6 +32,10 @@ TEST(Run, TimesEveryStageOfEveryStep) {
     EXPECT_EQ(seconds.size(), 6u) << stage;
     for (const double s : seconds)
       EXPECT_GE(s, 0) << stage;
+    if (stage == "colour") { // of what is inside, which this scene does not say
+      EXPECT_FALSE(total.contains(stage));
+      continue;
+    }
     EXPECT_GT(total.at(stage), 0) << stage;
     // Composing stands with step 0 and is not the run's; what writing the last step took comes too late for the file.
     EXPECT_LE(sum(seconds) - seconds.at(0), total.at(stage) * (1 + 1e-12)) << stage;
