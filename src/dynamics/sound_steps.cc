@@ -142,6 +142,15 @@ std::size_t fastest(const State& state) {
   return static_cast<std::size_t>(std::max_element(state.v.begin(), state.v.end(), slower) - state.v.begin());
 }
 
+/// Integrators that know no constraints inside their loops may have moved what a rigid body carries.
+void keep_carried(const Loads& loads, const State& before, State& after) {
+  for (std::size_t i = 0; i < loads.carried.size(); ++i)
+    if (is_carried(loads, i)) {
+      after.x[i] = before.x[i];
+      after.v[i] = before.v[i];
+    }
+}
+
 std::string in_short(const double value) {
   std::array<char, 32> text;
   std::snprintf(text.data(), text.size(), "%.3g", value);
@@ -179,6 +188,7 @@ StepReport SoundSteps::checked(State& state, const Loads& loads, const double dt
   constexpr double most_in_sum = 0.9;
   State after = state;
   const StepReport report = stepper_->step(after, loads, dt);
+  keep_carried(loads, state, after);
   require_finite(after);
   const EnergyChange change = energy_change(model_, loads, state, after);
   if (!(change.gained <= options_.most_gain * change.dealt + change.shift) && change.gained > round_off(model_, after.x))

@@ -14,12 +14,17 @@ constexpr std::size_t worth_points = 4096; // from which on a second thread pays
 
 constexpr std::uint32_t nowhere = grid::NodeId::no_value;
 
+bool is_point(const grid::Solid& solid, const grid::NodeId node) {
+  return solid.grid.is_material(node) &&
+         !(solid.crumbs.any() && solid.crumbs.holds(solid.complex.real_corner[node]));
+}
+
 /// Calls f(axis, lower, upper) for each step of the lattice.
 template <class Function>
 void for_each_step(const grid::Solid& solid, const Function& f) {
   for (const auto e : ids<grid::EdgeId>(solid.grid.n_edges()))
     if (const auto& [lower, upper] = solid.grid.ends(e);
-        !solid.cuts.is_cut(e) && solid.grid.is_material(lower) && solid.grid.is_material(upper))
+        !solid.cuts.is_cut(e) && is_point(solid, lower) && is_point(solid, upper))
       f(solid.grid.axis(e), lower, upper);
 }
 
@@ -33,7 +38,7 @@ Lines::Lines(const grid::Solid& solid, const int half_width) : half_width_(stati
                           .remedy = "A region of no width is a single point and has no stiffness"});
   std::vector<std::uint32_t> point_of(solid.grid.n_nodes(), nowhere);
   for (const auto n : ids<grid::NodeId>(solid.grid.n_nodes()))
-    if (solid.grid.is_material(n)) {
+    if (is_point(solid, n)) {
       point_of[n.value] = static_cast<std::uint32_t>(nodes_.size());
       nodes_.push_back(n);
     }
@@ -65,6 +70,8 @@ Lines::Axis Lines::lines_through(const std::vector<std::uint32_t>& next) {
 }
 
 void Lines::sum_windows_along(const Axis& axis, std::vector<double>& f) const {
+  if (n_points() == 0)
+    return;
   const std::size_t n_lines = axis.start.size() - 1, width = f.size() / n_points();
   const std::size_t worth = n_points() < worth_points ? n_lines + 1 : 2;
   parallel_ranges(n_lines, worth, [&](const std::size_t first, const std::size_t last) {

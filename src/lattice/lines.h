@@ -2,7 +2,7 @@
 
 /// The regions of lattice shape matching on a cut body, and fast sums over them (Rivers and James 2007).
 ///
-/// The material nodes of the grid are the lattice's points; from a point one may step along an uncut edge to the
+/// The material nodes of the grid, but those of crumbs, are the lattice's points; from a point one may step along an uncut edge to the
 /// next (two such points share a copy; a cut edge is no step). A *line* along an axis is a longest row of such steps.
 /// The **region** of a point r: walk at most w steps along r's z line, from there at most w along the y line, from
 /// there at most w along the x line. In the bulk this is the full box of (2 w + 1)^3 points. Cuts and skin break

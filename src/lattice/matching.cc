@@ -118,6 +118,8 @@ void Matching::measure_regions() {
 }
 
 void Matching::sum_over_regions() const {
+  if (lines_.n_points() == 0)
+    return;
   const std::size_t width = corner_field_.size() / mass_.size();
   region_field_.resize(width * lines_.n_points());
   parallel_ranges(lines_.n_points(), worth_items, [&](const std::size_t first, const std::size_t last) {
@@ -128,6 +130,10 @@ void Matching::sum_over_regions() const {
 }
 
 void Matching::average_over_regions() const {
+  if (lines_.n_points() == 0) {
+    corner_field_.assign(corner_field_.size(), 0.0);
+    return;
+  }
   const std::size_t width = region_field_.size() / lines_.n_points();
   corner_field_.resize(width * mass_.size());
   lines_.sum_over_holders(region_field_);

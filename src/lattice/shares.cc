@@ -110,10 +110,16 @@ std::vector<Share> material_shares(const grid::Solid& solid, const double densit
   std::vector<CopyShares> of_copy(solid.complex.n_copies());
   parallel_for(
     solid.complex.n_copies(),
-    [&](const std::size_t c) { of_copy[c] = shares_of(solid, solid.complex.copies[grid::CopyId(c)]); }, 256);
+    [&](const std::size_t c) {
+      if (!solid.crumbs.holds(grid::CopyId(c)))
+        of_copy[c] = shares_of(solid, solid.complex.copies[grid::CopyId(c)]);
+    },
+    256);
   const double scale = density * solid.grid.h() * solid.grid.h() * solid.grid.h();
   std::vector<Share> shares;
   for (const auto& [c, node] : grid::followed_nodes(solid)) {
+    if (solid.crumbs.holds(c))
+      continue;
     const grid::Copy& copy = solid.complex.copies[c];
     const auto integrals = integrals_of(solid, copy).elsewhere;
     for (int a = 0; a < 8; ++a)

@@ -27,7 +27,7 @@ struct Share {
 /// Integrals of N_0 .. N_7 over a tetrahedron in the unit cube [1].
 std::array<double, 8> shape_integrals(const grid::Tetrahedron& t);
 
-/// Sorted by node, then by corner; each pair once; each mass positive.
+/// Of all but crumbs. Sorted by node, then by corner; each pair once; each mass positive.
 std::vector<Share> material_shares(const grid::Solid& solid, double density);
 
 } // namespace kerf::lattice
