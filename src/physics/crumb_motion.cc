@@ -88,10 +88,11 @@ void Crumbs::fly(const dynamics::Loads& loads, const double dt, dynamics::State&
   for (int n = 1; n <= most; n *= 2) {
     std::optional<Motions> motions = state.crumbs;
     for (int k = 0; k < n && motions; ++k) {
+      const Motions start = *motions;
       for (std::size_t b = 0; b < crumbs_.size(); ++b)
         dynamics::fly(crumbs_[b].body, loads.gravity, loads.mass_damping, dt / n, (*motions)[b]);
       if (!loads.acting.empty())
-        motions = pushed(loads, dt / n, Motions(*motions), state);
+        motions = pushed(loads, dt / n, start, Motions(*motions), state);
     }
     if (motions) {
       state.crumbs = std::move(*motions);
@@ -129,22 +130,33 @@ std::vector<Crumbs::Push> Crumbs::pushes(const dynamics::Loads& loads, const dou
   return all;
 }
 
-std::optional<Crumbs::Motions> Crumbs::pushed(const dynamics::Loads& loads, const double dt, const Motions& flown,
-                                              dynamics::State& state) const {
+std::optional<Crumbs::Motions> Crumbs::pushed(const dynamics::Loads& loads, const double dt, const Motions& start,
+                                              Motions flown, dynamics::State& state) const {
   constexpr int most = 40, undamped = 10;
   constexpr double settled = 1e-9; // of the crumb's size
+  const double drag = 1 + dt * loads.mass_damping;
   Motions motions = flown;
   std::vector<Vector6> way(crumbs_.size(), Vector6::Zero()); // from flight
+  std::vector<std::uint8_t> is_pushed(crumbs_.size(), 0);
   for (int i = 0; i < most; ++i) {
     carry(motions, state);
     const std::vector<Push> all = pushes(loads, dt, motions, state);
     bool is_settled = true;
     for (std::size_t b = 0; b < crumbs_.size(); ++b) {
       const RigidBody& body = crumbs_[b].body;
-      const Matrix6 inertia = inertia_of_modes(body, flown[b]), W = inertia / (dt * dt);
+      const Matrix6 inertia = inertia_of_modes(body, flown[b]), W = drag / (dt * dt) * inertia;
       const Vector6 residual = all[b].force - W * way[b];
       if (residual.isZero(0))
         continue;
+      if (!is_pushed[b]) { // gravity and damping act as loads do now, or they would have no balance at rest
+        is_pushed[b] = 1;
+        flown[b].v = (start[b].v + dt * loads.gravity) / drag;
+        flown[b].x = start[b].x + dt * flown[b].v;
+        flown[b].spin = start[b].spin / drag;
+        motions[b] = flown[b];
+        is_settled = false;
+        continue;
+      }
       const Matrix6 K = 0.5 * (all[b].stiffness + all[b].stiffness.transpose());
       const Vector6 change = (i < undamped ? 1.0 : 0.5) * (W + K).ldlt().solve(residual);
       const double size = std::sqrt(body.inertia.trace() / body.mass);

@@ -6,7 +6,7 @@
 /// without mass that stay where they are in its step. After it the crumbs move, and their particles and corners with
 /// them. Their flight is exact in gravity and mass damping, and keeps spin and energy of rotation to round-off
 /// (dynamics/rigid_body.h). Loads push a crumb with the forces of the step's end, as implicit Euler does, by Newton's
-/// method for its six unknowns. A support moves a crumb by the corners that it holds; the change of motion that this
+/// method for its six unknowns, and in such a step gravity and damping do as they do. A support moves a crumb by the corners that it holds; the change of motion that this
 /// takes is the least in kinetic energy. In statics a crumb that nothing holds stays where it is.
 ///
 /// A piece that becomes a crumb keeps its momentum and the mean rotation and angular velocity of its material; what it
@@ -85,8 +85,8 @@ class Crumbs {
   void take_particles(const grid::Solid& solid, const CrumbParticles* particles);
   /// Puts particles where these motions have them.
   void carry(const Motions& motions, dynamics::State& state) const;
-  /// Where loads push the crumbs within dt that would be at `flown` without; none where they do not settle.
-  std::optional<Motions> pushed(const dynamics::Loads& loads, double dt, const Motions& flown,
+  /// Where loads push the crumbs within dt that would fly from `start` to `flown`; none where they do not settle.
+  std::optional<Motions> pushed(const dynamics::Loads& loads, double dt, const Motions& start, Motions flown,
                                 dynamics::State& state) const;
   /// Of loads on each crumb, about its centre; and how they stiffen its modes.
   struct Push;

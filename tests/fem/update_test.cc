@@ -78,7 +78,8 @@ TEST(Update, IsBuildingAnewBitByBit) {
 /// same order.
 TEST(Update, IncidenceIsThatOfTheComplexAfterAnyChange) {
   Draw draw(94);
-  grid::Solid solid{grid::Grid({}, {}), {}};
+  const grid::Grid grid({}, {{0, 0, 0}});
+  grid::Solid solid{grid, grid::Cuts(grid)};
   grid::CellComplex& complex = solid.complex;
   complex.node.resize(40);
   const auto any_corner = [&] { return grid::CornerId(static_cast<std::size_t>(draw(0, 40))); };
