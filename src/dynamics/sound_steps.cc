@@ -197,7 +197,7 @@ StepReport SoundSteps::checked(State& state, const Loads& loads, const double dt
                     most_thrown(state, after));
   double& sum = after.numbers["energy gained [J]"];
   sum = std::max(0.0, sum + change.gained);
-  if (!(sum <= most_in_sum * change.inner + change.shift) && sum > many * round_off(model_, after.x))
+  if (change.gained > 0 && !(sum <= most_in_sum * change.inner + change.shift) && sum > many * round_off(model_, after.x))
     throw StepError("the integrator has gained " + per_cent(sum / change.inner) +
                       " of the body's kinetic and elastic energy, step by step: the motion is no more the body's",
                     most_thrown(state, after));

@@ -74,16 +74,19 @@ void Crumbs::step(const dynamics::Loads& loads, const double dt, const dynamics:
   work_of_supports_ = 0;
   if (!any())
     return;
+  const Motions start = state.crumbs;
+  std::vector<Wrench> pushes(crumbs_.size());
   if (kind == dynamics::MotionKind::dynamic)
-    fly(loads, dt, state);
-  hold(loads, dt, state);
+    fly(loads, dt, pushes, state);
+  hold(loads, dt, start, pushes, state);
   if (kind == dynamics::MotionKind::quasi_static)
     for (RigidMotion& motion : state.crumbs)
       motion.v = motion.spin = Vec3::Zero();
   carry(state.crumbs, state);
 }
 
-void Crumbs::fly(const dynamics::Loads& loads, const double dt, dynamics::State& state) const {
+void Crumbs::fly(const dynamics::Loads& loads, const double dt, std::vector<Wrench>& pushes,
+                 dynamics::State& state) const {
   constexpr int most = 64;
   for (int n = 1; n <= most; n *= 2) {
     std::optional<Motions> motions = state.crumbs;
@@ -92,7 +95,7 @@ void Crumbs::fly(const dynamics::Loads& loads, const double dt, dynamics::State&
       for (std::size_t b = 0; b < crumbs_.size(); ++b)
         dynamics::fly(crumbs_[b].body, loads.gravity, loads.mass_damping, dt / n, (*motions)[b]);
       if (!loads.acting.empty())
-        motions = pushed(loads, dt / n, start, Motions(*motions), state);
+        motions = pushed(loads, dt / n, start, Motions(*motions), pushes, state);
     }
     if (motions) {
       state.crumbs = std::move(*motions);
@@ -131,7 +134,8 @@ std::vector<Crumbs::Push> Crumbs::pushes(const dynamics::Loads& loads, const dou
 }
 
 std::optional<Crumbs::Motions> Crumbs::pushed(const dynamics::Loads& loads, const double dt, const Motions& start,
-                                              Motions flown, dynamics::State& state) const {
+                                              Motions flown, std::vector<Wrench>& wrenches,
+                                              dynamics::State& state) const {
   constexpr int most = 40, undamped = 10;
   constexpr double settled = 1e-9; // of the crumb's size
   const double drag = 1 + dt * loads.mass_damping;
@@ -162,6 +166,7 @@ std::optional<Crumbs::Motions> Crumbs::pushed(const dynamics::Loads& loads, cons
       const double size = std::sqrt(body.inertia.trace() / body.mass);
       is_settled &= change.head<3>().norm() + size * change.tail<3>().norm() <= settled * size;
       way[b] += change;
+      wrenches[b] = {(W * way[b]).head<3>(), (W * way[b]).tail<3>()};
       motions[b] = moved(flown[b], inertia, way[b], dt);
     }
     if (is_settled)
@@ -215,7 +220,8 @@ void Crumbs::obey(const dynamics::Loads& loads, const std::span<const Hold> hold
   motion.spin += inertia_now(body, motion) * d.tail<3>();
 }
 
-void Crumbs::hold(const dynamics::Loads& loads, const double dt, dynamics::State& state) {
+void Crumbs::hold(const dynamics::Loads& loads, const double dt, const Motions& start,
+                  const std::vector<Wrench>& pushes, dynamics::State& state) {
   const auto all = holds(loads);
   for (std::size_t b = 0; b < crumbs_.size(); ++b) {
     if (all[b].empty())
@@ -225,9 +231,12 @@ void Crumbs::hold(const dynamics::Loads& loads, const double dt, dynamics::State
     const RigidMotion before = motion;
     obey(loads, all[b], state.time, dt, body, motion);
     dynamics::Reaction& reaction = reactions_[all[b][0].support];
-    const Vec3 force = body.mass / dt * (motion.v - before.v);
+    const double alpha = loads.mass_damping;
+    const Vec3 force =
+      body.mass * ((motion.v - start[b].v) / dt + alpha * motion.v - loads.gravity) - pushes[b].force;
     reaction.force += force;
-    reaction.torque += (motion.spin - before.spin) / dt + motion.x.cross(force);
+    reaction.torque += (motion.spin - start[b].spin) / dt + alpha * motion.spin - pushes[b].torque +
+                       motion.x.cross(force);
     work_of_supports_ += dynamics::kinetic_energy(body, motion) - dynamics::kinetic_energy(body, before) -
                          body.mass * loads.gravity.dot(motion.x - before.x);
   }

@@ -85,15 +85,20 @@ class Crumbs {
   void take_particles(const grid::Solid& solid, const CrumbParticles* particles);
   /// Puts particles where these motions have them.
   void carry(const Motions& motions, dynamics::State& state) const;
+  /// Force [N], and torque about the centre [N m].
+  struct Wrench {
+    Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
+  };
   /// Where loads push the crumbs within dt that would fly from `start` to `flown`; none where they do not settle.
   std::optional<Motions> pushed(const dynamics::Loads& loads, double dt, const Motions& start, Motions flown,
-                                dynamics::State& state) const;
+                                std::vector<Wrench>& wrenches, dynamics::State& state) const;
   /// Of loads on each crumb, about its centre; and how they stiffen its modes.
   struct Push;
   std::vector<Push> pushes(const dynamics::Loads& loads, double dt, const Motions& motions,
                            const dynamics::State& state) const;
-  void fly(const dynamics::Loads& loads, double dt, dynamics::State& state) const;
-  void hold(const dynamics::Loads& loads, double dt, dynamics::State& state);
+  void fly(const dynamics::Loads& loads, double dt, std::vector<Wrench>& pushes, dynamics::State& state) const;
+  void hold(const dynamics::Loads& loads, double dt, const Motions& start, const std::vector<Wrench>& pushes,
+            dynamics::State& state);
   void obey(const dynamics::Loads& loads, std::span<const Hold> holds, double time, double dt,
             const dynamics::RigidBody& body, dynamics::RigidMotion& motion) const;
   std::vector<std::vector<Hold>> holds(const dynamics::Loads& loads) const;

@@ -78,7 +78,7 @@ TEST(Update, IsBuildingAnewBitByBit) {
 /// same order.
 TEST(Update, IncidenceIsThatOfTheComplexAfterAnyChange) {
   Draw draw(94);
-  const grid::Grid grid({}, {{0, 0, 0}});
+  const grid::Grid grid({Vec3::Zero(), 1}, std::vector<Index3>(1, Index3{1, 1, 1}));
   grid::Solid solid{grid, grid::Cuts(grid)};
   grid::CellComplex& complex = solid.complex;
   complex.node.resize(40);
