@@ -21,6 +21,7 @@
 #include "dynamics/loads.h"
 #include "dynamics/stepper.h"
 
+#include <array>
 #include <memory>
 
 namespace kerf::dynamics {
@@ -40,11 +41,29 @@ struct SoundOptions {
   double most_gain = 0.25; ///< in a step, of the energy that it deals with [1]
 };
 
+/// Elastic energies of the two states that were asked for last: a step that is accepted ends where the next one starts,
+/// and one that is taken again starts where it did. Knows positions alone, so a model that changes needs another one.
+class ElasticEnergies {
+ public:
+  explicit ElasticEnergies(const ForceModel& model) : model_(model) {}
+
+  double at(const Points& x); ///< [J]
+
+ private:
+  struct Known {
+    Points x;
+    double energy = 0;
+  };
+
+  const ForceModel& model_;
+  std::array<Known, 2> known_; ///< the later asked for comes first
+};
+
 class SoundSteps : public Stepper {
  public:
-  /// The model must outlive the stepper.
+  /// The model must outlive the stepper, and stay as it is: after a cut both are made again.
   SoundSteps(ForceModel& model, std::unique_ptr<Stepper> stepper, const SoundOptions& options)
-    : model_(model), stepper_(std::move(stepper)), options_(options) {}
+    : model_(model), stepper_(std::move(stepper)), options_(options), energies_(model) {}
 
   /// Counts substeps where there are several, and steps tried and thrown away. Throws StepError when the shortest
   /// substeps fail too, with the reason of the whole step.
@@ -60,6 +79,7 @@ class SoundSteps : public Stepper {
   ForceModel& model_;
   std::unique_ptr<Stepper> stepper_;
   SoundOptions options_;
+  ElasticEnergies energies_;
 };
 
 /// What a step did to the energy.
@@ -69,7 +89,8 @@ struct EnergyChange {
   double shift = 0;  ///< what first order and round-off may misplace [J]
   double inner = 0;  ///< kinetic and elastic energy at the end [J]
 };
-EnergyChange energy_change(ForceModel& model, const Loads& loads, const State& before, const State& after);
+EnergyChange energy_change(const ForceModel& model, ElasticEnergies& energies, const Loads& loads, const State& before,
+                           const State& after);
 
 /// Throws StepError when a position or a velocity is not finite.
 void require_finite(const State& state);
