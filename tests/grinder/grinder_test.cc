@@ -89,8 +89,7 @@ void report(const Solids& solids, const Harvest& harvest) {
 
 constexpr Size short_ones{.least_cells = 100, .most_cells = 250, .least_steps = 12, .most_steps = 20};
 
-/// On five meshes that pass. Known to fail beside them: pieces of rinds alone with lattice shape matching, which leave at
-/// up to 90 m/s (cube:lattice:1).
+/// On five meshes that pass. Known to fail beside them: crumbs of dust, whose volume changes by a third.
 TEST(Grinder, Short) {
   Solids solids = solids_in(KERF_SOURCE_DIR "/params/meshes");
   const std::vector<std::string> names = {"apple", "bar", "cube", "liver_25k", "pear"};
