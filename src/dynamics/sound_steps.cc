@@ -181,61 +181,71 @@ EnergyChange energy_change(const ForceModel& model, ElasticEnergies& energies, c
     .gained = elastic_1 - elastic_0 + (kinetic_1 - kinetic_0) + (load_1 - load_0) + (gravity_1 - gravity_0) - work,
     .dealt = inner_kinetic_energy(model, before.v) + inner_kinetic_energy(model, after.v) + std::abs(elastic_0) +
              std::abs(elastic_1) + std::abs(load_1 - load_0) + work,
-    .shift = 4 * mass_of(model) * loads.gravity.squaredNorm() * dt * dt + drowned * sizes + unseen(model, after, dt),
+    .kick = 4 * mass_of(model) * loads.gravity.squaredNorm() * dt * dt,
+    .unseen = drowned * sizes + unseen(model, after, dt),
     .inner = kinetic_1 + std::abs(elastic_1)};
 }
 
-StepReport SoundSteps::checked(State& state, const Loads& loads, const double dt) {
+void SoundSteps::add_checked(Tried& tried, const Loads& loads, const double dt) {
   constexpr double most_in_sum = 0.9;
+  State& state = tried.state;
   State after = state;
   const StepReport report = stepper_->step(after, loads, dt);
   require_finite(after);
   const EnergyChange change = energy_change(model_, energies_, loads, state, after);
-  if (!(change.gained <= options_.most_gain * change.dealt + change.shift) &&
-      change.gained > round_off(model_, after.x))
+  const double shift = change.kick + change.unseen;
+  if (!(change.gained <= options_.most_gain * change.dealt + shift) && change.gained > round_off(model_, after.x))
     throw StepError("the step gained " + in_short(change.gained) + " J that no load and no support gave, " +
                       per_cent(change.gained / change.dealt) + " of the energy that it dealt with",
                     most_thrown(state, after));
   double& sum = after.numbers["energy gained [J]"];
   sum = std::max(0.0, sum + change.gained);
-  if (!(sum <= most_in_sum * change.inner + change.shift) && sum > many * round_off(model_, after.x))
+  if (!(sum <= most_in_sum * change.inner + shift) && sum > many * round_off(model_, after.x))
     throw StepError("the integrator has gained " + per_cent(sum / change.inner) +
                       " of the body's kinetic and elastic energy, step by step: the motion is no more the body's",
                     most_thrown(state, after));
+  tried.is_as_wanted = tried.is_as_wanted && change.gained <= options_.wanted_gain * change.dealt + change.unseen;
+  tried.gained += std::max(0.0, change.gained);
+  add(tried.report, report);
   state = std::move(after);
-  return report;
 }
 
-StepReport SoundSteps::divided(State& state, const Loads& loads, const double dt, const int n) {
-  const double start = state.time;
-  StepReport sum;
+SoundSteps::Tried SoundSteps::divided(const State& state, const Loads& loads, const double dt, const int n) {
+  Tried tried{{}, state};
   for (int k = 1; k <= n; ++k)
-    add(sum, checked(state, loads, (start + k * dt / n) - state.time));
-  state.time = start + dt;
+    add_checked(tried, loads, (state.time + k * dt / n) - tried.state.time);
+  tried.state.time = state.time + dt;
   if (n > 1)
-    sum.n_substeps = n;
-  return sum;
+    tried.report.n_substeps = n;
+  return tried;
 }
 
 StepReport SoundSteps::step(State& state, const Loads& loads, const double dt) {
+  constexpr int most_for_wanted = 4;
   std::optional<StepError> first;
+  std::optional<Tried> bearable; // nothing else is wrong with it
   const auto keep = [&](const std::string& reason, const std::size_t particle) {
     if (!first)
       first.emplace(reason, particle);
   };
   int n_rejected = 0;
-  for (int n = 1; n <= options_.most_substeps; n *= 2, ++n_rejected) {
-    State trial = state;
+  for (int n = 1; n <= options_.most_substeps && !(bearable && n > most_for_wanted); n *= 2, ++n_rejected) {
     try {
-      StepReport report = divided(trial, loads, dt, n);
-      report.n_rejected += n_rejected;
-      state = std::move(trial);
-      return report;
+      Tried tried = divided(state, loads, dt, n);
+      tried.report.n_rejected += n_rejected;
+      if (!bearable || tried.is_as_wanted || tried.gained < bearable->gained)
+        bearable = std::move(tried);
+      if (bearable->is_as_wanted)
+        break;
     } catch (const StepError& error) {
       keep(error.what(), error.particle());
     } catch (const NumericalError& error) {
       keep(error.what(), fastest(state));
     }
+  }
+  if (bearable) {
+    state = std::move(bearable->state);
+    return bearable->report;
   }
   if (options_.most_substeps == 1)
     throw *first;

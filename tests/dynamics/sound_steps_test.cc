@@ -85,6 +85,23 @@ TEST(SoundSteps, LetWorkPass) {
   }
 }
 
+/// Of 4 % a step gains in two substeps 2 %, in four 1 %: what is wanted decides how many are taken, and what cannot be had
+/// changes nothing.
+TEST(SoundSteps, DivideAStepThatGainsMoreThanWanted) {
+  const auto substeps = [](const double wanted) {
+    Chain model({1, 1}, {.anchor = 100});
+    SoundSteps stepper(model, std::make_unique<ExplicitEuler>(model, go_on), {.wanted_gain = wanted});
+    State state = model.state();
+    state.x[0] += Vec3(0.1, 0, 0);
+    state.x[1] -= Vec3(0.1, 0, 0);
+    return stepper.step(state, {}, 0.02).n_substeps;
+  };
+  EXPECT_EQ(substeps(0.03), 0); // of the energies before and after, which is twice as much
+  EXPECT_EQ(substeps(0.006), 2);
+  EXPECT_EQ(substeps(0.003), 4);
+  EXPECT_EQ(substeps(1e-4), 0);
+}
+
 class CountedChain : public Chain {
  public:
   using Chain::Chain;
