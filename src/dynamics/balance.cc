@@ -18,8 +18,8 @@ namespace kerf::dynamics {
 
 namespace {
 
-constexpr std::size_t worth = 4096;       // corners from which on a second thread pays
-constexpr int most_where_distrusted = 30; // Newton iterations
+constexpr std::size_t worth = 4096;      // corners from which on a second thread pays
+constexpr int most_where_not_taken = 30; // Newton iterations
 
 Eigen::Map<const Vec3> at(const std::span<const double> values, const std::size_t i) {
   return Eigen::Map<const Vec3>(values.data() + 3 * i);
@@ -102,6 +102,7 @@ NewtonReport BalanceSolver::solve(const Loads& loads, const Constraints& constra
   LineSearch line_search = options_.line_search;
   int most = options_.max_iterations;
   double first = 0;
+  Verdict verdict = Verdict::taken;
   for (;;) {
     double scale = linearise_at(problem, x);
     if (options_.tolerance > 0) {
@@ -113,18 +114,26 @@ NewtonReport BalanceSolver::solve(const Loads& loads, const Constraints& constra
       if (report.converged)
         return report;
     }
-    if (report.n_newton == most)
+    const bool is_enough = verdict == Verdict::goes_on && report.n_newton >= options_.max_iterations;
+    if (report.n_newton == most || (is_enough && works_little(problem, x, scale)))
       break;
     report.n_linear += correct(problem, report.n_newton == 0 ? balance.guess : Points(), scale);
     ++report.n_newton;
-    if (report.n_newton == 1 && options_.trust == Trust::tested && line_search == LineSearch::none &&
-        !bears_tests(problem, moved(x, 1, correction_))) {
-      report.distrusted = true;
-      line_search = LineSearch::backtracking;
-      most = std::max(most, most_where_distrusted);
-      linearise_at(problem, x);
+    if (report.n_newton == 1 && options_.trust == Trust::tested && line_search == LineSearch::none) {
+      const Points end = moved(x, 1, correction_);
+      verdict = judge(problem, end);
+      if (verdict != Verdict::taken) {
+        line_search = LineSearch::backtracking;
+        most = std::max(most, most_where_not_taken);
+      }
+      if (verdict == Verdict::goes_on) {
+        x = end;
+        continue;
+      }
+      if (verdict == Verdict::refused)
+        linearise_at(problem, x);
     }
-    const bool is_last = report.distrusted && report.n_newton > 1 && is_small(problem);
+    const bool is_last = verdict == Verdict::refused && report.n_newton > 1 && is_small(problem);
     const double length = line_search == LineSearch::none || is_last ? 1 : mixed_search(problem, x, mixing);
     if (length == 0) {
       report.failure = "no step along the correction lowers the energy";
@@ -134,7 +143,7 @@ NewtonReport BalanceSolver::solve(const Loads& loads, const Constraints& constra
     if (is_last || (options_.tolerance == 0 && report.n_newton == most))
       return report;
   }
-  report.converged = options_.tolerance == 0 && !(report.distrusted && !report.failure.empty());
+  report.converged = options_.tolerance == 0 && !(verdict == Verdict::refused && !report.failure.empty());
   return report;
 }
 
@@ -147,7 +156,7 @@ double BalanceSolver::linearise_at(const Problem& problem, const Points& x) {
 
 bool BalanceSolver::bears_tests(const Problem& problem, const Points& end) {
   constexpr double part = 0.25; // of the slope at the start
-  const Points d = unlike_flight(problem);
+  const Points d = unlike_flight(problem, correction_);
   const double at_start = product(residual_, d);
   try {
     move_to(problem, end);
@@ -158,14 +167,51 @@ bool BalanceSolver::bears_tests(const Problem& problem, const Points& end) {
   return std::abs(product(residual_, d)) <= part * std::abs(at_start) && turns_little(problem, end);
 }
 
-Points BalanceSolver::unlike_flight(const Problem& problem) const {
-  const bool flies = problem.constraints.held().empty() && problem.loads.acting.empty();
-  return flies ? without_mean(problem.mass, correction_) : correction_;
+BalanceSolver::Verdict BalanceSolver::judge(const Problem& problem, const Points& end) {
+  if (!bears_tests(problem, end))
+    return Verdict::refused;
+  most_work_ = own_loss(problem, end);
+  return works_little(problem, end, assemble_residual(problem)) ? Verdict::taken : Verdict::goes_on;
+}
+
+double BalanceSolver::own_loss(const Problem& problem, const Points& x) const {
+  const Points d = unlike_flight(problem, moved(x, -1, problem.balance.start));
+  Points Kd(x.size(), Vec3::Zero());
+  model_.apply_stiffness(flat(d), flat(Kd));
+  if (!tangent_.empty())
+    tangent_.add_product(flat(d), flat(Kd));
+  const double dt = 1 / problem.balance.velocity_factor;
+  double twice = product(d, Kd);
+  for (std::size_t i = 0; i < x.size(); ++i)
+    twice += problem.mass[i] * (dt * acceleration_[i]).squaredNorm();
+  return 0.5 * twice;
+}
+
+bool BalanceSolver::works_little(const Problem& problem, const Points& x, const double scale) const {
+  const double work = -product(residual_, unlike_flight(problem, moved(x, -1, problem.balance.start)));
+  return work <= most_work_ || scaled_residual() <= std::max(options_.cg_tolerance * scale, scaled_round_off());
+}
+
+double BalanceSolver::scaled_residual() const {
+  return std::sqrt(sum_of(residual_.size(), [&](const std::size_t begin, const std::size_t end) {
+    double sum = 0;
+    for (std::size_t i = begin; i < end; ++i)
+      sum += (scaling_[i] * residual_[i]).squaredNorm();
+    return sum;
+  }));
+}
+
+Points BalanceSolver::unlike_flight(const Problem& problem, const Points& d) {
+  return flies(problem) ? without_mean(problem.mass, d) : d;
+}
+
+bool BalanceSolver::flies(const Problem& problem) {
+  return problem.constraints.held().empty() && problem.loads.acting.empty();
 }
 
 bool BalanceSolver::turns_little(const Problem& problem, const Points& x) const {
   const Balance& b = problem.balance;
-  if (!problem.constraints.held().empty() || !problem.loads.acting.empty() || b.velocity_factor == 0)
+  if (!flies(problem) || b.velocity_factor == 0)
     return true;
   const double dt = 1 / b.velocity_factor;
   Points before(x.size());
@@ -183,7 +229,8 @@ bool BalanceSolver::turns_little(const Problem& problem, const Points& x) const 
     inertia += m * r[i].squaredNorm();
   }
   constexpr double own = 1.1, unseen = 1e-4; // of what the method does; of all that the energy could be
-  return turned.norm() * spin.norm() <= own * dt * dt * energy * energy + unseen * std::sqrt(energy * inertia) * spin.norm();
+  return turned.norm() * spin.norm() <=
+         own * dt * dt * energy * energy + unseen * std::sqrt(energy * inertia) * spin.norm();
 }
 
 bool BalanceSolver::is_small(const Problem& problem) {
@@ -274,13 +321,15 @@ double BalanceSolver::round_off_of_forces(const Points& x) const {
 }
 
 double BalanceSolver::scaled_round_off() const {
-  constexpr double round_off = 8 * std::numeric_limits<double>::epsilon(), nothing = 1e-100; // squares of less underflow
-  return std::max(nothing, round_off * std::sqrt(sum_of(position_.size(), [&](const std::size_t begin, const std::size_t end) {
-           double sum = 0;
-           for (std::size_t i = begin; i < end; ++i)
-             sum += blocks_[i].trace() * position_[i].squaredNorm();
-           return sum;
-         })));
+  constexpr double round_off = 8 * std::numeric_limits<double>::epsilon(),
+                   nothing = 1e-100; // squares of less underflow
+  return std::max(nothing,
+                  round_off * std::sqrt(sum_of(position_.size(), [&](const std::size_t begin, const std::size_t end) {
+                    double sum = 0;
+                    for (std::size_t i = begin; i < end; ++i)
+                      sum += blocks_[i].trace() * position_[i].squaredNorm();
+                    return sum;
+                  })));
 }
 
 void BalanceSolver::apply(const Problem& problem, const std::span<const double> p, const std::span<double> y) {
@@ -329,7 +378,7 @@ int BalanceSolver::correct_by_cg(const Problem& problem, const Points& guess, co
       d[i] = scaling_[i] * (blocks_[i] * (problem.constraints.freedom(i).project * guess[i]));
   }
   const double of_own = 0.5 * options_.step_tolerance; // the step's own error is half the way from the guess
-  constexpr double of_rest = 1e-3; // of what a correction may leave where others follow
+  constexpr double of_rest = 1e-3;                     // of what a correction may leave where others follow
   const double left = options_.n_mixed > 0 ? of_rest * norm(rhs) : 0;
   const CgStop stop{.residual = std::max({options_.cg_tolerance * scale, left, scaled_round_off()}),
                     .error = of_own * way_,
@@ -339,7 +388,8 @@ int BalanceSolver::correct_by_cg(const Problem& problem, const Points& guess, co
   if (!report.converged && !report.indefinite)
     throw NumericalError("conjugate gradients left a relative residual of " + to_text(report.residual / scale) +
                          " after " + std::to_string(report.n_iterations) +
-                         " iterations. Use a smaller time step, more CG iterations or a larger CG tolerance");
+                         " iterations. Use " + (problem.mass_factor > 0 ? "a smaller time step, " : "") +
+                         "more CG iterations or a larger CG tolerance");
   if (!guess.empty())
     way_ = report.way;
   correction_.resize(n);

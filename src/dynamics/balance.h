@@ -27,6 +27,17 @@
 /// x_1 and by dt times the sum of m v_1 x v_0, which is no torque of anything, and is dt^2 (2 T)^2 / L in a spin of
 /// energy T and angular momentum L. Tangents that know a stress, but not all of how it turns, fail there.
 ///
+/// It is gone on from where the energy of the step is not its own. With d = x - x_0 = dt v_1 and r what is out of balance
+/// at x, the energy of a step of implicit Euler changes by
+///
+///     -d.r - |v_1 - v_0|_M^2 / 2 - (V(x_0) - V(x) - f(x).d),
+///
+/// whose last bracket is d.K d / 2 to second order and positive for a convex V: the method itself takes energy, and gives
+/// none. What is left out of balance gives its work -d.r. Newton's method goes on until that is less than what the method
+/// takes, |v_1 - v_0|_M^2 / 2 + d.K d / 2 with the K that the first correction has met, so that no step gains energy by an
+/// unfinished solution. -d.r is of third order in dt where a solution is smooth, the other of second: shorter steps need
+/// no second correction. Nothing is gone on for that conjugate gradients would not see.
+///
 /// Where `guess` is free motion, half the way from it to x is the error of the step itself: x_1 - x_0 - dt v_0 = dt^2
 /// a_1, and implicit Euler is wrong by dt^2 a / 2. Conjugate gradients know that way in the energy norm and need not be
 /// much better. Nothing is solved below the round-off of forces.
@@ -47,7 +58,7 @@ enum class LinearSolver { conjugate_gradients, direct };
 /// What to make of a correction that no line search has looked at.
 enum class Trust {
   blind, ///< take it
-  tested ///< test it where it leads; if it does not bear that, go on from the start with a line search
+  tested ///< test it where it leads; if it does not bear that, go on with a line search, from the start or from there
 };
 
 struct NewtonOptions {
@@ -82,7 +93,6 @@ struct NewtonReport {
   int n_newton = 0, n_linear = 0;
   double residual = 0;      ///< at the last iterate that was tested, see NewtonOptions::tolerance [1]
   bool converged = true;    ///< always without a tolerance
-  bool distrusted = false;  ///< Trust::tested, and the first correction did not bear it
   std::string failure = {}; ///< why not
 };
 
@@ -98,6 +108,8 @@ class BalanceSolver {
 
  private:
   struct Problem;
+  /// Of a first correction: taken, gone on from with a line search, or thrown away for a start with one.
+  enum class Verdict { taken, goes_on, refused };
   /// What a trial does to the incremental potential along the correction.
   struct Change {
     double potential, size; ///< and what it is the difference of [J]
@@ -117,11 +129,18 @@ class BalanceSolver {
   double scaled_round_off() const;
   /// y = S A S^T p with the scaling S.
   void apply(const Problem& problem, std::span<const double> p, std::span<double> y);
-  /// Whether the end of the first correction bears the tests of Trust; moves to it.
+  /// Tests the first correction where it ends, and moves there.
+  Verdict judge(const Problem& problem, const Points& end);
   bool bears_tests(const Problem& problem, const Points& end);
+  /// Energy that the integrator itself takes from the step to x, from the stiffness at its start [J].
+  double own_loss(const Problem& problem, const Points& x) const;
+  /// Whether what is out of balance at x does less work than that, or is below what the linear solver sees.
+  bool works_little(const Problem& problem, const Points& x, double scale) const;
+  double scaled_residual() const;
   bool turns_little(const Problem& problem, const Points& x) const;
-  /// The correction, without its uniform part where the body flies freely, as anything follows that.
-  Points unlike_flight(const Problem& problem) const;
+  static bool flies(const Problem& problem);
+  /// A displacement, without its uniform part where the body flies freely, as anything follows that.
+  static Points unlike_flight(const Problem& problem, const Points& d);
   /// Whether what is left to correct is small beside the way from the guess.
   bool is_small(const Problem& problem);
   /// Returns the iterations of the linear solver.
@@ -148,7 +167,8 @@ class BalanceSolver {
   std::vector<Mat3> stiffness_blocks_, blocks_; // diagonals of K and of A
   std::vector<Mat3> scaling_; // L^-1 from the free directions' basis, a row of zeros for each that is held
   std::vector<double> scratch_, load_product_;
-  double way_ = 0; // from the guess to the first iterate, in the energy norm; 0: unknown
+  double most_work_ = 0; // of what is out of balance, in the step at hand [J]
+  double way_ = 0;       // from the guess to the first iterate, in the energy norm; 0: unknown
 };
 
 } // namespace kerf::dynamics

@@ -83,8 +83,8 @@ bool supports_move(const Constraints& constraints, const State& before, const St
 double work_on(const ForceModel& model, const Loads& loads, const State& before, const State& after) {
   double work = 0;
   if (drives(loads))
-    work += std::max({0.0, work_of_driving_loads(loads, before, before, after),
-                      work_of_driving_loads(loads, after, before, after)});
+    work += std::max(
+      {0.0, work_of_driving_loads(loads, before, before, after), work_of_driving_loads(loads, after, before, after)});
   const Constraints constraints(loads, after.x.size());
   if (supports_move(constraints, before, after))
     work += std::max({0.0, work_of_supports(model, loads, constraints, before, before, after),
@@ -167,80 +167,101 @@ void require_finite(const State& state) {
       throw StepError("a position or a velocity is no longer finite", i);
 }
 
-EnergyChange energy_change(ForceModel& model, const Loads& loads, const State& before, const State& after) {
-  const double elastic_0 = model.energy(before.x), elastic_1 = model.energy(after.x),
+double ElasticEnergies::at(const Points& x) {
+  if (known_[0].x == x)
+    return known_[0].energy;
+  std::swap(known_[0], known_[1]);
+  if (known_[0].x != x)
+    known_[0] = {x, model_.energy(x)};
+  return known_[0].energy;
+}
+
+EnergyChange energy_change(const ForceModel& model, ElasticEnergies& energies, const Loads& loads, const State& before,
+                           const State& after) {
+  const double elastic_0 = energies.at(before.x), elastic_1 = energies.at(after.x),
                kinetic_0 = kinetic_energy(model, before.v), kinetic_1 = kinetic_energy(model, after.v),
                load_0 = load_energy(loads, before.time, before.x), load_1 = load_energy(loads, after.time, after.x),
                gravity_0 = gravity_energy(model, loads, before.x), gravity_1 = gravity_energy(model, loads, after.x),
                work = work_on(model, loads, before, after), dt = after.time - before.time;
   constexpr double drowned = 1e-9; // see balance.cc: of energies whose difference counts
-  const double energies = kinetic_0 + kinetic_1 + std::abs(elastic_0) + std::abs(elastic_1) + std::abs(gravity_0) +
-                          std::abs(gravity_1) + std::abs(load_0) + std::abs(load_1);
+  const double sizes = kinetic_0 + kinetic_1 + std::abs(elastic_0) + std::abs(elastic_1) + std::abs(gravity_0) +
+                       std::abs(gravity_1) + std::abs(load_0) + std::abs(load_1);
   return {
     .gained = elastic_1 - elastic_0 + (kinetic_1 - kinetic_0) + (load_1 - load_0) + (gravity_1 - gravity_0) - work,
     .dealt = inner_kinetic_energy(model, before.v) + inner_kinetic_energy(model, after.v) + std::abs(elastic_0) +
              std::abs(elastic_1) + std::abs(load_1 - load_0) + work,
-    .shift = 4 * mass_of(model) * loads.gravity.squaredNorm() * dt * dt + drowned * energies + unseen(model, after, dt),
+    .kick = 4 * mass_of(model) * loads.gravity.squaredNorm() * dt * dt,
+    .unseen = drowned * sizes + unseen(model, after, dt),
     .inner = kinetic_1 + std::abs(elastic_1)};
 }
 
-StepReport SoundSteps::checked(State& state, const Loads& loads, const double dt) {
+void SoundSteps::add_checked(Tried& tried, const Loads& loads, const double dt) {
   constexpr double most_in_sum = 0.9;
+  State& state = tried.state;
   State after = state;
   const StepReport report = stepper_->step(after, loads, dt);
   keep_carried(loads, state, after);
   require_finite(after);
-  const EnergyChange change = energy_change(model_, loads, state, after);
-  if (!(change.gained <= options_.most_gain * change.dealt + change.shift) && change.gained > round_off(model_, after.x))
+  const EnergyChange change = energy_change(model_, energies_, loads, state, after);
+  const double shift = change.kick + change.unseen;
+  if (!(change.gained <= options_.most_gain * change.dealt + shift) && change.gained > round_off(model_, after.x))
     throw StepError("the step gained " + in_short(change.gained) + " J that no load and no support gave, " +
                       per_cent(change.gained / change.dealt) + " of the energy that it dealt with",
                     most_thrown(state, after));
   double& sum = after.numbers["energy gained [J]"];
   sum = std::max(0.0, sum + change.gained);
-  if (change.gained > 0 && !(sum <= most_in_sum * change.inner + change.shift) && sum > many * round_off(model_, after.x))
+  if (change.gained > 0 && !(sum <= most_in_sum * change.inner + shift) && sum > many * round_off(model_, after.x))
     throw StepError("the integrator has gained " + per_cent(sum / change.inner) +
                       " of the body's kinetic and elastic energy, step by step: the motion is no more the body's",
                     most_thrown(state, after));
+  tried.is_as_wanted = tried.is_as_wanted && change.gained <= options_.wanted_gain * change.dealt + change.unseen;
+  tried.gained += std::max(0.0, change.gained);
+  add(tried.report, report);
   state = std::move(after);
-  return report;
 }
 
-StepReport SoundSteps::divided(State& state, const Loads& loads, const double dt, const int n) {
-  const double start = state.time;
-  StepReport sum;
+SoundSteps::Tried SoundSteps::divided(const State& state, const Loads& loads, const double dt, const int n) {
+  Tried tried{{}, state};
   for (int k = 1; k <= n; ++k)
-    add(sum, checked(state, loads, (start + k * dt / n) - state.time));
-  state.time = start + dt;
+    add_checked(tried, loads, (state.time + k * dt / n) - tried.state.time);
+  tried.state.time = state.time + dt;
   if (n > 1)
-    sum.n_substeps = n;
-  return sum;
+    tried.report.n_substeps = n;
+  return tried;
 }
 
 StepReport SoundSteps::step(State& state, const Loads& loads, const double dt) {
+  constexpr int most_for_wanted = 4;
   std::optional<StepError> first;
+  std::optional<Tried> bearable; // nothing else is wrong with it
   const auto keep = [&](const std::string& reason, const std::size_t particle) {
     if (!first)
       first.emplace(reason, particle);
   };
   int n_rejected = 0;
-  for (int n = 1; n <= options_.most_substeps; n *= 2, ++n_rejected) {
-    State trial = state;
+  for (int n = 1; n <= options_.most_substeps && !(bearable && n > most_for_wanted); n *= 2, ++n_rejected) {
     try {
-      StepReport report = divided(trial, loads, dt, n);
-      report.n_rejected += n_rejected;
-      state = std::move(trial);
-      return report;
+      Tried tried = divided(state, loads, dt, n);
+      tried.report.n_rejected += n_rejected;
+      if (!bearable || tried.is_as_wanted || tried.gained < bearable->gained)
+        bearable = std::move(tried);
+      if (bearable->is_as_wanted)
+        break;
     } catch (const StepError& error) {
       keep(error.what(), error.particle());
     } catch (const NumericalError& error) {
       keep(error.what(), fastest(state));
     }
   }
+  if (bearable) {
+    state = std::move(bearable->state);
+    return bearable->report;
+  }
   if (options_.most_substeps == 1)
     throw *first;
-  throw StepError(std::string(first->what()) + ". " + std::to_string(options_.most_substeps) +
-                    " substeps do not mend it",
-                  first->particle());
+  throw StepError(
+    std::string(first->what()) + ". " + std::to_string(options_.most_substeps) + " substeps do not mend it",
+    first->particle());
 }
 
 } // namespace kerf::dynamics

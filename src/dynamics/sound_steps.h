@@ -11,7 +11,9 @@
 /// are to be allowed more. Dissipation, the integrator's own too, counts as it should.
 ///
 /// Two things are done about a step that fails, gains energy or is no longer finite. It is taken again in 2, 4, ...
-/// substeps, which remove any error of second order. And an integrator that gains a little in each step is watched by
+/// substeps, which remove any error of second order. A method that takes energy and gives none is held to less
+/// (SoundOptions::wanted_gain); steps of it that gain more, as Newton's method has not come to an end, are tried again in 2
+/// and 4 substeps, of which the first that gains no more is taken, or else what gained least. And an integrator that gains a little in each step is watched by
 /// the sum (Page 1954, Continuous inspection schemes, Biometrika 41: S = max(0, S + gain)): once nine tenths of all
 /// kinetic and elastic energy are gained that way, the motion is no more the body's.
 ///
@@ -21,6 +23,8 @@
 #include "dynamics/loads.h"
 #include "dynamics/stepper.h"
 
+#include <array>
+#include <limits>
 #include <memory>
 
 namespace kerf::dynamics {
@@ -38,13 +42,33 @@ class StepError : public NumericalError {
 struct SoundOptions {
   int most_substeps = 64;  ///< a power of 2; 1: no step is taken again
   double most_gain = 0.25; ///< in a step, of the energy that it deals with [1]
+  /// The same, above which a step is better taken in substeps; gravity's kick is not granted. Infinity: no such limit [1].
+  double wanted_gain = std::numeric_limits<double>::infinity();
+};
+
+/// Elastic energies of the two states that were asked for last: a step that is accepted ends where the next one starts,
+/// and one that is taken again starts where it did. Knows positions alone, so a model that changes needs another one.
+class ElasticEnergies {
+ public:
+  explicit ElasticEnergies(const ForceModel& model) : model_(model) {}
+
+  double at(const Points& x); ///< [J]
+
+ private:
+  struct Known {
+    Points x;
+    double energy = 0;
+  };
+
+  const ForceModel& model_;
+  std::array<Known, 2> known_; ///< the later asked for comes first
 };
 
 class SoundSteps : public Stepper {
  public:
-  /// The model must outlive the stepper.
+  /// The model must outlive the stepper, and stay as it is: after a cut both are made again.
   SoundSteps(ForceModel& model, std::unique_ptr<Stepper> stepper, const SoundOptions& options)
-    : model_(model), stepper_(std::move(stepper)), options_(options) {}
+    : model_(model), stepper_(std::move(stepper)), options_(options), energies_(model) {}
 
   /// Counts substeps where there are several, and steps tried and thrown away. Throws StepError when the shortest
   /// substeps fail too, with the reason of the whole step.
@@ -53,23 +77,33 @@ class SoundSteps : public Stepper {
   const Stepper& watched() const { return *stepper_; }
 
  private:
-  /// All in `n` substeps.
-  StepReport divided(State& state, const Loads& loads, double dt, int n);
-  StepReport checked(State& state, const Loads& loads, double dt);
+  struct Tried {
+    StepReport report;
+    State state;
+    bool is_as_wanted = true;
+    double gained = 0; ///< in substeps that gained [J]
+  };
+
+  /// From a state, all in `n` substeps.
+  Tried divided(const State& state, const Loads& loads, double dt, int n);
+  void add_checked(Tried& tried, const Loads& loads, double dt);
 
   ForceModel& model_;
   std::unique_ptr<Stepper> stepper_;
   SoundOptions options_;
+  ElasticEnergies energies_;
 };
 
 /// What a step did to the energy.
 struct EnergyChange {
   double gained = 0; ///< that nobody gave [J]
   double dealt = 0;  ///< with which it dealt: what a gain is measured by [J]
-  double shift = 0;  ///< what first order and round-off may misplace [J]
+  double kick = 0;   ///< what first order may misplace of gravity [J]
+  double unseen = 0; ///< round-off, and motions that are none [J]
   double inner = 0;  ///< kinetic and elastic energy at the end [J]
 };
-EnergyChange energy_change(ForceModel& model, const Loads& loads, const State& before, const State& after);
+EnergyChange energy_change(const ForceModel& model, ElasticEnergies& energies, const Loads& loads, const State& before,
+                           const State& after);
 
 /// Throws StepError when a position or a velocity is not finite.
 void require_finite(const State& state);

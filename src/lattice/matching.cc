@@ -69,6 +69,8 @@ Matching::Matching(const grid::Solid& solid, const MatchingOptions& options)
     X -= middle;
   count_shares(material_shares(solid, options.density));
   measure_regions();
+  const double h = solid.grid.h();
+  riders_ = Riders(solid.complex, mass_, options.density * h * h * h);
 }
 
 void Matching::count_shares(const std::vector<Share>& shares) {

@@ -26,6 +26,7 @@
 
 #include "dynamics/model.h"
 #include "lattice/lines.h"
+#include "lattice/riders.h"
 #include "lattice/shares.h"
 
 namespace kerf::lattice {
@@ -54,6 +55,7 @@ class Matching : public dynamics::ForceModel {
 
   double stiffness() const { return stiffness_; }
   const Lines& lines() const { return lines_; }
+  const Riders& riders() const { return riders_; }
 
  private:
   /// A sparse matrix, row by row.
@@ -87,6 +89,7 @@ class Matching : public dynamics::ForceModel {
   Lines lines_;
   Points rest_;                 // of the corners, from the body's middle [m]
   std::vector<double> mass_;    // of the corners [kg]
+  Riders riders_;
   Rows of_points_, of_corners_; // s_cn / N_n by point; by corner, over m_c
   std::vector<Region> regions_;
   mutable std::vector<double> corner_field_, region_field_; // scratch

@@ -92,6 +92,7 @@ dynamics::StepReport ShapeMatching::step(dynamics::State& state, const dynamics:
   const dynamics::Constraints constraints(loads, state.x.size());
   Points x = state.x, v = state.v;
   model_.goals(state.x, goals_);
+  model_.riders().damp(state.x, model_.lumped_mass(), alpha, v);
   parallel_for(
     x.size(), [&](const std::size_t c) { v[c] += alpha / dt * (goals_[c] - x[c]) + dt * loads.gravity; },
     worth_corners);

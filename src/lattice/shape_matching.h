@@ -3,6 +3,7 @@
 /// Lattice shape matching as a stepper (Rivers and James 2007; thesis §5.1). With the goals g of Matching, in a step
 /// dt:
 ///
+///     v of corners of hardly any mass damped against what carries them (riders.h),
 ///     v += alpha (g - x) / dt + dt gravity,    alpha = k dt^2,
 ///     v += kappa (u - v)                       u: the regions' mean rigid velocities (their region damping),
 ///     x += dt v.

@@ -219,6 +219,7 @@ void Phyxels::catch_up(const CutBody& body) {
   copy(sights_->sights(), 0, sights_of_phyxels_);
   copy(sights_->sights(), sights_of_phyxels_.size(), sights_of_nodes_);
   build_map(body);
+  stepper_ = make_stepper_(model_, [this] { return phyxel_pieces_; });
 }
 
 void Phyxels::follow(const dynamics::State& state) {

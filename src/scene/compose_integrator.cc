@@ -27,6 +27,8 @@ physics::StepperMaker sound(const physics::StepperMaker& make, const dynamics::S
   };
 }
 
+/// A fifth of the 1 % to which an energy book may stay open.
+constexpr dynamics::SoundOptions dissipative{.wanted_gain = 2e-3};
 constexpr dynamics::SoundOptions as_they_are{.most_substeps = 1};
 constexpr dynamics::SoundOptions explicit_ones{.most_substeps = 1, .most_gain = 0.75};
 
@@ -84,7 +86,9 @@ Implicit implicit_integrator(const Section& body, const std::string& name) {
 Integrator with_adaptive_step(const Section& body, const Implicit& implicit) {
   if (!body.find("Adaptive step")) {
     Integrator divided = implicit.integrator;
-    divided.make = sound(implicit.integrator.make, {});
+    constexpr int of_implicit_euler = 1;
+    divided.make = sound(implicit.integrator.make,
+                         implicit.order == of_implicit_euler ? dissipative : dynamics::SoundOptions{});
     return divided;
   }
   const auto parameters = read_if_written<dynamics::AdaptiveParameters>(body, "Adaptive step");

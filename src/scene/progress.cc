@@ -1,5 +1,6 @@
 #include "scene/progress.h"
 
+#include <algorithm>
 #include <string>
 
 #include <unistd.h>
@@ -10,8 +11,32 @@ ProgressStyle progress_style(std::FILE* const stream) {
   return isatty(fileno(stream)) != 0 ? ProgressStyle::bar : ProgressStyle::lines;
 }
 
-Progress::Progress(const int n_steps, const double end_time, const ProgressStyle style, std::FILE* const stream)
-  : n_steps_(n_steps), end_time_(end_time), style_(style), stream_(stream) {}
+Progress::Progress(const int n_steps, const double end_time, const ProgressStyle style, std::FILE* const stream,
+                   const std::chrono::milliseconds patience)
+  : n_steps_(n_steps), end_time_(end_time), style_(style), stream_(stream), patience_(patience) {
+  if (style_ != ProgressStyle::silent)
+    waiting_ = std::jthread([this](const std::stop_token& stop) { name_long_steps(stop); });
+}
+
+void Progress::name_long_steps(const std::stop_token& stop) {
+  std::unique_lock lock(mutex_);
+  for (auto named = start_; !stop.stop_requested();) {
+    over_.wait_until(lock, stop, std::max(named, stepped_) + patience_, [] { return false; });
+    const auto now = Clock::now();
+    if (stop.stop_requested() || step_ == n_steps_ || now - std::max(named, stepped_) < patience_)
+      continue;
+    named = now;
+    name_step(std::chrono::duration<double>(now - stepped_).count());
+  }
+}
+
+void Progress::name_step(const double seconds) {
+  const bool is_bar = style_ == ProgressStyle::bar;
+  std::fprintf(stream_, is_bar ? "\rstep %d/%d has taken %.0f s so far%40s" : "step %d/%d has taken %.0f s so far%s\n",
+               step_ + 1, n_steps_, seconds, "");
+  open_line_ = is_bar;
+  std::fflush(stream_);
+}
 
 double Progress::steps_per_second() const {
   const double seconds = std::chrono::duration<double>(Clock::now() - start_).count();
@@ -19,10 +44,11 @@ double Progress::steps_per_second() const {
 }
 
 void Progress::show(const int step, const double time) {
+  const std::lock_guard lock(mutex_);
   step_ = step;
   if (style_ == ProgressStyle::silent)
     return;
-  const auto now = Clock::now();
+  const auto now = stepped_ = Clock::now();
   const auto pause = style_ == ProgressStyle::bar ? std::chrono::milliseconds(100) : std::chrono::milliseconds(5000);
   if (now - shown_ < pause && step != n_steps_)
     return;
@@ -41,6 +67,7 @@ void Progress::show(const int step, const double time) {
 }
 
 void Progress::finish() {
+  waiting_ = {}; // which ends the thread
   if (open_line_)
     std::fprintf(stream_, "\n");
   open_line_ = false;

@@ -1,9 +1,13 @@
 #pragma once
 
-/// How far a run is: a bar that redraws itself in a terminal, a plain line now and then elsewhere.
+/// How far a run is: a bar that redraws itself in a terminal, a plain line now and then elsewhere. A step that takes long
+/// is named while it lasts, by a thread that only waits and writes.
 
 #include <chrono>
+#include <condition_variable>
 #include <cstdio>
+#include <mutex>
+#include <thread>
 
 namespace kerf::scene {
 
@@ -14,11 +18,13 @@ ProgressStyle progress_style(std::FILE* stream);
 
 class Progress {
  public:
-  Progress(int n_steps, double end_time, ProgressStyle style, std::FILE* stream);
+  /// A step is long once nothing was shown for `patience`, and is named that often.
+  Progress(int n_steps, double end_time, ProgressStyle style, std::FILE* stream,
+           std::chrono::milliseconds patience = std::chrono::seconds(10));
 
   /// After step `step` at time `time` [s].
   void show(int step, double time);
-  /// Ends the bar's line.
+  /// Ends the bar's line; no step is named any more.
   void finish();
 
   /// Steps per second since construction.
@@ -27,12 +33,20 @@ class Progress {
  private:
   using Clock = std::chrono::steady_clock;
 
+  /// Until it is told to stop.
+  void name_long_steps(const std::stop_token& stop);
+  void name_step(double seconds);
+
   int n_steps_, step_ = 0;
   double end_time_;
   ProgressStyle style_;
   std::FILE* stream_;
-  Clock::time_point start_ = Clock::now(), shown_ = start_;
+  std::chrono::milliseconds patience_;
+  Clock::time_point start_ = Clock::now(), shown_ = start_, stepped_ = start_;
   bool open_line_ = false;
+  std::mutex mutex_; ///< of all that changes after construction
+  std::condition_variable_any over_;
+  std::jthread waiting_; ///< last: it uses all the others
 };
 
 } // namespace kerf::scene

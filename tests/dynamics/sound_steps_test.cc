@@ -66,8 +66,7 @@ TEST(SoundSteps, RefuseAMotionThatGrowsStepByStep) {
   state.x[0] += Vec3(0.1, 0, 0);
   state.x[1] -= Vec3(0.1, 0, 0);
   const double before = energy(model, state);
-  EXPECT_THROW(
-    for (int i = 0; i < 3000; ++i) stepper.step(state, {}, 0.005);, StepError);
+  EXPECT_THROW(for (int i = 0; i < 3000; ++i) stepper.step(state, {}, 0.005);, StepError);
   EXPECT_LT(energy(model, state), 15 * before); // else it grows to 1e3 times and more
   EXPECT_GT(energy(model, state), 5 * before);
 }
@@ -83,6 +82,45 @@ TEST(SoundSteps, LetWorkPass) {
     State state = model.state();
     for (int i = 0; i < 300; ++i)
       ASSERT_NO_THROW(stepper.step(state, loads, dt)) << "dt " << dt << ", step " << i;
+  }
+}
+
+/// Of 4 % a step gains in two substeps 2 %, in four 1 %: what is wanted decides how many are taken, and what cannot be had
+/// changes nothing.
+TEST(SoundSteps, DivideAStepThatGainsMoreThanWanted) {
+  const auto substeps = [](const double wanted) {
+    Chain model({1, 1}, {.anchor = 100});
+    SoundSteps stepper(model, std::make_unique<ExplicitEuler>(model, go_on), {.wanted_gain = wanted});
+    State state = model.state();
+    state.x[0] += Vec3(0.1, 0, 0);
+    state.x[1] -= Vec3(0.1, 0, 0);
+    return stepper.step(state, {}, 0.02).n_substeps;
+  };
+  EXPECT_EQ(substeps(0.03), 0); // of the energies before and after, which is twice as much
+  EXPECT_EQ(substeps(0.006), 2);
+  EXPECT_EQ(substeps(0.003), 4);
+  EXPECT_EQ(substeps(1e-4), 0);
+}
+
+class CountedChain : public Chain {
+ public:
+  using Chain::Chain;
+  double energy(const Points& x) const override {
+    ++n_energies;
+    return Chain::energy(x);
+  }
+  mutable int n_energies = 0;
+};
+
+/// A step that is taken costs one evaluation: where it ends, the next one starts.
+TEST(SoundSteps, EvaluateTheEnergyOnceAStep) {
+  CountedChain model({1, 2, 1}, {.neighbour = 100});
+  SoundSteps stepper(model, std::make_unique<ImplicitEuler>(model, ImplicitEulerOptions{.cg_tolerance = 1e-12}), {});
+  State state = model.state();
+  state.x[1] += Vec3(0.1, 0, 0);
+  for (int i = 1; i <= 20; ++i) {
+    stepper.step(state, {}, 0.01);
+    EXPECT_EQ(model.n_energies, i + 1);
   }
 }
 
@@ -158,6 +196,27 @@ TEST(ImplicitEuler, DoesNotStretchWhatTurns) {
   };
   EXPECT_GT(length_after(Trust::blind), 3);
   EXPECT_NEAR(length_after(Trust::tested), 2, 0.02);
+}
+
+/// Masses fly into springs that stiffen by c |d|^2 and that their tangents do not see: half the work of what one
+/// correction leaves out of balance, c (dt v)^4, is energy from nothing. Going on takes it back, and costs nothing where
+/// the tangent was right.
+TEST(ImplicitEuler, GivesNoEnergyByAnUnfinishedSolution) {
+  const auto gain = [](const double cubic, const Trust trust) {
+    Chain model({1, 1}, {.anchor = 1e-3, .cubic = cubic});
+    ImplicitEuler stepper(model, {.cg_tolerance = 1e-12, .trust = trust});
+    State state = model.state();
+    state.v = {Vec3(0, 1, 0), Vec3(0, -1, 0)};
+    const double before = energy(model, state);
+    const StepReport report = stepper.step(state, {}, 0.1);
+    EXPECT_EQ(report.n_newton > 1, trust == Trust::tested && cubic > 0) << cubic;
+    return energy(model, state) / before - 1;
+  };
+  EXPECT_LT(gain(0, Trust::tested), 0);
+  for (const double part : {0.002, 0.02, 0.2}) { // c (dt v)^4 over m v^2
+    EXPECT_NEAR(gain(part * 1e4, Trust::blind), 0.5 * part, 1e-4);
+    EXPECT_LE(gain(part * 1e4, Trust::tested), 0) << part;
+  }
 }
 
 /// A linear fixed-point map x -> x + d(x) with as many slow directions as it remembers: solved after one more.

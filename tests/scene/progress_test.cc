@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <memory>
 #include <string>
+#include <thread>
 
 namespace kerf::scene {
 namespace {
@@ -52,6 +53,23 @@ TEST(Progress, IsLinesElsewhere) {
 }
 
 TEST(Progress, CanBeSilent) { EXPECT_EQ(ten_steps(ProgressStyle::silent), ""); }
+
+/// A step of 200 ms where 20 are long: it is named while it lasts, and not after.
+TEST(Progress, ALongStepIsNamed) {
+  for (const ProgressStyle style : {ProgressStyle::lines, ProgressStyle::bar, ProgressStyle::silent}) {
+    const Stream stream(std::tmpfile(), std::fclose);
+    Progress progress(3, 0.3, style, stream.get(), std::chrono::milliseconds(20));
+    progress.show(1, 0.1);
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));
+    progress.show(3, 0.3);
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    progress.finish();
+    const std::string text = written(stream.get());
+    EXPECT_EQ(text.find("step 2/3 has taken 0 s so far") != std::string::npos, style != ProgressStyle::silent) << text;
+    EXPECT_EQ(text.find("step 4"), std::string::npos) << text;
+    EXPECT_EQ(std::count(text.begin(), text.end(), '\r') > 0, style == ProgressStyle::bar);
+  }
+}
 
 TEST(Progress, ABarThatIsCutShortEndsItsLineOnce) {
   const Stream stream(std::tmpfile(), std::fclose);

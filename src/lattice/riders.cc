@@ -1,0 +1,140 @@
+#include "lattice/riders.h"
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <cmath>
+
+namespace kerf::lattice {
+
+namespace {
+
+using grid::CopyId;
+
+constexpr double light = 1.0 / 128, heavy = 1.0 / 32; // masses of corners, over a cube's
+constexpr std::uint32_t none = CopyId::no_value;
+
+/// For each copy its carrier, itself where it can carry; `none` where the piece has no such copy.
+std::vector<std::uint32_t> nearest_carriers(const grid::CellComplex& complex,
+                                            const std::vector<std::uint8_t>& is_heavy) {
+  constexpr int enough = 4; // corners of a cube that are not in a row
+  std::vector<std::uint32_t> carrier(complex.n_copies(), none), front;
+  for (const auto c : ids<CopyId>(complex.n_copies()))
+    if (std::ranges::count_if(complex.copies[c].corners, [&](const auto a) { return is_heavy[a.value] != 0; }) >=
+        enough) {
+      carrier[c.value] = c.value;
+      front.push_back(c.value);
+    }
+  std::vector<std::vector<std::uint32_t>> around(is_heavy.size()); // copies without a carrier yet, by corner
+  for (const auto c : ids<CopyId>(complex.n_copies()))
+    if (carrier[c.value] == none)
+      for (const auto corner : complex.copies[c].corners)
+        around[corner.value].push_back(c.value);
+  for (std::vector<std::uint32_t> next; !front.empty(); front.swap(next), next.clear())
+    for (const auto c : front)
+      for (const auto corner : complex.copies[CopyId(c)].corners)
+        for (const auto other : around[corner.value])
+          if (carrier[other] == none) {
+            carrier[other] = carrier[c];
+            next.push_back(other);
+          }
+  return carrier;
+}
+
+/// A rigid body of some corners.
+struct Rigid {
+  double mass = 0, mobility = 0; ///< [kg], |I^-1|: 0 of corners in a line [1/(kg m^2)]
+  Vec3 centre = Vec3::Zero(), velocity = Vec3::Zero(), spin = Vec3::Zero();
+  Mat3 inverse_inertia = Mat3::Zero();
+
+  Vec3 velocity_at(const Vec3& p) const { return velocity + spin.cross(p - centre); }
+};
+
+Rigid rigid_motion(const std::span<const std::uint32_t> corners, const Points& x, const Points& v,
+                   const std::span<const double> mass) {
+  Rigid body;
+  for (const auto c : corners) {
+    body.mass += mass[c];
+    body.centre += mass[c] * x[c];
+    body.velocity += mass[c] * v[c];
+  }
+  body.centre /= body.mass;
+  body.velocity /= body.mass;
+  Mat3 inertia = Mat3::Zero();
+  Vec3 angular = Vec3::Zero();
+  for (const auto c : corners) {
+    const Vec3 r = x[c] - body.centre;
+    inertia += mass[c] * (r.squaredNorm() * Mat3::Identity() - r * r.transpose());
+    angular += mass[c] * r.cross(v[c]);
+  }
+  constexpr double well_conditioned = 1e-6;
+  const double size = inertia.trace();
+  if (inertia.determinant() > well_conditioned * size * size * size) {
+    body.inverse_inertia = inertia.inverse();
+    body.mobility = body.inverse_inertia.norm();
+    body.spin = body.inverse_inertia * angular;
+  }
+  return body;
+}
+
+} // namespace
+
+Riders::Riders(const grid::CellComplex& complex, const std::span<const double> mass, const double mass_of_cube) {
+  std::vector<std::uint8_t> is_heavy(mass.size());
+  std::ranges::transform(mass, is_heavy.begin(), [&](const double m) { return m >= heavy * mass_of_cube ? 1 : 0; });
+  const auto carrier_of_copy = nearest_carriers(complex, is_heavy);
+  std::vector<std::uint32_t> carrier(mass.size(), none); // of each rider; its own copy, if that carries
+  for (const auto c : ids<CopyId>(complex.n_copies()))
+    for (const auto corner : complex.copies[c].corners)
+      if (const auto k = carrier_of_copy[c.value]; k != none && mass[corner.value] < light * mass_of_cube)
+        if (auto& known = carrier[corner.value]; known == none || (k == c.value && known != k))
+          known = k;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs; // carrier, corner
+  for (std::uint32_t i = 0; i < mass.size(); ++i)
+    if (carrier[i] != none)
+      pairs.emplace_back(carrier[i], i);
+  std::ranges::sort(pairs);
+  for (const auto& [copy, corner] : pairs) {
+    const auto n = static_cast<std::uint32_t>(riders_.size());
+    if (carriers_.empty() || n == 0 || pairs[n - 1].first != copy) {
+      Carrier& added = carriers_.emplace_back(Carrier{{}, 0, n, n});
+      for (const auto a : complex.copies[CopyId(copy)].corners)
+        if (is_heavy[a.value])
+          added.corners[added.n_corners++] = a.value;
+    }
+    riders_.push_back({corner, 1 - mass[corner] / (light * mass_of_cube)});
+    carriers_.back().last = n + 1;
+  }
+}
+
+void Riders::damp(const Points& x, const std::span<const double> mass, const double alpha, Points& v) const {
+  const double kappa = 2 * std::sqrt(alpha) - alpha;
+  for (const Carrier& carrier : carriers_)
+    damp(carrier, x, mass, kappa, v);
+}
+
+void Riders::damp(const Carrier& carrier, const Points& x, const std::span<const double> mass, const double kappa,
+                  Points& v) const {
+  const std::span<const std::uint32_t> corners(carrier.corners.data(), carrier.n_corners);
+  const std::span<const Rider> riders(riders_.data() + carrier.first, carrier.last - carrier.first);
+  const Rigid body = rigid_motion(corners, x, v, mass);
+  if (body.mobility == 0)
+    return;
+  double sigma = 0;
+  for (const Rider& rider : riders)
+    sigma += mass[rider.corner] * (1 / body.mass + (x[rider.corner] - body.centre).squaredNorm() * body.mobility);
+  Vec3 impulse = Vec3::Zero(), angular = Vec3::Zero(); // on the carrier
+  for (const Rider& rider : riders) {
+    const auto i = rider.corner;
+    const Vec3 change = rider.need * kappa / (1 + sigma) * (v[i] - body.velocity_at(x[i]));
+    v[i] -= change;
+    impulse += mass[i] * change;
+    angular += mass[i] * (x[i] - body.centre).cross(change);
+  }
+  const Vec3 pushed = impulse / body.mass, turned = body.inverse_inertia * angular;
+  for (const auto c : corners)
+    v[c] += pushed + turned.cross(x[c] - body.centre);
+}
+
+} // namespace kerf::lattice

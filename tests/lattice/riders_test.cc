@@ -1,0 +1,105 @@
+/// Corners of hardly any mass: they come to their goals without swinging, and take nothing with them.
+
+#include "lattice/riders.h"
+
+#include "dynamics/forces.h"
+#include "dynamics/quantities.h"
+#include "surface/placement.h"
+#include "tests/lattice/bodies.h"
+#include "tests/support/bodies.h"
+
+#include <gtest/gtest.h>
+
+namespace kerf::lattice {
+namespace {
+
+constexpr double k = 3600;
+
+/// 4 x 3 x 3 nodes whose skin lies `depth` beyond the last nodes upwards, and 0.5 elsewhere.
+support::Body shallow_block(const double depth) {
+  support::Body body = support::make_body(
+    {Vec3::Zero(), 1}, support::block_nodes({4, 3, 3}), [&](const grid::Grid& grid, const grid::EdgeId e) {
+      const bool is_upper = grid.is_material(grid.ends(e)[0]);
+      const int axis = grid.axis(e);
+      return grid::EdgeCut{e, is_upper && axis == 2 ? depth : 0.5, Vec3::Unit(axis), grid::skin_label};
+    });
+  surface::place(body, {});
+  return support::with_copies(std::move(body));
+}
+
+/// Rough skins and cuts anywhere: corners of every mass.
+Body slivers(const unsigned seed) {
+  Draw draw(seed);
+  Body body = fem::make_block({5, 4, 3}, 0.1, draw, {1e-4, 0.98});
+  fem::cut_at_random(body, 0.15, draw, {1e-3, 0.98});
+  return body;
+}
+
+TEST(Riders, KeepMomentaAndGainNoEnergy) {
+  std::size_t n_riders = 0;
+  for (const unsigned seed : {1u, 2u, 3u, 4u}) {
+    const Body body = slivers(seed);
+    const Matching model(body, {.density = 1000, .half_width = 2, .stiffness = k});
+    n_riders += model.riders().n_riders();
+    Draw draw(seed);
+    dynamics::State state{moved(body, draw, 0.2), {}, 0};
+    for (std::size_t i = 0; i < state.x.size(); ++i)
+      state.v.push_back(draw.vector());
+    dynamics::State after = state;
+    model.riders().damp(state.x, model.lumped_mass(), 0.2, after.v);
+    const auto momentum = [&](const dynamics::State& s) {
+      Vec3 sum = Vec3::Zero();
+      for (std::size_t i = 0; i < s.v.size(); ++i)
+        sum += model.lumped_mass()[i] * s.v[i];
+      return sum;
+    };
+    EXPECT_LT((momentum(after) - momentum(state)).norm(), 1e-12);
+    EXPECT_LT(
+      (dynamics::angular_momentum(model, after, Vec3::Zero()) - dynamics::angular_momentum(model, state, Vec3::Zero()))
+        .norm(),
+      1e-12);
+    EXPECT_LT(kinetic_energy(model, after.v), kinetic_energy(model, state.v));
+  }
+  EXPECT_GT(n_riders, 100u);
+}
+
+TEST(Riders, DoNotSeeRigidMotions) {
+  const Body body = slivers(5);
+  const Matching model(body, {.density = 1000, .half_width = 2, .stiffness = k});
+  Draw draw(6);
+  const Points x = moved(body, draw, 0.2);
+  const Vec3 spin = draw.vector(), shift = draw.vector();
+  Points v;
+  for (const Vec3& p : x)
+    v.push_back(shift + spin.cross(p));
+  const Points before = v;
+  model.riders().damp(x, model.lumped_mass(), 0.2, v);
+  for (std::size_t i = 0; i < v.size(); ++i)
+    EXPECT_LT((v[i] - before[i]).norm(), 1e-10) << i;
+}
+
+/// Off its goal by a cube, a corner over a skin that is 1e-3 cubes deep is back after 20 steps: (1 + n r) (1 - r)^n of it
+/// is left, r = sqrt(alpha). As a corner with mass does, it would swing on and on.
+TEST(Riders, ComeBackWithoutSwinging) {
+  const support::Body body = shallow_block(1e-3);
+  const double dt = 1e-3, alpha = 0.2;
+  const Matching model(body, {.density = 1000, .half_width = 2, .stiffness = alpha / (dt * dt)});
+  EXPECT_EQ(model.riders().n_riders(), 6u * 5u + 4u) << "the layer above the last nodes, and the corners below";
+  ShapeMatching stepper(model, 0);
+  dynamics::State state{grid::rest_positions(body), Points(body.complex.n_corners(), Vec3::Zero()), 0};
+  const auto mass = model.lumped_mass();
+  const auto lightest = static_cast<std::size_t>(std::min_element(mass.begin(), mass.end()) - mass.begin());
+  const Vec3 goal = state.x[lightest];
+  state.x[lightest] += Vec3(0, 0, 1);
+  double most_beyond = 0;
+  for (int i = 0; i < 20; ++i) {
+    stepper.step(state, {}, dt);
+    most_beyond = std::max(most_beyond, goal[2] - state.x[lightest][2]);
+  }
+  const double r = std::sqrt(alpha);
+  EXPECT_LT((state.x[lightest] - goal).norm(), (1 + 20 * r) * std::pow(1 - r, 20) + 1e-4);
+  EXPECT_LT(most_beyond, 1e-4);
+}
+
+} // namespace
+} // namespace kerf::lattice
