@@ -88,23 +88,48 @@ void Crumbs::step(const dynamics::Loads& loads, const double dt, const dynamics:
 void Crumbs::fly(const dynamics::Loads& loads, const double dt, std::vector<Wrench>& pushes,
                  dynamics::State& state) const {
   constexpr int most = 64;
+  const Motions begin = state.crumbs;
   for (int n = 1; n <= most; n *= 2) {
-    std::optional<Motions> motions = state.crumbs;
-    for (int k = 0; k < n && motions; ++k) {
-      const Motions start = *motions;
+    Motions motions = begin;
+    bool is_sound = true;
+    for (int k = 0; k < n && is_sound; ++k) {
+      const Motions start = motions;
       for (std::size_t b = 0; b < crumbs_.size(); ++b)
-        dynamics::fly(crumbs_[b].body, loads.gravity, loads.mass_damping, dt / n, (*motions)[b]);
-      if (!loads.acting.empty())
-        motions = pushed(loads, dt / n, start, Motions(*motions), pushes, state);
+        dynamics::fly(crumbs_[b].body, loads.gravity, loads.mass_damping, dt / n, motions[b]);
+      if (!loads.acting.empty()) {
+        motions = pushed(loads, dt / n, start, Motions(motions), pushes, state);
+        is_sound = gains_nothing(loads, dt / n, start, motions, state);
+      }
     }
-    if (motions) {
-      state.crumbs = std::move(*motions);
+    if (is_sound) {
+      state.crumbs = std::move(motions);
       return;
     }
   }
-  throw dynamics::StepError("loads push a crumb, a piece that moves as a rigid body, and Newton's method finds no place "
-                            "where it settles in 64 substeps",
+  throw dynamics::StepError("crumbs, pieces that move as rigid bodies, gain energy that no load gave, and 64 substeps do "
+                            "not mend it",
                             crumbs_[0].particles.empty() ? 0 : crumbs_[0].particles[0]);
+}
+
+bool Crumbs::gains_nothing(const dynamics::Loads& loads, const double dt, const Motions& start,
+                           const Motions& end, dynamics::State& state) const {
+  constexpr double most = 0.01; // of what moves
+  if (std::any_of(loads.acting.begin(), loads.acting.end(),
+                  [](const auto& load) { return load->nature() == dynamics::Nature::driving; }))
+    return true;
+  double kinetic = 0, gained = 0, kick = 0; // of gravity in the step, which first order shifts in time
+  for (std::size_t b = 0; b < crumbs_.size(); ++b) {
+    const double before = dynamics::kinetic_energy(crumbs_[b].body, start[b]),
+                 after = dynamics::kinetic_energy(crumbs_[b].body, end[b]);
+    kinetic += before + after;
+    kick += crumbs_[b].body.mass * loads.gravity.squaredNorm() * dt * dt;
+    gained += after - before - crumbs_[b].body.mass * loads.gravity.dot(end[b].x - start[b].x);
+  }
+  carry(start, state);
+  gained -= dynamics::load_energy(loads, state.time, state.x);
+  carry(end, state);
+  gained += dynamics::load_energy(loads, state.time, state.x);
+  return gained <= most * kinetic + kick;
 }
 
 std::vector<Crumbs::Push> Crumbs::pushes(const dynamics::Loads& loads, const double dt, const Motions& motions,
@@ -133,46 +158,89 @@ std::vector<Crumbs::Push> Crumbs::pushes(const dynamics::Loads& loads, const dou
   return all;
 }
 
-std::optional<Crumbs::Motions> Crumbs::pushed(const dynamics::Loads& loads, const double dt, const Motions& start,
+namespace {
+
+/// Newton's method for one crumb, asked for one trial after the other: halves a correction until what is out of balance
+/// falls.
+class Settling {
+ public:
+  Settling() = default;
+  Settling(const Matrix6& inertia, const double dt, const double size)
+    : W_(inertia / (dt * dt)), settled_(1e-8 * size), size_(size) {}
+
+  /// Takes force and stiffness where way() leads; returns whether it may end there.
+  bool improve(const Vector6& force, const Matrix6& stiffness) {
+    const Vector6 residual = force - W_ * way_;
+    const double left = norm(residual);
+    if (left == 0)
+      return true;
+    if (is_begun_ && !(left < left_)) {
+      length_ *= 0.5;
+      way_ = from_ + length_ * correction_;
+      return length_ * size_of(correction_) <= settled_;
+    }
+    is_begun_ = true;
+    left_ = left;
+    length_ = 1;
+    from_ = way_;
+    correction_ = (W_ + 0.5 * (stiffness + stiffness.transpose())).ldlt().solve(residual);
+    if (size_of(correction_) <= settled_)
+      return true;
+    way_ += correction_;
+    return false;
+  }
+
+  const Vector6& way() const { return way_; }
+  Vector6 force() const { return W_ * way_; }
+
+ private:
+  double size_of(const Vector6& d) const { return d.head<3>().norm() + size_ * d.tail<3>().norm(); }
+  /// Of a force, and of a torque over the crumb's size.
+  double norm(const Vector6& f) const { return std::hypot(f.head<3>().norm(), f.tail<3>().norm() / size_); }
+
+  Matrix6 W_ = Matrix6::Identity();
+  double settled_ = 0, size_ = 0, left_ = 0, length_ = 1;
+  bool is_begun_ = false;
+  Vector6 way_ = Vector6::Zero(), from_ = Vector6::Zero(), correction_ = Vector6::Zero();
+};
+
+} // namespace
+
+Crumbs::Motions Crumbs::pushed(const dynamics::Loads& loads, const double dt, const Motions& start,
                                               Motions flown, std::vector<Wrench>& wrenches,
                                               dynamics::State& state) const {
-  constexpr int most = 40, undamped = 10;
-  constexpr double settled = 1e-9; // of the crumb's size
+  constexpr int most = 20;
   const double drag = 1 + dt * loads.mass_damping;
   Motions motions = flown;
-  std::vector<Vector6> way(crumbs_.size(), Vector6::Zero()); // from flight
+  std::vector<Settling> settling(crumbs_.size());
+  std::vector<Matrix6> inertia(crumbs_.size());
   std::vector<std::uint8_t> is_pushed(crumbs_.size(), 0);
   for (int i = 0; i < most; ++i) {
     carry(motions, state);
     const std::vector<Push> all = pushes(loads, dt, motions, state);
     bool is_settled = true;
     for (std::size_t b = 0; b < crumbs_.size(); ++b) {
-      const RigidBody& body = crumbs_[b].body;
-      const Matrix6 inertia = inertia_of_modes(body, flown[b]), W = drag / (dt * dt) * inertia;
-      const Vector6 residual = all[b].force - W * way[b];
-      if (residual.isZero(0))
-        continue;
-      if (!is_pushed[b]) { // gravity and damping act as loads do now, or they would have no balance at rest
+      if (!is_pushed[b]) { // gravity and damping are to act as loads do, or they would have no balance at rest
+        if (all[b].force.isZero(0))
+          continue;
         is_pushed[b] = 1;
+        const RigidBody& body = crumbs_[b].body;
         flown[b].v = (start[b].v + dt * loads.gravity) / drag;
         flown[b].x = start[b].x + dt * flown[b].v;
         flown[b].spin = start[b].spin / drag;
-        motions[b] = flown[b];
+        inertia[b] = inertia_of_modes(body, flown[b]);
+        settling[b] = Settling(drag * inertia[b], dt, std::sqrt(body.inertia.trace() / body.mass));
         is_settled = false;
-        continue;
+      } else {
+        is_settled &= settling[b].improve(all[b].force, all[b].stiffness);
+        wrenches[b] = {settling[b].force().head<3>(), settling[b].force().tail<3>()};
       }
-      const Matrix6 K = 0.5 * (all[b].stiffness + all[b].stiffness.transpose());
-      const Vector6 change = (i < undamped ? 1.0 : 0.5) * (W + K).ldlt().solve(residual);
-      const double size = std::sqrt(body.inertia.trace() / body.mass);
-      is_settled &= change.head<3>().norm() + size * change.tail<3>().norm() <= settled * size;
-      way[b] += change;
-      wrenches[b] = {(W * way[b]).head<3>(), (W * way[b]).tail<3>()};
-      motions[b] = moved(flown[b], inertia, way[b], dt);
+      motions[b] = moved(flown[b], inertia[b], settling[b].way(), dt);
     }
     if (is_settled)
-      return motions;
+      break;
   }
-  return std::nullopt;
+  return motions;
 }
 
 std::vector<std::vector<Crumbs::Hold>> Crumbs::holds(const dynamics::Loads& loads) const {
