@@ -44,7 +44,8 @@ Constraints::Constraints(const Loads& loads, const std::size_t n_corners)
   std::vector<std::pair<std::uint32_t, Hold>> all; // of which corner
   for (std::uint32_t s = 0; s < loads.supports.size(); ++s)
     for (std::uint32_t i = 0; i < loads.supports[s].corners.size(); ++i)
-      all.push_back({loads.supports[s].corners[i], {s, i}});
+      if (const auto corner = loads.supports[s].corners[i]; !is_carried(loads, corner))
+        all.push_back({corner, {s, i}});
   std::stable_sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   std::vector<Hold> of_corner;
   for (std::size_t i = 0; i < all.size(); ++i) {
@@ -54,6 +55,18 @@ Constraints::Constraints(const Loads& loads, const std::size_t n_corners)
       of_corner.clear();
     }
   }
+  add_carried();
+}
+
+void Constraints::add_carried() {
+  if (loads_.carried.empty())
+    return;
+  const std::uint32_t none_free = kind_of(Mat3::Identity());
+  for (std::size_t i = 0; i < kind_.size(); ++i)
+    if (is_carried(loads_, i)) {
+      kind_[i] = none_free;
+      ++n_carried_;
+    }
 }
 
 void Constraints::add(const std::uint32_t corner, const std::span<const Hold> holds) {
@@ -75,7 +88,7 @@ std::uint32_t Constraints::kind_of(const Mat3& sum) {
 }
 
 std::size_t Constraints::n_free() const {
-  std::size_t n = 3 * kind_.size();
+  std::size_t n = 3 * (kind_.size() - n_carried_);
   for (const Held& held : held_)
     n -= static_cast<std::size_t>(3 - freedom(held.corner).n_free);
   return n;
@@ -127,6 +140,10 @@ void Constraints::place_velocity(const double time, const double delta, Points& 
 void Constraints::project(Points& values) const {
   for (const Held& held : held_)
     values[held.corner] = freedom(held.corner).project * values[held.corner];
+  if (n_carried_ > 0)
+    for (std::size_t i = 0; i < values.size(); ++i)
+      if (is_carried(loads_, i))
+        values[i].setZero();
 }
 
 } // namespace kerf::dynamics

@@ -5,6 +5,8 @@
 /// A support holds each of its corners along the range of a projector H: H (x - place) = 0. A corner in several
 /// supports obeys all of them; if some of them hold it in all directions, the last of these alone. With S the sum of
 /// its H and c the sum of its H place, it is moved by S^+ (c - S x), which is the least motion that obeys.
+///
+/// Corners that a rigid body carries (Loads::carried) have no freedom and no place: they stay.
 
 #include "dynamics/loads.h"
 
@@ -55,6 +57,7 @@ class Constraints {
 
  private:
   void add(std::uint32_t corner, std::span<const Hold> holds);
+  void add_carried();
   std::uint32_t kind_of(const Mat3& sum);
   /// Moves held components of values to what `wanted` has for them, a value for each corner of each support.
   void impose(const std::vector<Points>& wanted, Points& values) const;
@@ -64,6 +67,7 @@ class Constraints {
   std::vector<Freedom> freedoms_;
   std::vector<std::uint32_t> kind_; // of each corner, in freedoms_
   std::vector<Held> held_;          // by ascending corner
+  std::size_t n_carried_ = 0;
   std::vector<Hold> holds_;
 };
 

@@ -74,7 +74,7 @@ StepReport ExplicitEuler::step(State& state, const Loads& loads, const double dt
   Points x = state.x, v = state.v;
   for (std::size_t i = 0; i < x.size(); ++i) {
     x[i] += dt * state.v[i];
-    v[i] += dt / mass[i] * force_[i];
+    v[i] += per_mass(dt, mass[i]) * force_[i];
   }
   obey(constraints, state.time + dt, dt, x, v);
   take_over(state, x, v, dt, "explicit Euler");
@@ -90,13 +90,13 @@ StepReport MidpointRungeKutta::step(State& state, const Loads& loads, const doub
   Points x = state.x, v = state.v;
   for (std::size_t i = 0; i < x.size(); ++i) {
     x[i] += half * state.v[i];
-    v[i] += half / mass[i] * force_[i];
+    v[i] += per_mass(half, mass[i]) * force_[i];
   }
   obey(constraints, state.time + half, dt, x, v);
   total_force(model_, loads, {state.time + half, x, v}, MassDamping::included, force_);
   for (std::size_t i = 0; i < x.size(); ++i) {
     x[i] = state.x[i] + dt * v[i];
-    v[i] = state.v[i] + dt / mass[i] * force_[i];
+    v[i] = state.v[i] + per_mass(dt, mass[i]) * force_[i];
   }
   obey(constraints, state.time + dt, dt, x, v);
   take_over(state, x, v, dt, "midpoint Runge-Kutta");
@@ -111,7 +111,7 @@ StepReport VelocityVerlet::step(State& state, const Loads& loads, const double d
   total_force(model_, loads, {state.time, state.x, state.v}, MassDamping::left_out, force_);
   Points x = state.x, v = state.v, predicted(x.size());
   for (std::size_t i = 0; i < x.size(); ++i) {
-    const Vec3 a = force_[i] / mass[i] - alpha * state.v[i];
+    const Vec3 a = per_mass(force_[i], mass[i]) - alpha * state.v[i];
     v[i] += half * a;
     x[i] += dt * v[i];
     predicted[i] = v[i] + half * a;
@@ -119,7 +119,7 @@ StepReport VelocityVerlet::step(State& state, const Loads& loads, const double d
   obey(constraints, state.time + dt, dt, x, predicted);
   total_force(model_, loads, {state.time + dt, x, predicted}, MassDamping::left_out, force_);
   for (std::size_t i = 0; i < x.size(); ++i)
-    v[i] = (v[i] + half / mass[i] * force_[i]) / (1 + half * alpha);
+    v[i] = (v[i] + per_mass(half, mass[i]) * force_[i]) / (1 + half * alpha);
   obey(constraints, state.time + dt, dt, x, v);
   take_over(state, x, v, dt, "velocity Verlet");
   return {.stable_step = limit_.last()};

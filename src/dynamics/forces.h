@@ -20,6 +20,12 @@ enum class MassDamping { left_out, included };
 /// model that has no stiffness to offer damps it in a way of its own, which is left out.
 void total_force(ForceModel& model, const Loads& loads, const Moment& moment, MassDamping mass_damping, Points& forces);
 
+/// A value over a mass; zero where there is none, as at corners that a rigid body carries (Loads::carried).
+inline double per_mass(const double value, const double mass) { return mass > 0 ? value / mass : 0; }
+inline Vec3 per_mass(const Vec3& value, const double mass) {
+  return mass > 0 ? Vec3(value / mass) : Vec3(Vec3::Zero());
+}
+
 /// Kinetic energy, of the lumped mass [J].
 double kinetic_energy(const ForceModel& model, const Points& v);
 /// -sum of m g.x [J].

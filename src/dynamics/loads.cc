@@ -57,6 +57,8 @@ std::vector<std::uint8_t> held_corners(const Loads& loads, const std::size_t n_c
   const Constraints constraints(loads, n_corners);
   for (const auto& one : constraints.held())
     held[one.corner] = constraints.freedom(one.corner).n_free == 0;
+  for (std::size_t i = 0; i < n_corners; ++i)
+    held[i] |= is_carried(loads, i) ? 1 : 0;
   return held;
 }
 

@@ -39,9 +39,16 @@ struct Loads {
   double stiffness_damping = 0; ///< Rayleigh's beta: a force -beta K v [s]
   std::vector<Support> supports;
   std::vector<std::unique_ptr<Load>> acting = {}; ///< beside gravity
+  /// 1 for each corner that a rigid body carries: it has no mass and no freedom of its own, stays where it is in a step,
+  /// and is moved by whoever moves the body. Supports do not see it. Empty: none.
+  std::vector<std::uint8_t> carried = {};
 };
 
-/// 1 for each corner that supports hold in all directions.
+inline bool is_carried(const Loads& loads, const std::size_t corner) {
+  return corner < loads.carried.size() && loads.carried[corner] != 0;
+}
+
+/// 1 for each corner that supports hold in all directions, or that a body carries.
 std::vector<std::uint8_t> held_corners(const Loads& loads, std::size_t n_corners);
 
 /// Puts held corners where they belong at `time`; their velocities are the mean ones over the step dt that led there.

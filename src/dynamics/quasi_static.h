@@ -46,6 +46,7 @@ class QuasiStatic : public Stepper {
   QuasiStatic(ElasticModel& model, const QuasiStaticOptions& options)
     : model_(model), options_(options), solver_(model, options.newton) {}
 
+  MotionKind motion() const override { return MotionKind::quasi_static; }
   /// Counts load steps as substeps. Throws ParameterError for free rigid motions, NumericalError when the smallest load
   /// step (1/1024) does not converge.
   StepReport step(State& state, const Loads& loads, double dt) override;

@@ -51,9 +51,9 @@ std::vector<Piece> pieces_of(const ForceModel& model, const Points& x, const std
     of(i).centre += mass[i] * x[i];
   }
   for (Piece& p : pieces)
-    p.centre /= p.mass > 0 ? p.mass : 1;
+    p.centre = per_mass(p.centre, p.mass);
   for (std::size_t i = 0; i < x.size(); ++i)
-    of(i).radius += mass[i] * (x[i] - of(i).centre).squaredNorm() / of(i).mass;
+    of(i).radius += per_mass(mass[i], of(i).mass) * (x[i] - of(i).centre).squaredNorm();
   for (Piece& p : pieces)
     p.radius = std::sqrt(p.radius);
   return pieces;
@@ -69,7 +69,7 @@ void add_resistance(const ForceModel& model, const Loads& loads, const double ti
   const auto mass = model.lumped_mass();
   for (std::size_t i = 0; i < x.size(); ++i) {
     const auto modes = modes_at(of(i), x[i]);
-    of(i).moving += mass[i] / of(i).mass * modes.transpose() * modes;
+    of(i).moving += per_mass(mass[i], of(i).mass) * modes.transpose() * modes;
     of(i).held += modes.transpose() * (Mat3::Identity() - constraints.freedom(i).project) * modes;
   }
   for (int k = 0; k < 6; ++k) {

@@ -77,10 +77,10 @@ double largest_of(const ForceModel& model, const Constraints& constraints, const
   Points p(mass.size());
   const Symmetric S = [&](const Points& q, Points& y) {
     for (std::size_t i = 0; i < p.size(); ++i)
-      p[i] = q[i] / std::sqrt(mass[i]);
+      p[i] = per_mass(q[i], std::sqrt(mass[i]));
     A(p, y);
     for (std::size_t i = 0; i < p.size(); ++i)
-      y[i] /= std::sqrt(mass[i]);
+      y[i] = per_mass(y[i], std::sqrt(mass[i]));
     constraints.project(y);
   };
   return std::max(0.0, lanczos(S, random_directions(mass.size(), constraints)));

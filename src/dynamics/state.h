@@ -2,7 +2,7 @@
 
 /// What a body's past amounts to. A stepper may be thrown away and made again from it, after a cut or a restart.
 
-#include "base/vec.h"
+#include "dynamics/rigid_body.h"
 
 #include <map>
 #include <span>
@@ -20,6 +20,8 @@ struct State {
   std::map<std::string, Points> history = {};
   /// What it remembers of the whole body: "time step [s]", "dissipated energy [J]".
   std::map<std::string, double> numbers = {};
+  /// Of the body's crumbs, in the order of grid::Crumbs::all.
+  std::vector<RigidMotion> crumbs = {};
 };
 
 /// The 3 n numbers of n points.

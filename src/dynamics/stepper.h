@@ -15,6 +15,9 @@ struct StepReport {
   double residual = 0;    ///< forces out of balance at the end over the forces that balance, if it was measured [1]
 };
 
+/// What a stepper makes of inertia.
+enum class MotionKind { dynamic, quasi_static };
+
 /// All that the main loop knows of a physics.
 class Stepper {
  public:
@@ -22,6 +25,7 @@ class Stepper {
 
   /// Advances the state by dt [s]. Throws NumericalError when it cannot, and then leaves the state as it was.
   virtual StepReport step(State& state, const Loads& loads, double dt) = 0;
+  virtual MotionKind motion() const { return MotionKind::dynamic; }
 };
 
 } // namespace kerf::dynamics

@@ -27,7 +27,7 @@ StepReport SymplecticEuler::step(State& state, const Loads& loads, const double 
   total_force(model_, loads, {state.time, state.x, state.v}, MassDamping::left_out, force_);
   Points x = state.x, v = state.v;
   for (std::size_t i = 0; i < x.size(); ++i) {
-    v[i] = (v[i] + dt / mass[i] * force_[i]) / (1 + dt * loads.mass_damping);
+    v[i] = (v[i] + per_mass(dt, mass[i]) * force_[i]) / (1 + dt * loads.mass_damping);
     x[i] += dt * v[i];
   }
   constraints.place(state.time + dt, x);

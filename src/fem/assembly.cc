@@ -68,9 +68,15 @@ Eigen::SparseMatrix<double> assemble(const Incidence& incidence,
   for (std::size_t first = 0; first < incidence.n_copies(); first += chunk) {
     const std::size_t n = std::min(chunk, incidence.n_copies() - first);
     parallel_for(
-      n, [&](const std::size_t i) { matrices[i] = element_matrix(first + i); }, 64);
+      n,
+      [&](const std::size_t i) {
+        if (incidence.is_used(first + i))
+          matrices[i] = element_matrix(first + i);
+      },
+      64);
     for (std::size_t i = 0; i < n; ++i)
-      add(matrices[i], incidence.corners(first + i), pattern, K);
+      if (incidence.is_used(first + i))
+        add(matrices[i], incidence.corners(first + i), pattern, K);
   }
   return K;
 }

@@ -21,7 +21,7 @@ void ElementTable::update(const grid::Solid& solid, const std::span<const grid::
   std::vector<grid::CopyId> partial;
   for (const auto c : changed) {
     std::uint32_t& element = element_of_[c.value];
-    if (is_partial(solid, solid.complex.copies[c])) {
+    if (!solid.crumbs.holds(c) && is_partial(solid, solid.complex.copies[c])) {
       partial.push_back(c);
       element = element == 0 ? unused() : element;
     } else if (element != 0) {

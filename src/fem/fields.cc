@@ -78,7 +78,11 @@ template <class Function>
 std::vector<Mat3> of_copies(const Hexahedra& model, const Points& x, const Function& f) {
   std::vector<Mat3> values(model.n_elements());
   parallel_for(
-    values.size(), [&](const std::size_t c) { values[c] = f(model.deformation_gradient(c, x)); }, worth);
+    values.size(),
+    [&](const std::size_t c) {
+      values[c] = model.incidence().is_used(c) ? Mat3(f(model.deformation_gradient(c, x))) : Mat3(Mat3::Zero());
+    },
+    worth);
   return values;
 }
 
@@ -102,6 +106,10 @@ std::vector<Mat3> at_corners(const Hexahedra& model, const Points& rest, const s
     values.size(),
     [&](const std::size_t corner) {
       auto copies = patch(model.incidence(), corner, 1);
+      if (copies.empty()) { // a rigid crumb's
+        values[corner].setZero();
+        return;
+      }
       Spread spread = spread_of(model, rest, copies);
       if (spread.variance.eigenvalues()[0] < least_variance) {
         copies = patch(model.incidence(), corner, 2);

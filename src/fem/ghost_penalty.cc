@@ -41,7 +41,7 @@ GhostPenalty::GhostPenalty(const GhostPenaltyOptions& options, const material::E
 
 void GhostPenalty::update(const grid::Solid& solid, const std::span<const CopyId> changed,
                           const std::function<double(std::size_t)>& fill, const std::span<const double> mass) {
-  const auto& [grid, cuts, complex] = solid;
+  const auto& [grid, cuts, complex, crumbs] = solid;
   extended_mass_.assign(mass.begin(), mass.end());
   if (options_.weight == 0)
     return;
@@ -73,7 +73,7 @@ void GhostPenalty::update(const grid::Solid& solid, const std::span<const CopyId
 void GhostPenalty::add_faces_above(const grid::Solid& solid, const CopyId lower, const int axis,
                                    const std::function<double(std::size_t)>& fill,
                                    std::vector<GhostFace>& faces) const {
-  const auto& [grid, cuts, complex] = solid;
+  const auto& [grid, cuts, complex, crumbs] = solid;
   const grid::Copy& below = complex.copies[lower];
   const grid::CellId cell = grid.neighbour(below.cell, 2 * axis + 1);
   if (!cell.valid())

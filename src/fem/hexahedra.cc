@@ -14,6 +14,8 @@ namespace {
 
 /// A second thread pays from about this many elements (1 us each) and corners (0.1 us each) on.
 constexpr std::size_t worth_elements = 256, worth_corners = 4096;
+/// Elements in one call of a kernel, and in one piece of work of a thread.
+constexpr std::size_t run_size = 64;
 
 using material::Tangent;
 
@@ -45,7 +47,7 @@ Hexahedra::Hexahedra(const grid::Solid& solid, const HexahedraOptions& options)
     frame_(frame_of(law_)),
     inertia_(options.inertia),
     elements_(solid, table_options(options)),
-    incidence_(solid.complex),
+    incidence_(solid),
     ghost_penalty_(options.ghost_penalty, options.material, h_) {
   std::vector<std::uint32_t> corners(solid.complex.n_corners());
   std::iota(corners.begin(), corners.end(), 0);
@@ -59,14 +61,39 @@ Hexahedra::Hexahedra(const grid::Solid& solid, const HexahedraOptions& options)
 
 void Hexahedra::update(const grid::Solid& solid, const std::span<const grid::CopyId> changed) {
   elements_.update(solid, changed);
-  follow(solid, changed, incidence_.update(solid.complex, changed));
+  follow(solid, changed, incidence_.update(solid, changed));
 }
 
 void Hexahedra::follow(const grid::Solid& solid, const std::span<const grid::CopyId> changed,
                        const std::span<const std::uint32_t> corners) {
+  find_runs();
   sum_mass(corners);
-  ghost_penalty_.update(
-    solid, changed, [this](const std::size_t copy) { return fill(copy); }, mass_);
+  ghost_penalty_.update( // to which a crumb's copies are as good as full
+    solid, changed, [this](const std::size_t copy) { return incidence_.is_used(copy) ? fill(copy) : 1; }, mass_);
+}
+
+void Hexahedra::find_runs() {
+  runs_.clear();
+  for (std::size_t e = 0; e < n_elements(); ++e) {
+    if (!incidence_.is_used(e))
+      continue;
+    const bool goes_on = !runs_.empty() && runs_.back().first + runs_.back().n == e && runs_.back().n < run_size;
+    if (goes_on)
+      ++runs_.back().n;
+    else
+      runs_.push_back({e, 1});
+  }
+}
+
+template <class Function>
+void Hexahedra::for_each_element(const Function& f) const {
+  parallel_for(
+    runs_.size(),
+    [&](const std::size_t r) {
+      for (std::size_t e = runs_[r].first; e < runs_[r].first + runs_[r].n; ++e)
+        f(e);
+    },
+    worth_elements / run_size);
 }
 
 void Hexahedra::sum_mass(const std::span<const std::uint32_t> corners) {
@@ -81,7 +108,7 @@ void Hexahedra::sum_mass(const std::span<const std::uint32_t> corners) {
 double Hexahedra::volume() const {
   double sum = 0;
   for (std::size_t e = 0; e < n_elements(); ++e)
-    sum += elements_[e].volume;
+    sum += incidence_.is_used(e) ? elements_[e].volume : 0;
   return sum;
 }
 
@@ -116,34 +143,31 @@ void Hexahedra::gather(const double* const values, double* const y) const {
 
 double Hexahedra::energy(const Points& x) const {
   auto energies = scratch_.borrow(n_elements());
-  parallel_for(
-    n_elements(),
-    [&](const std::size_t e) {
-      const Turned state = turned_element(e, x);
-      double& energy = energies.data()[e];
-      energy = 0.5 * state.u.dot(Eigen::Map<const Matrix24>(elements_[e].stiffness.data()) * state.u);
-      if (!is_hookean())
-        energy += elements_[e].volume * std::visit([&](const auto& law) { return law.energy(state.F); }, law_);
-    },
-    worth_elements);
-  return std::accumulate(energies.data(), energies.data() + n_elements(), ghost_penalty_.energy(x));
+  for_each_element([&](const std::size_t e) {
+    const Turned state = turned_element(e, x);
+    double& energy = energies.data()[e];
+    energy = 0.5 * state.u.dot(Eigen::Map<const Matrix24>(elements_[e].stiffness.data()) * state.u);
+    if (!is_hookean())
+      energy += elements_[e].volume * std::visit([&](const auto& law) { return law.energy(state.F); }, law_);
+  });
+  double sum = ghost_penalty_.energy(x);
+  for (const Run& run : runs_)
+    sum = std::accumulate(energies.data() + run.first, energies.data() + run.first + run.n, sum);
+  return sum;
 }
 
 void Hexahedra::force(const Points& x, Points& forces) const {
   auto values = scratch_.borrow(24 * n_elements());
-  parallel_for(
-    n_elements(),
-    [&](const std::size_t e) {
-      const Turned state = turned_element(e, x);
-      Eigen::Map<Vector24> f(values.data() + 24 * e);
-      f = -gradient(elements_[e], state, frame_);
-      if (is_hookean())
-        return;
-      const Mat3 P = std::visit([&](const auto& law) { return Mat3(law.stress(state.F)); }, law_);
-      for (int a = 0; a < 8; ++a)
-        f.segment<3>(3 * a) -= elements_[e].volume * P * elements_[e].gradient[a];
-    },
-    worth_elements);
+  for_each_element([&](const std::size_t e) {
+    const Turned state = turned_element(e, x);
+    Eigen::Map<Vector24> f(values.data() + 24 * e);
+    f = -gradient(elements_[e], state, frame_);
+    if (is_hookean())
+      return;
+    const Mat3 P = std::visit([&](const auto& law) { return Mat3(law.stress(state.F)); }, law_);
+    for (int a = 0; a < 8; ++a)
+      f.segment<3>(3 * a) -= elements_[e].volume * P * elements_[e].gradient[a];
+  });
   forces.resize(mass_.size());
   gather(values.data(), forces[0].data());
   ghost_penalty_.add_force(x, forces);
@@ -152,39 +176,36 @@ void Hexahedra::force(const Points& x, Points& forces) const {
 void Hexahedra::linearise(const Points& x) {
   rotations_.resize(9 * n_elements());
   tangents_.resize(is_hookean() ? 0 : 81 * n_elements());
-  parallel_for(
-    n_elements(),
-    [&](const std::size_t e) {
-      const Mat3 F = deformation_gradient(e, x);
-      Eigen::Map<Mat3>(rotations_.data() + 9 * e) =
-        frame_ == Frame::turning ? material::rotation_of(F) : Mat3(Mat3::Identity());
-      if (!is_hookean())
-        Eigen::Map<Tangent>(tangents_.data() + 81 * e) =
-          elements_[e].volume *
-          std::visit([&](const auto& law) { return Tangent(law.positive_tangent(F)); }, law_);
-    },
-    worth_elements);
+  for_each_element([&](const std::size_t e) {
+    const Mat3 F = deformation_gradient(e, x);
+    Eigen::Map<Mat3>(rotations_.data() + 9 * e) =
+      frame_ == Frame::turning ? material::rotation_of(F) : Mat3(Mat3::Identity());
+    if (!is_hookean())
+      Eigen::Map<Tangent>(tangents_.data() + 81 * e) =
+        elements_[e].volume *
+        std::visit([&](const auto& law) { return Tangent(law.positive_tangent(F)); }, law_);
+  });
 }
 
 void Hexahedra::apply_stiffness(const std::span<const double> p, const std::span<double> y) const {
-  constexpr std::size_t block = 64;
   static_assert(sizeof(Element) % sizeof(double) == 0);
   auto values = scratch_.borrow(24 * n_elements());
-  parallel_for((n_elements() + block - 1) / block,
-               [&](const std::size_t b) {
-                 const std::size_t first = b * block;
-                 const ElementBlock elements{std::min(block, n_elements() - first),
-                                             incidence_.corners(first),
-                                             elements_.element_of() + first,
-                                             elements_.elements()->stiffness.data(),
-                                             elements_.elements()->gradient[0].data(),
-                                             sizeof(Element) / sizeof(double),
-                                             rotations_.data() + 9 * first};
-                 fem::apply_stiffness(elements, p.data(), values.data() + 24 * first);
-                 if (!is_hookean())
-                   add_mean_tangent(elements, tangents_.data() + 81 * first, p.data(), values.data() + 24 * first);
-               },
-               worth_elements / block);
+  parallel_for(
+    runs_.size(),
+    [&](const std::size_t r) {
+      const auto& [first, n] = runs_[r];
+      const ElementBlock elements{n,
+                                  incidence_.corners(first),
+                                  elements_.element_of() + first,
+                                  elements_.elements()->stiffness.data(),
+                                  elements_.elements()->gradient[0].data(),
+                                  sizeof(Element) / sizeof(double),
+                                  rotations_.data() + 9 * first};
+      fem::apply_stiffness(elements, p.data(), values.data() + 24 * first);
+      if (!is_hookean())
+        add_mean_tangent(elements, tangents_.data() + 81 * first, p.data(), values.data() + 24 * first);
+    },
+    worth_elements / run_size);
   gather(values.data(), y.data());
   ghost_penalty_.add_product(p, y);
 }
@@ -238,16 +259,13 @@ Eigen::SparseMatrix<double> Hexahedra::stiffness_matrix(const Points& x, const d
 
 void Hexahedra::apply_mass(const std::span<const double> p, const std::span<double> y) const {
   auto values = scratch_.borrow(24 * n_elements());
-  parallel_for(
-    n_elements(),
-    [&](const std::size_t e) {
-      Eigen::Matrix<double, 3, 8> q;
-      for (int a = 0; a < 8; ++a)
-        q.col(a) = Eigen::Map<const Vec3>(p.data() + 3 * std::size_t(incidence_.corners(e)[a]));
-      Eigen::Map<Eigen::Matrix<double, 3, 8>>(values.data() + 24 * e) =
-        q * Eigen::Map<const Eigen::Matrix<double, 8, 8>>(elements_[e].consistent_mass.data());
-    },
-    worth_elements);
+  for_each_element([&](const std::size_t e) {
+    Eigen::Matrix<double, 3, 8> q;
+    for (int a = 0; a < 8; ++a)
+      q.col(a) = Eigen::Map<const Vec3>(p.data() + 3 * std::size_t(incidence_.corners(e)[a]));
+    Eigen::Map<Eigen::Matrix<double, 3, 8>>(values.data() + 24 * e) =
+      q * Eigen::Map<const Eigen::Matrix<double, 8, 8>>(elements_[e].consistent_mass.data());
+  });
   gather(values.data(), y.data());
 }
 

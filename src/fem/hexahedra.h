@@ -13,6 +13,9 @@
 /// The linearisation leaves the derivatives of R out and takes the law's positive tangent, which keeps it positive
 /// semi-definite; stiffness_matrix() has the exact second derivative too.
 ///
+/// Copies of crumbs (grid/crumbs.h) have neither mass nor stiffness, and cost nothing in the loops over elements: they
+/// are left out in the runs of consecutive copies over which these go.
+///
 /// Every copy's element is its own, and sums over copies are taken in their order: any number of threads, and any way
 /// of getting to a complex, gives the same bits. Functions that are const may be called from several threads at once.
 ///
@@ -84,6 +87,10 @@ class Hexahedra : public dynamics::ElasticModel, public dynamics::StiffnessMatri
   void sum_mass(std::span<const std::uint32_t> corners);
   /// Part of its cube that a copy's material is [1].
   double fill(const std::size_t copy) const { return elements_[copy].volume / (h_ * h_ * h_); }
+  void find_runs();
+  /// Calls f(copy) for each that has an element, on several threads.
+  template <class Function>
+  void for_each_element(const Function& f) const;
   std::array<Vec3, 8> corners_of(std::size_t copy, const Points& x) const;
   Turned turned_element(std::size_t copy, const Points& x) const;
   Matrix24 element_matrix(std::size_t copy, const Points& x, dynamics::Tangent kind) const;
@@ -94,8 +101,14 @@ class Hexahedra : public dynamics::ElasticModel, public dynamics::StiffnessMatri
   material::AnyLaw law_;
   Frame frame_;
   Inertia inertia_;
+  /// Copies first, ..., first + n - 1 that have elements.
+  struct Run {
+    std::size_t first, n;
+  };
+
   ElementTable elements_;
   Incidence incidence_;
+  std::vector<Run> runs_; // of at most run_size
   GhostPenalty ghost_penalty_;
   std::vector<double> mass_;
   std::vector<double> rotations_; // 9 a copy, at the linearisation point

@@ -4,12 +4,15 @@
 
 namespace kerf::fem {
 
-Incidence::Incidence(const grid::CellComplex& complex) : users_(complex.n_corners()) {
+Incidence::Incidence(const grid::Solid& solid) : users_(solid.complex.n_corners()) {
+  const auto& complex = solid.complex;
   corners_.reserve(8 * complex.n_copies());
-  for (const grid::Copy& copy : complex.copies)
-    for (const auto corner : copy.corners) {
-      corners_.push_back(corner.value);
-      ++users_[corner.value].capacity;
+  for (const auto c : ids<grid::CopyId>(complex.n_copies()))
+    for (const auto corner : complex.copies[c].corners) {
+      const bool is_used = !solid.crumbs.holds(c);
+      corners_.push_back(is_used ? corner.value : unused);
+      if (is_used)
+        ++users_[corner.value].capacity;
     }
   std::uint32_t first = 0;
   for (Range& range : users_) {
@@ -18,30 +21,32 @@ Incidence::Incidence(const grid::CellComplex& complex) : users_(complex.n_corner
   }
   slots_.resize(first);
   for (std::uint32_t i = 0; i < corners_.size(); ++i) {
+    if (corners_[i] == unused)
+      continue;
     Range& range = users_[corners_[i]];
     slots_[range.first + range.size++] = i;
   }
 }
 
-std::vector<std::uint32_t> Incidence::update(const grid::CellComplex& complex,
-                                             const std::span<const grid::CopyId> changed) {
+std::vector<std::uint32_t> Incidence::update(const grid::Solid& solid, const std::span<const grid::CopyId> changed) {
+  const auto& complex = solid.complex;
   std::vector<std::uint32_t> touched;
   users_.resize(complex.n_corners());
-  const std::size_t n_before = n_copies();
-  corners_.resize(8 * complex.n_copies());
+  corners_.resize(8 * complex.n_copies(), unused);
   for (const grid::CopyId c : changed)
     for (int a = 0; a < 8; ++a) {
-      const std::uint32_t user = 8 * c.value + a, corner = complex.copies[c].corners[a].value;
-      const bool is_old = c.value < n_before;
+      const std::uint32_t user = 8 * c.value + a, before = corners_[user], corner = complex.copies[c].corners[a].value,
+                          now = solid.crumbs.holds(c) ? unused : corner;
       touched.push_back(corner);
-      if (is_old && corners_[user] == corner)
+      if (before == now)
         continue;
-      if (is_old) {
-        touched.push_back(corners_[user]);
-        remove(corners_[user], user);
+      if (before != unused) {
+        touched.push_back(before);
+        remove(before, user);
       }
-      corners_[user] = corner;
-      add(corner, user);
+      corners_[user] = now;
+      if (now != unused)
+        add(now, user);
     }
   std::sort(touched.begin(), touched.end());
   touched.erase(std::unique(touched.begin(), touched.end()), touched.end());

@@ -72,6 +72,14 @@ std::array<Tetrahedron, 6> under_skin(const Solid& solid, const CellId c, const 
 
 double volume(const Tetrahedron& t) { return (t[1] - t[0]).dot((t[2] - t[0]).cross(t[3] - t[0])) / 6; }
 
+double fill(const Solid& solid, const Copy& copy) {
+  if (copy.nodes == 0xff)
+    return 1;
+  double sum = 0;
+  for_each_tetrahedron(solid, copy, [&](const Tetrahedron& t, int) { sum += volume(t); });
+  return sum;
+}
+
 unsigned lines_under_skin(const Solid& solid, const Copy& copy) {
   const CellCuts cell = cuts_of(solid, copy.cell);
   if (!cell.has_two_points())

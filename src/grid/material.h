@@ -38,6 +38,8 @@ unsigned lines_under_skin(const Solid& solid, const Copy& copy);
 /// Volume of a tetrahedron with these vertices, positive where the last three turn counter-clockwise seen from outside
 /// [1].
 double volume(const Tetrahedron& t);
+/// The material's part of a copy's cube; 1 where it holds all nodes [1].
+double fill(const Solid& solid, const Copy& copy);
 
 template <class Function>
 void for_each_tetrahedron(const Solid& solid, const Copy& copy, const Function& f) {

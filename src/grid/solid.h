@@ -4,6 +4,7 @@
 /// surface stands beside it, one room up (surface/surface.h): that is made from it.
 
 #include "grid/complex.h"
+#include "grid/crumbs.h"
 
 namespace kerf::grid {
 
@@ -11,6 +12,7 @@ struct Solid {
   Grid grid;
   Cuts cuts;
   CellComplex complex = {};
+  Crumbs crumbs = {}; ///< pieces that are too small to be deformed
 };
 
 } // namespace kerf::grid

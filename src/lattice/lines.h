@@ -2,9 +2,8 @@
 
 /// The regions of lattice shape matching on a cut body, and fast sums over them (Rivers and James 2007).
 ///
-/// The material nodes of the grid are the lattice's points; from a point one may step along an uncut edge to the
-/// next (two such points share a copy; a cut edge is no step). A piece that holds no node has its copies for points
-/// (sites.h). A *line* along an axis is a longest row of such steps.
+/// The material nodes of the grid, but those of crumbs, are the lattice's points; from a point one may step along an uncut edge to the
+/// next (two such points share a copy; a cut edge is no step). A *line* along an axis is a longest row of such steps.
 /// The **region** of a point r: walk at most w steps along r's z line, from there at most w along the y line, from
 /// there at most w along the x line. In the bulk this is the full box of (2 w + 1)^3 points. Cuts and skin break
 /// lines, and so trim the box: a region never reaches across a cut, and it goes around the end of a cut only where
@@ -18,7 +17,7 @@
 /// Limits: where lines are broken, regions depend on the order of the axes, and r may be in the region of s without s
 /// in that of r. Matching needs neither.
 
-#include "lattice/sites.h"
+#include "grid/solid.h"
 
 #include <vector>
 
@@ -30,9 +29,9 @@ class Lines {
   Lines(const grid::Solid& solid, int half_width);
 
   int half_width() const { return static_cast<int>(half_width_); }
-  /// Points are numbered in the grid's order of nodes, x fastest; then come those that are copies.
-  std::size_t n_points() const { return sites_.n_points(); }
-  const Sites& sites() const { return sites_; }
+  /// Points are numbered in the grid's order of nodes, x fastest.
+  std::size_t n_points() const { return nodes_.size(); }
+  const std::vector<grid::NodeId>& nodes() const { return nodes_; }
 
   /// For each point r, the sum of f over r's region, in place. f holds 12 or 6 numbers a point.
   void sum_over_regions(std::vector<double>& f) const;
@@ -51,7 +50,7 @@ class Lines {
   void sum_windows_along(const Axis& axis, std::vector<double>& f) const;
 
   std::size_t half_width_;
-  Sites sites_;
+  std::vector<grid::NodeId> nodes_;
   std::array<Axis, 3> axes_;
 };
 

@@ -67,7 +67,7 @@ Matching::Matching(const grid::Solid& solid, const MatchingOptions& options)
   const Vec3 middle = mean(rest_);
   for (Vec3& X : rest_)
     X -= middle;
-  count_shares(material_shares(solid, lines_.sites(), options.density));
+  count_shares(material_shares(solid, options.density));
   measure_regions();
   const double h = solid.grid.h();
   riders_ = Riders(solid.complex, mass_, options.density * h * h * h);
@@ -83,7 +83,7 @@ void Matching::count_shares(const std::vector<Share>& shares) {
   of_corners_.start.assign(mass_.size() + 1, 0);
   std::size_t k = 0;
   for (std::size_t p = 0; p < lines_.n_points(); ++p) {
-    for (; k < shares.size() && shares[k].point == p; ++k) {
+    for (; k < shares.size() && shares[k].node == lines_.nodes()[p]; ++k) {
       of_points_.column.push_back(shares[k].corner.value);
       of_points_.weight.push_back(shares[k].mass / holders[6 * p]);
       ++of_corners_.start[shares[k].corner.value + 1];
@@ -120,6 +120,8 @@ void Matching::measure_regions() {
 }
 
 void Matching::sum_over_regions() const {
+  if (lines_.n_points() == 0)
+    return;
   const std::size_t width = corner_field_.size() / mass_.size();
   region_field_.resize(width * lines_.n_points());
   parallel_ranges(lines_.n_points(), worth_items, [&](const std::size_t first, const std::size_t last) {
@@ -130,6 +132,10 @@ void Matching::sum_over_regions() const {
 }
 
 void Matching::average_over_regions() const {
+  if (lines_.n_points() == 0) {
+    corner_field_.assign(corner_field_.size(), 0.0);
+    return;
+  }
   const std::size_t width = region_field_.size() / lines_.n_points();
   corner_field_.resize(width * mass_.size());
   lines_.sum_over_holders(region_field_);

@@ -70,7 +70,7 @@ void ShapeMatching::add_loads(const dynamics::State& state, const dynamics::Load
   dynamics::add_load_forces(loads, {state.time, state.x, state.v}, accelerations);
   const auto mass = model_.lumped_mass();
   for (std::size_t c = 0; c < v.size(); ++c)
-    accelerations[c] /= mass[c];
+    accelerations[c] = dynamics::per_mass(accelerations[c], mass[c]);
   model_.rigid_velocities(state.x, accelerations, rigid_);
   for (std::size_t c = 0; c < v.size(); ++c)
     v[c] += dt * rigid_[c];

@@ -76,14 +76,14 @@ CopyShares shares_of(const grid::Solid& solid, const grid::Copy& copy) {
   return shares;
 }
 
-bool is_before(const Share& a, const Share& b) { return a.point != b.point ? a.point < b.point : a.corner < b.corner; }
+bool is_before(const Share& a, const Share& b) { return a.node != b.node ? a.node < b.node : a.corner < b.corner; }
 
 /// One share for each pair; sums in the order of the copies.
 std::vector<Share> merged(std::vector<Share> shares) {
   std::stable_sort(shares.begin(), shares.end(), is_before);
   std::vector<Share> unique;
   for (const Share& share : shares) {
-    if (!unique.empty() && unique.back().point == share.point && unique.back().corner == share.corner)
+    if (!unique.empty() && unique.back().node == share.node && unique.back().corner == share.corner)
       unique.back().mass += share.mass;
     else
       unique.push_back(share);
@@ -106,37 +106,32 @@ std::array<double, 8> shape_integrals(const grid::Tetrahedron& t) {
   return integrals;
 }
 
-std::vector<Share> material_shares(const grid::Solid& solid, const Sites& sites, const double density) {
-  const auto& [grid, cuts, complex] = solid;
-  std::vector<CopyShares> of_copy(complex.n_copies());
+std::vector<Share> material_shares(const grid::Solid& solid, const double density) {
+  std::vector<CopyShares> of_copy(solid.complex.n_copies());
   parallel_for(
-    complex.n_copies(), [&](const std::size_t c) { of_copy[c] = shares_of(solid, complex.copies[grid::CopyId(c)]); },
+    solid.complex.n_copies(),
+    [&](const std::size_t c) {
+      if (!solid.crumbs.holds(grid::CopyId(c)))
+        of_copy[c] = shares_of(solid, solid.complex.copies[grid::CopyId(c)]);
+    },
     256);
-  const double scale = density * grid.h() * grid.h() * grid.h();
+  const double scale = density * solid.grid.h() * solid.grid.h() * solid.grid.h();
   std::vector<Share> shares;
-  const auto add = [&](const std::size_t point, const grid::CornerId corner, const double integral) {
-    if (integral > 0)
-      shares.push_back({static_cast<std::uint32_t>(point), corner, scale * integral});
-  };
-  const auto point_of = [&](const grid::NodeId node) {
-    return std::ranges::lower_bound(sites.nodes, node) - sites.nodes.begin();
-  };
   for (const auto& [c, node] : grid::followed_nodes(solid)) {
-    const auto loose = std::ranges::lower_bound(sites.loose, c);
-    const bool is_loose = loose != sites.loose.end() && *loose == c;
-    const auto point = is_loose ? sites.nodes.size() + (loose - sites.loose.begin()) : point_of(node);
-    const auto integrals = integrals_of(solid, complex.copies[c]).elsewhere;
+    if (solid.crumbs.holds(c))
+      continue;
+    const grid::Copy& copy = solid.complex.copies[c];
+    const auto integrals = integrals_of(solid, copy).elsewhere;
     for (int a = 0; a < 8; ++a)
-      add(point, complex.copies[c].corners[a], integrals[a]);
+      if (integrals[a] > 0)
+        shares.push_back({node, copy.corners[a], scale * integrals[a]});
   }
-  for (const auto c : ids<grid::CopyId>(complex.n_copies())) {
-    const grid::Copy& copy = complex.copies[c];
+  for (const auto c : ids<grid::CopyId>(solid.complex.n_copies())) {
+    const grid::Copy& copy = solid.complex.copies[c];
     for (int vertex = 0; vertex < 8; ++vertex)
-      if ((copy.nodes >> vertex & 1) != 0) {
-        const auto point = point_of(grid.nodes(copy.cell)[vertex]);
-        for (int a = 0; a < 8; ++a)
-          add(point, copy.corners[a], of_copy[c.value][vertex][a]);
-      }
+      for (int a = 0; a < 8; ++a)
+        if (const double share = of_copy[c.value][vertex][a]; share > 0)
+          shares.push_back({solid.grid.nodes(copy.cell)[vertex], copy.corners[a], scale * share});
   }
   return merged(std::move(shares));
 }

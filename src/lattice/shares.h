@@ -1,26 +1,25 @@
 #pragma once
 
-/// Which mass moves with which corner, and to which point of the lattice it belongs.
+/// Which mass moves with which corner, and to which node of the lattice it belongs.
 ///
 /// A corner's mass is the integral of density N_a over the material of its copies, N_a its trilinear shape function:
 /// what trilinear elements lump. Masses, and the masses' centre, are those of the material for every position of a
 /// cut. The mass of a real corner belongs to its node; that of a virtual corner to the nearest nodes of its copy
 /// (fewest edges away), in proportion to what their octants give to the integral; that of a copy without nodes to the
-/// node that it follows (grid/followed.h), or in a piece without nodes to the copy itself (sites.h). So along a line of the lattice mass sits at the nodes, on the skin and
+/// node that it follows (grid/followed.h). So along a line of the lattice mass sits at the nodes, on the skin and
 /// along a cut as in the bulk.
 ///
 /// The integrals are sums of positive terms: the share of a far corner in a sliver is accurate however small it is
 /// (moments of a cell would cancel).
 
 #include "grid/material.h"
-#include "lattice/sites.h"
 
 #include <vector>
 
 namespace kerf::lattice {
 
 struct Share {
-  std::uint32_t point; ///< of the sites
+  grid::NodeId node;
   grid::CornerId corner;
   double mass; ///< [kg]
 };
@@ -28,7 +27,7 @@ struct Share {
 /// Integrals of N_0 .. N_7 over a tetrahedron in the unit cube [1].
 std::array<double, 8> shape_integrals(const grid::Tetrahedron& t);
 
-/// Sorted by point, then by corner; each pair once; each mass positive.
-std::vector<Share> material_shares(const grid::Solid& solid, const Sites& sites, double density);
+/// Of all but crumbs. Sorted by node, then by corner; each pair once; each mass positive.
+std::vector<Share> material_shares(const grid::Solid& solid, double density);
 
 } // namespace kerf::lattice

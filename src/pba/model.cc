@@ -30,6 +30,7 @@ PhyxelModel::PhyxelModel(Phyxels phyxels, const material::Elastic& material, con
   : phyxels_(std::move(phyxels)),
     neighbours_(find_neighbours(phyxels_)),
     options_(options),
+    density_(material.density),
     youngs_modulus_(material.youngs_modulus),
     law_{material.mu(), material.lambda(), options.volume_share * std::max(0.0, material.lambda())} {
   check(options);
@@ -71,6 +72,11 @@ void PhyxelModel::update(const std::span<const Sight> sights) {
         make(i);
     },
     worth);
+}
+
+void PhyxelModel::carry(const std::span<const std::uint8_t> carried) {
+  for (std::size_t i = 0; i < carried.size(); ++i)
+    mass_[i] = carried[i] != 0 ? 0 : density_ * phyxels_.volume[i];
 }
 
 void PhyxelModel::make(const std::size_t i) {

@@ -57,6 +57,8 @@ class PhyxelModel : public dynamics::ElasticModel {
 
   /// What stands between the phyxels now: one sight for each of neighbours().pairs. Only what changed is made anew.
   void update(std::span<const Sight> sights);
+  /// Leaves the mass of these (1) to whoever carries them; their sights must be none.
+  void carry(std::span<const std::uint8_t> carried);
 
   const Phyxels& phyxels() const { return phyxels_; }
   const Neighbours& neighbours() const { return neighbours_; }
@@ -95,7 +97,7 @@ class PhyxelModel : public dynamics::ElasticModel {
   Phyxels phyxels_;
   Neighbours neighbours_;
   ModelOptions options_;
-  double youngs_modulus_;
+  double density_, youngs_modulus_;
   Law law_;
   std::vector<double> mass_, weights_;
   std::vector<double> reference_, kappa_; // by phyxel: tr(A) / 3 with nothing in sight; [N/m]

@@ -21,15 +21,21 @@ class OnCorners : public Physics {
     : make_model_(std::move(make_model)),
       make_integrator_(std::move(make_integrator)),
       rest_(grid::rest_positions(body.solid)),
-      model_(make_model_(body)) {
+      model_(make_model_(body)),
+      crumbs_(body.density) {
+    dynamics::State at_rest{rest_, Points(rest_.size(), Vec3::Zero())};
+    follow_crumbs(body, at_rest);
     make_stepper(body);
   }
 
   Model& model() override { return *model_; }
   const Points& rest() const override { return rest_; }
+  const Crumbs& crumbs() const override { return crumbs_; }
 
   dynamics::StepReport step(dynamics::State& state, const dynamics::Loads& loads, const double dt) override {
-    return stepper_->step(state, loads, dt);
+    const dynamics::StepReport report = stepper_->step(state, loads, dt);
+    crumbs_.step(loads, dt, stepper_->motion(), state);
+    return report;
   }
 
   void follow_cut(const CutBody& body, const grid::CutChange& change, dynamics::State& state) override {
@@ -40,6 +46,7 @@ class OnCorners : public Physics {
         grid::inherit(change, values);
     dynamics::forget_forces(state);
     follow_cut_with_model(body, change);
+    follow_crumbs(body, state);
     make_stepper(body);
   }
 
@@ -50,6 +57,9 @@ class OnCorners : public Physics {
 
  private:
   void follow_cut_with_model(const CutBody& body, const grid::CutChange&) { model_ = make_model_(body); }
+  void follow_crumbs(const CutBody& body, dynamics::State& state) {
+    crumbs_.follow(body.solid, nullptr, [&] { return Motion{state.x, state.v}; }, state);
+  }
   /// Both are made again from what the body is now.
   void make_stepper(const CutBody& body) {
     // The complex outlives the call, as the stepper asks at once.
@@ -60,6 +70,7 @@ class OnCorners : public Physics {
   IntegratorMaker make_integrator_;
   Points rest_;
   std::unique_ptr<Model> model_;
+  Crumbs crumbs_;
   std::unique_ptr<dynamics::Stepper> stepper_;
 };
 

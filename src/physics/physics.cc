@@ -6,7 +6,9 @@
 namespace kerf::physics {
 
 dynamics::State state_at_rest(const Physics& physics) {
-  return {physics.rest(), Points(physics.rest().size(), Vec3::Zero()), 0};
+  dynamics::State state{physics.rest(), Points(physics.rest().size(), Vec3::Zero()), 0};
+  state.crumbs = physics.crumbs().at_rest();
+  return state;
 }
 
 std::vector<std::uint32_t> corner_pieces(const grid::CellComplex& complex) {

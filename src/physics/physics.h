@@ -7,6 +7,7 @@
 #include "base/interpolation.h"
 #include "dynamics/stepper.h"
 #include "grid/solid.h"
+#include "physics/crumbs.h"
 #include "surface/surface.h"
 
 #include <functional>
@@ -18,6 +19,7 @@ namespace kerf::physics {
 struct CutBody {
   const grid::Solid& solid;
   const surface::Surface& surface;
+  double density; ///< of its material [kg/m^3]
 };
 
 /// The piece of each particle, 0, 1, ...: asked for by those who need it.
@@ -35,6 +37,8 @@ class Physics {
   virtual dynamics::ForceModel& model() = 0;
   /// Rest positions of the particles [m].
   virtual const Points& rest() const = 0;
+  /// What the model does not know: pieces that move as rigid bodies. Loads must carry what they carry.
+  virtual const Crumbs& crumbs() const = 0;
 
   /// Advances the particles by dt [s]. Throws as dynamics::Stepper.
   virtual dynamics::StepReport step(dynamics::State& state, const dynamics::Loads& loads, double dt) = 0;

@@ -58,17 +58,28 @@ Phyxels::Phyxels(const CutBody& body, const PhyxelsOptions& options, StepperMake
   : options_(options),
     make_stepper_(std::move(make_stepper)),
     model_(pba::fill(body.solid, options.phyxels), options.material, options.model),
-    node_pairs_(pba::find_node_pairs(body.solid.grid, model_.phyxels())) {
+    node_pairs_(pba::find_node_pairs(body.solid.grid, model_.phyxels())),
+    crumbs_(body.density) {
   const auto& neighbours = model_.neighbours();
   sights_of_phyxels_ = pba::clear_sights(rest(), rest(), neighbours.pairs);
   sights_of_nodes_ = pba::clear_sights(node_pairs_.rest, rest(), node_pairs_.pairs);
+  find_pieces(body);
+  dynamics::State at_rest{rest(), Points(rest().size(), Vec3::Zero())};
+  follow_crumbs(
+    body,
+    [&] {
+      return Motion{grid::rest_positions(body.solid), Points(body.solid.complex.n_corners(), Vec3::Zero())};
+    },
+    at_rest);
   build_map(body);
   stepper_ = make_stepper_(model_, [this] { return phyxel_pieces_; });
   follow(state_at_rest(*this));
 }
 
 dynamics::StepReport Phyxels::step(dynamics::State& state, const dynamics::Loads& loads, const double dt) {
-  return stepper_->step(state, loads, dt);
+  const dynamics::StepReport report = stepper_->step(state, loads, dt);
+  crumbs_.step(loads, dt, stepper_->motion(), state);
+  return report;
 }
 
 void Phyxels::begin_to_look(const surface::Surface& surface) {
@@ -114,7 +125,7 @@ bool Phyxels::hold_together(std::vector<pba::Sight>& sights) const {
     const double known = std::max(X.dot(model_.fits()[i].used * X), X.dot(model_.fits()[j].used * X));
     if (model_.weights()[p] > 0 && known > counts)
       parts.unite(i, j);
-    else if (phyxel_pieces_[i] == phyxel_pieces_[j])
+    else if (phyxel_pieces_[i] == phyxel_pieces_[j] && !crumbs_.carries(i))
       idle.emplace_back((rest()[i] - rest()[j]).norm(), p);
   }
   std::sort(idle.begin(), idle.end());
@@ -138,17 +149,55 @@ void Phyxels::build_map(const CutBody& body) {
   map_ = pba::build_corner_map(body.solid, model_.phyxels(), copies_, node_pairs_, parted);
   parted = sights_of_phyxels_;
   pba::part(model_.neighbours().pairs, phyxel_pieces_, phyxel_pieces_, parted);
+  leave_out_crumbs(model_.neighbours().pairs, parted);
   model_.update(parted);
   if (sights_ && hold_together(parted))
     model_.update(parted);
   is_stale_ = false;
 }
 
-void Phyxels::follow_cut(const CutBody& body, const grid::CutChange&, dynamics::State& state) {
+void Phyxels::leave_out_crumbs(const std::vector<pba::Pair>& pairs, std::vector<pba::Sight>& sights) const {
+  if (crumbs_.any())
+    for (std::size_t p = 0; p < pairs.size(); ++p)
+      if (crumbs_.carries(pairs[p][0])) // then the other end too: they are of one piece
+        sights[p].factor = 0;
+}
+
+void Phyxels::follow_crumbs(const CutBody& body, const std::function<Motion()>& motion_of_corners,
+                            dynamics::State& state) {
+  if (!body.solid.crumbs.any() && !crumbs_.any())
+    return;
+  std::vector<std::uint32_t> crumb_of_copy(body.solid.complex.n_copies(), CrumbParticles::none), crumb_of_phyxel;
+  for (std::uint32_t b = 0; b < body.solid.crumbs.all.size(); ++b)
+    for (const grid::CopyId c : body.solid.crumbs.all[b].copies)
+      crumb_of_copy[c.value] = b;
+  std::vector<double> mass;
+  for (std::size_t i = 0; i < copies_.size(); ++i) {
+    crumb_of_phyxel.push_back(copies_[i].valid() ? crumb_of_copy[copies_[i].value] : CrumbParticles::none);
+    mass.push_back(body.density * model_.phyxels().volume[i]);
+  }
+  const CrumbParticles particles{std::move(crumb_of_phyxel), mass, rest()};
+  crumbs_.follow(body.solid, &particles, motion_of_corners, state);
+  model_.carry(crumbs_.carried());
+}
+
+void Phyxels::follow_cut(const CutBody& body, const grid::CutChange& change, dynamics::State& state) {
   if (!sights_)
     begin_to_look(body.surface);
   add_faces(body.surface, false);
   find_pieces(body);
+  follow_crumbs(
+    body,
+    [&] { // by the map from before the cut
+      Motion now{corners_, {}};
+      const Interpolation carried = carry(corners_themselves(corners_.size()));
+      for (std::size_t i = 0; i < corners_.size(); ++i)
+        now.v.push_back(carried.at(i, state.v));
+      grid::inherit(change, now.x);
+      grid::inherit(change, now.v);
+      return now;
+    },
+    state);
   is_stale_ = true;
   if (options_.visibility.budget == 0)
     catch_up(body);
@@ -176,6 +225,7 @@ void Phyxels::catch_up(const CutBody& body) {
 void Phyxels::follow(const dynamics::State& state) {
   model_.deformation(state.x, F_);
   pba::follow(map_, state.x, F_, corners_);
+  crumbs_.place_corners(state, corners_);
 }
 
 void Phyxels::add_row(const std::uint32_t row, const Vec3& point, const double factor,

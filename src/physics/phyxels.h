@@ -51,6 +51,7 @@ class Phyxels : public Physics {
 
   pba::PhyxelModel& model() override { return model_; }
   const Points& rest() const override { return model_.phyxels().rest; }
+  const Crumbs& crumbs() const override { return crumbs_; }
   dynamics::StepReport step(dynamics::State& state, const dynamics::Loads& loads, double dt) override;
   void follow_cut(const CutBody& body, const grid::CutChange& change, dynamics::State& state) override;
   void catch_up(const CutBody& body) override;
@@ -73,6 +74,9 @@ class Phyxels : public Physics {
   /// whether there were any.
   bool hold_together(std::vector<pba::Sight>& sights) const;
   void build_map(const CutBody& body);
+  /// Leaves no sight to phyxels that crumbs carry.
+  void leave_out_crumbs(const std::vector<pba::Pair>& pairs, std::vector<pba::Sight>& sights) const;
+  void follow_crumbs(const CutBody& body, const std::function<Motion()>& motion_of_corners, dynamics::State& state);
   /// Weights of phyxels for a point [m] that moves with a row of the map, times `factor`.
   void add_row(std::uint32_t row, const Vec3& point, double factor, std::vector<std::uint32_t>& phyxels,
                std::vector<double>& weights) const;
@@ -97,6 +101,7 @@ class Phyxels : public Physics {
   std::optional<visibility::PairSights> sights_;
   std::set<Face, ByCoordinates> faces_;
 
+  Crumbs crumbs_;
   std::vector<Mat3> F_;
   Points corners_;
 };

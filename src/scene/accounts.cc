@@ -22,10 +22,18 @@ double power_of_inertia(const dynamics::ForceModel& model, const dynamics::Loads
 
 } // namespace
 
+double kinetic_energy(physics::Physics& physics, const dynamics::State& state) {
+  return dynamics::kinetic_energy(physics.model(), state.v) + physics.crumbs().kinetic_energy(state);
+}
+
+double gravity_energy(physics::Physics& physics, const dynamics::Loads& loads, const dynamics::State& state) {
+  return dynamics::gravity_energy(physics.model(), loads, state.x) + physics.crumbs().gravity_energy(loads, state);
+}
+
 double total_energy(physics::Physics& physics, const dynamics::Loads& loads, const dynamics::State& state) {
   const dynamics::ForceModel& model = physics.model();
-  return model.energy(state.x) + dynamics::kinetic_energy(model, state.v) +
-         dynamics::gravity_energy(model, loads, state.x) + dynamics::load_energy(loads, state.time, state.x);
+  return model.energy(state.x) + kinetic_energy(physics, state) + gravity_energy(physics, loads, state) +
+         dynamics::load_energy(loads, state.time, state.x);
 }
 
 void Accounts::open(physics::Physics& physics, const dynamics::Loads& loads, const dynamics::State& state) {
@@ -37,6 +45,11 @@ void Accounts::after_step(physics::Physics& physics, const dynamics::Loads& load
   const double dt = state.time - before_.time;
   const Points acceleration = dynamics::mean_acceleration(before_, state), none(state.x.size(), Vec3::Zero());
   reactions_ = dynamics::reactions(physics.model(), loads, state, acceleration, Vec3::Zero());
+  const auto& of_crumbs = physics.crumbs().reactions();
+  for (std::size_t s = 0; s < of_crumbs.size(); ++s) {
+    reactions_[s].force += of_crumbs[s].force;
+    reactions_[s].torque += of_crumbs[s].torque;
+  }
   dynamics::State from = before_, to{state.x, {}, state.time};
   for (std::size_t i = 0; i < state.x.size(); ++i)
     from.v[i] = (state.x[i] - before_.x[i]) / dt;
@@ -46,7 +59,11 @@ void Accounts::after_step(physics::Physics& physics, const dynamics::Loads& load
   const double inertia = power_of_inertia(physics.model(), loads, before_, state, acceleration);
   at_begin.supports += inertia;
   at_end.supports += inertia;
+  at_begin.dissipated += 2 * loads.mass_damping * kinetic_energy_of_crumbs_;
+  kinetic_energy_of_crumbs_ = physics.crumbs().kinetic_energy(state);
+  at_end.dissipated += 2 * loads.mass_damping * kinetic_energy_of_crumbs_;
   dynamics::book(at_begin, at_end, dt, state);
+  state.numbers["work of supports [J]"] += physics.crumbs().work_of_supports();
   const auto by_time = [&](const Points& x) { // what potentials that change with time add, with the body held still
     return dynamics::load_energy(loads, state.time, x) - dynamics::load_energy(loads, before_.time, x);
   };

@@ -18,6 +18,9 @@ class Physics;
 
 namespace kerf::scene {
 
+/// With those of crumbs [J].
+double kinetic_energy(physics::Physics& physics, const dynamics::State& state);
+double gravity_energy(physics::Physics& physics, const dynamics::Loads& loads, const dynamics::State& state);
 /// Kinetic, elastic and potential energies together [J].
 double total_energy(physics::Physics& physics, const dynamics::Loads& loads, const dynamics::State& state);
 
@@ -39,7 +42,7 @@ class Accounts {
   const std::vector<dynamics::Reaction>& reactions() const { return reactions_; }
 
  private:
-  double start_energy_ = 0, work_of_cut_ = 0; // [J]
+  double start_energy_ = 0, work_of_cut_ = 0, kinetic_energy_of_crumbs_ = 0; // [J]
   dynamics::State before_;
   std::vector<dynamics::Reaction> reactions_;
 };

@@ -26,6 +26,7 @@ void find_supports(Body& body) {
 void make_loads(Body& body) {
   find_supports(body);
   body.loads.acting.clear();
+  body.loads.carried = body.physics->crumbs().carried();
   body.first_load = {0};
   for (const LoadMaker& maker : body.load_makers) {
     maker.make(body, body.loads.acting);
@@ -36,7 +37,7 @@ void make_loads(Body& body) {
 }
 
 /// Takes a cut into placement, surface, physics and loads.
-void follow_cut(Body& body, const grid::CutChange& change, Timings& timings) {
+void follow_cut(Body& body, grid::CutChange change, Timings& timings) {
   if (!change.any())
     return;
   {
@@ -45,6 +46,7 @@ void follow_cut(Body& body, const grid::CutChange& change, Timings& timings) {
     body.placed.n_placed += placed.n_placed;
     body.placed.n_clamped += placed.n_clamped;
     surface::update_surface(body.solid, change, body.surface, body.surface_index);
+    grid::update_crumbs(body.solid, change);
     ++body.n_recuts;
   }
   const ScopedTimer timer(timings, "assemble");
@@ -55,11 +57,11 @@ void follow_cut(Body& body, const grid::CutChange& change, Timings& timings) {
 /// Cuts, and lets all of the body follow.
 template <class Cut>
 void cut_and_follow(Body& body, Timings& timings, const Cut& cut) {
-  const grid::CutChange change = [&] {
+  grid::CutChange change = [&] {
     const ScopedTimer timer(timings, "cut");
     return cut();
   }();
-  follow_cut(body, change, timings);
+  follow_cut(body, std::move(change), timings);
 }
 
 } // namespace
@@ -71,6 +73,7 @@ void start(Body& body, const geometry::TriangleMesh& mesh, const PhysicsMaker& m
     body.placed = surface::place(solid, body.placement);
     cut::fit_skin(mesh, solid);
     solid.complex = grid::build_complex(solid);
+    grid::find_crumbs(solid);
     body.surface = body.cutter ? surface::build_surface(solid, body.surface_index) : surface::build_surface(solid);
   }
   body.first_volume = surface::enclosed_volume(body.surface.rest, body.surface.triangles);

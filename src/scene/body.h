@@ -88,7 +88,7 @@ struct Body {
 };
 
 /// What the physics sees of a body.
-inline physics::CutBody seen(const Body& body) { return {body.solid, body.surface}; }
+inline physics::CutBody seen(const Body& body) { return {body.solid, body.surface, body.density}; }
 
 /// Where the corners are now [m].
 inline const Points& corners(const Body& body) { return body.physics->corners(body.state); }

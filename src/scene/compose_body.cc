@@ -61,6 +61,19 @@ std::string describe_physics(const Section& section, const BodyParameters& param
               parameters.integrator);
 }
 
+/// Which parts of the mesh the grid takes for pieces of their own, too thin to be deformed.
+std::string describe_crumbs(const Body& body) {
+  constexpr std::size_t most = 5;
+  const physics::Crumbs& crumbs = body.physics->crumbs();
+  std::string text = line("body ", body.name, ": ", crumbs.size(),
+                          " thin parts are pieces of their own on this grid, and move as rigid bodies:");
+  for (std::size_t i = 0; i < std::min(most, crumbs.size()); ++i) {
+    const Vec3& p = crumbs.body(i).centre;
+    text += line(i == 0 ? " around (" : ", (", p[0], ", ", p[1], ", ", p[2], ") m");
+  }
+  return text + (crumbs.size() > most ? " and elsewhere" : "") + "; a smaller cube edge may join them";
+}
+
 } // namespace
 
 Body compose_body(const Section& section, const GravityParameters* gravity, const std::vector<const Section*>& floors,
@@ -101,6 +114,8 @@ Body compose_body(const Section& section, const GravityParameters* gravity, cons
                                    " surface triangles"));
   world.composition.push_back(line("body ", body.name, ": ", describe_physics(section, parameters, body), ", ",
                                    body.regions.size(), " supports, ", body.load_makers.size(), " loads"));
+  if (body.physics->crumbs().any())
+    world.composition.push_back(describe_crumbs(body));
   return body;
 }
 

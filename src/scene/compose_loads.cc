@@ -55,6 +55,9 @@ std::vector<double> volumes(const Body& body) {
   std::vector<double> volumes;
   for (const double m : body.physics->model().lumped_mass())
     volumes.push_back(m / body.density);
+  const std::vector<double>& of_crumbs = body.physics->crumbs().carried_mass();
+  for (std::size_t i = 0; i < of_crumbs.size(); ++i)
+    volumes[i] += of_crumbs[i] / body.density;
   return volumes;
 }
 

@@ -17,7 +17,7 @@ double mass(const Body& body) {
   double sum = 0;
   for (const double m : model(body).lumped_mass())
     sum += m;
-  return sum;
+  return sum + body.physics->crumbs().mass();
 }
 
 /// A number that accounts book in the state; 0 before the first step.
@@ -138,19 +138,24 @@ std::vector<Observable> probe_strains(const Body& body, const std::vector<std::s
   return series;
 }
 
-Vec3 momentum(const Body& body) { return dynamics::momentum(model(body), body.state); }
-Vec3 angular_momentum(const Body& body) { return dynamics::angular_momentum(model(body), body.state, Vec3::Zero()); }
+Vec3 momentum(const Body& body) {
+  return dynamics::momentum(model(body), body.state) + body.physics->crumbs().momentum(body.state);
+}
+Vec3 angular_momentum(const Body& body) {
+  return dynamics::angular_momentum(model(body), body.state, Vec3::Zero()) +
+         body.physics->crumbs().angular_momentum(body.state, Vec3::Zero());
+}
 
 } // namespace
 
 const std::vector<Observable>& body_observables() {
   static const std::vector<Observable> all = {
-    {"kinetic energy", "J", "sum of m v.v / 2 over the particles, lumped mass",
-     [](const Body& b) { return dynamics::kinetic_energy(model(b), b.state.v); }},
+    {"kinetic energy", "J", "sum of m v.v / 2 over the particles, lumped mass; of crumbs as rigid bodies",
+     [](const Body& b) { return kinetic_energy(*b.physics, b.state); }},
     {"elastic energy", "J", "of the force model at the current positions",
      [](const Body& b) { return model(b).energy(b.state.x); }},
-    {"gravity energy", "J", "-sum of m g.x over the particles",
-     [](const Body& b) { return dynamics::gravity_energy(model(b), b.loads, b.state.x); }},
+    {"gravity energy", "J", "-sum of m g.x over the particles, and over crumbs",
+     [](const Body& b) { return gravity_energy(*b.physics, b.loads, b.state); }},
     {"energy of loads", "J", "of the loads that have a potential",
      [](const Body& b) { return dynamics::load_energy(b.loads, b.state.time, b.state.x); }},
     {"dissipated energy", "J", "by damping and friction, so far",
@@ -185,6 +190,8 @@ const std::vector<Observable>& body_observables() {
     {"largest displacement", "m", "of a surface vertex from its rest position", largest_displacement},
     {"pieces", "1", "connected components of the copies",
      [](const Body& b) { return count(grid::n_pieces(b.solid.complex)); }},
+    {"crumbs", "1", "pieces too small for the grid to deform, which move as rigid bodies (grid/crumbs.h)",
+     [](const Body& b) { return count(b.physics->crumbs().size()); }},
     {"copies", "1", "cells, once per connected component", [](const Body& b) { return count(b.solid.complex.n_copies()); }},
     {"surface triangles", "1", "of the closed surface",
      [](const Body& b) { return count(b.surface.triangles.size()); }},

@@ -22,15 +22,6 @@ void require_positive(const std::string& path, const double value) {
     throw ParameterError({.path = path, .value = to_text(value), .rule = positive.rule()});
 }
 
-/// The material's part of the copy's cube [1].
-double fill_of(const grid::Solid& solid, const grid::Copy& copy) {
-  if (copy.nodes == 0xff)
-    return 1;
-  double sum = 0;
-  grid::for_each_tetrahedron(solid, copy, [&](const grid::Tetrahedron& t, int) { sum += grid::volume(t); });
-  return sum;
-}
-
 /// Vertices of a cube that a spring joins: all that differ in one coordinate (edges) or two (face diagonals).
 struct Pair {
   int a, b;
@@ -54,7 +45,7 @@ MassSpring::MassSpring(const grid::Solid& solid, const MassSpringOptions& option
   require_positive("Young's modulus [Pa]", options.youngs_modulus);
   std::vector<double> fill(solid.complex.n_copies());
   parallel_for(
-    fill.size(), [&](const std::size_t c) { fill[c] = fill_of(solid, solid.complex.copies[grid::CopyId(c)]); }, 256);
+    fill.size(), [&](const std::size_t c) { fill[c] = solid.crumbs.holds(grid::CopyId(c)) ? 0 : grid::fill(solid, solid.complex.copies[grid::CopyId(c)]); }, 256);
   const double eighth = options.density * solid.grid.h() * solid.grid.h() * solid.grid.h() / 8;
   for (const auto c : ids<grid::CopyId>(solid.complex.n_copies()))
     for (const auto corner : solid.complex.copies[c].corners)
@@ -71,6 +62,8 @@ void MassSpring::add_springs(const grid::CellComplex& complex, const std::vector
   all.reserve(pairs.size() * complex.n_copies());
   for (const auto c : ids<grid::CopyId>(complex.n_copies()))
     for (const Pair& pair : pairs) {
+      if (fill[c.value] == 0)
+        continue;
       const auto a = complex.copies[c].corners[pair.a].value, b = complex.copies[c].corners[pair.b].value;
       all.push_back({std::min(a, b), std::max(a, b), fill[c.value] * (pair.is_edge ? edge : diagonal),
                      pair.is_edge ? h : std::sqrt(2.0) * h});

@@ -74,10 +74,13 @@ TEST(Update, IsBuildingAnewBitByBit) {
 }
 
 /// What was full and is partial now gets an element of its own, and the table does not grow when one is remade.
-/// Whatever corners the copies get, in whatever order they come: who holds a corner is listed in the same order.
+/// Whatever corners the copies get, in whatever order they come, and crumb or not: who holds a corner is listed in the
+/// same order.
 TEST(Update, IncidenceIsThatOfTheComplexAfterAnyChange) {
   Draw draw(94);
-  grid::CellComplex complex;
+  const grid::Grid grid({Vec3::Zero(), 1}, std::vector<Index3>(1, Index3{1, 1, 1}));
+  grid::Solid solid{grid, grid::Cuts(grid)};
+  grid::CellComplex& complex = solid.complex;
   complex.node.resize(40);
   const auto any_corner = [&] { return grid::CornerId(static_cast<std::size_t>(draw(0, 40))); };
   for (int c = 0; c < 20; ++c) {
@@ -85,7 +88,8 @@ TEST(Update, IncidenceIsThatOfTheComplexAfterAnyChange) {
     for (auto& corner : complex.copies[grid::CopyId(std::size_t(c))].corners)
       corner = any_corner();
   }
-  Incidence incidence(complex);
+  solid.crumbs.of_copy.assign(20, 0);
+  Incidence incidence(solid);
   for (int step = 0; step < 50; ++step) {
     std::vector<grid::CopyId> changed;
     for (int i = 0; i < 3; ++i)
@@ -94,8 +98,9 @@ TEST(Update, IncidenceIsThatOfTheComplexAfterAnyChange) {
     changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
     for (const auto c : changed)
       complex.copies[c].corners[static_cast<int>(draw(0, 8))] = any_corner();
-    incidence.update(complex, changed);
-    const Incidence anew(complex);
+    solid.crumbs.of_copy[changed[0].value] = draw(0, 1) < 0.5 ? 1 : 0;
+    incidence.update(solid, changed);
+    const Incidence anew(solid);
     for (std::size_t corner = 0; corner < 40; ++corner)
       ASSERT_TRUE(std::ranges::equal(incidence.users(corner), anew.users(corner))) << step;
   }

@@ -157,7 +157,7 @@ std::size_t cut(Subject& subject, const std::function<grid::CutChange(Subject&)>
 
 void cut(Subject& subject, const grid::histories::Step& step, Tally& tally) {
   const auto make = [&](Subject& of) {
-    auto& [grid, cuts, complex] = of.solid;
+    auto& [grid, cuts, complex, crumbs] = of.solid;
     std::vector<grid::EdgeId> edges;
     for (const auto& cut : step.cuts) {
       cuts.add(grid, cut);

@@ -72,8 +72,7 @@ struct Reference {
 
   Reference(const Body& body, const int w, const double density)
     : mass(body.complex.n_corners(), 0.0), rest(body.rest()) {
-    const Sites sites = sites_of(body);
-    const auto shares = material_shares(body, sites, density);
+    const auto shares = material_shares(body, density);
     std::vector<std::vector<grid::NodeId>> regions;
     std::map<grid::NodeId, double> n_holders;
     for (const auto n : ids<grid::NodeId>(body.grid.n_nodes()))
@@ -85,8 +84,8 @@ struct Reference {
     for (const auto& nodes : regions) {
       auto& masses = mass_in.emplace_back();
       for (const Share& s : shares)
-        if (const auto node = sites.nodes.at(s.point); std::find(nodes.begin(), nodes.end(), node) != nodes.end())
-          masses[s.corner.value] += s.mass / n_holders.at(node);
+        if (std::find(nodes.begin(), nodes.end(), s.node) != nodes.end())
+          masses[s.corner.value] += s.mass / n_holders.at(s.node);
     }
     for (const Share& s : shares)
       mass[s.corner.value] += s.mass;

@@ -42,10 +42,10 @@ double largest_difference(const std::vector<double>& a, const std::vector<double
 /// Regions by walking, in numbers of points.
 std::vector<std::vector<std::uint32_t>> regions(const Body& body, const Lines& lines, const int w) {
   std::vector<std::vector<std::uint32_t>> sets;
-  for (const auto r : lines.sites().nodes) {
+  for (const auto r : lines.nodes()) {
     sets.emplace_back();
     for (const auto n : region(body, r, w))
-      sets.back().push_back(std::lower_bound(lines.sites().nodes.begin(), lines.sites().nodes.end(), n) - lines.sites().nodes.begin());
+      sets.back().push_back(std::lower_bound(lines.nodes().begin(), lines.nodes().end(), n) - lines.nodes().begin());
   }
   return sets;
 }
@@ -98,7 +98,7 @@ TEST(Lines, RegionsOfAnUncutBlockAreBoxes) {
     std::vector<double> n(6 * lines.n_points(), 1.0);
     lines.sum_over_regions(n);
     for (std::size_t r = 0; r < lines.n_points(); ++r) {
-      const Index3 at = body.grid.index(lines.sites().nodes[r]);
+      const Index3 at = body.grid.index(lines.nodes()[r]);
       double expected = 1;
       for (int axis = 0; axis < 3; ++axis)
         expected *= std::min(at[axis] + w, 7 - axis) - std::max(at[axis] - w, 1) + 1;
@@ -117,7 +117,7 @@ TEST(Lines, NoPointIsReachedTwiceAndNoneInAnotherPiece) {
       if (body.complex.copies[c].nodes >> v & 1)
         piece[body.grid.nodes(body.complex.copies[c].cell)[v]] = pieces.piece[c];
   const Lines lines(body, 3);
-  for (const auto r : lines.sites().nodes) {
+  for (const auto r : lines.nodes()) {
     const auto nodes = region(body, r, 3);
     EXPECT_EQ(std::set<grid::NodeId>(nodes.begin(), nodes.end()).size(), nodes.size());
     for (const auto n : nodes)

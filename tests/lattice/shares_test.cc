@@ -37,7 +37,7 @@ double shape_integral(const fem::Moments& m, const int a) {
 TEST(Shares, CornersWeighTheIntegralsOfTheirShapeFunctions) {
   const Body body = rough_block(10, {0.02, 0.98});
   std::vector<double> mass(body.complex.n_corners(), 0.0), expected = mass;
-  for (const Share& share : material_shares(body, sites_of(body), 1100))
+  for (const Share& share : material_shares(body, 1100))
     mass[share.corner.value] += share.mass;
   for (const grid::Copy& copy : body.complex.copies) {
     const auto moments = fem::material_moments(body, copy);
@@ -67,7 +67,7 @@ TEST(Shares, MassAndCentreAreTheMaterials) {
     });
   }
   const Points rest = body.rest();
-  for (const Share& share : material_shares(body, sites_of(body), density)) {
+  for (const Share& share : material_shares(body, density)) {
     share_mass[piece[share.corner.value]] += share.mass;
     share_moment[piece[share.corner.value]] += share.mass * rest[share.corner.value];
   }
@@ -92,17 +92,16 @@ TEST(Shares, FarCornersOfSliversAreExact) {
 
 TEST(Shares, EveryCornerAndEveryNodeHasSome) {
   const Body body = rough_block(12, {1e-9, 1});
-  const Sites sites = sites_of(body);
-  EXPECT_EQ(sites.nodes.size(), 36u);
-  std::set<std::uint32_t> points;
+  std::set<grid::NodeId> nodes;
   std::set<grid::CornerId> corners;
-  for (const Share& share : material_shares(body, sites, 1000)) {
+  for (const Share& share : material_shares(body, 1000)) {
     EXPECT_GT(share.mass, 0);
-    points.insert(share.point);
+    EXPECT_TRUE(body.grid.is_material(share.node));
+    nodes.insert(share.node);
     corners.insert(share.corner);
   }
   EXPECT_EQ(corners.size(), body.complex.n_corners());
-  EXPECT_EQ(points.size(), sites.n_points());
+  EXPECT_EQ(nodes.size(), 36u);
 }
 
 } // namespace

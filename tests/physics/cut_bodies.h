@@ -21,7 +21,7 @@ struct GrowingCut {
     cutter.begin(body, rest());
   }
 
-  CutBody seen() const { return {body, surface}; }
+  CutBody seen() const { return {body, surface, 1000}; }
   Points rest() const { return grid::rest_positions(body); }
 
   /// Cuts edges, and lets physics and state follow. Returns what has changed.

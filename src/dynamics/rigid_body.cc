@@ -1,0 +1,88 @@
+#include "dynamics/rigid_body.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace kerf::dynamics {
+
+namespace {
+
+Mat3 cross_matrix(const Vec3& a) {
+  Mat3 A;
+  A << 0, -a[2], a[1], a[2], 0, -a[0], -a[1], a[0], 0;
+  return A;
+}
+
+/// Pi of the midpoint rule, by Newton's method.
+Vec3 middle_momentum(const Mat3& inverse_inertia, const Vec3& start, const double dt) {
+  constexpr int most = 30;
+  constexpr double round_off = 1e-16;
+  Vec3 middle = start;
+  for (int i = 0; i < most; ++i) {
+    const Vec3 xi = inverse_inertia * middle;
+    const Vec3 residual = middle - start - 0.5 * dt * middle.cross(xi);
+    const Mat3 J =
+      Mat3::Identity() - 0.5 * dt * (cross_matrix(middle) * inverse_inertia - cross_matrix(xi));
+    const Vec3 change = J.partialPivLu().solve(residual);
+    middle -= change;
+    if (!(change.norm() > round_off * start.norm()))
+      break;
+  }
+  return middle;
+}
+
+constexpr double most_turns = 1000; // in a step: beyond them the attitude is of no use
+
+/// R times the Cayley map of an axial vector.
+Mat3 times_cayley(const Mat3& R, const Vec3& a) {
+  const Eigen::Quaterniond half(1, 0.5 * a[0], 0.5 * a[1], 0.5 * a[2]);
+  return (Eigen::Quaterniond(R) * half).normalized().toRotationMatrix();
+}
+
+/// (1 - exp(-z)) / z and (1 - that) / z, without cancellation.
+std::array<double, 2> decays(const double z) {
+  if (std::abs(z) < 1e-3)
+    return {1 - z / 2 * (1 - z / 3 * (1 - z / 4)), 0.5 - z / 6 * (1 - z / 4 * (1 - z / 5))};
+  const double first = -std::expm1(-z) / z;
+  return {first, (1 - first) / z};
+}
+
+} // namespace
+
+Vec3 angular_velocity(const RigidBody& body, const RigidMotion& motion) {
+  return motion.R * body.inertia.ldlt().solve(motion.R.transpose() * motion.spin);
+}
+
+double kinetic_energy(const RigidBody& body, const RigidMotion& motion) {
+  return 0.5 * body.mass * motion.v.squaredNorm() + 0.5 * motion.spin.dot(angular_velocity(body, motion));
+}
+
+void fly(const RigidBody& body, const Vec3& gravity, const double alpha, const double dt, RigidMotion& motion) {
+  const auto [first, second] = decays(alpha * dt);
+  motion.x += dt * first * motion.v + dt * dt * second * gravity;
+  motion.v += dt * first * (gravity - alpha * motion.v);
+  if (motion.spin.isZero(0))
+    return;
+  const Mat3 inverse = body.inertia.inverse();
+  const double angle = dt * first * (inverse * (motion.R.transpose() * motion.spin)).norm();
+  const int n = static_cast<int>(std::clamp(std::ceil(angle), 1.0, most_turns)); // turns of at most 1 rad
+  for (int i = 0; i < n; ++i) {
+    const Vec3 start = first * (motion.R.transpose() * motion.spin); // as of the mean spin over the step
+    motion.R = times_cayley(motion.R, dt / n * inverse * middle_momentum(inverse, start, dt / n));
+  }
+  motion.spin *= std::exp(-alpha * dt);
+}
+
+Mat3 turned(const Mat3& R, const Vec3& angle) {
+  const double length = angle.norm();
+  if (length == 0)
+    return R;
+  return (Eigen::AngleAxisd(length, angle / length) * Eigen::Quaterniond(R)).normalized().toRotationMatrix();
+}
+
+} // namespace kerf::dynamics

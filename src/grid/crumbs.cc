@@ -1,0 +1,171 @@
+#include "grid/crumbs.h"
+
+#include "grid/material.h"
+
+#include <algorithm>
+#include <bit>
+#include <span>
+
+namespace kerf::grid {
+
+namespace {
+
+void sort_unique(std::vector<CopyId>& copies) {
+  std::sort(copies.begin(), copies.end());
+  copies.erase(std::unique(copies.begin(), copies.end()), copies.end());
+}
+
+/// Of some copies' nodes.
+struct Extent {
+  Index3 least{}, most{};
+  bool is_empty = true;
+
+  void add(const Solid& solid, const CopyId c) {
+    const Copy& copy = solid.complex.copies[c];
+    const auto nodes = solid.grid.nodes(copy.cell);
+    for (unsigned left = copy.nodes; left != 0; left &= left - 1) {
+      const Index3& node = solid.grid.index(nodes[std::countr_zero(left)]);
+      for (int axis = 0; axis < 3; ++axis) {
+        least[axis] = is_empty ? node[axis] : std::min(least[axis], node[axis]);
+        most[axis] = is_empty ? node[axis] : std::max(most[axis], node[axis]);
+      }
+      is_empty = false;
+    }
+  }
+  bool is_of_one_cube() const {
+    return most[0] - least[0] <= 1 && most[1] - least[1] <= 1 && most[2] - least[2] <= 1;
+  }
+};
+
+/// Walks through pieces until it knows what they are.
+class Search {
+ public:
+  enum class Rule { loose, loose_or_small };
+
+  Search(const Solid& solid, const Rule rule)
+    : solid_(solid), rule_(rule), known_(solid.complex.n_copies(), Known::nothing) {}
+
+  /// The copies of the crumb that holds a copy, ascending; none where it is in no crumb, or in one found before.
+  std::vector<CopyId> crumb_at(const CopyId start) {
+    std::vector<CopyId> copies;
+    if (known_[start] != Known::nothing)
+      return copies;
+    bool is_crumb = true, is_loose = true;
+    Extent extent;
+    copies.push_back(start);
+    known_[start] = Known::seen;
+    for (std::size_t i = 0; i < copies.size() && is_crumb; ++i) {
+      is_loose = is_loose && this->is_loose(copies[i]);
+      extent.add(solid_, copies[i]);
+      is_crumb = is_loose || (rule_ == Rule::loose_or_small && extent.is_of_one_cube());
+      for (int face = 0; face < 6 && is_crumb; ++face)
+        is_crumb = add_neighbours(copies[i], face, copies);
+    }
+    if (is_crumb) {
+      std::sort(copies.begin(), copies.end());
+      return copies;
+    }
+    for (const CopyId c : copies)
+      known_[c] = Known::attached;
+    return {};
+  }
+
+ private:
+  enum class Known : std::uint8_t { nothing, seen, attached };
+
+  bool is_loose(const CopyId c) const {
+    const Copy& copy = solid_.complex.copies[c];
+    return std::popcount(copy.nodes) <= 1 || solid_.crumbs.holds(copy.corners[0]) || fill(solid_, copy) < well_filled;
+  }
+
+  /// False where one of them is known to be in no crumb.
+  bool add_neighbours(const CopyId c, const int face, std::vector<CopyId>& copies) {
+    const Copy& copy = solid_.complex.copies[c];
+    const CellId cell = solid_.grid.neighbour(copy.cell, face);
+    if (!cell.valid())
+      return true;
+    for (const CopyId other : solid_.complex.copies_of(cell)) {
+      const Part mine = copy.part(), its = solid_.complex.copies[other].part();
+      if (face % 2 == 1 ? !are_glued(mine, its, face / 2) : !are_glued(its, mine, face / 2))
+        continue;
+      if (known_[other] == Known::attached)
+        return false;
+      if (known_[other] == Known::nothing) {
+        known_[other] = Known::seen;
+        copies.push_back(other);
+      }
+    }
+    return true;
+  }
+
+  const Solid& solid_;
+  Rule rule_;
+  Table<CopyId, Known> known_;
+};
+
+void mark(Solid& solid, const Crumb& crumb) {
+  for (const CopyId c : crumb.copies) {
+    solid.crumbs.of_copy[c.value] = 1;
+    for (const CornerId corner : solid.complex.copies[c].corners)
+      solid.crumbs.of_corner[corner.value] = 1;
+  }
+}
+
+/// The crumbs that hold some of these copies.
+std::vector<Crumb> crumbs_at(const Solid& solid, const Search::Rule rule, const std::span<const CopyId> copies) {
+  std::vector<Crumb> found;
+  Search search(solid, rule);
+  std::uint32_t name = solid.crumbs.n_named;
+  for (const CopyId c : copies)
+    if (auto of_crumb = search.crumb_at(c); !of_crumb.empty())
+      found.push_back({name++, std::move(of_crumb)});
+  return found;
+}
+
+void add(Solid& solid, std::vector<Crumb> found) {
+  solid.crumbs.of_copy.resize(solid.complex.n_copies(), 0);
+  solid.crumbs.of_corner.resize(solid.complex.n_corners(), 0);
+  solid.crumbs.n_named += static_cast<std::uint32_t>(found.size());
+  for (Crumb& crumb : found) {
+    mark(solid, crumb);
+    solid.crumbs.all.push_back(std::move(crumb));
+  }
+}
+
+} // namespace
+
+void find_crumbs(Solid& solid) {
+  solid.crumbs = {};
+  std::vector<CopyId> all;
+  for (const auto c : ids<CopyId>(solid.complex.n_copies()))
+    if (solid.complex.copies[c].nodes != 0xff)
+      all.push_back(c);
+  if (auto found = crumbs_at(solid, Search::Rule::loose, all); !found.empty())
+    add(solid, std::move(found));
+}
+
+void update_crumbs(Solid& solid, CutChange& change) {
+  Crumbs& crumbs = solid.crumbs;
+  if (!crumbs.of_corner.empty()) { // what a cut leaves of a crumb stays one
+    crumbs.of_corner.resize(change.n_corners_before, 0);
+    inherit(change, crumbs.of_corner);
+  }
+  std::vector<Crumb> found = crumbs_at(solid, Search::Rule::loose_or_small, change.reshaped);
+  if (found.empty())
+    return;
+  std::vector<CopyId> fresh;
+  for (const Crumb& crumb : found)
+    fresh.insert(fresh.end(), crumb.copies.begin(), crumb.copies.end());
+  sort_unique(fresh);
+  std::erase_if(crumbs.all, [&](const Crumb& before) {
+    return std::any_of(before.copies.begin(), before.copies.end(), [&](const CopyId c) {
+      return std::binary_search(fresh.begin(), fresh.end(), c);
+    });
+  });
+  std::erase_if(fresh, [&](const CopyId c) { return crumbs.holds(c); });
+  change.reshaped.insert(change.reshaped.end(), fresh.begin(), fresh.end());
+  sort_unique(change.reshaped);
+  add(solid, std::move(found));
+}
+
+} // namespace kerf::grid

@@ -1,0 +1,245 @@
+// How crumbs move in a step.
+
+#include "dynamics/forces.h"
+#include "dynamics/sound_steps.h"
+#include "physics/crumbs.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+
+namespace kerf::physics {
+
+using dynamics::RigidBody;
+using dynamics::RigidMotion;
+
+namespace {
+
+using Matrix6 = Eigen::Matrix<double, 6, 6>;
+using Vector6 = Eigen::Matrix<double, 6, 1>;
+using Matrix36 = Eigen::Matrix<double, 3, 6>;
+
+/// Displacement of a point at r from the centre, by translation and rotation.
+Matrix36 modes_at(const Vec3& r) {
+  Matrix36 G;
+  G << 1, 0, 0, 0, r[2], -r[1], 0, 1, 0, -r[2], 0, r[0], 0, 0, 1, r[1], -r[0], 0;
+  return G;
+}
+
+Mat3 inertia_now(const RigidBody& body, const RigidMotion& motion) {
+  return motion.R * body.inertia * motion.R.transpose();
+}
+
+/// The metric of kinetic energy.
+Matrix6 inertia_of_modes(const RigidBody& body, const RigidMotion& motion) {
+  Matrix6 W = Matrix6::Zero();
+  W.topLeftCorner<3, 3>() = body.mass * Mat3::Identity();
+  W.bottomRightCorner<3, 3>() = inertia_now(body, motion);
+  return W;
+}
+
+/// The least d, as measured by W, of those with the least (S d - b).
+Vector6 least_solution(const Matrix6& S, const Vector6& b, const Matrix6& W) {
+  constexpr double round_off = 1e-9;
+  const Eigen::LLT<Matrix6> factor(W);
+  const Matrix6 inverse = factor.matrixL().solve(Matrix6::Identity());
+  const Eigen::SelfAdjointEigenSolver<Matrix6> eigen(inverse * S * inverse.transpose());
+  const Vector6 c = eigen.eigenvectors().transpose() * (inverse * b);
+  Vector6 d = Vector6::Zero();
+  for (int k = 0; k < 6; ++k)
+    if (eigen.eigenvalues()[k] > round_off * eigen.eigenvalues()[5])
+      d += c[k] / eigen.eigenvalues()[k] * eigen.eigenvectors().col(k);
+  return inverse.transpose() * d;
+}
+
+/// `flown` moved by a translation and a rotation within dt.
+RigidMotion moved(const RigidMotion& flown, const Matrix6& inertia, const Vector6& d, const double dt) {
+  return {flown.x + d.head<3>(), flown.v + d.head<3>() / dt, dynamics::turned(flown.R, d.tail<3>()),
+          flown.spin + inertia.bottomRightCorner<3, 3>() * d.tail<3>() / dt};
+}
+
+} // namespace
+
+struct Crumbs::Push {
+  Vector6 force = Vector6::Zero();     // and torque
+  Matrix6 stiffness = Matrix6::Zero();
+};
+
+void Crumbs::step(const dynamics::Loads& loads, const double dt, const dynamics::MotionKind kind,
+                  dynamics::State& state) {
+  reactions_.assign(loads.supports.size(), {});
+  work_of_supports_ = 0;
+  if (!any())
+    return;
+  const Motions start = state.crumbs;
+  std::vector<Wrench> pushes(crumbs_.size());
+  if (kind == dynamics::MotionKind::dynamic)
+    fly(loads, dt, pushes, state);
+  hold(loads, dt, start, pushes, state);
+  if (kind == dynamics::MotionKind::quasi_static)
+    for (RigidMotion& motion : state.crumbs)
+      motion.v = motion.spin = Vec3::Zero();
+  carry(state.crumbs, state);
+}
+
+void Crumbs::fly(const dynamics::Loads& loads, const double dt, std::vector<Wrench>& pushes,
+                 dynamics::State& state) const {
+  constexpr int most = 64;
+  for (int n = 1; n <= most; n *= 2) {
+    std::optional<Motions> motions = state.crumbs;
+    for (int k = 0; k < n && motions; ++k) {
+      const Motions start = *motions;
+      for (std::size_t b = 0; b < crumbs_.size(); ++b)
+        dynamics::fly(crumbs_[b].body, loads.gravity, loads.mass_damping, dt / n, (*motions)[b]);
+      if (!loads.acting.empty())
+        motions = pushed(loads, dt / n, start, Motions(*motions), pushes, state);
+    }
+    if (motions) {
+      state.crumbs = std::move(*motions);
+      return;
+    }
+  }
+  throw dynamics::StepError("loads push a crumb, a piece that moves as a rigid body, and Newton's method finds no place "
+                            "where it settles in 64 substeps",
+                            crumbs_[0].particles.empty() ? 0 : crumbs_[0].particles[0]);
+}
+
+std::vector<Crumbs::Push> Crumbs::pushes(const dynamics::Loads& loads, const double dt, const Motions& motions,
+                                         const dynamics::State& state) const {
+  const dynamics::Moment moment{state.time, state.x, state.v};
+  std::vector<Push> all(crumbs_.size());
+  const auto for_each_particle = [&](const auto& f) {
+    for (std::size_t b = 0; b < crumbs_.size(); ++b)
+      for (const auto particle : crumbs_[b].particles)
+        f(b, particle, modes_at(state.x[particle] - motions[b].x));
+  };
+  Points forces(state.x.size(), Vec3::Zero());
+  dynamics::add_load_forces(loads, moment, forces);
+  for_each_particle([&](const std::size_t b, const std::uint32_t particle, const Matrix36& G) {
+    all[b].force += G.transpose() * forces[particle];
+  });
+  const auto tangent = dynamics::load_tangent(loads, dynamics::Tangent::positive, moment, 1 / dt);
+  for (int k = 0; k < 6 && !tangent.empty(); ++k) {
+    Points mode(state.x.size(), Vec3::Zero()), force(state.x.size(), Vec3::Zero());
+    for_each_particle([&](std::size_t, const std::uint32_t particle, const Matrix36& G) { mode[particle] = G.col(k); });
+    tangent.add_product(dynamics::flat(mode), dynamics::flat(force));
+    for_each_particle([&](const std::size_t b, const std::uint32_t particle, const Matrix36& G) {
+      all[b].stiffness.col(k) += G.transpose() * force[particle];
+    });
+  }
+  return all;
+}
+
+std::optional<Crumbs::Motions> Crumbs::pushed(const dynamics::Loads& loads, const double dt, const Motions& start,
+                                              Motions flown, std::vector<Wrench>& wrenches,
+                                              dynamics::State& state) const {
+  constexpr int most = 40, undamped = 10;
+  constexpr double settled = 1e-9; // of the crumb's size
+  const double drag = 1 + dt * loads.mass_damping;
+  Motions motions = flown;
+  std::vector<Vector6> way(crumbs_.size(), Vector6::Zero()); // from flight
+  std::vector<std::uint8_t> is_pushed(crumbs_.size(), 0);
+  for (int i = 0; i < most; ++i) {
+    carry(motions, state);
+    const std::vector<Push> all = pushes(loads, dt, motions, state);
+    bool is_settled = true;
+    for (std::size_t b = 0; b < crumbs_.size(); ++b) {
+      const RigidBody& body = crumbs_[b].body;
+      const Matrix6 inertia = inertia_of_modes(body, flown[b]), W = drag / (dt * dt) * inertia;
+      const Vector6 residual = all[b].force - W * way[b];
+      if (residual.isZero(0))
+        continue;
+      if (!is_pushed[b]) { // gravity and damping act as loads do now, or they would have no balance at rest
+        is_pushed[b] = 1;
+        flown[b].v = (start[b].v + dt * loads.gravity) / drag;
+        flown[b].x = start[b].x + dt * flown[b].v;
+        flown[b].spin = start[b].spin / drag;
+        motions[b] = flown[b];
+        is_settled = false;
+        continue;
+      }
+      const Matrix6 K = 0.5 * (all[b].stiffness + all[b].stiffness.transpose());
+      const Vector6 change = (i < undamped ? 1.0 : 0.5) * (W + K).ldlt().solve(residual);
+      const double size = std::sqrt(body.inertia.trace() / body.mass);
+      is_settled &= change.head<3>().norm() + size * change.tail<3>().norm() <= settled * size;
+      way[b] += change;
+      wrenches[b] = {(W * way[b]).head<3>(), (W * way[b]).tail<3>()};
+      motions[b] = moved(flown[b], inertia, way[b], dt);
+    }
+    if (is_settled)
+      return motions;
+  }
+  return std::nullopt;
+}
+
+std::vector<std::vector<Crumbs::Hold>> Crumbs::holds(const dynamics::Loads& loads) const {
+  std::vector<std::vector<Hold>> all(crumbs_.size());
+  for (std::size_t s = 0; s < loads.supports.size(); ++s)
+    for (std::size_t i = 0; i < loads.supports[s].corners.size(); ++i)
+      if (const auto particle = loads.supports[s].corners[i]; carried_[particle] != 0) {
+        const Crumb& crumb = crumbs_[crumb_of_[particle]];
+        const auto place = std::find(crumb.particles.begin(), crumb.particles.end(), particle);
+        const auto index = static_cast<std::size_t>(place - crumb.particles.begin());
+        all[crumb_of_[particle]].push_back({s, i, crumb.rest_of_particles[index]});
+      }
+  return all;
+}
+
+void Crumbs::obey(const dynamics::Loads& loads, const std::span<const Hold> holds, const double time, const double dt,
+                  const RigidBody& body, RigidMotion& motion) const {
+  constexpr int n_places = 4; // rotations are not linear
+  const auto place_at = [&](const Hold& hold, const double t) {
+    const dynamics::Support& support = loads.supports[hold.support];
+    return support.places(t)(support.rest[hold.index]);
+  };
+  const auto least_change = [&](const auto& missing) {
+    Matrix6 S = Matrix6::Zero();
+    Vector6 rhs = Vector6::Zero();
+    for (const Hold& hold : holds) {
+      const Vec3 x = dynamics::place(body, motion, hold.rest);
+      const Matrix36 G = modes_at(x - motion.x);
+      const Mat3& H = loads.supports[hold.support].held;
+      S += G.transpose() * H * G;
+      rhs += G.transpose() * (H * missing(hold, x));
+    }
+    return least_solution(S, rhs, inertia_of_modes(body, motion));
+  };
+  for (int i = 0; i < n_places; ++i) {
+    const Vector6 d = least_change([&](const Hold& hold, const Vec3& x) { return Vec3(place_at(hold, time) - x); });
+    motion.x += d.head<3>();
+    motion.R = dynamics::turned(motion.R, d.tail<3>());
+  }
+  const Vec3 omega = dynamics::angular_velocity(body, motion);
+  const Vector6 d = least_change([&](const Hold& hold, const Vec3& x) {
+    return Vec3((place_at(hold, time) - place_at(hold, time - dt)) / dt - dynamics::velocity(motion, omega, x));
+  });
+  motion.v += d.head<3>();
+  motion.spin += inertia_now(body, motion) * d.tail<3>();
+}
+
+void Crumbs::hold(const dynamics::Loads& loads, const double dt, const Motions& start,
+                  const std::vector<Wrench>& pushes, dynamics::State& state) {
+  const auto all = holds(loads);
+  for (std::size_t b = 0; b < crumbs_.size(); ++b) {
+    if (all[b].empty())
+      continue;
+    const RigidBody& body = crumbs_[b].body;
+    RigidMotion& motion = state.crumbs[b];
+    const RigidMotion before = motion;
+    obey(loads, all[b], state.time, dt, body, motion);
+    dynamics::Reaction& reaction = reactions_[all[b][0].support];
+    const double alpha = loads.mass_damping;
+    const Vec3 force =
+      body.mass * ((motion.v - start[b].v) / dt + alpha * motion.v - loads.gravity) - pushes[b].force;
+    reaction.force += force;
+    reaction.torque += (motion.spin - start[b].spin) / dt + alpha * motion.spin - pushes[b].torque +
+                       motion.x.cross(force);
+    work_of_supports_ += dynamics::kinetic_energy(body, motion) - dynamics::kinetic_energy(body, before) -
+                         body.mass * loads.gravity.dot(motion.x - before.x);
+  }
+}
+
+} // namespace kerf::physics

@@ -1,0 +1,125 @@
+#include "physics/crumbs.h"
+
+#include <Eigen/Geometry>
+
+namespace kerf::physics {
+
+using dynamics::RigidMotion;
+
+void Crumbs::follow(const grid::Solid& solid, const CrumbParticles* const particles,
+                    const std::function<Motion()>& motion_of_corners, dynamics::State& state) {
+  if (!solid.crumbs.any() && crumbs_.empty())
+    return;
+  std::vector<Crumb> crumbs;
+  Motions motions;
+  std::optional<Motion> now;
+  auto before = crumbs_.begin(); // both lists are by ascending name
+  for (const grid::Crumb& crumb : solid.crumbs.all) {
+    while (before != crumbs_.end() && before->name < crumb.name)
+      ++before;
+    if (before != crumbs_.end() && before->name == crumb.name) {
+      motions.push_back(state.crumbs[static_cast<std::size_t>(before - crumbs_.begin())]);
+      crumbs.push_back(std::move(*before));
+      continue;
+    }
+    if (!now)
+      now = motion_of_corners();
+    crumbs.push_back({measure(solid, crumb, density_), crumb.name, {}, {}});
+    motions.push_back(motion_of(crumbs.back(), *now));
+  }
+  crumbs_ = std::move(crumbs);
+  state.crumbs = std::move(motions);
+  take_particles(solid, particles);
+  carry(state.crumbs, state);
+}
+
+void Crumbs::take_particles(const grid::Solid& solid, const CrumbParticles* const particles) {
+  const std::size_t n = particles ? particles->crumb.size() : solid.complex.n_corners();
+  crumb_of_.assign(n, CrumbParticles::none);
+  carried_.assign(n, 0);
+  carried_mass_.assign(n, 0.0);
+  for (std::uint32_t b = 0; b < crumbs_.size(); ++b) {
+    crumbs_[b].particles.clear();
+    crumbs_[b].rest_of_particles.clear();
+  }
+  const auto take = [&](const std::uint32_t particle, const std::uint32_t crumb, const Vec3& rest, const double mass) {
+    crumb_of_[particle] = crumb;
+    carried_[particle] = 1;
+    carried_mass_[particle] = mass;
+    crumbs_[crumb].particles.push_back(particle);
+    crumbs_[crumb].rest_of_particles.push_back(rest);
+  };
+  if (particles) {
+    for (std::uint32_t i = 0; i < n; ++i)
+      if (const auto crumb = particles->crumb[i]; crumb != CrumbParticles::none)
+        take(i, crumb, particles->rest[i], particles->mass[i]);
+    return;
+  }
+  for (std::uint32_t b = 0; b < crumbs_.size(); ++b)
+    for (std::size_t i = 0; i < crumbs_[b].corners.size(); ++i)
+      take(crumbs_[b].corners[i], b, crumbs_[b].rest_of_corners[i], crumbs_[b].mass_of_corners[i]);
+}
+
+void Crumbs::carry(const Motions& motions, dynamics::State& state) const {
+  for (std::size_t b = 0; b < crumbs_.size(); ++b) {
+    const Vec3 omega = dynamics::angular_velocity(crumbs_[b].body, motions[b]);
+    for (std::size_t i = 0; i < crumbs_[b].particles.size(); ++i) {
+      const auto particle = crumbs_[b].particles[i];
+      state.x[particle] = dynamics::place(crumbs_[b].body, motions[b], crumbs_[b].rest_of_particles[i]);
+      state.v[particle] = dynamics::velocity(motions[b], omega, state.x[particle]);
+    }
+  }
+}
+
+void Crumbs::place_corners(const dynamics::State& state, Points& corners) const {
+  for (std::size_t b = 0; b < crumbs_.size(); ++b)
+    for (std::size_t i = 0; i < crumbs_[b].corners.size(); ++i)
+      corners[crumbs_[b].corners[i]] =
+        dynamics::place(crumbs_[b].body, state.crumbs[b], crumbs_[b].rest_of_corners[i]);
+}
+
+std::vector<RigidMotion> Crumbs::at_rest() const {
+  Motions motions;
+  for (const Crumb& one : crumbs_)
+    motions.push_back({.x = one.body.centre});
+  return motions;
+}
+
+double Crumbs::mass() const {
+  double sum = 0;
+  for (const Crumb& one : crumbs_)
+    sum += one.body.mass;
+  return sum;
+}
+
+double Crumbs::kinetic_energy(const dynamics::State& state) const {
+  double sum = 0;
+  for (std::size_t b = 0; b < crumbs_.size(); ++b)
+    sum += dynamics::kinetic_energy(crumbs_[b].body, state.crumbs[b]);
+  return sum;
+}
+
+double Crumbs::gravity_energy(const dynamics::Loads& loads, const dynamics::State& state) const {
+  double sum = 0;
+  for (std::size_t b = 0; b < crumbs_.size(); ++b)
+    sum -= crumbs_[b].body.mass * loads.gravity.dot(state.crumbs[b].x);
+  return sum;
+}
+
+Vec3 Crumbs::momentum(const dynamics::State& state) const {
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t b = 0; b < crumbs_.size(); ++b)
+    sum += crumbs_[b].body.mass * state.crumbs[b].v;
+  return sum;
+}
+
+Vec3 Crumbs::angular_momentum(const dynamics::State& state, const Vec3& about) const {
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t b = 0; b < crumbs_.size(); ++b) {
+    const RigidMotion& motion = state.crumbs[b];
+    sum += motion.spin + crumbs_[b].body.mass * (motion.x - about).cross(motion.v);
+  }
+  return sum;
+}
+
+} // namespace kerf::physics

@@ -1,0 +1,115 @@
+#pragma once
+
+/// Crumbs (grid/crumbs.h) as rigid bodies of their own mass and inertia, beside the particles of any backend.
+///
+/// The backend knows nothing of their material: to it, their particles are carried (dynamics::Loads::carried), points
+/// without mass that stay where they are in its step. After it the crumbs move, and their particles and corners with
+/// them. Their flight is exact in gravity and mass damping, and keeps spin and energy of rotation to round-off
+/// (dynamics/rigid_body.h). Loads push a crumb with the forces of the step's end, as implicit Euler does, by Newton's
+/// method for its six unknowns, and in such a step gravity and damping do as they do. A support moves a crumb by the corners that it holds; the change of motion that this
+/// takes is the least in kinetic energy. In statics a crumb that nothing holds stays where it is.
+///
+/// A piece that becomes a crumb keeps its momentum and the mean rotation and angular velocity of its material; what it
+/// was deformed by is gone at once, and its angular momentum is that of the material, no longer of masses at corners.
+
+#include "dynamics/quantities.h"
+#include "dynamics/stepper.h"
+#include "physics/crumb_body.h"
+
+#include <functional>
+#include <optional>
+#include <span>
+
+namespace kerf::physics {
+
+/// The particles of a backend that has its own.
+struct CrumbParticles {
+  std::vector<std::uint32_t> crumb; ///< in grid::Crumbs::all, of each particle; `none`
+  std::span<const double> mass;     ///< [kg]
+  const Points& rest;               ///< [m]
+
+  static constexpr std::uint32_t none = 0xffffffff;
+};
+
+class Crumbs {
+ public:
+  explicit Crumbs(const double density) : density_(density) {}
+
+  /// Takes over the crumbs that there are now. A new one moves as its corners do, which are asked for if there is one.
+  /// Fills state.crumbs, and places what the crumbs carry. `particles`: null where they are the corners.
+  void follow(const grid::Solid& solid, const CrumbParticles* particles,
+              const std::function<Motion()>& motion_of_corners, dynamics::State& state);
+
+  /// Moves the crumbs to state.time, by dt; all else has been moved there. In statics nothing flies.
+  /// Throws dynamics::StepError where loads leave no way.
+  void step(const dynamics::Loads& loads, double dt, dynamics::MotionKind kind, dynamics::State& state);
+
+  /// Puts the corners of crumbs where they are.
+  void place_corners(const dynamics::State& state, Points& corners) const;
+
+  /// Of all crumbs, where they rest.
+  std::vector<dynamics::RigidMotion> at_rest() const;
+
+  bool any() const { return !crumbs_.empty(); }
+  std::size_t size() const { return crumbs_.size(); }
+  const dynamics::RigidBody& body(const std::size_t i) const { return crumbs_[i].body; }
+  /// Loads::carried, by particle.
+  const std::vector<std::uint8_t>& carried() const { return carried_; }
+  bool carries(const std::size_t particle) const { return particle < carried_.size() && carried_[particle] != 0; }
+  /// Mass that each particle would have of its crumb [kg]; empty without crumbs.
+  const std::vector<double>& carried_mass() const { return carried_mass_; }
+
+  double mass() const;
+  double kinetic_energy(const dynamics::State& state) const;
+  double gravity_energy(const dynamics::Loads& loads, const dynamics::State& state) const;
+  Vec3 momentum(const dynamics::State& state) const;
+  Vec3 angular_momentum(const dynamics::State& state, const Vec3& about) const;
+
+  /// What supports did in the last step: force and torque about the origin of each, and their work [J].
+  const std::vector<dynamics::Reaction>& reactions() const { return reactions_; }
+  double work_of_supports() const { return work_of_supports_; }
+
+ private:
+  struct Crumb : CrumbBody {
+    std::uint32_t name;
+    std::vector<std::uint32_t> particles;
+    Points rest_of_particles;
+  };
+  /// A particle that a support holds.
+  struct Hold {
+    std::size_t support, index; ///< in Loads::supports, in its corners
+    Vec3 rest;                  ///< of the particle [m]
+  };
+  using Motions = std::vector<dynamics::RigidMotion>;
+
+  void take_particles(const grid::Solid& solid, const CrumbParticles* particles);
+  /// Puts particles where these motions have them.
+  void carry(const Motions& motions, dynamics::State& state) const;
+  /// Force [N], and torque about the centre [N m].
+  struct Wrench {
+    Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
+  };
+  /// Where loads push the crumbs within dt that would fly from `start` to `flown`; none where they do not settle.
+  std::optional<Motions> pushed(const dynamics::Loads& loads, double dt, const Motions& start, Motions flown,
+                                std::vector<Wrench>& wrenches, dynamics::State& state) const;
+  /// Of loads on each crumb, about its centre; and how they stiffen its modes.
+  struct Push;
+  std::vector<Push> pushes(const dynamics::Loads& loads, double dt, const Motions& motions,
+                           const dynamics::State& state) const;
+  void fly(const dynamics::Loads& loads, double dt, std::vector<Wrench>& pushes, dynamics::State& state) const;
+  void hold(const dynamics::Loads& loads, double dt, const Motions& start, const std::vector<Wrench>& pushes,
+            dynamics::State& state);
+  void obey(const dynamics::Loads& loads, std::span<const Hold> holds, double time, double dt,
+            const dynamics::RigidBody& body, dynamics::RigidMotion& motion) const;
+  std::vector<std::vector<Hold>> holds(const dynamics::Loads& loads) const;
+
+  double density_;
+  std::vector<Crumb> crumbs_;            // as grid::Crumbs::all
+  std::vector<std::uint32_t> crumb_of_; // by particle
+  std::vector<std::uint8_t> carried_;
+  std::vector<double> carried_mass_;
+  std::vector<dynamics::Reaction> reactions_;
+  double work_of_supports_ = 0;
+};
+
+} // namespace kerf::physics

@@ -1,0 +1,141 @@
+// Crumbs: which pieces they are, found from scratch and cut by cut.
+
+#include "grid/crumbs.h"
+
+#include "grid/material.h"
+#include "tests/support/placed.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <set>
+
+namespace kerf::grid {
+namespace {
+
+using support::Body;
+
+/// Whether a piece is one, by its definition; the slow way.
+std::vector<bool> are_crumbs(const Body& body, const bool is_cut) {
+  const Pieces pieces = grid::pieces(body.complex);
+  std::vector<bool> loose(pieces.n_pieces, true);
+  std::vector<std::set<std::array<int, 3>>> nodes(pieces.n_pieces);
+  for (const auto c : ids<CopyId>(body.complex.n_copies())) {
+    const Copy& copy = body.complex.copies[c];
+    if (std::popcount(copy.nodes) > 1 && fill(body, copy) >= well_filled)
+      loose[pieces.piece[c]] = false;
+    for (int v = 0; v < 8; ++v)
+      if (copy.nodes >> v & 1)
+        nodes[pieces.piece[c]].insert(body.grid.index(body.grid.nodes(copy.cell)[v]));
+  }
+  std::vector<bool> crumbs;
+  for (std::size_t p = 0; p < loose.size(); ++p) {
+    bool is_small = is_cut;
+    for (const auto& a : nodes[p])
+      for (const auto& b : nodes[p])
+        for (int axis = 0; axis < 3; ++axis)
+          is_small = is_small && std::abs(a[axis] - b[axis]) <= 1;
+    crumbs.push_back(loose[p] || is_small);
+  }
+  return crumbs;
+}
+
+void expect_crumbs_are_those_pieces(const Body& body, const std::vector<bool>& expected) {
+  const Pieces pieces = grid::pieces(body.complex);
+  std::set<CopyId> seen;
+  for (std::size_t i = 0; i < body.crumbs.all.size(); ++i) {
+    const Crumb& crumb = body.crumbs.all[i];
+    if (i > 0) {
+      EXPECT_LT(body.crumbs.all[i - 1].name, crumb.name);
+    }
+    for (const CopyId c : crumb.copies) {
+      EXPECT_EQ(pieces.piece[c], pieces.piece[crumb.copies[0]]);
+      EXPECT_TRUE(seen.insert(c).second) << "in two crumbs";
+    }
+  }
+  for (const auto c : ids<CopyId>(body.complex.n_copies())) {
+    EXPECT_EQ(seen.contains(c), expected[pieces.piece[c]]) << c.value;
+    EXPECT_EQ(body.crumbs.holds(c), seen.contains(c));
+    for (const CornerId corner : body.complex.copies[c].corners)
+      EXPECT_EQ(body.crumbs.holds(corner), seen.contains(c));
+  }
+}
+
+/// A whole body of a few nodes is none: nothing has cut it. One node alone is.
+TEST(Crumbs, OfWholeBodiesOnlyLoosePieces) {
+  for (const auto& [n, is_crumb] : {std::pair{Index3{2, 2, 2}, false}, {Index3{1, 1, 1}, true}, {Index3{5, 5, 1}, false}}) {
+    Body body = support::with_copies(support::with_placed_skin(support::block(n)));
+    find_crumbs(body);
+    EXPECT_EQ(body.crumbs.any(), is_crumb) << n[0] << n[1] << n[2];
+    expect_crumbs_are_those_pieces(body, are_crumbs(body, false));
+  }
+}
+
+/// Random cuts, batch by batch, down to dust. Copies of rinds and skins of any shape are among them.
+TEST(Crumbs, AfterCutsAreThePiecesThatTheDefinitionNames) {
+  std::size_t n_crumbs = 0, n_left = 0;
+  for (unsigned seed = 1; seed <= 6; ++seed) {
+    support::Random random(seed);
+    Body body = support::with_copies(support::with_placed_skin(
+      seed % 2 == 0 ? support::block({5, 4, 4}, 0.1) : support::ball(0.3, 0.1, support::random_offset(random))));
+    find_crumbs(body);
+    cut::Cutter cutter{9};
+    const Points x = rest_positions(body);
+    cutter.begin(body, x);
+    for (int batch = 0; batch < 8; ++batch) {
+      std::set<CopyId> before;
+      for (const Crumb& crumb : body.crumbs.all)
+        before.insert(crumb.copies.begin(), crumb.copies.end());
+      CutChange change =
+        cutter.cut(body, support::random_cuts(random, body, 0.2), cut::Front::possible, rest_positions(body));
+      surface::place(body, change, {});
+      update_crumbs(body, change);
+      EXPECT_TRUE(std::is_sorted(change.reshaped.begin(), change.reshaped.end()));
+      for (const Crumb& crumb : body.crumbs.all)
+        for (const CopyId c : crumb.copies)
+          EXPECT_TRUE(before.contains(c) || std::binary_search(change.reshaped.begin(), change.reshaped.end(), c))
+            << "what follows the change hears of each new one";
+      auto expected = are_crumbs(body, true);
+      const Pieces pieces = grid::pieces(body.complex);
+      for (const CopyId c : before) // what a cut leaves of a crumb stays one
+        expected[pieces.piece[c]] = true;
+      expect_crumbs_are_those_pieces(body, expected);
+    }
+    n_crumbs += body.crumbs.all.size();
+    n_left += n_pieces(body.complex) - body.crumbs.all.size();
+  }
+  EXPECT_GT(n_crumbs, 200u);
+  EXPECT_GT(n_left, 0u);
+}
+
+/// A crumb that a cut does not meet keeps its name.
+TEST(Crumbs, KeepTheirNamesUntilTheyAreCut) {
+  Body body = support::with_copies(support::with_placed_skin(support::block({6, 6, 6}, 0.1)));
+  find_crumbs(body);
+  cut::Cutter cutter{9};
+  const Points x = rest_positions(body);
+  cutter.begin(body, x);
+  std::set<std::uint32_t> names;
+  for (int axis = 0; axis < 3; ++axis)
+    for (const double at : {0.2, 0.4, 0.6}) {
+      CutChange change = cutter.cut(body, support::plane_cuts(body, {Vec3::Unit(axis), at}), cut::Front::none,
+                                    rest_positions(body));
+      surface::place(body, change, {});
+      std::set<std::uint32_t> met;
+      for (const Crumb& crumb : body.crumbs.all)
+        for (const CopyId c : crumb.copies)
+          if (std::binary_search(change.reshaped.begin(), change.reshaped.end(), c))
+            met.insert(crumb.name);
+      update_crumbs(body, change);
+      for (const auto name : names)
+        EXPECT_EQ(met.contains(name), std::none_of(body.crumbs.all.begin(), body.crumbs.all.end(),
+                                                   [&](const Crumb& c) { return c.name == name; }));
+      names.clear();
+      for (const Crumb& crumb : body.crumbs.all)
+        names.insert(crumb.name);
+    }
+  EXPECT_EQ(names.size(), n_pieces(body.complex)) << "all is dust in the end";
+}
+
+} // namespace
+} // namespace kerf::grid
