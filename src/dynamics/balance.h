@@ -38,9 +38,9 @@
 /// unfinished solution. -d.r is of third order in dt where a solution is smooth, the other of second: shorter steps need
 /// no second correction. Nothing is gone on for that conjugate gradients would not see.
 ///
-/// Where `guess` is free motion, half the way from it to x is the error of the step itself: x_1 - x_0 - dt v_0 = dt^2
-/// a_1, and implicit Euler is wrong by dt^2 a / 2. Conjugate gradients know that way in the energy norm and need not be
-/// much better. Nothing is solved below the round-off of forces.
+/// Half the way from free motion to x is the error of the step itself: x_1 - x_0 - dt v_0 = dt^2 a_1, and implicit Euler
+/// is wrong by dt^2 a / 2. Conjugate gradients know the way from their guess in the energy norm, which is that or, of a
+/// better guess, less; they need not be much better. Nothing is solved below the round-off of forces.
 
 #include "dynamics/constraints.h"
 #include "dynamics/mixing.h"

@@ -38,15 +38,21 @@ StepReport ImplicitEuler::step(State& state, const Loads& loads, const double dt
                   .acceleration = Points(n),
                   .guess = Points(n)};
   constraints.place(balance.time, balance.start);
+  const Points* const change = remembered(state, "change of velocity");
   for (std::size_t i = 0; i < n; ++i) {
     balance.velocity[i] = (balance.start[i] - state.x[i]) / dt; // zero but where supports move
     balance.acceleration[i] = (balance.velocity[i] - state.v[i]) / dt;
-    balance.guess[i] = dt * state.v[i];
+    balance.guess[i] = dt * (state.v[i] + (change ? (*change)[i] : Vec3(Vec3::Zero())));
   }
   Points x;
   const StepReport report = accepted(solver_.solve(loads, constraints, balance, x));
-  for (std::size_t i = 0; i < n; ++i)
-    state.v[i] = (x[i] - state.x[i]) / dt;
+  Points& changed = state.history["change of velocity"];
+  changed.resize(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const Vec3 v = (x[i] - state.x[i]) / dt;
+    changed[i] = v - state.v[i];
+    state.v[i] = v;
+  }
   state.x = std::move(x);
   state.time += dt;
   return report;

@@ -4,8 +4,9 @@
 ///
 ///     M (x - x_n - dt v_n) / dt^2 + (alpha M + beta K) (x - x_n) / dt = f(x) + M g + loads
 ///
-/// for x at the end of the step by Newton's method from x_n (balance.h), with free motion as first guess of conjugate
-/// gradients. First order, dissipative, stable for every dt. A scene's step tests its first correction, and goes on with a
+/// for x at the end of the step by Newton's method from x_n (balance.h). The first guess of conjugate gradients is
+/// that velocities change as in the step before, which the state remembers until a cut: free fall is guessed exactly.
+/// First order, dissipative, stable for every dt. A scene's step tests its first correction, and goes on with a
 /// line search where that does not bear it (Trust::tested).
 
 #include "dynamics/newton_parameters.h"

@@ -35,6 +35,9 @@ inline const Points* remembered(const State& state, const std::string& name) {
 }
 
 /// To be called when forces have changed at once, by a cut for one: what was remembered of them is no longer true.
-inline void forget_forces(State& state) { state.history.erase("acceleration"); }
+inline void forget_forces(State& state) {
+  for (const char* const name : {"acceleration", "change of velocity"})
+    state.history.erase(name);
+}
 
 } // namespace kerf::dynamics

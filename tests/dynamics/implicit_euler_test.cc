@@ -29,6 +29,25 @@ TEST(ImplicitEuler, IsItsOwnFormula) {
   }
 }
 
+/// Free fall is guessed exactly from the second step on, and rest under a load from the first: nothing is left to solve.
+TEST(ImplicitEuler, FallsAndRestsWithoutIterations) {
+  for (const double anchor : {0.0, 40.0}) {
+    Chain model({1, 2, 3}, {.anchor = anchor, .neighbour = 500});
+    ImplicitEuler stepper(model, {});
+    State state = model.state();
+    Loads loads;
+    loads.gravity = Vec3(0, 0, -9.81);
+    if (anchor > 0)
+      stepper.step(state, loads, 1e8); // to rest
+    state.v.assign(3, Vec3::Zero());
+    stepper.step(state, loads, 0.01);
+    for (int i = 0; i < 20; ++i)
+      EXPECT_EQ(stepper.step(state, loads, 0.01).n_iterations, 0) << anchor << ", step " << i;
+    forget_forces(state);
+    EXPECT_EQ(stepper.step(state, loads, 0.01).n_iterations > 0, anchor == 0) << "after a cut nothing is known";
+  }
+}
+
 /// A very long step goes to equilibrium at once.
 TEST(ImplicitEuler, LongStepIsTheStaticAnswer) {
   Chain model({1, 2, 3}, {.anchor = 40});
