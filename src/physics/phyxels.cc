@@ -118,7 +118,7 @@ bool Phyxels::hold_together(std::vector<pba::Sight>& sights) const {
   constexpr double weak = 0.3;   // enough to be known; a bond that comes back stretched brings energy, so no more
   const auto& pairs = model_.neighbours().pairs;
   UnionFind parts(rest().size());
-  std::vector<std::pair<double, std::size_t>> idle; // distance at rest, pair
+  std::vector<std::pair<double, std::size_t>> idle; // distance at rest or now, what is more; pair
   for (std::size_t p = 0; p < pairs.size(); ++p) {
     const auto [i, j] = pairs[p];
     const Vec3 X = (rest()[j] - rest()[i]).normalized();
@@ -126,16 +126,16 @@ bool Phyxels::hold_together(std::vector<pba::Sight>& sights) const {
     if (model_.weights()[p] > 0 && known > counts)
       parts.unite(i, j);
     else if (phyxel_pieces_[i] == phyxel_pieces_[j] && !crumbs_.carries(i))
-      idle.emplace_back((rest()[i] - rest()[j]).norm(), p);
+      idle.emplace_back(std::max((rest()[i] - rest()[j]).norm(), (now_[i] - now_[j]).norm()), p);
   }
   std::sort(idle.begin(), idle.end());
   bool has_changed = false;
-  for (const auto& [distance, p] : idle) {
+  for (const auto& [distance, p] : idle) { // so that what comes back is stretched least
     const auto [i, j] = pairs[p];
     if (parts.root(i) == parts.root(j))
       continue;
     parts.unite(i, j);
-    sights[p] = {distance, weak};
+    sights[p] = {(rest()[i] - rest()[j]).norm(), weak};
     has_changed = true;
   }
   return has_changed;
@@ -223,6 +223,7 @@ void Phyxels::catch_up(const CutBody& body) {
 }
 
 void Phyxels::follow(const dynamics::State& state) {
+  now_ = state.x;
   model_.deformation(state.x, F_);
   pba::follow(map_, state.x, F_, corners_);
   crumbs_.place_corners(state, corners_);

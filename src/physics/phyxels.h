@@ -4,8 +4,9 @@
 /// and a criterion says what the cut leaves to see (§2.3.1, §2.6.2).
 ///
 /// A piece that the cut has left whole may have lost all bonds between parts of it, or be of so few phyxels that they
-/// know no direction (fit.h). Then the shortest pairs that join its parts see each other again, weakly:
-/// what the copies hold together does not drift apart.
+/// know no direction (fit.h). Then pairs that join its parts see each other again, weakly: what the copies hold together
+/// does not drift apart. They are the shortest by their length at rest or now, what is more, since a pair that comes back
+/// stretched brings energy.
 ///
 /// After a cut, its faces come between pairs of phyxels, and between corners and phyxels, under a budget of pairs a
 /// step: catch_up(). What lies in different pieces is parted at once, whatever the criterion has seen. Nothing of all
@@ -102,6 +103,7 @@ class Phyxels : public Physics {
   std::set<Face, ByCoordinates> faces_;
 
   Crumbs crumbs_;
+  Points now_; ///< where the phyxels were when follow() was called last [m]
   std::vector<Mat3> F_;
   Points corners_;
 };
