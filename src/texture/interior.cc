@@ -129,10 +129,9 @@ void Interior::find_sources(const CellData& cell, const Vec3& p, const Blending&
     found.pixels[i] = plane.to_pixels(local);
     distances[i] = (found.points[i] - p).norm();
   }
-  if (how.weights == Weights::mean_value && !cell.triangles.empty() &&
-      mean_value(p, std::span(found.points).first(n), cell.triangles, found.shares))
-    return;
   shepard(std::span(distances).first(n), how.power, found.shares);
+  if (how.weights == Weights::mean_value && !cell.triangles.empty())
+    enclose(p, std::span(found.points).first(n), cell.triangles, found.shares);
 }
 
 /// (3.14) for all sources at once: each table says where its source point goes on every face.
@@ -224,6 +223,11 @@ std::size_t Interior::n_pairs() const {
   for (const auto& maps : maps_.warps)
     n += maps.size();
   return n;
+}
+
+std::size_t Interior::n_closed_cells() const {
+  return static_cast<std::size_t>(
+    std::count_if(cells_.begin(), cells_.end(), [](const CellData& cell) { return !cell.triangles.empty(); }));
 }
 
 double Interior::smallest_determinant() const {

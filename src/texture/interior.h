@@ -30,7 +30,8 @@ enum class Weights { shepard, mean_value };
 /// How source points become a colour.
 struct Blending {
   Morph morph = Morph::first_order;
-  Weights weights = Weights::shepard; ///< mean_value: where the source points enclose the point, Shepard elsewhere
+  /// mean_value: where the source points enclose the point, Shepard where they do not, and a mixture in between.
+  Weights weights = Weights::shepard;
   double power = 1;                   ///< of Shepard's distances [1]
 };
 
@@ -74,6 +75,7 @@ class Interior {
   const Maps& maps() const { return maps_; }
   double pixel() const { return pixel_; } ///< mean side of the exemplars' pixels [m]
   std::size_t n_pairs() const;            ///< of warps
+  std::size_t n_closed_cells() const;     ///< that exemplars alone bound: there mean value weights apply
   /// The smallest determinant over all warps and fits, relative to no deformation [1].
   double smallest_determinant() const;
 

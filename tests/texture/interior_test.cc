@@ -3,7 +3,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "tests/output/samples.h"
-#include "tests/texture/solids.h"
+#include "tests/texture/probes.h"
 #include "texture/atlas.h"
 #include "texture/cache.h"
 
@@ -12,28 +12,14 @@
 #include <Eigen/Geometry>
 
 #include <fstream>
-#include <random>
 
 namespace kerf::texture {
 namespace {
-
-/// Points inside the ball.
-Points points_inside(const int n, const unsigned seed) {
-  std::mt19937 random(seed);
-  std::uniform_real_distribution<double> number(-0.048, 0.048);
-  Points points;
-  while (static_cast<int>(points.size()) < n)
-    if (const Vec3 p(number(random), number(random), number(random)); p.norm() < 0.048)
-      points.push_back(p);
-  return points;
-}
 
 const Interior& five() {
   static const Interior interior(axis_exemplars(onion, 5, 120), ball(3), InteriorOptions());
   return interior;
 }
-
-double difference(const Eigen::Array4f& a, const Eigen::Array4f& b) { return (a - b).abs().maxCoeff(); }
 
 TEST(Interior, IsExactOnTheExemplars) {
   for (const auto morph : {Morph::first_order, Morph::exact_inverse, Morph::blend, Morph::nearest})
@@ -262,23 +248,6 @@ TEST(Components, SeveralAreRefusedOrTakenApart) {
   auto more = exemplars;
   more.insert(more.begin(), exemplar_of("between", onion, Vec3(0.0001, 0, 0), Vec3::UnitY(), Vec3::UnitZ(), 200, 0.12));
   EXPECT_THROW(Interior(more, body, {}), ParameterError); // nothing of the body there
-}
-
-TEST(MeanValue, ReproducesPointsInsideAnOctahedron) {
-  const std::vector<Vec3> sources = {Vec3::UnitX(),  -Vec3::UnitX(), Vec3::UnitY(),
-                                     -Vec3::UnitY(), Vec3::UnitZ(),  -Vec3::UnitZ()};
-  const std::vector<Triple> triangles = {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4},
-                                         {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}};
-  for (const Vec3& p : {Vec3(0.1, 0.2, -0.3), Vec3(0.6, 0.1, 0.1), Vec3(0, 0, 0)}) {
-    Shares shares;
-    ASSERT_TRUE(mean_value(p, sources, triangles, shares));
-    Vec3 sum = Vec3::Zero();
-    for (int i = 0; i < 6; ++i)
-      sum += shares[i] * sources[i];
-    EXPECT_NEAR((sum - p).norm(), 0, 1e-9);
-  }
-  Shares shares;
-  EXPECT_FALSE(mean_value(Vec3(2, 2, 2), sources, triangles, shares));
 }
 
 TEST(Sweeps, TurnAboutAnAxis) {
