@@ -83,11 +83,16 @@ Corners corners_of(const SurfaceView& surface, const std::size_t t) {
   return {surface.rest[v[0]], surface.rest[v[1]], surface.rest[v[2]]};
 }
 
-int parts_for(const Corners& corners, const double resolution) {
+double longest_side(const Corners& corners) {
   double longest = 0;
   for (int i = 0; i < 3; ++i)
     longest = std::max(longest, (corners[(i + 1) % 3] - corners[i]).norm());
-  return std::clamp(static_cast<int>(std::ceil(longest / resolution)), 1, Atlas::max_parts);
+  return longest;
+}
+
+int parts_for(const Corners& corners, const double resolution) {
+  const double n = std::min(std::ceil(longest_side(corners) / resolution), double(Atlas::max_parts));
+  return std::max(static_cast<int>(n), 1);
 }
 
 } // namespace
@@ -112,6 +117,13 @@ void Atlas::fill_triangle(const std::size_t t, const SurfaceView& surface, const
       slopes_[sample] = {slope(colours, p, u, paint.relief, pixel), slope(colours, p, v, paint.relief, pixel)};
     ++sample;
   });
+}
+
+std::size_t Atlas::n_coarse() const {
+  std::size_t n = 0;
+  for (std::size_t t = 0; t < parts_.size(); ++t)
+    n += parts_[t] == max_parts && longest_side(filled_[t]) > max_parts * resolution_ ? 1 : 0;
+  return n;
 }
 
 std::size_t Atlas::fill(const SurfaceView& surface, const Paint& paint) {

@@ -33,8 +33,9 @@ struct WarpOptions {
   std::vector<ExemplarPin> pins;
 };
 
-/// Throws ParameterError about the key "From [m]" or "To [m]", its value the pin's name, if the exemplars share no cell
-/// or a point lies outside of the parts of its exemplar that bound those cells.
+/// Throws ParameterError about the key "From [m]" or "To [m]", its value the pin's name, if a point lies off its
+/// exemplar's plane, the exemplars share no cell, or a point lies outside of the parts of its exemplar that bound those
+/// cells.
 void check_pins(const std::vector<ExemplarPin>& pins, const std::vector<Cell>& cells,
                 const std::vector<Exemplar>& exemplars, const std::vector<Chart>& charts);
 

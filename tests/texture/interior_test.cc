@@ -4,6 +4,7 @@
 #include "base/parallel.h"
 #include "tests/output/samples.h"
 #include "tests/texture/probes.h"
+#include "tests/texture/refused.h"
 #include "texture/atlas.h"
 #include "texture/cache.h"
 
@@ -189,18 +190,6 @@ TEST(Cache, ComesBackAndSurvivesDamage) {
   EXPECT_FALSE(save_maps(cache_file(folder / "plain", hash), hash, found.maps()));
 }
 
-void expect_refused(const std::vector<Exemplar>& exemplars, const std::string& key, const std::string& rule,
-                    const InteriorOptions& options = {}, const geometry::TriangleMesh& body = ball(3)) {
-  try {
-    const Interior inside(exemplars, body, options);
-    FAIL() << rule;
-  } catch (const ParameterError& error) {
-    EXPECT_EQ(error.complaint().path, key) << error.what();
-    EXPECT_NE(error.complaint().rule.find(rule), std::string::npos) << error.what();
-    EXPECT_FALSE(error.complaint().remedy.empty());
-  }
-}
-
 TEST(BadInput, IsRefused) {
   const auto good = axis_exemplars(onion, 2, 60);
   auto bad = good;
@@ -222,52 +211,17 @@ TEST(BadInput, IsRefused) {
   expect_refused(bad, "Image", "its mask is empty");
   expect_refused({}, "Exemplar", "at least one exemplar");
   InteriorOptions options;
-  options.warps.pins = {{"p", {"e0", "e1"}, {Vec3(0.2, 0, 0), Vec3(0, 0.01, 0.01)}}};
+  options.warps.pins = {{"p", {"e0", "e1"}, {Vec3(0.2, 0, 0.0005), Vec3(0.0005, 0.01, 0.01)}}};
   expect_refused(good, "From [m]", "outside", options);
   options.warps.pins = {{"p", {"e0", "e1"}, {Vec3(0.01, 0.01, 0.0005), Vec3(0.0005, 0.2, 0.01)}}};
   expect_refused(good, "To [m]", "outside", options);
+  options.warps.pins = {{"p", {"e0", "e1"}, {Vec3(0.01, 0.01, 0.006), Vec3(0.0005, 0.01, 0.01)}}};
+  expect_refused(good, "From [m]", "off the plane of exemplar e0", options);
+  options.warps.pins = {{"p", {"e0", "e1"}, {Vec3(0.01, 0.01, 0.0005), Vec3(0.006, 0.01, 0.01)}}};
+  expect_refused(good, "To [m]", "off the plane of exemplar e1", options);
   EXPECT_THROW(SectionPlane(Vec3::Zero(), Vec3::Zero(), Vec3::UnitX()), ParameterError);
   EXPECT_THROW(SectionPlane(Vec3::Zero(), Vec3::UnitX(), Vec3::Zero()), ParameterError);
   EXPECT_THROW(SectionPlane(Vec3::Zero(), Vec3::UnitX(), Vec3(-2, 0.001, 0)), ParameterError);
-}
-
-TEST(Components, SeveralAreRefusedOrTakenApart) {
-  // A dumbbell along x: the plane z = 0.03 cuts two caps.
-  const auto body = geometry::together(geometry::sphere_mesh(0.05, Vec3(-0.06, 0, 0), 3),
-                                       geometry::sphere_mesh(0.05, Vec3(0.06, 0, 0), 3));
-  const std::vector<Exemplar> exemplars = {
-    exemplar_of("top", onion, Vec3(0, 0, 0.01), Vec3::UnitX(), Vec3::UnitY(), 200, 0.12)};
-  expect_refused(exemplars, "Components", "2 components", {}, body);
-  InteriorOptions options;
-  options.components = Components::each;
-  const Interior apart(exemplars, body, options);
-  EXPECT_EQ(apart.blend(Vec3(0.05, 0, 0.02), {}).n, 2);
-  options.components = Components::together;
-  EXPECT_EQ(Interior(exemplars, body, options).blend(Vec3(0.05, 0, 0.02), {}).n, 1);
-  // One more exemplar parts them, as the remedy says.
-  auto more = exemplars;
-  more.insert(more.begin(), exemplar_of("between", onion, Vec3(0.0001, 0, 0), Vec3::UnitY(), Vec3::UnitZ(), 200, 0.12));
-  EXPECT_THROW(Interior(more, body, {}), ParameterError); // nothing of the body there
-}
-
-TEST(Sweeps, TurnAboutAnAxis) {
-  // Half planes of a citrus about z: what lies between them is found at the same height and distance from the axis.
-  std::vector<Exemplar> exemplars;
-  for (int i = 0; i < 3; ++i) {
-    const double angle = M_PI * i / 3 + 0.02;
-    const Vec3 out(std::cos(angle), std::sin(angle), 0);
-    exemplars.push_back(exemplar_of("e" + std::to_string(i), onion, Vec3::Zero(), out, Vec3::UnitZ(), 120));
-    exemplars.back().sweep = {Sweep::Path::axis, Vec3::Zero(), Vec3::UnitZ()};
-  }
-  const Interior inside(exemplars, ball(4), {});
-  EXPECT_EQ(inside.partition().cells().size(), 6u);
-  double sum = 0;
-  const auto points = points_inside(500, 3);
-  for (const Vec3& p : points)
-    sum += (inside.colour(p, {Morph::blend, Weights::shepard, 1}).head<3>() - onion(p)).abs().mean() / 500;
-  EXPECT_LT(sum, 0.02); // the onion's layers are round about z
-  exemplars.erase(exemplars.begin() + 1, exemplars.end());
-  expect_refused(exemplars, "Axis [1]", "passes through the barycentre");
 }
 
 TEST(Fit, DrawsAPartialPictureToTheSection) {

@@ -2,6 +2,7 @@
 
 /// What tests of insides measure: points, differences, jumps.
 
+#include "geometry/inside.h"
 #include "tests/texture/solids.h"
 
 #include <functional>
@@ -25,15 +26,16 @@ inline Points points_inside(const int n, const unsigned seed, const double radiu
 inline double difference(const Colour& a, const Colour& b) { return (a - b).abs().maxCoeff(); }
 
 /// The largest change of a function of points that is left over 2^-30 of a step when the step in which it changes most,
-/// among `n_steps` of a way, is halved thirty times, always keeping the half that changes more: its largest jump, and
-/// nearly nothing where it is continuous.
+/// among `n_steps` of a way inside of a body, is halved thirty times, always keeping the half that changes more: its
+/// largest jump, and nearly nothing where it is continuous.
 template <class Function>
-double largest_jump(const Function& f, const Vec3& from, const Vec3& to, const int n_steps) {
+double largest_jump(const Function& f, const geometry::Inside& body, const Vec3& from, const Vec3& to,
+                    const int n_steps) {
   Vec3 a = from, b = to;
-  double most = -1;
+  double most = 0;
   for (int i = 0; i < n_steps; ++i) {
     const Vec3 p = from + double(i) / n_steps * (to - from), q = from + double(i + 1) / n_steps * (to - from);
-    if (const double change = difference(f(p), f(q)); change > most) {
+    if (const double change = difference(f(p), f(q)); change > most && body.contains(p) && body.contains(q)) {
       most = change;
       a = p;
       b = q;
@@ -46,13 +48,14 @@ double largest_jump(const Function& f, const Vec3& from, const Vec3& to, const i
   return difference(f(a), f(b));
 }
 
-/// The same over many ways through the ball.
+/// The same over many ways through a body in the ball.
 template <class Function>
-double largest_jump(const Function& f, const int n_ways, const int n_steps) {
+double largest_jump(const Function& f, const geometry::TriangleMesh& body, const int n_ways, const int n_steps) {
+  const geometry::Inside inside(body);
   const Points ends = points_inside(2 * n_ways, 11);
   double jump = 0;
   for (int i = 0; i < n_ways; ++i)
-    jump = std::max(jump, largest_jump(f, ends[2 * i], ends[2 * i + 1], n_steps));
+    jump = std::max(jump, largest_jump(f, inside, ends[2 * i], ends[2 * i + 1], n_steps));
   return jump;
 }
 

@@ -94,7 +94,7 @@ TEST(MeanValueInside, IsContinuousAndExact) {
   for (const Interior* inside : {&nine(), &tetrahedron()})
     for (const auto morph : {Morph::blend, Morph::first_order}) {
       const Blending how = {morph, Weights::mean_value, 1};
-      const double jump = largest_jump([&](const Vec3& p) { return inside->colour(p, how); }, 300, 200);
+      const double jump = largest_jump([&](const Vec3& p) { return inside->colour(p, how); }, ball(3), 300, 200);
       std::printf("largest jump on 300 ways through the ball: %.2e\n", jump);
       EXPECT_LT(jump, 1e-4);
       EXPECT_LT(largest_error_on_exemplars(*inside, how), 2e-3);
