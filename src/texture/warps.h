@@ -27,8 +27,7 @@ enum class Partners {
 
 struct WarpOptions {
   Partners partners = Partners::all;
-  /// No pins. Stiff, so that features that come and go do not grasp at their neighbours.
-  warp::MatchOptions match = {.stiffness = 8};
+  warp::MatchOptions match; ///< without pins
   int pixels = 96; ///< of the longer side of what is matched
   std::vector<ExemplarPin> pins;
 };

@@ -240,55 +240,5 @@ TEST(Fit, DrawsAPartialPictureToTheSection) {
   }
 }
 
-TEST(Detail, PutsBackWhatBlendingLoses) {
-  // Noise is nobody's deformation: only its histogram can be kept.
-  const Solid noise = [](const Vec3& p) {
-    const auto hash = [](const double x) { return x - std::floor(x); };
-    return image::Rgb::Constant(
-      static_cast<float>(0.3 + 0.4 * hash(std::sin(p.dot(Vec3(12989.8, 78233.1, 37719.3))) * 43758.5)));
-  };
-  const Interior inside(axis_exemplars(noise, 3, 120), ball(3), {});
-  const Detail detail(inside);
-  const double pixel = inside.pixel();
-  const auto spread = [&](const Detail* used, const Vec3& x, const Vec3& y) {
-    const Patch patch{Vec3(-0.02, -0.02, 0.013), pixel * x, pixel * y, 40, 40};
-    double sum = 0, squares = 0;
-    const auto painted = paint(inside, patch, used);
-    for (const Eigen::Array4f& c : painted.values) {
-      sum += c[3] / 1600;
-      squares += c[3] * c[3] / 1600;
-    }
-    return std::sqrt(squares - sum * sum);
-  };
-  const double exact = 0.4 / std::sqrt(12.0), off = spread(nullptr, Vec3::UnitX(), Vec3::UnitY());
-  const double on = spread(&detail, Vec3::UnitX(), Vec3::UnitY());
-  EXPECT_NE(on, spread(&detail, Vec3::UnitX(), Vec3::UnitZ())); // they follow the surface
-  EXPECT_LT(off, 0.8 * exact);
-  EXPECT_NEAR(on, exact, 0.15 * exact);
-}
-
-TEST(Atlas, OnlyGrowsAndKeepsWhatStays) {
-  const Interior& inside = five();
-  Points rest = {Vec3(0, 0, 0), Vec3(0.01, 0, 0), Vec3(0, 0.01, 0), Vec3(0.01, 0.01, 0.002)};
-  std::vector<Triangle> triangles = {{0, 1, 2}};
-  std::vector<std::uint16_t> labels = {1};
-  Atlas atlas(0.001);
-  EXPECT_EQ(atlas.fill({rest, triangles, labels}, {&inside}), 1u);
-  const auto colours = atlas.colours();
-  EXPECT_EQ(colours.size(), n_samples(atlas.parts()[0]));
-  triangles.push_back({1, 3, 2});
-  triangles.push_back({0, 2, 1});
-  labels.insert(labels.end(), {2, 0});
-  EXPECT_EQ(atlas.fill({rest, triangles, labels}, {&inside}), 1u); // the skin gets none
-  EXPECT_EQ(atlas.first()[2], Atlas::none);
-  EXPECT_TRUE(std::equal(colours.begin(), colours.end(), atlas.colours().begin()));
-  EXPECT_EQ(atlas.fill({rest, triangles, labels}, {&inside}), 0u);
-  // Both triangles have the same colour at the corner they share.
-  EXPECT_EQ(atlas.colours()[atlas.first()[0] + n_samples(atlas.parts()[0]) - 1], atlas.colours()[atlas.first()[1]]);
-  rest[3][2] = 0.003;
-  EXPECT_EQ(atlas.fill({rest, triangles, labels}, {&inside}), 1u);
-  EXPECT_TRUE(std::equal(colours.begin(), colours.end(), atlas.colours().begin()));
-}
-
 } // namespace
 } // namespace kerf::texture
