@@ -54,6 +54,51 @@ TEST(Atlas, SlopesAreThoseOfTheRelief) {
   }
 }
 
+/// What two triangles that meet at an angle show differently along their common side, of 255: the largest, the mean.
+std::array<double, 2> step_at_a_side(const Paint& paint, const double angle) {
+  double largest = 0, sum = 0, n = 0;
+  for (const Vec3& p : points_inside(40, 17, 0.03)) {
+    const Points rest = {p, p + Vec3(0.008, 0, 0), p + Vec3(0.004, 0.006, 0),
+                         p + Vec3(0.004, 0, 0) + 0.006 * Vec3(0, -std::cos(angle), -std::sin(angle))};
+    const std::vector<Triangle> triangles = {{0, 1, 2}, {1, 0, 3}};
+    const std::vector<std::uint16_t> labels = {1, 1};
+    Atlas atlas(0.001);
+    atlas.fill({rest, triangles, labels}, paint);
+    const int parts = atlas.parts()[0]; // of both: their longest side is the common one
+    std::vector<std::uint32_t> first_side, second_side;
+    for (std::size_t t = 0; t < 2; ++t) {
+      std::uint32_t sample = atlas.first()[t];
+      for_each_sample(parts, [&](int, const int j) {
+        if (j == 0)
+          (t == 0 ? first_side : second_side).push_back(sample);
+        ++sample;
+      });
+    }
+    for (std::size_t i = 0; i < first_side.size(); ++i)
+      for (int channel = 0; channel < 3; ++channel) {
+        const double step = std::abs(int(atlas.colours()[first_side[i]][channel]) -
+                                     int(atlas.colours()[second_side[first_side.size() - 1 - i]][channel]));
+        largest = std::max(largest, step);
+        sum += step;
+        ++n;
+      }
+  }
+  return {largest, sum / n};
+}
+
+TEST(Atlas, NeighboursAgreeAtTheirCommonSide) {
+  const Detail detail(five());
+  for (const double degrees : {0.0, 1.0, 3.0, 10.0, 30.0}) {
+    const double angle = degrees * M_PI / 180;
+    const auto [plain, plain_mean] = step_at_a_side({&five()}, angle);
+    const auto [detailed, detailed_mean] = step_at_a_side({&five(), &detail}, angle);
+    std::printf("triangles at %4.1f degrees: plain %.0f of 255, with small features %.0f, %.2f on average\n", degrees,
+                plain, detailed, detailed_mean);
+    EXPECT_LE(plain, 1);
+    EXPECT_LE(detailed_mean, degrees == 0 ? 0.5 : 2 + 0.6 * degrees);
+  }
+}
+
 TEST(Atlas, CountsTrianglesThatAreTooLargeForTheirResolution) {
   const Points rest = {Vec3(0, 0, 0), Vec3(0.02, 0, 0), Vec3(0, 0.02, 0), Vec3(0.001, 0.001, 0)};
   const std::vector<Triangle> triangles = {{0, 1, 2}, {0, 1, 3}, {0, 3, 2}};
