@@ -216,8 +216,8 @@ Blend Interior::blend(const Vec3& p, const Blending& how) const {
 Eigen::Array4f Interior::colour(const Blend& blend) const {
   Eigen::Array4f sum = Eigen::Array4f::Zero();
   for (int i = 0; i < blend.n; ++i)
-    sum += blend.weights[i] * image::sample(charts_[blend.exemplars[i]].colours, blend.x[i], blend.y[i]);
-  return sum;
+    sum += blend.weights[i] * image::sample_cubic(charts_[blend.exemplars[i]].colours, blend.x[i], blend.y[i]);
+  return sum.max(0.0f).min(1.0f);
 }
 
 std::size_t Interior::n_pairs() const {
