@@ -73,8 +73,9 @@ void write_colours(const h5::Object& root, const h5::Object& surface, const std:
   write_table<std::uint32_t>(surface, "first_sample", colours.first,
                              {"1", "row of the body's colours where each triangle's begin; 2^32 - 1 without"});
   write_table<std::uint16_t>(surface, "parts", colours.parts,
-                             {"1", "n: the triangle a, b, c has samples at a + i/n (b - a) + j/n (c - a), i slower "
-                                   "than j; 0 without"});
+                             {"1",
+                              "n: the triangle a, b, c has samples at a + i/n (b - a) + j/n (c - a), i slower "
+                              "than j; 0 without"});
   append_samples(root, body_path(body, "colours"), {h5::Number::uint8, 3}, colours.samples,
                  {"1", "sRGB samples of revealed triangles"});
   if (!colours.slopes.empty())

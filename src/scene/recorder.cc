@@ -104,8 +104,8 @@ bool is_due(const int step, const int every, const World& world) { return step %
 } // namespace
 
 const std::vector<std::string>& stages() {
-  static const std::vector<std::string> names = {"cut",   "topology", "assemble", "visibility",
-                                                 "solve", "surface",  "colour",   "output",     "images"};
+  static const std::vector<std::string> names = {"cut",     "topology", "assemble", "visibility", "solve",
+                                                 "surface", "colour",   "output",   "images"};
   return names;
 }
 

@@ -240,7 +240,8 @@ Vec2 Interior::in_picture(const int exemplar, const Vec2& pixel) const {
 
 void Interior::count_folds(const CellData& cell, const int from, const int to, Folds& folds) const {
   const image::Grey& pixels = cell.pixels[from];
-  const int n = static_cast<int>(cell.sources.size()), a = cell.sources[from].exemplar(), b = cell.sources[to].exemplar();
+  const int n = static_cast<int>(cell.sources.size()), a = cell.sources[from].exemplar(),
+            b = cell.sources[to].exemplar();
   const double sense = cell.linear[from * n + to].determinant();
   const auto turns = [](const Vec2& p, const Vec2& q, const Vec2& r) {
     return (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);

@@ -32,7 +32,7 @@ struct Blending {
   Morph morph = Morph::first_order;
   /// mean_value: where the source points enclose the point, Shepard where they do not, and a mixture in between.
   Weights weights = Weights::shepard;
-  double power = 1;                   ///< of Shepard's distances [1]
+  double power = 1; ///< of Shepard's distances [1]
 };
 
 struct InteriorOptions {

@@ -28,7 +28,7 @@ enum class Partners {
 struct WarpOptions {
   Partners partners = Partners::all;
   warp::MatchOptions match; ///< without pins
-  int pixels = 96; ///< of the longer side of what is matched
+  int pixels = 96;          ///< of the longer side of what is matched
   std::vector<ExemplarPin> pins;
 };
 

@@ -21,11 +21,11 @@ struct Picture {
 enum class Global { none, rotation, rotation_and_scale };
 
 struct MatchOptions {
-  int n_levels = 4;             ///< of the Gaussian stack
-  int n_cells = 24;             ///< of the finest lattice along the longer side
-  double edges = 1;             ///< weight of the edges [1]
-  double brightness = 1;        ///< weight of blurred luminance [1]
-  double outline = 1;           ///< weight of the blurred mask [1]
+  int n_levels = 4;      ///< of the Gaussian stack
+  int n_cells = 24;      ///< of the finest lattice along the longer side
+  double edges = 1;      ///< weight of the edges [1]
+  double brightness = 1; ///< weight of blurred luminance [1]
+  double outline = 1;    ///< weight of the blurred mask [1]
   /// Of the lattice against the features, whose mean square is 1 [1]: stiff, so that features that come and go do not
   /// grasp at their neighbours.
   double stiffness = 8;

@@ -12,8 +12,8 @@ LookedInto look_into(const std::string& scene) {
 }
 
 TEST(InsideScenes, NoTriangleIsFlippedFromPictureToPicture) {
-  for (const char* scene : {"brain.prm", "thesis/fig_3_28.prm", "thesis/fig_3_29.prm", "thesis/fig_3_30.prm",
-                            "thesis/fig_3_32.prm"}) {
+  for (const char* scene :
+       {"brain.prm", "thesis/fig_3_28.prm", "thesis/fig_3_29.prm", "thesis/fig_3_30.prm", "thesis/fig_3_32.prm"}) {
     const LookedInto looked = look_into(scene);
     const texture::Interior& inside = looked.interior->inside;
     const auto folds = inside.folds();

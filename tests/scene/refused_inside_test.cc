@@ -73,8 +73,7 @@ TEST_F(Inside, PinsThatDoNotFit) {
                  {"Pin nose/From [m]", "0.04", "0.03 m off the plane of exemplar one", "on the plane"});
   expect_refused(scene(two + pin("two", "0.05, 0, 0.01", "0.06, 0.02, 0.05")),
                  {"Pin nose/To [m]", "0.06", "0.05 m off the plane of exemplar two", "on the plane"});
-  expect_refused(scene(two + pin("three", "0.05, 0, 0.01")),
-                 {"Pin nose/To exemplar", "names no exemplar"});
+  expect_refused(scene(two + pin("three", "0.05, 0, 0.01")), {"Pin nose/To exemplar", "names no exemplar"});
 }
 
 TEST_F(Inside, SweepsThatCannotTurn) {
@@ -112,8 +111,10 @@ TEST_F(Inside, SeveralComponents) {
 TEST_F(Inside, SkinPictures) {
   const std::string one = exemplar("one", "good.png", "-0.1, -0.1, 0.01");
   std::ofstream(folder / "text.png") << "no picture";
-  expect_refused<DataError>(scene("    set Skin image = nothing.png\n" + one), {"Interior/Skin image", "nothing.png", "there is no such file"});
-  expect_refused<DataError>(scene("    set Skin image = text.png\n" + one), {"Interior/Skin image", "neither a PNG nor a JPEG"});
+  expect_refused<DataError>(scene("    set Skin image = nothing.png\n" + one),
+                            {"Interior/Skin image", "nothing.png", "there is no such file"});
+  expect_refused<DataError>(scene("    set Skin image = text.png\n" + one),
+                            {"Interior/Skin image", "neither a PNG nor a JPEG"});
   expect_refused(scene("    set Skin image = good.png\n    set Skin axis [1] = 0, 0, 0\n" + one),
                  {"Interior/Skin axis [1]", "must have a length"});
 }

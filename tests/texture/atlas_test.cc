@@ -1,5 +1,5 @@
-#include "tests/texture/probes.h"
 #include "texture/atlas.h"
+#include "tests/texture/probes.h"
 
 #include <gtest/gtest.h>
 

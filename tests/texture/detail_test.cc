@@ -34,7 +34,8 @@ TEST(Detail, PutsBackWhatBlendingLoses) {
 TEST(Detail, FollowsTheOrientationOfTheSurface) {
   // Fine layers across z: a window on a plane z = constant sees one of them, a window on an upright plane many.
   const Solid layers = [](const Vec3& p) {
-    return image::Rgb::Constant(static_cast<float>(0.5 + 0.3 * std::sin(p[2] / 0.0005) + 0.1 * std::sin(p[0] / 0.0004)));
+    return image::Rgb::Constant(
+      static_cast<float>(0.5 + 0.3 * std::sin(p[2] / 0.0005) + 0.1 * std::sin(p[0] / 0.0004)));
   };
   const Interior inside(axis_exemplars(layers, 3, 160), ball(3), {});
   const Detail detail(inside);
@@ -50,8 +51,9 @@ TEST(Detail, FollowsTheOrientationOfTheSurface) {
     turned += difference(at(p, x, y, &detail), at(p, x, z, &detail)) / 200;
     same_plane = std::max(same_plane, difference(at(p, x, y, &detail), at(p, -y, x, &detail)));
   }
-  std::printf("the same points: without %.1e; with small features, plane turned %.3f on average, turned in itself %.1e\n",
-              without, turned, same_plane);
+  std::printf(
+    "the same points: without %.1e; with small features, plane turned %.3f on average, turned in itself %.1e\n",
+    without, turned, same_plane);
   EXPECT_LT(without, 1e-5);
   EXPECT_GT(turned, 0.03);
   EXPECT_LT(same_plane, 1e-5); // a square window turned by a right angle
