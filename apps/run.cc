@@ -25,6 +25,9 @@ void print_body(const scene::Body& body) {
   if (body.n_divided > 0)
     std::printf("  %d steps taken again in substeps: whole ones failed or gained energy that nothing gave\n",
                 body.n_divided);
+  if (const std::size_t n = body.interior ? body.interior->atlas.n_coarse() : 0; n > 0)
+    std::printf("  %zu triangles have colours farther apart than asked for, %d to a side: use a smaller cube edge\n", n,
+                texture::Atlas::max_parts);
   if (body.n_lost_shells > 0)
     std::printf("  %zu shells of the mesh hold no grid node and are lost: use a smaller cube edge\n",
                 body.n_lost_shells);

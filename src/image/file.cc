@@ -57,7 +57,8 @@ Image read_image(const std::string& path) {
     if (is_jpeg(bytes))
       return decode_jpeg(bytes);
   } catch (const DataError& error) {
-    throw unreadable(path, std::string("is damaged: ") + error.what(), "Write it anew from its source");
+    throw unreadable(path, std::string("is damaged, or of a kind that is not read: ") + error.what(),
+                     "Write it anew from its source, as RGB or grey");
   }
   throw unreadable(path, "is neither a PNG nor a JPEG", "Convert it to one of these");
 }

@@ -9,6 +9,7 @@
 #include "base/vec.h"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -74,6 +75,30 @@ Value sample(const Raster<Value>& raster, const float x, const float y) {
   const Value* const q = p + raster.width;
   const Value top = p[0] + f.right * (p[1] - p[0]), bottom = q[0] + f.right * (q[1] - q[0]);
   return top + f.down * (bottom - top);
+}
+
+/// Shares of four neighbours at a place in [0, 1] between the middle ones: Catmull and Rom, A class of local interpolating
+/// splines, 1974.
+inline std::array<float, 4> cubic_shares(const float t) {
+  return {t * (-0.5f + t * (1 - 0.5f * t)), 1 + t * t * (1.5f * t - 2.5f), t * (0.5f + t * (2 - 1.5f * t)),
+          t * t * (0.5f * t - 0.5f)};
+}
+
+/// The bicubic value at a point [pixels]: a pixel has its own, and what is finest fades less between pixels than by
+/// sample(). It may leave the range of the pixels.
+template <class Value>
+Value sample_cubic(const Raster<Value>& raster, const float x, const float y) {
+  const Footing f = footing(raster.width, raster.height, x, y);
+  const auto across = cubic_shares(f.right), down = cubic_shares(f.down);
+  std::array<int, 4> columns;
+  for (int k = 0; k < 4; ++k)
+    columns[k] = std::clamp(f.column + k - 1, 0, raster.width - 1);
+  const auto row = [&](const int k) {
+    const Value* const p = &raster.values[raster.index(0, std::clamp(f.row + k - 1, 0, raster.height - 1))];
+    return Value(across[0] * p[columns[0]] + across[1] * p[columns[1]] + across[2] * p[columns[2]] +
+                 across[3] * p[columns[3]]);
+  };
+  return down[0] * row(0) + down[1] * row(1) + down[2] * row(2) + down[3] * row(3);
 }
 
 /// How bright a colour looks: Rec. 709 weights, on the values as they are.

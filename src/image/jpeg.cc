@@ -35,6 +35,8 @@ jpeg_error_mgr* prepare(Escape& escape) {
   return manager;
 }
 
+constexpr int n_of_cmyk = 4; ///< channels
+
 /// Rows as they come; false with the message in `escape` when the bytes are damaged.
 bool decompress(const Bytes& bytes, jpeg_decompress_struct& context, Escape& escape, Bytes& rgb) {
   context.err = prepare(escape);
@@ -43,6 +45,8 @@ bool decompress(const Bytes& bytes, jpeg_decompress_struct& context, Escape& esc
   jpeg_create_decompress(&context);
   jpeg_mem_src(&context, bytes.data(), bytes.size());
   jpeg_read_header(&context, TRUE);
+  if (context.num_components == n_of_cmyk)
+    return false;
   context.out_color_space = JCS_RGB;
   jpeg_start_decompress(&context);
   const std::size_t row = std::size_t{3} * context.output_width;
@@ -89,12 +93,14 @@ Image decode_jpeg(const Bytes& bytes) {
   Bytes rgb;
   const bool done = decompress(bytes, context, escape, rgb);
   const int width = static_cast<int>(context.output_width), height = static_cast<int>(context.output_height);
-  const int n_channels = context.num_components == 1 ? 1 : 3;
+  const int n_in_file = context.num_components;
   jpeg_destroy_decompress(&context);
+  if (n_in_file == n_of_cmyk)
+    throw DataError("it has the four channels of a printing press (CMYK)");
   if (!done)
     throw DataError(escape.message[0] != 0 ? escape.message.data() : "the file ends early or is damaged");
   Image image{Colours(width, height, Rgb::Zero()), {}};
-  image.n_channels = n_channels;
+  image.n_channels = n_in_file == 1 ? 1 : 3;
   for (std::size_t i = 0; i < image.colours.values.size(); ++i)
     image.colours.values[i] = Rgb(rgb[3 * i], rgb[3 * i + 1], rgb[3 * i + 2]) / 255.0f;
   return image;

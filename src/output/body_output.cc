@@ -60,18 +60,27 @@ void write_surface(const h5::Object& group, const Surface& surface) {
   write_table<double>(weights, "value", surface.weights.values, {"1", "weight of each entry"});
 }
 
+template <class Row>
+void append_samples(const h5::Object& root, const std::string& path, const h5::Layout& layout,
+                    const std::vector<Row>& rows, const Label& label) {
+  if (!h5::exists(root, path))
+    describe(h5::create_series(root, path, layout, 4096), label);
+  h5::append_rows(h5::open_dataset(root, path), layout, rows.data(), rows.size());
+}
+
 /// The samples go behind those of earlier surfaces.
 void write_colours(const h5::Object& root, const h5::Object& surface, const std::string& body, const Colours& colours) {
   write_table<std::uint32_t>(surface, "first_sample", colours.first,
                              {"1", "row of the body's colours where each triangle's begin; 2^32 - 1 without"});
   write_table<std::uint16_t>(surface, "parts", colours.parts,
-                             {"1", "n: the triangle a, b, c has samples at a + i/n (b - a) + j/n (c - a), i slower "
-                                   "than j; 0 without"});
-  constexpr h5::Layout layout = {h5::Number::uint8, 3};
-  const auto path = body_path(body, "colours");
-  if (!h5::exists(root, path))
-    describe(h5::create_series(root, path, layout, 4096), {"1", "sRGB samples of revealed triangles"});
-  h5::append_rows(h5::open_dataset(root, path), layout, colours.samples.data(), colours.samples.size());
+                             {"1",
+                              "n: the triangle a, b, c has samples at a + i/n (b - a) + j/n (c - a), i slower "
+                              "than j; 0 without"});
+  append_samples(root, body_path(body, "colours"), {h5::Number::uint8, 3}, colours.samples,
+                 {"1", "sRGB samples of revealed triangles"});
+  if (!colours.slopes.empty())
+    append_samples(root, body_path(body, "slopes"), {h5::Number::float32, 2}, colours.slopes,
+                   {"m", "rise of the relief along (b - a) and (c - a) of each sample's triangle"});
 }
 
 void write_frame(const h5::Object& frame, const BodyStep& step) {
@@ -137,6 +146,8 @@ void check(const BodyStep& step, const BodyCounts& counts, const std::string& fi
   if (step.surface != nullptr && step.colours != nullptr) {
     checks.equal("surface/first_sample", step.colours->first.size(), step.surface->triangles.size());
     checks.equal("surface/parts", step.colours->parts.size(), step.surface->triangles.size());
+    if (!step.colours->slopes.empty())
+      checks.equal("slopes", step.colours->slopes.size(), step.colours->samples.size());
   }
 }
 

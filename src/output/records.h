@@ -68,6 +68,9 @@ struct Colours {
   std::vector<std::uint32_t> first;                 ///< per triangle; 2^32 - 1 without samples
   std::vector<std::uint16_t> parts;                 ///< per triangle; 0 without samples
   std::vector<std::array<std::uint8_t, 3>> samples; ///< sRGB: those that the file does not have yet
+  std::vector<std::array<float, 2>>
+    slopes; ///< [m] of each of these: by how much a relief rises along (b - a), (c - a);
+            ///< empty in a body without relief
 };
 
 /// A body's closed surface; it follows the corners by x_surface = W x_corners.

@@ -9,9 +9,10 @@ void InteriorParameters::describe(Parameters& p) {
     "Morph", morph, {"first order", "exact inverse", "blend", "nearest"},
     "How source points become a colour: by warps in first order (thesis, 3.14); by their exact inverse (3.13); by "
     "mixing without warps; by the nearest alone.");
-  p.choice("Weights", weights, {"Shepard", "mean value"},
-           "Of source points. Mean value coordinates where these enclose the point, which they do in cells that do not "
-           "touch the skin; Shepard's elsewhere.");
+  p.choice(
+    "Weights", weights, {"Shepard", "mean value"},
+    "Of source points. Mean value coordinates where these enclose the point, in cells that do not touch the skin; "
+    "Shepard's elsewhere; in between a mixture of both.");
   p.number("Weight power [1]", power, positive, "Of the distances in Shepard's weights.");
   p.choice("Warps", warps, {"all", "facing"},
            "Between all exemplars that bound a cell, or only between those that face each other within 45 degrees.");

@@ -78,7 +78,10 @@ output::Surface to_record(const surface::Surface& surface) {
 
 /// The samples from `first` on, which the file does not have yet.
 output::Colours to_record(const texture::Atlas& atlas, const std::size_t first) {
-  return {atlas.first(), atlas.parts(), {atlas.colours().begin() + first, atlas.colours().end()}};
+  const auto from = [&](const auto& rows) {
+    return std::decay_t<decltype(rows)>(rows.begin() + std::min(first, rows.size()), rows.end());
+  };
+  return {atlas.first(), atlas.parts(), from(atlas.colours()), from(atlas.slopes())};
 }
 
 /// What every step of a body's surface file brings.
@@ -101,8 +104,8 @@ bool is_due(const int step, const int every, const World& world) { return step %
 } // namespace
 
 const std::vector<std::string>& stages() {
-  static const std::vector<std::string> names = {"cut",   "topology", "assemble", "visibility",
-                                                 "solve", "surface",  "colour",   "output",     "images"};
+  static const std::vector<std::string> names = {"cut",     "topology", "assemble", "visibility", "solve",
+                                                 "surface", "colour",   "output",   "images"};
   return names;
 }
 

@@ -21,8 +21,8 @@ class InPlane {
     const Vec3 area = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
     if (!paint.detail || !(area.norm() > 0))
       return;
-    lay_out(corners, area.normalized());
-    painted_ = texture::paint(inside_, patch_, paint.detail);
+    lay_out(corners, area.normalized(), paint.relief != 0 ? 2 : 1);
+    painted_ = paint_spans(inside_, patch_, *paint.detail, spans_);
   }
 
   Eigen::Array4f operator()(const Vec3& p) const {
@@ -33,8 +33,9 @@ class InPlane {
   }
 
  private:
-  /// A lattice of points that is the same for all triangles of a plane: its axes are those of the first exemplar.
-  void lay_out(const Corners& corners, const Vec3& normal) {
+  /// A lattice of points that is the same for all triangles of a plane: its axes are those of the first exemplar. What
+  /// is within `margin` points of the triangle is asked for: for interpolation, and for slopes.
+  void lay_out(const Corners& corners, const Vec3& normal, const double margin) {
     const SectionPlane& plane = inside_.charts().front().plane;
     Vec3 x = plane.x() - normal.dot(plane.x()) * normal;
     if (x.norm() < 0.3)
@@ -42,17 +43,41 @@ class InPlane {
     x.normalize();
     const Vec3 y = normal.cross(x);
     pixel_ = inside_.pixel();
-    constexpr double margin = 2; // points around the triangle: for interpolation, and for slopes
     Vec2 lower = Vec2::Constant(1e300), upper = -lower;
-    for (const Vec3& corner : corners) {
-      const Vec2 p = plane_coordinates(corner - plane.origin(), x, y);
-      lower = lower.cwiseMin(p);
-      upper = upper.cwiseMax(p);
+    std::array<Vec2, 3> flat;
+    for (int i = 0; i < 3; ++i) {
+      flat[i] = plane_coordinates(corners[i] - plane.origin(), x, y);
+      lower = lower.cwiseMin(flat[i]);
+      upper = upper.cwiseMax(flat[i]);
     }
     const Vec2 first = (lower.array().floor() - margin).matrix(), size = (upper - first).array().ceil() + margin;
     const double height = normal.dot(corners[0] - plane.origin());
     patch_ = {plane.origin() + height * normal + pixel_ * (first[0] * x + first[1] * y), pixel_ * x, pixel_ * y,
               static_cast<int>(size[0]) + 1, static_cast<int>(size[1]) + 1};
+    for (int r = 0; r < patch_.height; ++r)
+      spans_.push_back(span_of(flat, first, r, margin));
+  }
+  /// The columns of a row that are within a margin of a triangle.
+  Span span_of(const std::array<Vec2, 3>& triangle, const Vec2& first, const int row, const double margin) const {
+    const double below = first[1] + row - margin, above = first[1] + row + margin;
+    double left = 1e300, right = -1e300;
+    for (int i = 0; i < 3; ++i) {
+      const Vec2 &a = triangle[i], &b = triangle[(i + 1) % 3];
+      // The part of the side between the two heights.
+      const double rise = b[1] - a[1];
+      const double s = rise != 0 ? std::clamp((below - a[1]) / rise, 0.0, 1.0) : 0;
+      const double t = rise != 0 ? std::clamp((above - a[1]) / rise, 0.0, 1.0) : 1;
+      if (std::max(a[1], b[1]) < below || std::min(a[1], b[1]) > above)
+        continue;
+      for (const double u : {s, t}) {
+        left = std::min(left, a[0] + u * (b[0] - a[0]));
+        right = std::max(right, a[0] + u * (b[0] - a[0]));
+      }
+    }
+    if (left > right)
+      return {};
+    return {std::max(0, static_cast<int>(std::ceil(left - margin - first[0]))),
+            std::min(patch_.width - 1, static_cast<int>(std::floor(right + margin - first[0])))};
   }
   Vec2 plane_coordinates(const Vec3& d, const Vec3& x, const Vec3& y) const {
     return Vec2(x.dot(d), y.dot(d)) / pixel_;
@@ -60,6 +85,7 @@ class InPlane {
 
   const Interior& inside_;
   Patch patch_;
+  std::vector<Span> spans_;
   double pixel_ = 1;
   image::Raster<Eigen::Array4f> painted_;
 };
@@ -83,11 +109,16 @@ Corners corners_of(const SurfaceView& surface, const std::size_t t) {
   return {surface.rest[v[0]], surface.rest[v[1]], surface.rest[v[2]]};
 }
 
-int parts_for(const Corners& corners, const double resolution) {
+double longest_side(const Corners& corners) {
   double longest = 0;
   for (int i = 0; i < 3; ++i)
     longest = std::max(longest, (corners[(i + 1) % 3] - corners[i]).norm());
-  return std::clamp(static_cast<int>(std::ceil(longest / resolution)), 1, Atlas::max_parts);
+  return longest;
+}
+
+int parts_for(const Corners& corners, const double resolution) {
+  const double n = std::min(std::ceil(longest_side(corners) / resolution), double(Atlas::max_parts));
+  return std::max(static_cast<int>(n), 1);
 }
 
 } // namespace
@@ -112,6 +143,13 @@ void Atlas::fill_triangle(const std::size_t t, const SurfaceView& surface, const
       slopes_[sample] = {slope(colours, p, u, paint.relief, pixel), slope(colours, p, v, paint.relief, pixel)};
     ++sample;
   });
+}
+
+std::size_t Atlas::n_coarse() const {
+  std::size_t n = 0;
+  for (std::size_t t = 0; t < parts_.size(); ++t)
+    n += parts_[t] == max_parts && longest_side(filled_[t]) > max_parts * resolution_ ? 1 : 0;
+  return n;
 }
 
 std::size_t Atlas::fill(const SurfaceView& surface, const Paint& paint) {

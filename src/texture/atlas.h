@@ -33,7 +33,7 @@ struct Paint {
 class Atlas {
  public:
   static constexpr std::uint32_t none = 0xffffffff;
-  static constexpr int max_parts = 64; ///< a side
+  static constexpr int max_parts = 64; ///< a side; larger triangles than this allows are coarser, and counted
 
   /// Samples are at most `resolution` apart [m].
   explicit Atlas(const double resolution) : resolution_(resolution) {}
@@ -41,6 +41,8 @@ class Atlas {
   /// Fills what is new. Returns the number of triangles filled. The cost beside them: one look at each triangle.
   std::size_t fill(const SurfaceView& surface, const Paint& paint);
 
+  /// Triangles whose samples are farther apart than asked for.
+  std::size_t n_coarse() const;
   const std::vector<std::uint32_t>& first() const { return first_; } ///< sample of each triangle; none
   const std::vector<std::uint16_t>& parts() const { return parts_; } ///< n of each triangle; 0 without samples
   const std::vector<std::array<std::uint8_t, 3>>& colours() const { return colours_; } ///< samples, sRGB

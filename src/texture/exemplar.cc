@@ -48,7 +48,7 @@ void check_size(const PixelBox& box) {
                                    .remedy = "Check the unit, or take a coarser picture"});
 }
 
-/// Signed area of the mask's or the section's pixels, and their middle.
+/// The mean of a mask's pixels.
 Vec2 middle(const Grey& mask) {
   Vec2 sum = Vec2::Zero();
   double n = 0;
@@ -59,17 +59,6 @@ Vec2 middle(const Grey& mask) {
         ++n;
       }
   return sum / std::max(n, 1.0);
-}
-
-/// How far the pixels of a mask reach from a centre in a direction [pixels].
-double reach(const Grey& mask, const Vec2& centre, const Vec2& along) {
-  for (double s = std::hypot(mask.width, mask.height); s > 0; s -= 0.25) {
-    const Vec2 p = centre + s * along;
-    const int c = static_cast<int>(std::lround(p[0])), r = static_cast<int>(std::lround(p[1]));
-    if (c >= 0 && r >= 0 && c < mask.width && r < mask.height && mask(c, r) > 0.5f)
-      return s;
-  }
-  return 0;
 }
 
 /// Boundary points of the section and of the mask that lie in the same direction from their middles [pixels].

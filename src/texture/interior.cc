@@ -102,8 +102,10 @@ void Interior::build_cell(const int number, const std::vector<Exemplar>& exempla
                                    .value = std::to_string(n) + " faces of one cell",
                                    .rule = "at most " + std::to_string(max_sources) + " are allowed",
                                    .remedy = "Use fewer exemplars, or set Components to together"});
-  for (const Face& face : cell.faces)
+  for (const Face& face : cell.faces) {
+    data.pixels.push_back(face.pixels);
     data.sources.emplace_back(face, cell, exemplars[face.exemplar], charts_[face.exemplar], body);
+  }
   data.tables = make_warps(cell, exemplars, charts_, options_.warps,
                            known ? known->warps[number] : std::vector<warp::LatticeMap>(), maps_.warps[number]);
   for (std::size_t j = 0; j < n; ++j)
@@ -129,10 +131,9 @@ void Interior::find_sources(const CellData& cell, const Vec3& p, const Blending&
     found.pixels[i] = plane.to_pixels(local);
     distances[i] = (found.points[i] - p).norm();
   }
-  if (how.weights == Weights::mean_value && !cell.triangles.empty() &&
-      mean_value(p, std::span(found.points).first(n), cell.triangles, found.shares))
-    return;
   shepard(std::span(distances).first(n), how.power, found.shares);
+  if (how.weights == Weights::mean_value && !cell.triangles.empty())
+    enclose(p, std::span(found.points).first(n), cell.triangles, found.shares);
 }
 
 /// (3.14) for all sources at once: each table says where its source point goes on every face.
@@ -215,8 +216,8 @@ Blend Interior::blend(const Vec3& p, const Blending& how) const {
 Eigen::Array4f Interior::colour(const Blend& blend) const {
   Eigen::Array4f sum = Eigen::Array4f::Zero();
   for (int i = 0; i < blend.n; ++i)
-    sum += blend.weights[i] * image::sample(charts_[blend.exemplars[i]].colours, blend.x[i], blend.y[i]);
-  return sum;
+    sum += blend.weights[i] * image::sample_cubic(charts_[blend.exemplars[i]].colours, blend.x[i], blend.y[i]);
+  return sum.max(0.0f).min(1.0f);
 }
 
 std::size_t Interior::n_pairs() const {
@@ -224,6 +225,54 @@ std::size_t Interior::n_pairs() const {
   for (const auto& maps : maps_.warps)
     n += maps.size();
   return n;
+}
+
+std::size_t Interior::n_closed_cells() const {
+  return static_cast<std::size_t>(
+    std::count_if(cells_.begin(), cells_.end(), [](const CellData& cell) { return !cell.triangles.empty(); }));
+}
+
+/// Where a pixel of a chart lies in its picture.
+Vec2 Interior::in_picture(const int exemplar, const Vec2& pixel) const {
+  const auto& fit = maps_.fits[exemplar];
+  return fit ? (*fit)(fit->lower + pixel) : pixel;
+}
+
+void Interior::count_folds(const CellData& cell, const int from, const int to, Folds& folds) const {
+  const image::Grey& pixels = cell.pixels[from];
+  const int n = static_cast<int>(cell.sources.size()), a = cell.sources[from].exemplar(),
+            b = cell.sources[to].exemplar();
+  const double sense = cell.linear[from * n + to].determinant();
+  const auto turns = [](const Vec2& p, const Vec2& q, const Vec2& r) {
+    return (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
+  };
+  const auto check = [&](const std::array<Vec2, 3>& p) {
+    std::array<Vec2, 3> before, after;
+    for (int k = 0; k < 3; ++k) {
+      before[k] = in_picture(a, p[k]);
+      after[k] = in_picture(b, image_of(cell.tables[from], to, p[k]).at);
+    }
+    ++folds.n_triangles;
+    folds.n_flipped +=
+      turns(before[0], before[1], before[2]) > 0 && sense * turns(after[0], after[1], after[2]) > 0 ? 0 : 1;
+  };
+  for (int r = 0; r + 1 < pixels.height; ++r)
+    for (int c = 0; c + 1 < pixels.width; ++c)
+      if (std::min({pixels(c, r), pixels(c + 1, r), pixels(c, r + 1), pixels(c + 1, r + 1)}) > 0.5f)
+        for (const Vec2& at : {Vec2(c, r), Vec2(c + 0.5, r + 0.5)})
+          check({at, at + Vec2(1e-3, 0), at + Vec2(0, 1e-3)});
+}
+
+Interior::Folds Interior::folds() const {
+  Folds folds;
+  for (const CellData& cell : cells_) {
+    const int n = static_cast<int>(cell.sources.size());
+    for (int from = 0; from < n; ++from)
+      for (int to = 0; to < n; ++to)
+        if (!cell.apart[from * n + to])
+          count_folds(cell, from, to, folds);
+  }
+  return folds;
 }
 
 double Interior::smallest_determinant() const {

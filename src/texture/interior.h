@@ -30,8 +30,9 @@ enum class Weights { shepard, mean_value };
 /// How source points become a colour.
 struct Blending {
   Morph morph = Morph::first_order;
-  Weights weights = Weights::shepard; ///< mean_value: where the source points enclose the point, Shepard elsewhere
-  double power = 1;                   ///< of Shepard's distances [1]
+  /// mean_value: where the source points enclose the point, Shepard where they do not, and a mixture in between.
+  Weights weights = Weights::shepard;
+  double power = 1; ///< of Shepard's distances [1]
 };
 
 struct InteriorOptions {
@@ -74,12 +75,21 @@ class Interior {
   const Maps& maps() const { return maps_; }
   double pixel() const { return pixel_; } ///< mean side of the exemplars' pixels [m]
   std::size_t n_pairs() const;            ///< of warps
+  std::size_t n_closed_cells() const;     ///< that exemplars alone bound: there mean value weights apply
+  /// From picture to picture, as points go: a fit, a warp between faces as tabulated, the other fit. Triangles that
+  /// this turns over, two in each pixel of a face, with sides of a thousandth of it: larger ones may lie across a kink of
+  /// a lattice, and seem turned over where nothing is.
+  struct Folds {
+    std::size_t n_triangles = 0, n_flipped = 0;
+  };
+  Folds folds() const;
   /// The smallest determinant over all warps and fits, relative to no deformation [1].
   double smallest_determinant() const;
 
  private:
   struct CellData {
     std::vector<Source> sources;
+    std::vector<image::Grey> pixels; ///< of the faces
     std::vector<WarpTable> tables;
     std::vector<char> apart;       ///< [j * n + i]: 1 where faces j and i are no partners, or one face
     std::vector<Mat2> linear;      ///< [j * n + i]: from chart pixels of face j to those of face i, before matching
@@ -96,6 +106,8 @@ class Interior {
                   const Maps* known);
   void find_sources(const CellData& cell, const Vec3& p, const Blending& how, Found& found) const;
   void morph(const CellData& cell, const Found& found, std::array<Vec2, max_sources>& q) const;
+  Vec2 in_picture(int exemplar, const Vec2& pixel) const;
+  void count_folds(const CellData& cell, int from, int to, Folds& folds) const;
   /// The weight of what stays where it is on face i: of itself, and of those that are no partners of it.
   static double own_share(const CellData& cell, const Found& found, int i);
   Vec2 solve_inverse(const CellData& cell, const Found& found, int i, Vec2 q) const;

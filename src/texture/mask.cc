@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 
+#include <cmath>
 #include <numeric>
 #include <string>
 
@@ -93,6 +94,16 @@ image::Raster<int> components(const Grey& mask, const std::size_t least, int& n_
       number.values[i] = counts ? n_components : 0;
   }
   return number;
+}
+
+double reach(const Grey& mask, const Vec2& centre, const Vec2& along) {
+  for (double s = std::hypot(mask.width, mask.height); s > 0; s -= 0.25) {
+    const Vec2 p = centre + s * along;
+    const int c = static_cast<int>(std::lround(p[0])), r = static_cast<int>(std::lround(p[1]));
+    if (c >= 0 && r >= 0 && c < mask.width && r < mask.height && mask(c, r) > 0.5f)
+      return s;
+  }
+  return 0;
 }
 
 Grey largest_component(const Grey& mask) {

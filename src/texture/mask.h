@@ -16,6 +16,9 @@ enum class Background {
 /// no pixel is section.
 image::Grey mask_of(const image::Image& picture, Background background);
 
+/// How far the pixels of a mask reach from a centre along a unit direction [pixels].
+double reach(const image::Grey& mask, const Vec2& centre, const Vec2& along);
+
 /// The largest 8-connected set of pixels above a half.
 image::Grey largest_component(const image::Grey& mask);
 

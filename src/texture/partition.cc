@@ -127,9 +127,11 @@ void Partition::add_faces(const std::vector<Exemplar>& exemplars, const std::vec
       const auto least = static_cast<std::size_t>(least_component * static_cast<double>(n_pixels)) + 1;
       const auto number = components(section, least, n);
       if (components_mean == Components::one && n > 1)
-        throw refusal(exemplars[e], "Components",
-                      "the body's section has " + std::to_string(n) + " components between the same exemplars",
-                      "Add one more exemplar that parts them (thesis §3.4.2.1), or set Components to each or together");
+        throw refusal(
+          exemplars[e], "Components",
+          "the body's section has " + std::to_string(n) + " components between the same exemplars",
+          "Add one more exemplar that parts them, before this one (thesis §3.4.2.1), or set Components to each or "
+          "together");
       if (components_mean != Components::each) {
         cell.faces.push_back({e, cell.sides[h], section, n_pixels});
         continue;

@@ -62,21 +62,35 @@ std::array<double, 2> allowed(const Frame& frame, const std::vector<HalfSpace>& 
   return range;
 }
 
-/// The outermost point of a ray that is inside: `crossings` are where it crosses the curves.
-double outermost(std::vector<double>& crossings, const std::array<double, 2>& range) {
+/// Where a ray leaves the inside, in the range: of several places the one next to `guess`, of equally near ones the
+/// outermost. `crossings` are where it crosses the curves.
+double way_out(std::vector<double>& crossings, const std::array<double, 2>& range, const double guess) {
   if (!(range[1] > range[0]))
     return 0;
   std::sort(crossings.begin(), crossings.end());
-  const auto beyond = std::upper_bound(crossings.begin(), crossings.end(), range[1]);
-  if ((crossings.end() - beyond) % 2 == 1)
-    return range[1];
-  return beyond != crossings.begin() && *(beyond - 1) > range[0] ? *(beyond - 1) : 0;
+  double best = 0, gap = 1e301;
+  const auto consider = [&](const double place) {
+    if (std::abs(place - guess) <= gap) {
+      best = place;
+      gap = std::abs(place - guess);
+    }
+  };
+  std::size_t n_beyond = crossings.size();
+  for (const double place : crossings) {
+    if (place > range[1])
+      break;
+    if (n_beyond-- % 2 == 1 && place > range[0])
+      consider(place);
+  }
+  if (n_beyond % 2 == 1)
+    consider(range[1]);
+  return best;
 }
 
 } // namespace
 
 std::vector<double> radii(const std::vector<Segment>& slice, const Frame& frame, const std::vector<HalfSpace>& halves,
-                          const Vec2& centre, const int n_directions) {
+                          const Vec2& centre, const int n_directions, const std::vector<double>& guess) {
   std::vector<std::vector<double>> crossings(n_directions);
   std::vector<Vec2> directions;
   for (int k = 0; k < n_directions; ++k)
@@ -98,7 +112,8 @@ std::vector<double> radii(const std::vector<Segment>& slice, const Frame& frame,
   }
   std::vector<double> result;
   for (int k = 0; k < n_directions; ++k)
-    result.push_back(outermost(crossings[k], allowed(frame, halves, centre, directions[k])));
+    result.push_back(
+      way_out(crossings[k], allowed(frame, halves, centre, directions[k]), guess.empty() ? 1e300 : guess[k]));
   return result;
 }
 

@@ -41,9 +41,46 @@ Source::Source(const Face& face, const Cell& cell, const Exemplar& exemplar, con
   : exemplar_(face.exemplar), plane_(frame_of(chart.plane)), normal_(chart.plane.normal()), side_(face.side) {
   middles_.assign(n_steps, middle_of(face, chart));
   turns_ = exemplar.sweep.path == Sweep::Path::arc || exemplar.sweep.path == Sweep::Path::axis;
-  if (turns_)
+  if (turns_) {
     prepare_turning(face, exemplar);
+    require_one_side(face, exemplar, chart);
+  }
+  if (std::count_if(cell.faces.begin(), cell.faces.end(),
+                    [&](const Face& other) { return other.exemplar == face.exemplar; }) > 1)
+    prepare_component(face, chart);
   tabulate(cell, exemplar, body, farthest(cell, body, face, chart));
+}
+
+/// Where the pixels of a component end, and how far beside them others lie.
+void Source::prepare_component(const Face& face, const Chart& chart) {
+  constexpr int near = 4;
+  const image::Grey& pixels = face.pixels;
+  to_pixels_ = chart.plane.pixels_by_local();
+  beside_ = image::Grey(pixels.width, pixels.height, 1);
+  for (int r = 0; r < pixels.height; ++r)
+    for (int c = 0; c < pixels.width; ++c) {
+      if (pixels(c, r) < 0.5f)
+        continue;
+      for (int dr = -near; dr <= near; ++dr)
+        for (int dc = -near; dc <= near; ++dc)
+          if (c + dc >= 0 && r + dr >= 0 && c + dc < pixels.width && r + dr < pixels.height) {
+            const double gap = std::max(0.0, (std::hypot(dc, dr) - 1.5) / (near - 1.5)); // the next pixel is not beside
+            beside_(c + dc, r + dr) = std::min(beside_(c + dc, r + dr), static_cast<float>(gap));
+          }
+    }
+  const Vec2 middle = chart.plane.to_pixels(middles_[0]);
+  for (int k = 0; k < n_directions; ++k) {
+    const Vec2 along = chart.plane.to_pixels(direction(k, n_directions)).normalized();
+    reach_.push_back(chart.plane.to_local(reach(pixels, middle, along) * along).norm());
+  }
+}
+
+double Source::drawn_in(const double length, const double radius, const Vec2& along) const {
+  if (length <= radius)
+    return length;
+  const Vec2 pixel = to_pixels_ * (middles_[0] + length * along);
+  return length -
+         (length - radius) * image::sample(beside_, static_cast<float>(pixel[0]), static_cast<float>(pixel[1]));
 }
 
 /// The plane turns about the line centre_ + s axis_, which lies in it; outward_ points from the line to the barycentre.
@@ -72,6 +109,19 @@ void Source::prepare_turning(const Face& face, const Exemplar& exemplar) {
     throw refusal(exemplar, "Axis [1]", "the axis passes through the barycentre of a face: it has no side to turn to",
                   "Divide the section by another exemplar through the axis first, or sweep along the normal");
   outward_.normalize();
+}
+
+/// A plane that turns reaches a point from one side only: what lies beyond the axis would be taken for its mirror image.
+void Source::require_one_side(const Face& face, const Exemplar& exemplar, const Chart& chart) const {
+  double least = 0;
+  for (int r = 0; r < face.pixels.height; ++r)
+    for (int c = 0; c < face.pixels.width; ++c)
+      if (face.pixels(c, r) > 0.5f)
+        least = std::min(least, outward_.dot(chart.plane.point(chart.plane.to_local(Vec2(c, r))) - centre_));
+  if (least < -2 * chart.plane.pixel())
+    throw refusal(exemplar, exemplar.sweep.path == Sweep::Path::arc ? "Centre [m]" : "Axis [1]",
+                  "the plane turns about a line that crosses a face: what lies beyond it cannot be reached",
+                  "Divide the section by another exemplar through that line first, or sweep along the normal");
 }
 
 Source::Swept Source::turn(const Vec3& p) const {
@@ -132,18 +182,21 @@ void Source::tabulate(const Cell& cell, const Exemplar& exemplar, const geometry
       half = HalfSpace{}; // its own plane bounds no ray in it
   Vec2 middle = middles_[0];
   double least = 0;
+  std::vector<double> guess = reach_;
   for (int i = 0; i < n_steps; ++i) {
     const Frame at = frame(i / steps_by_t_);
     const auto curves = slice(body, at);
-    std::vector<double> row = radii(curves, at, halves, middle, n_directions);
+    std::vector<double> row = radii(curves, at, halves, middle, n_directions, guess);
     if (i > 0 && exemplar.sweep.path == Sweep::Path::middles)
       for (int round = 0; round < 2; ++round) {
         middle = star_middle(middle, row);
-        row = radii(curves, at, halves, middle, n_directions);
+        row = radii(curves, at, halves, middle, n_directions, guess);
       }
     if (i == 0)
       least = 1e-3 * *std::max_element(row.begin(), row.end()) + 1e-300;
     raise(row, least);
+    if (!guess.empty())
+      guess = row;
     middles_[i] = middle;
     radii_.insert(radii_.end(), row.begin(), row.end());
     radii_.push_back(static_cast<float>(row.front()));
@@ -165,6 +218,9 @@ Vec2 Source::find(const Swept& swept) const {
   };
   const double there = (1 - s) * radius(i) + s * radius(i + 1);
   const double length = arm.norm();
+  if (!reach_.empty())
+    return length > 0 ? Vec2(middles_[0] + drawn_in(length * radius(0) / there, radius(0), arm / length) * arm / length)
+                      : middles_[0];
   // Far beyond the boundary, outside of the body, the source point stays there. How far is far falls from infinity in
   // the face itself, where interpolated radii may cut a corner off and the source point must still be the point itself.
   const double beyond = there * (1 + 0.02 * (n_steps - 1) / std::max(step, 1e-12));

@@ -6,6 +6,9 @@
 /// to p is taken back to the face, and the source point divides it in the same ratio between barycentre and boundary.
 /// Distances to the boundary are tabulated by sweep and direction, the boundary being the outermost one where a ray
 /// meets several, and bilinear in between: continuous, and exact in the face itself, whatever the table's resolution.
+///
+/// A face that is one component of several keeps its source points: its boundary is followed from that of the component
+/// itself, and what would lie beside the component, over another one, is drawn to its border.
 
 #include "texture/partition.h"
 
@@ -13,7 +16,8 @@ namespace kerf::texture {
 
 class Source {
  public:
-  /// Throws ParameterError about "Axis [1]" or "Centre [m]" if the sweep's axis does not fit the face.
+  /// Throws ParameterError about "Axis [1]" or "Centre [m]" if the sweep's axis does not fit the face: it must lie in
+  /// the plane, and pass beside the face.
   Source(const Face& face, const Cell& cell, const Exemplar& exemplar, const Chart& chart,
          const geometry::TriangleMesh& body);
 
@@ -41,8 +45,12 @@ class Source {
   Vec2 find(const Swept& swept) const;
   Frame frame(double t) const;
   void prepare_turning(const Face& face, const Exemplar& exemplar);
+  void require_one_side(const Face& face, const Exemplar& exemplar, const Chart& chart) const;
   double farthest(const Cell& cell, const geometry::TriangleMesh& body, const Face& face, const Chart& chart) const;
   void tabulate(const Cell& cell, const Exemplar& exemplar, const geometry::TriangleMesh& body, double t_max);
+  void prepare_component(const Face& face, const Chart& chart);
+  /// How far a source point may lie from the middle, [m] each, where the component's border is `radius` away.
+  double drawn_in(double length, double radius, const Vec2& along) const;
 
   static constexpr int n_directions = 256, n_steps = 33;
 
@@ -55,6 +63,9 @@ class Source {
   double steps_by_t_ = 0;     ///< rows of the table a unit of t
   std::vector<float> radii_;  ///< n_steps rows of n_directions + 1, the last of a row is its first [m]
   std::vector<Vec2> middles_; ///< the swept barycentre, by step [m]
+  image::Grey beside_;        ///< of a component: how far beside it a pixel is, 1 from four pixels on; else empty
+  std::vector<double> reach_; ///< of a component: from its middle to its border, by direction [m]; else empty
+  Mat2 to_pixels_ = Mat2::Identity();
 };
 
 } // namespace kerf::texture

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 namespace kerf::texture {
 
@@ -180,11 +181,29 @@ void fill(WarpTable& table, const int target, const warp::LatticeMap& map, const
     }
 }
 
+/// The ends of a pin lie on the planes of its exemplars, to a pixel.
+void check_planes(const ExemplarPin& pin, const std::vector<Exemplar>& exemplars, const std::vector<Chart>& charts) {
+  for (std::size_t i = 0; i < exemplars.size(); ++i)
+    for (const int end : {0, 1}) {
+      const SectionPlane& plane = charts[i].plane;
+      const double height = plane.height(pin.points[end]);
+      if (exemplars[i].name != pin.exemplars[end] || std::abs(height) <= plane.pixel())
+        continue;
+      std::ostringstream rule;
+      rule << "the pinned point lies " << std::abs(height) << " m off the plane of exemplar " << exemplars[i].name;
+      throw ParameterError(Complaint{.path = end == 0 ? "From [m]" : "To [m]",
+                                     .value = "pin " + pin.name,
+                                     .rule = rule.str(),
+                                     .remedy = "Give a point on the plane, to a pixel"});
+    }
+}
+
 } // namespace
 
 void check_pins(const std::vector<ExemplarPin>& pins, const std::vector<Cell>& cells,
                 const std::vector<Exemplar>& exemplars, const std::vector<Chart>& charts) {
   for (const ExemplarPin& pin : pins) {
+    check_planes(pin, exemplars, charts);
     std::array<bool, 2> is_inside = {false, false};
     bool joined = false;
     for (const Cell& cell : cells)

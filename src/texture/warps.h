@@ -27,14 +27,14 @@ enum class Partners {
 
 struct WarpOptions {
   Partners partners = Partners::all;
-  /// No pins. Stiff, so that features that come and go do not grasp at their neighbours.
-  warp::MatchOptions match = {.stiffness = 8};
-  int pixels = 96; ///< of the longer side of what is matched
+  warp::MatchOptions match; ///< without pins
+  int pixels = 96;          ///< of the longer side of what is matched
   std::vector<ExemplarPin> pins;
 };
 
-/// Throws ParameterError about the key "From [m]" or "To [m]", its value the pin's name, if the exemplars share no cell
-/// or a point lies outside of the parts of its exemplar that bound those cells.
+/// Throws ParameterError about the key "From [m]" or "To [m]", its value the pin's name, if a point lies off its
+/// exemplar's plane, the exemplars share no cell, or a point lies outside of the parts of its exemplar that bound those
+/// cells.
 void check_pins(const std::vector<ExemplarPin>& pins, const std::vector<Cell>& cells,
                 const std::vector<Exemplar>& exemplars, const std::vector<Chart>& charts);
 

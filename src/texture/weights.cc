@@ -17,35 +17,52 @@ void normalise(Shares& shares, const std::size_t n) {
     shares[i] /= sum;
 }
 
-/// Adds one triangle's part; u are unit vectors to its corners, d their distances. False if p lies in the triangle,
-/// where `shares` then are those in the plane.
+/// How far below zero a coordinate may be before the point counts as not enclosed at all.
+constexpr double margin = 0.1;
+
+/// Adds one triangle's part: the mean of the directions in which it is seen, divided among its corners. u are unit
+/// vectors to these, d their distances. False if p lies in the triangle, where `shares` then are those in the plane.
 bool add_triangle(const Triple& triangle, const std::array<Vec3, 3>& u, const std::array<double, 3>& d,
                   Shares& shares) {
-  std::array<double, 3> theta, c, s;
-  double half = 0;
+  constexpr double flat = 1e-8; // of the determinant: below, what is left out is as small
+  std::array<Vec3, 3> across;
+  Vec3 mean = Vec3::Zero();
+  double around = 0;
   for (int i = 0; i < 3; ++i) {
-    theta[i] = 2 * std::asin(std::min(1.0, 0.5 * (u[(i + 1) % 3] - u[(i + 2) % 3]).norm()));
-    half += 0.5 * theta[i];
+    across[i] = u[(i + 1) % 3].cross(u[(i + 2) % 3]);
+    const double sine = across[i].norm(), angle = std::atan2(sine, u[(i + 1) % 3].dot(u[(i + 2) % 3]));
+    around += angle;
+    if (sine > 0)
+      mean += 0.5 * angle / sine * across[i];
   }
-  if (M_PI - half < 1e-9) {
+  const double determinant = u[0].dot(across[0]);
+  if (std::abs(determinant) < flat) {
+    if (around < 2 * M_PI - 1e-6)
+      return true; // p in the plane of the triangle, outside of it: no part
     shares.fill(0);
     for (int i = 0; i < 3; ++i)
-      shares[triangle[i]] = std::sin(theta[i]) * d[(i + 1) % 3] * d[(i + 2) % 3];
+      shares[triangle[i]] = across[i].norm() * d[(i + 1) % 3] * d[(i + 2) % 3];
     return false;
   }
-  const double sign = u[0].cross(u[1]).dot(u[2]) > 0 ? 1 : -1;
-  for (int i = 0; i < 3; ++i) {
-    const double a = std::sin(theta[(i + 1) % 3]), b = std::sin(theta[(i + 2) % 3]);
-    c[i] = 2 * std::sin(half) * std::sin(half - theta[i]) / (a * b) - 1;
-    s[i] = sign * std::sqrt(std::max(0.0, 1 - c[i] * c[i]));
-    if (!(std::abs(s[i]) > 1e-9))
-      return true; // p in the plane of the triangle, outside of it: no part
-  }
-  for (int i = 0; i < 3; ++i) {
-    const int j = (i + 1) % 3, k = (i + 2) % 3;
-    shares[triangle[i]] += (theta[i] - c[j] * theta[k] - c[k] * theta[j]) / (d[i] * std::sin(theta[j]) * s[k]);
-  }
+  for (int i = 0; i < 3; ++i)
+    shares[triangle[i]] += across[i].dot(mean) / (d[i] * determinant);
   return true;
+}
+
+/// Makes coordinates sum to 1 and takes what is below zero away. Returns how far they enclosed the point.
+double enclosed_part(Shares& shares, const std::size_t n) {
+  double sum = 0, least = 0;
+  for (std::size_t i = 0; i < n; ++i)
+    sum += shares[i];
+  for (std::size_t i = 0; i < n; ++i) {
+    shares[i] /= sum;
+    if (!std::isfinite(shares[i]))
+      return 0;
+    least = std::min(least, shares[i]);
+    shares[i] = std::max(shares[i], 0.0);
+  }
+  normalise(shares, n);
+  return std::max(0.0, 1 + least / margin);
 }
 
 } // namespace
@@ -61,8 +78,8 @@ void shepard(const std::span<const double> distances, const double power, Shares
   normalise(shares, distances.size());
 }
 
-bool mean_value(const Vec3& p, const std::span<const Vec3> sources, const std::vector<Triple>& triangles,
-                Shares& shares) {
+double mean_value(const Vec3& p, const std::span<const Vec3> sources, const std::vector<Triple>& triangles,
+                  Shares& shares) {
   std::array<Vec3, max_sources> unit;
   std::array<double, max_sources> distance;
   double largest = 0;
@@ -70,24 +87,29 @@ bool mean_value(const Vec3& p, const std::span<const Vec3> sources, const std::v
     distance[i] = (sources[i] - p).norm();
     largest = std::max(largest, distance[i]);
   }
-  Shares found = {};
+  shares = {};
   for (std::size_t i = 0; i < sources.size(); ++i) {
-    if (distance[i] <= 1e-9 * largest) {
-      shares = {};
+    if (distance[i] <= 1e-12 * largest) {
       shares[i] = 1;
-      return true;
+      return 1;
     }
     unit[i] = (sources[i] - p) / distance[i];
   }
   for (const Triple& t : triangles)
-    if (!add_triangle(t, {unit[t[0]], unit[t[1]], unit[t[2]]}, {distance[t[0]], distance[t[1]], distance[t[2]]}, found))
+    if (!add_triangle(t, {unit[t[0]], unit[t[1]], unit[t[2]]}, {distance[t[0]], distance[t[1]], distance[t[2]]},
+                      shares))
       break;
+  return enclosed_part(shares, sources.size());
+}
+
+void enclose(const Vec3& p, const std::span<const Vec3> sources, const std::vector<Triple>& triangles, Shares& shares) {
+  Shares inner;
+  double part = mean_value(p, sources, triangles, inner);
   for (std::size_t i = 0; i < sources.size(); ++i)
-    if (!(found[i] >= -1e-12))
-      return false;
-  normalise(found, sources.size());
-  shares = found;
-  return true;
+    if (inner[i] < 1)
+      part = std::min(part, 2 * (1 - shares[i]) / (1 - inner[i]));
+  for (std::size_t i = 0; part > 0 && i < sources.size(); ++i)
+    shares[i] += part * (inner[i] - shares[i]);
 }
 
 } // namespace kerf::texture

@@ -32,6 +32,7 @@ LatticeMap fit(const std::vector<Pin>& pairs, const Vec2& lower, const Vec2& upp
   EnergyOptions energy_options;
   energy_options.regularity = options.inside;
   energy_options.border = Border::free;
+  energy_options.barrier = options.barrier;
   energy_options.pin_weight = 1;
   energy_options.pin_unit = 0.01 * (start.linear * size).norm();
   LatticeMap map = lattice_of(start, lower, upper, 2, 2);
@@ -44,7 +45,6 @@ LatticeMap fit(const std::vector<Pin>& pairs, const Vec2& lower, const Vec2& upp
       map = std::move(finer);
     // A coarse lattice cannot follow the boundary and must not be crushed by trying to.
     energy_options.stiffness = options.stiffness * std::pow(options.n_cells / n, 2);
-    energy_options.barrier = 10 * energy_options.stiffness;
     Energy energy(map, nullptr, pairs, energy_options);
     energy.take_out(start.linear);
     Eigen::VectorXd x = to_unknowns(map);

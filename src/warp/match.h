@@ -21,12 +21,14 @@ struct Picture {
 enum class Global { none, rotation, rotation_and_scale };
 
 struct MatchOptions {
-  int n_levels = 4;             ///< of the Gaussian stack
-  int n_cells = 24;             ///< of the finest lattice along the longer side
-  double edges = 1;             ///< weight of the edges [1]
-  double brightness = 1;        ///< weight of blurred luminance [1]
-  double outline = 1;           ///< weight of the blurred mask [1]
-  double stiffness = 0.2;       ///< of the lattice against the features, whose mean square is 1 [1]
+  int n_levels = 4;      ///< of the Gaussian stack
+  int n_cells = 24;      ///< of the finest lattice along the longer side
+  double edges = 1;      ///< weight of the edges [1]
+  double brightness = 1; ///< weight of blurred luminance [1]
+  double outline = 1;    ///< weight of the blurred mask [1]
+  /// Of the lattice against the features, whose mean square is 1 [1]: stiff, so that features that come and go do not
+  /// grasp at their neighbours.
+  double stiffness = 8;
   Global global = Global::none; ///< other than none: the border of the rectangle is free
   int n_iterations = 50;        ///< a level
   std::vector<Pin> pins = {};   ///< in pixels of the two pictures

@@ -31,6 +31,8 @@ class RefusedInterior : public Program {
   }
 };
 
+using AcceptedInterior = RefusedInterior;
+
 TEST_F(RefusedInterior, PicturesThatAreNone) {
   expect_bad_file("nothing.png", {"scene.prm:", "Interior/Exemplar one/Image", "nothing.png", "there is no such file"});
   write("text.png", "no picture at all, although its name says so");
@@ -63,18 +65,6 @@ TEST_F(RefusedInterior, PlanesThatDoNotFit) {
   expect_refused(scene(""), {"scene.prm:", "Body cube/Interior", "at least one exemplar"});
 }
 
-TEST_F(RefusedInterior, PinsThatDoNotFit) {
-  const std::string two = exemplar("one", "good.png", "-0.1, -0.1, 0.01") +
-                          exemplar("two", "good.png", "0.01, -0.1, -0.1", "0, 0.0065, 0", "0, 0, 0.0065");
-  const auto pin = [](const std::string& to, const std::string& from) {
-    return "    subsection Pin nose\n      set From exemplar = one\n      set To exemplar = " + to +
-           "\n      set From [m] = " + from + "\n      set To [m] = 0.01, 0.02, 0.05\n    end\n";
-  };
-  expect_refused(scene(two + pin("two", "0.9, 0, 0.01")), {"scene.prm:", "Pin nose/From [m]", "outside"});
-  expect_refused(scene(two + pin("three", "0.05, 0, 0.01")),
-                 {"scene.prm:", "Pin nose/To exemplar", "names no exemplar"});
-}
-
 TEST_F(RefusedInterior, TheTextureCommand) {
   write("scene.prm", scene(exemplar("one", "good.png", "-0.1, -0.1, 0.01")));
   write("plain.prm", cube_scene());
@@ -89,6 +79,35 @@ TEST_F(RefusedInterior, TheTextureCommand) {
   const image::Image picture = image::read_image((folder / "x.png").string());
   EXPECT_GT(picture.width(), 20);
   EXPECT_NEAR(picture.colours(picture.width() / 2, picture.height() / 2)[0], 0.8, 0.01);
+}
+
+/// A picture that is red on its left half: where columns run, and how fine they are.
+TEST_F(AcceptedInterior, PixelsAndColumnsOfTheTextureCommand) {
+  image::Colours halves(32, 32, image::Rgb(0, 0, 1));
+  for (int r = 0; r < 32; ++r)
+    for (int c = 0; c < 16; ++c)
+      halves(c, r) = image::Rgb(1, 0, 0);
+  image::write_image(halves, (folder / "halves.png").string());
+  write("scene.prm", scene(exemplar("one", "halves.png", "-0.1, -0.1, 0.01")));
+  const auto painted = [&](const std::string& plane, const std::string& pixel) {
+    const Result result =
+      kerf({"texture", "scene.prm", "--plane", plane, "--pixel", pixel, "--output", "x.png", "--threads", "1"});
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return image::read_image((folder / "x.png").string());
+  };
+  const image::Image along_x = painted("0, 0, 0.01; 0, 0, 1; 1, 0, 0", "0.002");
+  const image::Image along_y = painted("0, 0, 0.01; 0, 0, 1; 0, 1, 0", "0.002");
+  const image::Image finer = painted("0, 0, 0.01; 0, 0, 1; 1, 0, 0", "0.001");
+  EXPECT_NEAR(along_x.width(), 101, 1); // of a cube of 0.2 m
+  EXPECT_NEAR(finer.width(), 201, 1);
+  EXPECT_GT(along_x.colours(10, 50)[0], 0.99f); // columns along x: red on the left
+  EXPECT_GT(along_x.colours(90, 50)[2], 0.99f);
+  EXPECT_EQ(along_y.colours(10, 50)[0], along_y.colours(90, 50)[0]); // columns along y: rows run along -x
+  EXPECT_GT(along_y.colours(50, 90)[0], 0.99f);
+  EXPECT_GT(along_y.colours(50, 10)[2], 0.99f);
+  expect_error(kerf({"texture", "scene.prm", "--plane", "0, 0, 0; 0, 0, 1; 0, 0, 2"}), 1,
+               {"--plane", "must not run along the normal"});
+  expect_error(kerf({"texture", "scene.prm", "--plane", "0, 0, 0; 0, 0, 1", "--pixel", "0"}), 1, {"--pixel", "> 0"});
 }
 
 } // namespace

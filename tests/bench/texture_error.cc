@@ -5,7 +5,8 @@
 /// A brain of which one of nine sections is left out at a time and painted from the others; and solids whose colour is
 /// known everywhere, painted on planes between 2 to 9 parallel exemplars. By method: PSNR [dB] and SSIM against
 /// the truth, distance of the histograms of luminance, and the power of octaves (wavelengths around 4, 8, 16, 32
-/// pixels) over the truth's. FOLDER gets pictures: truth, nearest, blend, first order, exact inverse, small features.
+/// pixels) over the truth's; then, as measures of sharpness, the distance of the histogram from that of the exemplars
+/// themselves, and power over theirs. FOLDER gets pictures: truth, nearest, blend, first order, exact inverse, small features.
 
 #include "base/parallel.h"
 #include "image/compare.h"
@@ -36,27 +37,59 @@ warp::MatchOptions match_options = WarpOptions().match;
 constexpr int n_bands = 4;
 
 struct Score {
-  double psnr = 0, ssim = 0, histogram = 0;
-  std::array<double, n_bands> power = {};
+  double psnr = 0, ssim = 0, histogram = 0, own_histogram = 0;
+  std::array<double, n_bands> power = {}, own_power = {};
 
   void add(const Score& other, const double share) {
     psnr += share * other.psnr;
     ssim += share * other.ssim;
     histogram += share * other.histogram;
-    for (int k = 0; k < n_bands; ++k)
+    own_histogram += share * other.own_histogram;
+    for (int k = 0; k < n_bands; ++k) {
       power[k] += share * other.power[k];
+      own_power[k] += share * other.own_power[k];
+    }
   }
 };
 
-Score score(const image::Colours& painted, const image::Colours& truth, const Grey& mask) {
+/// How sharp the exemplars are: their mean histogram and power by octave.
+struct Own {
+  std::vector<double> histogram = std::vector<double>(64, 0);
+  std::array<double, n_bands> power = {};
+};
+
+Own own_of(const Interior& interior) {
+  Own own;
+  const double share = 1 / static_cast<double>(interior.charts().size());
+  for (const Chart& chart : interior.charts()) {
+    Grey grey = chart.inside, mask = chart.inside;
+    for (std::size_t i = 0; i < grey.values.size(); ++i) {
+      grey.values[i] = chart.colours.values[i][3];
+      mask.values[i] *= chart.shown.values[i];
+    }
+    const auto histogram = image::histogram(grey, mask, 64);
+    const auto power = image::band_power(grey, mask, n_bands);
+    for (int k = 0; k < 64; ++k)
+      own.histogram[k] += share * histogram[k];
+    for (int k = 0; k < n_bands; ++k)
+      own.power[k] += share * power[k];
+  }
+  return own;
+}
+
+Score score(const image::Colours& painted, const image::Colours& truth, const Grey& mask, const Own& own) {
   const Grey a = image::luminance(painted), b = image::luminance(truth);
   Score s{image::psnr(painted, truth, mask),
           image::ssim(a, b, mask),
           image::histogram_distance(image::histogram(a, mask, 64), image::histogram(b, mask, 64)),
+          image::histogram_distance(image::histogram(a, mask, 64), own.histogram),
+          {},
           {}};
   const auto pa = image::band_power(a, mask, n_bands), pb = image::band_power(b, mask, n_bands);
-  for (int k = 0; k < n_bands; ++k)
+  for (int k = 0; k < n_bands; ++k) {
     s.power[k] = pa[k] / pb[k];
+    s.own_power[k] = pa[k] / own.power[k];
+  }
   return s;
 }
 
@@ -64,13 +97,21 @@ void print(const std::string& what, const std::string& method, const Score& s) {
   std::printf("%-16s %-20s %7.2f %7.3f %9.4f  ", what.c_str(), method.c_str(), s.psnr, s.ssim, s.histogram);
   for (const double ratio : s.power)
     std::printf(" %6.2f", ratio);
+  std::printf("  %9.4f  ", s.own_histogram);
+  for (const double ratio : s.own_power)
+    std::printf(" %6.2f", ratio);
   std::printf("\n");
 }
 
 void print_head() {
-  std::printf("%-16s %-20s %7s %7s %9s   %s\n", "", "", "PSNR", "SSIM", "histogram",
-              "power over the truth's by octave, from the finest");
+  std::printf("%-16s %-20s %7s %7s %9s   %-28s %9s    %s\n", "", "", "PSNR", "SSIM", "histogram",
+              "power over the truth's,", "histogram", "power over the exemplars' own,");
+  std::printf("%-16s %-20s %7s %7s %9s   %-28s %9s    %s\n", "", "", "[dB]", "", "", "by octave from the finest",
+              "from own", "by octave from the finest");
 }
+
+/// Of the scores: the truth comes first.
+std::string name_of(const std::size_t score) { return score == 0 ? "truth" : methods[score - 1].name; }
 
 /// Pictures side by side, what is outside of the mask in grey.
 void write_strip(const std::vector<image::Colours>& pictures, const Grey& mask, const std::string& path) {
@@ -84,16 +125,18 @@ void write_strip(const std::vector<image::Colours>& pictures, const Grey& mask, 
   image::write_image(strip, path);
 }
 
-/// The scores of all methods on one patch.
+/// The scores of the truth itself and of all methods on one patch.
 std::vector<Score> compare(const Interior& interior, const Detail& detail, const Patch& patch,
                            const image::Colours& truth, const Grey& mask, const std::string& path) {
   std::vector<Score> scores;
   std::vector<image::Colours> pictures = {truth};
+  const Own own = own_of(interior);
+  scores.push_back(score(truth, truth, mask, own));
   for (const Method& method : methods) {
     Blending how = interior.options().blending;
     how.morph = method.morph;
     pictures.push_back(colours_of(paint(interior, patch, method.small_features ? &detail : nullptr, how)));
-    scores.push_back(score(pictures.back(), truth, mask));
+    scores.push_back(score(pictures.back(), truth, mask, own));
   }
   if (!path.empty())
     write_strip(pictures, mask, path);
@@ -135,7 +178,7 @@ InteriorOptions brain_options(const Partners partners) {
 void study_brain(const std::string& folder, const Sweep::Path path, const Partners partners) {
   const auto body = geometry::read_mesh(std::string(KERF_SOURCE_DIR) + "/params/meshes/brain_40k.off", 1e-3);
   const auto sections = brain_sections();
-  std::vector<Score> means(methods.size());
+  std::vector<Score> means(methods.size() + 1);
   print_head();
   for (std::size_t out = 0; out < sections.size(); ++out) {
     std::vector<Exemplar> others;
@@ -157,13 +200,13 @@ void study_brain(const std::string& folder, const Sweep::Path path, const Partne
       mask.values[i] *= shown.values[i];
     const auto scores = compare(interior, Detail(interior), patch, left_out.picture.colours, mask,
                                 folder.empty() ? "" : folder + "/" + sections[out].file + ".png");
-    for (std::size_t m = 0; m < methods.size(); ++m) {
-      print(sections[out].file, methods[m].name, scores[m]);
+    for (std::size_t m = 0; m < scores.size(); ++m) {
+      print(sections[out].file, name_of(m), scores[m]);
       means[m].add(scores[m], 1.0 / static_cast<double>(sections.size()));
     }
   }
-  for (std::size_t m = 0; m < methods.size(); ++m)
-    print("mean", methods[m].name, means[m]);
+  for (std::size_t m = 0; m < means.size(); ++m)
+    print("mean", name_of(m), means[m]);
 }
 
 /// Planes between the exemplars: two along them, one tilted.
@@ -214,16 +257,16 @@ void study_solid(const std::string& name, const Solid& solid, const std::string&
     options.warps.match = match_options;
     const Interior interior(sections_along_z(solid, n), ball(5), options);
     const Detail detail(interior);
-    std::vector<Score> means(methods.size());
+    std::vector<Score> means(methods.size() + 1);
     for (std::size_t i = 0; i < patches.size(); ++i) {
       const std::string file = folder + "/" + name + "_" + std::to_string(n) + "_plane_" + std::to_string(i) + ".png";
       const auto scores = compare(interior, detail, patches[i], truth_of(solid, patches[i]), ball_mask(patches[i]),
                                   folder.empty() || (n != 3 && n != 9) ? "" : file);
-      for (std::size_t m = 0; m < methods.size(); ++m)
+      for (std::size_t m = 0; m < means.size(); ++m)
         means[m].add(scores[m], 1.0 / static_cast<double>(patches.size()));
     }
-    for (std::size_t m = 0; m < methods.size(); ++m)
-      print(std::to_string(n) + " exemplars", methods[m].name, means[m]);
+    for (std::size_t m = 0; m < means.size(); ++m)
+      print(std::to_string(n) + " exemplars", name_of(m), means[m]);
   }
 }
 

@@ -6,7 +6,10 @@
 #include <gtest/gtest.h>
 #include <png.h>
 
+#include <cstdio>
 #include <fstream>
+
+#include <jpeglib.h>
 
 namespace kerf::image {
 namespace {
@@ -90,11 +93,36 @@ TEST(ImageFile, GreyAnd16BitsAreRead) {
   EXPECT_GT(two.colours.values[63][0], 0.9f);
 }
 
+/// Writes a JPEG of four channels by libjpeg directly.
+void write_cmyk(const std::string& path) {
+  jpeg_compress_struct context = {};
+  jpeg_error_mgr manager = {};
+  context.err = jpeg_std_error(&manager);
+  jpeg_create_compress(&context);
+  std::FILE* const file = std::fopen(path.c_str(), "wb");
+  jpeg_stdio_dest(&context, file);
+  context.image_width = context.image_height = 8;
+  context.input_components = 4;
+  context.in_color_space = JCS_CMYK;
+  jpeg_set_defaults(&context);
+  jpeg_start_compress(&context, TRUE);
+  std::vector<JSAMPLE> row(32, 100);
+  JSAMPROW place = row.data();
+  for (int r = 0; r < 8; ++r)
+    jpeg_write_scanlines(&context, &place, 1);
+  jpeg_finish_compress(&context);
+  jpeg_destroy_compress(&context);
+  std::fclose(file);
+}
+
 TEST(ImageFile, BadFilesAreRefused) {
   const output::TemporaryFolder folder;
   expect_refused((folder / "none.png").string(), "no such file");
   std::ofstream(folder / "text.png") << "this is no picture, although its name says so";
   expect_refused((folder / "text.png").string(), "neither a PNG nor a JPEG");
+  write_cmyk((folder / "press.jpg").string());
+  expect_refused((folder / "press.jpg").string(), "CMYK");
+  expect_refused((folder / "press.jpg").string(), "as RGB or grey");
   write_image(ramp(64, 64), (folder / "a.png").string());
   write_image(ramp(64, 64), (folder / "a.jpg").string());
   for (const std::string name : {"a.png", "a.jpg"}) {

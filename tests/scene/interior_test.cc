@@ -9,6 +9,7 @@
 #include <hdf5.h>
 
 #include <fstream>
+#include <map>
 
 namespace kerf::scene {
 namespace {
@@ -129,11 +130,93 @@ TEST_F(InteriorScene, WarpsAreKeptBesideTheSceneAndReadAgain) {
   EXPECT_TRUE(said(world(), "cannot be kept"));
 }
 
-TEST_F(InteriorScene, ReliefAndSmallFeaturesRun) {
-  World world = this->world("    set Small features = yes\n    set Relief [m] = 0.001\n");
-  run_silently(world, folder / "out");
-  const texture::Atlas& atlas = world.bodies.front().interior->atlas;
-  EXPECT_EQ(atlas.slopes().size(), atlas.colours().size());
+std::vector<float> read_floats(const std::filesystem::path& path, const char* name) {
+  const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+  const hid_t set = H5Dopen2(file, name, H5P_DEFAULT), space = H5Dget_space(set);
+  std::vector<float> values(static_cast<std::size_t>(std::max<hssize_t>(H5Sget_simple_extent_npoints(space), 0)));
+  H5Dread(set, H5T_NATIVE_FLOAT, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data());
+  H5Sclose(space);
+  H5Dclose(set);
+  H5Fclose(file);
+  return values;
+}
+
+TEST_F(InteriorScene, AReliefIsInTheRunFileAndChangesNoColour) {
+  const auto samples = [&](const std::string& more) {
+    // The blade at x = 0.003 m would run along a stripe: here stripes run across it.
+    std::string text = scene_with(interior(folder / "stripes.png", more));
+    for (const auto& [from, to] : {std::pair("Column [m] = 0.0032, 0, 0", "Column [m] = 0, 0.0032, 0"),
+                                   std::pair("Row [m] = 0, 0.0032, 0", "Row [m] = 0.0032, 0, 0")})
+      text.replace(text.find(from), std::string(from).size(), to);
+    World world = compose(scan_scene_text(text, (folder / "scene.prm").string(), {}));
+    run_silently(world, folder / "out");
+    return world.bodies.front().interior->atlas;
+  };
+  const texture::Atlas smooth = samples(""), rough = samples("    set Relief [m] = 0.001\n");
+  EXPECT_TRUE(smooth.slopes().empty());
+  EXPECT_EQ(smooth.colours(), rough.colours());
+  ASSERT_EQ(rough.slopes().size(), rough.colours().size());
+  float steepest = 0;
+  const auto written = read_floats(folder / "out" / "run.h5", "/bodies/cube/slopes");
+  ASSERT_EQ(written.size(), 2 * rough.slopes().size());
+  for (std::size_t i = 0; i < rough.slopes().size(); ++i)
+    for (const int k : {0, 1}) {
+      EXPECT_EQ(written[2 * i + k], rough.slopes()[i][k]);
+      steepest = std::max(steepest, std::abs(written[2 * i + k]));
+    }
+  EXPECT_GT(steepest, 1e-4f); // a stripe's edge: 0.14 mm of luminance over some millimetres
+}
+
+TEST_F(InteriorScene, SmallFeaturesAreBuiltWhereAskedFor) {
+  World plain = this->world(), detailed = this->world("    set Small features = yes\n");
+  EXPECT_EQ(plain.bodies.front().interior->detail, nullptr);
+  EXPECT_NE(detailed.bodies.front().interior->detail, nullptr);
+}
+
+/// The colours at the corners and along the sides of a revealed triangle, by where it lies.
+using Samples = std::map<std::array<double, 9>, std::vector<std::array<std::uint8_t, 3>>>;
+Samples samples_of(const Body& body) {
+  Samples samples;
+  const texture::Atlas& atlas = body.interior->atlas;
+  for (std::size_t t = 0; t < body.surface.triangles.size(); ++t) {
+    if (atlas.first()[t] == texture::Atlas::none)
+      continue;
+    std::array<double, 9> place;
+    for (int i = 0; i < 9; ++i)
+      place[i] = body.surface.rest[body.surface.triangles[t][i / 3]][i % 3];
+    const auto first = atlas.colours().begin() + atlas.first()[t];
+    samples[place] = {first, first + static_cast<std::ptrdiff_t>(texture::n_samples(atlas.parts()[t]))};
+  }
+  return samples;
+}
+
+TEST_F(InteriorScene, ALaterCutChangesNothingThatStays) {
+  const auto cut = [](const std::string& name, const std::string& time, const std::string& normal) {
+    return "subsection Cut surface " + name + "\n  set Time [s] = " + time +
+           "\n  set Shape = plane\n  set Point [m] = 0.004, 0.007, 0.003\n  set Normal [1] = " + normal + "\nend\n";
+  };
+  const auto run_with = [&](const std::string& cuts) {
+    std::string text = cube_scene();
+    text.replace(text.rfind("end\n"), 4, interior(folder / "stripes.png", "    set Small features = yes\n") + "end\n");
+    World world = compose(scan_scene_text(text + cuts, (folder / "scene.prm").string(), {}));
+    run_silently(world, folder / "out");
+    return world;
+  };
+  const std::string first = cut("first", "0.01", "0.2, 1, 0.1"), second = cut("second", "0.03", "1, 0.1, 0.3");
+  const World once = run_with(first), twice = run_with(first + second);
+  const auto& before = once.bodies.front().interior->atlas.colours();
+  const auto& after = twice.bodies.front().interior->atlas.colours();
+  ASSERT_GT(after.size(), before.size());
+  EXPECT_TRUE(std::equal(before.begin(), before.end(), after.begin()));
+  const Samples old = samples_of(once.bodies.front()), all = samples_of(twice.bodies.front());
+  std::size_t n_same = 0;
+  for (const auto& [place, colours] : old)
+    if (const auto found = all.find(place); found != all.end()) {
+      EXPECT_EQ(found->second, colours);
+      ++n_same;
+    }
+  EXPECT_GT(n_same, old.size() / 3);
+  EXPECT_LT(n_same, old.size()); // the second cut parts some of the first one's faces
 }
 
 TEST_F(InteriorScene, ASkinImageColoursTheSkin) {

@@ -3,7 +3,8 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "tests/output/samples.h"
-#include "tests/texture/solids.h"
+#include "tests/texture/probes.h"
+#include "tests/texture/refused.h"
 #include "texture/atlas.h"
 #include "texture/cache.h"
 
@@ -12,28 +13,14 @@
 #include <Eigen/Geometry>
 
 #include <fstream>
-#include <random>
 
 namespace kerf::texture {
 namespace {
-
-/// Points inside the ball.
-Points points_inside(const int n, const unsigned seed) {
-  std::mt19937 random(seed);
-  std::uniform_real_distribution<double> number(-0.048, 0.048);
-  Points points;
-  while (static_cast<int>(points.size()) < n)
-    if (const Vec3 p(number(random), number(random), number(random)); p.norm() < 0.048)
-      points.push_back(p);
-  return points;
-}
 
 const Interior& five() {
   static const Interior interior(axis_exemplars(onion, 5, 120), ball(3), InteriorOptions());
   return interior;
 }
-
-double difference(const Eigen::Array4f& a, const Eigen::Array4f& b) { return (a - b).abs().maxCoeff(); }
 
 TEST(Interior, IsExactOnTheExemplars) {
   for (const auto morph : {Morph::first_order, Morph::exact_inverse, Morph::blend, Morph::nearest})
@@ -127,11 +114,11 @@ TEST(Interior, TurningAllOfItChangesNothing) {
   for (Vec3& v : body.vertices)
     v = turn * v + shift;
   const Interior after(exemplars, body, {});
-  double sum = 0;
-  const auto points = points_inside(400, 7);
-  for (const Vec3& p : points)
-    sum += difference(before.colour(p), after.colour(turn * p + shift)) / 400;
-  EXPECT_LT(sum, 5e-3); // round-off decides whether a border pixel is inside
+  double largest = 0;
+  for (const Vec3& p : points_inside(1000, 7))
+    largest = std::max(largest, difference(before.colour(p), after.colour(turn * p + shift)));
+  std::printf("largest change of a colour when all is turned and shifted: %.1e\n", largest);
+  EXPECT_LT(largest, 1e-5);
 }
 
 TEST(Interior, MirroredInputGivesMirroredOutput) {
@@ -144,12 +131,14 @@ TEST(Interior, MirroredInputGivesMirroredOutput) {
     exemplar_of("z", solid, Vec3(0, 0, 0.001), Vec3::UnitX(), Vec3::UnitY(), 101),
     exemplar_of("y", solid, Vec3(0, 0.002, 0), Vec3::UnitX(), Vec3::UnitZ(), 101)};
   const Interior inside(exemplars, ball(4), {});
-  for (const auto& [morph, most] : {std::pair(Morph::blend, 1e-3), std::pair(Morph::first_order, 1e-2)}) {
+  // Warps are found by a descent whose sums run from left to right: their halves differ by a hundredth of a pixel.
+  for (const auto& [morph, most] : {std::pair(Morph::blend, 1e-5), std::pair(Morph::first_order, 1e-3)}) {
     const Blending how{morph, Weights::shepard, 1};
-    double sum = 0;
-    for (const Vec3& p : points_inside(400, 9))
-      sum += difference(inside.colour(p, how), inside.colour(Vec3(-p[0], p[1], p[2]), how)) / 400;
-    EXPECT_LT(sum, most);
+    double largest = 0;
+    for (const Vec3& p : points_inside(1000, 9))
+      largest = std::max(largest, difference(inside.colour(p, how), inside.colour(Vec3(-p[0], p[1], p[2]), how)));
+    std::printf("largest difference of mirrored colours: %.1e\n", largest);
+    EXPECT_LT(largest, most);
   }
 }
 
@@ -203,18 +192,6 @@ TEST(Cache, ComesBackAndSurvivesDamage) {
   EXPECT_FALSE(save_maps(cache_file(folder / "plain", hash), hash, found.maps()));
 }
 
-void expect_refused(const std::vector<Exemplar>& exemplars, const std::string& key, const std::string& rule,
-                    const InteriorOptions& options = {}, const geometry::TriangleMesh& body = ball(3)) {
-  try {
-    const Interior inside(exemplars, body, options);
-    FAIL() << rule;
-  } catch (const ParameterError& error) {
-    EXPECT_EQ(error.complaint().path, key) << error.what();
-    EXPECT_NE(error.complaint().rule.find(rule), std::string::npos) << error.what();
-    EXPECT_FALSE(error.complaint().remedy.empty());
-  }
-}
-
 TEST(BadInput, IsRefused) {
   const auto good = axis_exemplars(onion, 2, 60);
   auto bad = good;
@@ -236,69 +213,17 @@ TEST(BadInput, IsRefused) {
   expect_refused(bad, "Image", "its mask is empty");
   expect_refused({}, "Exemplar", "at least one exemplar");
   InteriorOptions options;
-  options.warps.pins = {{"p", {"e0", "e1"}, {Vec3(0.2, 0, 0), Vec3(0, 0.01, 0.01)}}};
+  options.warps.pins = {{"p", {"e0", "e1"}, {Vec3(0.2, 0, 0.0005), Vec3(0.0005, 0.01, 0.01)}}};
   expect_refused(good, "From [m]", "outside", options);
   options.warps.pins = {{"p", {"e0", "e1"}, {Vec3(0.01, 0.01, 0.0005), Vec3(0.0005, 0.2, 0.01)}}};
   expect_refused(good, "To [m]", "outside", options);
+  options.warps.pins = {{"p", {"e0", "e1"}, {Vec3(0.01, 0.01, 0.006), Vec3(0.0005, 0.01, 0.01)}}};
+  expect_refused(good, "From [m]", "off the plane of exemplar e0", options);
+  options.warps.pins = {{"p", {"e0", "e1"}, {Vec3(0.01, 0.01, 0.0005), Vec3(0.006, 0.01, 0.01)}}};
+  expect_refused(good, "To [m]", "off the plane of exemplar e1", options);
   EXPECT_THROW(SectionPlane(Vec3::Zero(), Vec3::Zero(), Vec3::UnitX()), ParameterError);
   EXPECT_THROW(SectionPlane(Vec3::Zero(), Vec3::UnitX(), Vec3::Zero()), ParameterError);
   EXPECT_THROW(SectionPlane(Vec3::Zero(), Vec3::UnitX(), Vec3(-2, 0.001, 0)), ParameterError);
-}
-
-TEST(Components, SeveralAreRefusedOrTakenApart) {
-  // A dumbbell along x: the plane z = 0.03 cuts two caps.
-  const auto body = geometry::together(geometry::sphere_mesh(0.05, Vec3(-0.06, 0, 0), 3),
-                                       geometry::sphere_mesh(0.05, Vec3(0.06, 0, 0), 3));
-  const std::vector<Exemplar> exemplars = {
-    exemplar_of("top", onion, Vec3(0, 0, 0.01), Vec3::UnitX(), Vec3::UnitY(), 200, 0.12)};
-  expect_refused(exemplars, "Components", "2 components", {}, body);
-  InteriorOptions options;
-  options.components = Components::each;
-  const Interior apart(exemplars, body, options);
-  EXPECT_EQ(apart.blend(Vec3(0.05, 0, 0.02), {}).n, 2);
-  options.components = Components::together;
-  EXPECT_EQ(Interior(exemplars, body, options).blend(Vec3(0.05, 0, 0.02), {}).n, 1);
-  // One more exemplar parts them, as the remedy says.
-  auto more = exemplars;
-  more.insert(more.begin(), exemplar_of("between", onion, Vec3(0.0001, 0, 0), Vec3::UnitY(), Vec3::UnitZ(), 200, 0.12));
-  EXPECT_THROW(Interior(more, body, {}), ParameterError); // nothing of the body there
-}
-
-TEST(MeanValue, ReproducesPointsInsideAnOctahedron) {
-  const std::vector<Vec3> sources = {Vec3::UnitX(),  -Vec3::UnitX(), Vec3::UnitY(),
-                                     -Vec3::UnitY(), Vec3::UnitZ(),  -Vec3::UnitZ()};
-  const std::vector<Triple> triangles = {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4},
-                                         {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}};
-  for (const Vec3& p : {Vec3(0.1, 0.2, -0.3), Vec3(0.6, 0.1, 0.1), Vec3(0, 0, 0)}) {
-    Shares shares;
-    ASSERT_TRUE(mean_value(p, sources, triangles, shares));
-    Vec3 sum = Vec3::Zero();
-    for (int i = 0; i < 6; ++i)
-      sum += shares[i] * sources[i];
-    EXPECT_NEAR((sum - p).norm(), 0, 1e-9);
-  }
-  Shares shares;
-  EXPECT_FALSE(mean_value(Vec3(2, 2, 2), sources, triangles, shares));
-}
-
-TEST(Sweeps, TurnAboutAnAxis) {
-  // Half planes of a citrus about z: what lies between them is found at the same height and distance from the axis.
-  std::vector<Exemplar> exemplars;
-  for (int i = 0; i < 3; ++i) {
-    const double angle = M_PI * i / 3 + 0.02;
-    const Vec3 out(std::cos(angle), std::sin(angle), 0);
-    exemplars.push_back(exemplar_of("e" + std::to_string(i), onion, Vec3::Zero(), out, Vec3::UnitZ(), 120));
-    exemplars.back().sweep = {Sweep::Path::axis, Vec3::Zero(), Vec3::UnitZ()};
-  }
-  const Interior inside(exemplars, ball(4), {});
-  EXPECT_EQ(inside.partition().cells().size(), 6u);
-  double sum = 0;
-  const auto points = points_inside(500, 3);
-  for (const Vec3& p : points)
-    sum += (inside.colour(p, {Morph::blend, Weights::shepard, 1}).head<3>() - onion(p)).abs().mean() / 500;
-  EXPECT_LT(sum, 0.02); // the onion's layers are round about z
-  exemplars.erase(exemplars.begin() + 1, exemplars.end());
-  expect_refused(exemplars, "Axis [1]", "passes through the barycentre");
 }
 
 TEST(Fit, DrawsAPartialPictureToTheSection) {
@@ -315,56 +240,6 @@ TEST(Fit, DrawsAPartialPictureToTheSection) {
     EXPECT_GT(inside.smallest_determinant(), 0);
     EXPECT_LT(inside.charts()[0].fit_error, 0.5); // pixels
   }
-}
-
-TEST(Detail, PutsBackWhatBlendingLoses) {
-  // Noise is nobody's deformation: only its histogram can be kept.
-  const Solid noise = [](const Vec3& p) {
-    const auto hash = [](const double x) { return x - std::floor(x); };
-    return image::Rgb::Constant(
-      static_cast<float>(0.3 + 0.4 * hash(std::sin(p.dot(Vec3(12989.8, 78233.1, 37719.3))) * 43758.5)));
-  };
-  const Interior inside(axis_exemplars(noise, 3, 120), ball(3), {});
-  const Detail detail(inside);
-  const double pixel = inside.pixel();
-  const auto spread = [&](const Detail* used, const Vec3& x, const Vec3& y) {
-    const Patch patch{Vec3(-0.02, -0.02, 0.013), pixel * x, pixel * y, 40, 40};
-    double sum = 0, squares = 0;
-    const auto painted = paint(inside, patch, used);
-    for (const Eigen::Array4f& c : painted.values) {
-      sum += c[3] / 1600;
-      squares += c[3] * c[3] / 1600;
-    }
-    return std::sqrt(squares - sum * sum);
-  };
-  const double exact = 0.4 / std::sqrt(12.0), off = spread(nullptr, Vec3::UnitX(), Vec3::UnitY());
-  const double on = spread(&detail, Vec3::UnitX(), Vec3::UnitY());
-  EXPECT_NE(on, spread(&detail, Vec3::UnitX(), Vec3::UnitZ())); // they follow the surface
-  EXPECT_LT(off, 0.8 * exact);
-  EXPECT_NEAR(on, exact, 0.15 * exact);
-}
-
-TEST(Atlas, OnlyGrowsAndKeepsWhatStays) {
-  const Interior& inside = five();
-  Points rest = {Vec3(0, 0, 0), Vec3(0.01, 0, 0), Vec3(0, 0.01, 0), Vec3(0.01, 0.01, 0.002)};
-  std::vector<Triangle> triangles = {{0, 1, 2}};
-  std::vector<std::uint16_t> labels = {1};
-  Atlas atlas(0.001);
-  EXPECT_EQ(atlas.fill({rest, triangles, labels}, {&inside}), 1u);
-  const auto colours = atlas.colours();
-  EXPECT_EQ(colours.size(), n_samples(atlas.parts()[0]));
-  triangles.push_back({1, 3, 2});
-  triangles.push_back({0, 2, 1});
-  labels.insert(labels.end(), {2, 0});
-  EXPECT_EQ(atlas.fill({rest, triangles, labels}, {&inside}), 1u); // the skin gets none
-  EXPECT_EQ(atlas.first()[2], Atlas::none);
-  EXPECT_TRUE(std::equal(colours.begin(), colours.end(), atlas.colours().begin()));
-  EXPECT_EQ(atlas.fill({rest, triangles, labels}, {&inside}), 0u);
-  // Both triangles have the same colour at the corner they share.
-  EXPECT_EQ(atlas.colours()[atlas.first()[0] + n_samples(atlas.parts()[0]) - 1], atlas.colours()[atlas.first()[1]]);
-  rest[3][2] = 0.003;
-  EXPECT_EQ(atlas.fill({rest, triangles, labels}, {&inside}), 1u);
-  EXPECT_TRUE(std::equal(colours.begin(), colours.end(), atlas.colours().begin()));
 }
 
 } // namespace

@@ -1,0 +1,97 @@
+/// What colours cost while a liver is cut: params/liver.prm with three sections of a brain drawn to its own, at 1 mm,
+/// without and with small features and relief. Share of colour in the time of the frames that reveal faces: the mean of
+/// all their time, the median and the worst of them; and what the worst one filled. Nothing is written or drawn.
+///
+///     bench_texture_share [THREADS]
+
+#include "base/parallel.h"
+#include "scene/compose.h"
+#include "scene/run.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <string>
+
+namespace {
+
+using namespace kerf;
+using namespace kerf::scene;
+
+std::string exemplar(const std::string& file, const std::string& origin, const std::string& column,
+                     const std::string& row) {
+  return "    subsection Exemplar " + file + "\n      set Image = sections/brain/" + file +
+         ".png\n      set Background = black\n      set Fit = rigid\n      set Origin [m] = " + origin +
+         "\n      set Column [m] = " + column + "\n      set Row [m] = " + row + "\n    end\n";
+}
+
+std::string interior(const std::string& more) {
+  return "  subsection Interior\n    set Resolution [m] = 0.001\n    set Components = together\n" + more +
+         exemplar("axial_z75", "0.05, 0, 0.075", "0.0007, 0, 0", "0, 0.0005, 0") +
+         exemplar("sagittal_x60", "0.1, 0, 0", "0, 0.0005, 0", "0, 0, 0.0005") +
+         exemplar("coronal_y140", "0.05, 0.08, 0", "0.0007, 0, 0", "0, 0, 0.0005") + "  end\n";
+}
+
+/// The liver's scene with an inside.
+World world_with(const std::string& more) {
+  const std::string file = std::string(KERF_SOURCE_DIR) + "/params/liver.prm";
+  SceneText text = read_scene_text(file, {});
+  std::string lines = text.text;
+  const std::string before = "  subsection Support back";
+  lines.insert(lines.find(before), interior(more));
+  for (const char* output : {"subsection Surface file", "subsection Images"}) {
+    const std::size_t at = lines.find(output);
+    lines.erase(at, lines.find("\nend", at) + 5 - at);
+  }
+  return compose(scan_scene_text(lines, file, {}));
+}
+
+struct Frame {
+  int step = 0;
+  std::size_t n_samples = 0;
+  double colour = 0, all = 0; ///< [s]
+  double share() const { return colour / all; }
+};
+
+std::vector<Frame> revealing_frames(World& world) {
+  std::vector<Frame> frames;
+  const texture::Atlas& atlas = world.bodies.front().interior->atlas;
+  for (int step = 1; step <= world.n_steps; ++step) {
+    const std::size_t before = atlas.colours().size();
+    Timings seconds;
+    advance(world, step, seconds);
+    if (atlas.colours().size() == before)
+      continue;
+    Frame frame{step, atlas.colours().size() - before, seconds["colour"]};
+    for (const auto& [stage, s] : seconds)
+      frame.all += s;
+    frames.push_back(frame);
+  }
+  return frames;
+}
+
+void measure(const char* what, const std::string& more) {
+  World world = world_with(more);
+  std::vector<Frame> frames = revealing_frames(world);
+  std::sort(frames.begin(), frames.end(), [](const Frame& a, const Frame& b) { return a.share() < b.share(); });
+  double colour = 0, all = 0, samples = 0;
+  for (const Frame& frame : frames) {
+    colour += frame.colour;
+    all += frame.all;
+    samples += static_cast<double>(frame.n_samples);
+  }
+  const Frame& worst = frames.back();
+  std::printf("%-34s %6zu %9.2f %9.2f %9.2f   step %d: %zu samples in %.2f of %.2f ms; %.3g samples/s\n", what,
+              frames.size(), 100 * colour / all, 100 * frames[frames.size() / 2].share(), 100 * worst.share(),
+              worst.step, worst.n_samples, 1e3 * worst.colour, 1e3 * worst.all, samples / colour);
+}
+
+} // namespace
+
+int main(const int argc, char** const argv) {
+  set_n_threads(argc > 1 ? std::atoi(argv[1]) : 1);
+  std::printf("%-34s %6s %9s %9s %9s\n", "share of colour [%]", "frames", "mean", "median", "worst");
+  measure("plain", "");
+  measure("small features", "    set Small features = yes\n");
+  measure("small features and relief", "    set Small features = yes\n    set Relief [m] = 0.0005\n");
+  return 0;
+}

@@ -1,0 +1,114 @@
+#include "texture/atlas.h"
+#include "tests/texture/probes.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+
+namespace kerf::texture {
+namespace {
+
+const Interior& five() {
+  static const Interior interior(axis_exemplars(onion, 5, 100), ball(3), InteriorOptions());
+  return interior;
+}
+
+TEST(Atlas, OnlyGrowsAndKeepsWhatStays) {
+  const Interior& inside = five();
+  Points rest = {Vec3(0, 0, 0), Vec3(0.01, 0, 0), Vec3(0, 0.01, 0), Vec3(0.01, 0.01, 0.002)};
+  std::vector<Triangle> triangles = {{0, 1, 2}};
+  std::vector<std::uint16_t> labels = {1};
+  Atlas atlas(0.001);
+  EXPECT_EQ(atlas.fill({rest, triangles, labels}, {&inside}), 1u);
+  const auto colours = atlas.colours();
+  EXPECT_EQ(colours.size(), n_samples(atlas.parts()[0]));
+  triangles.push_back({1, 3, 2});
+  triangles.push_back({0, 2, 1});
+  labels.insert(labels.end(), {2, 0});
+  EXPECT_EQ(atlas.fill({rest, triangles, labels}, {&inside}), 1u); // the skin gets none
+  EXPECT_EQ(atlas.first()[2], Atlas::none);
+  EXPECT_TRUE(std::equal(colours.begin(), colours.end(), atlas.colours().begin()));
+  EXPECT_EQ(atlas.fill({rest, triangles, labels}, {&inside}), 0u);
+  // Both triangles have the same colour at the corner they share.
+  EXPECT_EQ(atlas.colours()[atlas.first()[0] + n_samples(atlas.parts()[0]) - 1], atlas.colours()[atlas.first()[1]]);
+  rest[3][2] = 0.003;
+  EXPECT_EQ(atlas.fill({rest, triangles, labels}, {&inside}), 1u);
+  EXPECT_TRUE(std::equal(colours.begin(), colours.end(), atlas.colours().begin()));
+}
+
+TEST(Atlas, SlopesAreThoseOfTheRelief) {
+  // Luminance rises by 4 a metre along x: a relief of 1 mm rises by 0.004 along an edge of one metre.
+  const Solid ramp = [](const Vec3& p) { return image::Rgb::Constant(static_cast<float>(0.5 + 4 * p[0])); };
+  const Interior inside({exemplar_of("z", ramp, Vec3::Zero(), Vec3::UnitX(), Vec3::UnitY(), 120)}, ball(3), {});
+  const Points rest = {Vec3(0, 0, 0), Vec3(0.01, 0.002, 0), Vec3(-0.004, 0.01, 0)};
+  const std::vector<Triangle> triangles = {{0, 1, 2}};
+  const std::vector<std::uint16_t> labels = {1};
+  for (const double relief : {0.001, -0.002}) {
+    Atlas atlas(0.002);
+    atlas.fill({rest, triangles, labels}, {&inside, nullptr, nullptr, relief});
+    ASSERT_EQ(atlas.slopes().size(), atlas.colours().size());
+    for (const auto& [along_first, along_second] : atlas.slopes()) {
+      EXPECT_NEAR(along_first, relief * 4 * 0.01, 1e-3 * 0.04 * std::abs(relief));
+      EXPECT_NEAR(along_second, relief * 4 * -0.004, 1e-3 * 0.04 * std::abs(relief));
+    }
+  }
+}
+
+/// What two triangles that meet at an angle show differently along their common side, of 255: the largest, the mean.
+std::array<double, 2> step_at_a_side(const Paint& paint, const double angle) {
+  double largest = 0, sum = 0, n = 0;
+  for (const Vec3& p : points_inside(40, 17, 0.03)) {
+    const Points rest = {p, p + Vec3(0.008, 0, 0), p + Vec3(0.004, 0.006, 0),
+                         p + Vec3(0.004, 0, 0) + 0.006 * Vec3(0, -std::cos(angle), -std::sin(angle))};
+    const std::vector<Triangle> triangles = {{0, 1, 2}, {1, 0, 3}};
+    const std::vector<std::uint16_t> labels = {1, 1};
+    Atlas atlas(0.001);
+    atlas.fill({rest, triangles, labels}, paint);
+    const int parts = atlas.parts()[0]; // of both: their longest side is the common one
+    std::vector<std::uint32_t> first_side, second_side;
+    for (std::size_t t = 0; t < 2; ++t) {
+      std::uint32_t sample = atlas.first()[t];
+      for_each_sample(parts, [&](int, const int j) {
+        if (j == 0)
+          (t == 0 ? first_side : second_side).push_back(sample);
+        ++sample;
+      });
+    }
+    for (std::size_t i = 0; i < first_side.size(); ++i)
+      for (int channel = 0; channel < 3; ++channel) {
+        const double step = std::abs(int(atlas.colours()[first_side[i]][channel]) -
+                                     int(atlas.colours()[second_side[first_side.size() - 1 - i]][channel]));
+        largest = std::max(largest, step);
+        sum += step;
+        ++n;
+      }
+  }
+  return {largest, sum / n};
+}
+
+TEST(Atlas, NeighboursAgreeAtTheirCommonSide) {
+  const Detail detail(five());
+  for (const double degrees : {0.0, 1.0, 3.0, 10.0, 30.0}) {
+    const double angle = degrees * M_PI / 180;
+    const auto [plain, plain_mean] = step_at_a_side({&five()}, angle);
+    const auto [detailed, detailed_mean] = step_at_a_side({&five(), &detail}, angle);
+    std::printf("triangles at %4.1f degrees: plain %.0f of 255, with small features %.0f, %.2f on average\n", degrees,
+                plain, detailed, detailed_mean);
+    EXPECT_LE(plain, 1);
+    EXPECT_LE(detailed_mean, degrees == 0 ? 0.5 : 2 + 0.6 * degrees);
+  }
+}
+
+TEST(Atlas, CountsTrianglesThatAreTooLargeForTheirResolution) {
+  const Points rest = {Vec3(0, 0, 0), Vec3(0.02, 0, 0), Vec3(0, 0.02, 0), Vec3(0.001, 0.001, 0)};
+  const std::vector<Triangle> triangles = {{0, 1, 2}, {0, 1, 3}, {0, 3, 2}};
+  const std::vector<std::uint16_t> labels = {1, 1, 0};
+  Atlas atlas(0.0004);
+  atlas.fill({rest, triangles, labels}, {&five()});
+  EXPECT_EQ(atlas.n_coarse(), 1u); // its longest side, 28.3 mm, would need 71 parts
+  EXPECT_EQ(atlas.parts()[0], Atlas::max_parts);
+  EXPECT_EQ(atlas.parts()[1], 50);
+}
+
+} // namespace
+} // namespace kerf::texture

@@ -1,0 +1,175 @@
+// Every way to sweep a plane, to fit a picture and to take components: exact on the exemplars' planes, continuous, the
+// same bits in any order and with any number of threads.
+
+#include "base/parallel.h"
+#include "tests/texture/probes.h"
+#include "tests/texture/refused.h"
+#include "texture/detail.h"
+
+#include <gtest/gtest.h>
+
+namespace kerf::texture {
+namespace {
+
+/// What an interior is made from.
+struct Input {
+  std::vector<Exemplar> exemplars;
+  geometry::TriangleMesh body = ball(3);
+  InteriorOptions options = {};
+};
+
+Input swept(const Sweep& sweep, const int first = 0) {
+  Input input{axis_exemplars(onion, 3, 70)};
+  for (std::size_t i = first; i < input.exemplars.size(); ++i)
+    input.exemplars[i].sweep = sweep;
+  return input;
+}
+
+/// Three planes through z turn about it.
+Input about_axis() {
+  Input input;
+  for (int i = 0; i < 3; ++i) {
+    const double angle = M_PI * i / 3 + 0.02;
+    const Vec3 out(std::cos(angle), std::sin(angle), 0);
+    input.exemplars.push_back(exemplar_of("e" + std::to_string(i), onion, Vec3::Zero(), out, Vec3::UnitZ(), 70));
+    input.exemplars.back().sweep = {Sweep::Path::axis, Vec3::Zero(), Vec3::UnitZ()};
+  }
+  return input;
+}
+
+/// Pictures that show an ellipse of their section, off its middle.
+Input partial(const Fit fit) {
+  Input input{axis_exemplars(onion, 3, 70)};
+  for (Exemplar& exemplar : input.exemplars) {
+    exemplar.picture.alpha = image::Grey(70, 70, 0);
+    for (int r = 0; r < 70; ++r)
+      for (int c = 0; c < 70; ++c)
+        exemplar.picture.alpha(c, r) = std::hypot((c - 33) / 30.0, (r - 37) / 26.0) < 1 ? 1.0f : 0.0f;
+    exemplar.background = Background::alpha;
+    exemplar.fit = fit;
+  }
+  return input;
+}
+
+/// An arch: a plane across its legs has two components.
+geometry::TriangleMesh arch() {
+  geometry::TriangleMesh mesh = geometry::sphere_mesh(1, Vec3::Zero(), 3);
+  for (Vec3& v : mesh.vertices)
+    v = Vec3(0.045 * v[0], 0.014 * v[1], 0.014 * v[2] - 22 * std::pow(0.045 * v[0], 2) + 0.016);
+  return mesh;
+}
+Input legs(const Components components) {
+  Input input{{exemplar_of("legs", onion, Vec3(0, 0, -0.008), Vec3::UnitX(), Vec3::UnitY(), 120)}, arch()};
+  input.options.components = components;
+  return input;
+}
+
+struct Way {
+  const char* name;
+  Input (*input)();
+};
+void PrintTo(const Way& way, std::ostream* out) { *out << way.name; }
+
+class Ways : public testing::TestWithParam<Way> {};
+
+TEST_P(Ways, AreExactAndContinuous) {
+  const Input input = GetParam().input();
+  const Interior inside(input.exemplars, input.body, input.options);
+  for (const auto morph : {Morph::first_order, Morph::blend}) {
+    const Blending how = {morph, Weights::shepard, 1};
+    const double jump = largest_jump([&](const Vec3& p) { return inside.colour(p, how); }, input.body, 60, 120);
+    const double error = largest_error_on_exemplars(inside, how);
+    std::printf("%s: largest jump %.1e, largest error on the planes %.1e\n", GetParam().name, jump, error);
+    EXPECT_LT(jump, 1e-4);
+    EXPECT_LT(error, 2e-3);
+  }
+}
+
+TEST_P(Ways, GiveTheSameBitsInAnyOrderAndWithAnyNumberOfThreads) {
+  const Input input = GetParam().input();
+  const Points points = points_inside(200, 5);
+  std::vector<std::vector<Colour>> found;
+  for (const int n_threads : {1, 2}) {
+    set_n_threads(n_threads);
+    const Interior inside(input.exemplars, input.body, input.options);
+    std::vector<Colour> colours(points.size());
+    for (std::size_t i = points.size(); i-- > 0;)
+      colours[n_threads == 1 ? i : points.size() - 1 - i] =
+        inside.colour(points[n_threads == 1 ? i : points.size() - 1 - i]);
+    found.push_back(colours);
+  }
+  set_n_threads(2);
+  for (std::size_t i = 0; i < points.size(); ++i)
+    ASSERT_TRUE((found[0][i] == found[1][i]).all()) << i;
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Ways,
+                         testing::Values(Way{"normal", [] { return swept({}); }},
+                                         Way{"middles", [] { return swept({Sweep::Path::middles}); }},
+                                         Way{"arc",
+                                             [] {
+                                               return swept({Sweep::Path::arc, Vec3::Zero()}, 1);
+                                             }},
+                                         Way{"axis", about_axis}, Way{"partial", [] { return partial(Fit::none); }},
+                                         Way{"rigid", [] { return partial(Fit::rigid); }},
+                                         Way{"harmonic", [] { return partial(Fit::harmonic); }},
+                                         Way{"each", [] { return legs(Components::each); }},
+                                         Way{"together", [] { return legs(Components::together); }}),
+                         [](const auto& info) { return std::string(info.param.name); });
+
+TEST(Sweeps, AboutAnAxisFindWhatIsRoundAboutIt) {
+  const Input input = about_axis();
+  const Interior inside(input.exemplars, input.body, {});
+  EXPECT_EQ(inside.partition().cells().size(), 6u);
+  const auto error = [&](const Interior& of) {
+    double sum = 0;
+    const Points points = points_inside(500, 3);
+    for (const Vec3& p : points)
+      sum += (of.colour(p, {Morph::blend, Weights::shepard, 1}).head<3>() - onion(p)).abs().mean() / 500;
+    return sum;
+  };
+  auto along_normals = input.exemplars;
+  for (Exemplar& exemplar : along_normals)
+    exemplar.sweep = {};
+  EXPECT_LT(error(inside), 0.03);
+  EXPECT_GT(error(Interior(along_normals, input.body, {})), 2 * error(inside));
+}
+
+TEST(Sweeps, ThatCannotTurnAreRefused) {
+  auto exemplars = axis_exemplars(onion, 1, 60);
+  const Vec3 x = exemplars[0].plane.x(), n = exemplars[0].plane.normal(), middle = 0.0005 * n;
+  exemplars[0].sweep = {Sweep::Path::axis, middle, x};
+  expect_refused(exemplars, "Axis [1]", "passes through the barycentre");
+  exemplars[0].sweep = {Sweep::Path::axis, middle + 0.02 * exemplars[0].plane.y(), x};
+  expect_refused(exemplars, "Axis [1]", "crosses a face");
+  exemplars[0].sweep = {Sweep::Path::axis, middle, Vec3(x + n)};
+  expect_refused(exemplars, "Axis [1]", "must lie in the plane");
+  exemplars[0].sweep = {Sweep::Path::arc, middle};
+  expect_refused(exemplars, "Centre [m]", "barycentre of a face lies at the centre");
+  exemplars[0].sweep = {Sweep::Path::arc, middle + 0.02 * x};
+  expect_refused(exemplars, "Centre [m]", "crosses a face");
+}
+
+TEST(Components, SeveralAreRefusedUntilOneMoreExemplarPartsThem) {
+  const Input input = legs(Components::one);
+  expect_refused(input.exemplars, "Components", "2 components", {}, input.body);
+  auto more = input.exemplars;
+  more.insert(more.begin(), exemplar_of("middle", onion, Vec3::Zero(), Vec3::UnitY(), Vec3::UnitZ(), 120));
+  const Interior inside(more, input.body, {});
+  EXPECT_EQ(inside.partition().cells().size(), 4u);
+  EXPECT_LT(largest_error_on_exemplars(inside, inside.options().blending), 2e-3);
+}
+
+TEST(Components, EachOrTogether) {
+  const Vec3 in_a_leg(0.035, 0, -0.01), in_the_arch(0, 0, 0.016);
+  const auto n_sources = [&](const Components components, const Vec3& p) {
+    const Input input = legs(components);
+    return Interior(input.exemplars, input.body, input.options).blend(p, {}).n;
+  };
+  EXPECT_EQ(n_sources(Components::each, in_a_leg), 2);
+  EXPECT_EQ(n_sources(Components::each, in_the_arch), 2);
+  EXPECT_EQ(n_sources(Components::together, in_a_leg), 1);
+}
+
+} // namespace
+} // namespace kerf::texture
