@@ -41,6 +41,8 @@ Sums sums(const Body& body) {
     all.mass += mass[i];
     all.momentum += mass[i] * body.state.v[i];
   }
+  all.mass += body.physics->crumbs().mass();
+  all.momentum += body.physics->crumbs().momentum(body.state);
   return all;
 }
 
@@ -116,14 +118,20 @@ class Grinder {
     ground.is_finite = ground.is_finite && is_finite(body());
   }
 
-  /// How far the particles of dust stray from where their velocities would take them.
+  /// How far crumbs, and the particles of other pieces, stray from where their velocities would take them.
   void fly(Ground& ground) {
     world_.blades.at(0).key_frames = {{0, Vec3(9, 9, 9)}};
     const auto piece = pieces();
     const auto [start, velocity] = centres(piece);
+    const auto crumbs = body().state.crumbs;
     const double begin = time_;
     for (int i = 0; i < 20; ++i)
       step(ground);
+    for (std::size_t b = 0; b < crumbs.size(); ++b) {
+      const Vec3 way = (time_ - begin) * crumbs[b].v;
+      ground.most_drift = std::max(ground.most_drift, (body().state.crumbs[b].x - crumbs[b].x - way).norm() /
+                                                        (speed * (time_ - begin)));
+    }
     const auto [end, unused] = centres(piece);
     const std::vector<bool> has_node = pieces_with_nodes(body().solid.complex);
     for (std::size_t p = 0; p < start.size(); ++p) {
