@@ -387,8 +387,8 @@ int BalanceSolver::correct_by_cg(const Problem& problem, const Points& guess, co
                                           options_.max_cg_iterations, flat(d));
   if (!report.converged && !report.indefinite)
     throw NumericalError("conjugate gradients left a relative residual of " + to_text(report.residual / scale) +
-                         " after " + std::to_string(report.n_iterations) +
-                         " iterations. Use " + (problem.mass_factor > 0 ? "a smaller time step, " : "") +
+                         " after " + std::to_string(report.n_iterations) + " iterations. Use " +
+                         (problem.mass_factor > 0 ? "a smaller time step, " : "") +
                          "more CG iterations or a larger CG tolerance");
   if (!guess.empty())
     way_ = report.way;

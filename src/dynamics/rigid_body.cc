@@ -26,8 +26,7 @@ Vec3 middle_momentum(const Mat3& inverse_inertia, const Vec3& start, const doubl
   for (int i = 0; i < most; ++i) {
     const Vec3 xi = inverse_inertia * middle;
     const Vec3 residual = middle - start - 0.5 * dt * middle.cross(xi);
-    const Mat3 J =
-      Mat3::Identity() - 0.5 * dt * (cross_matrix(middle) * inverse_inertia - cross_matrix(xi));
+    const Mat3 J = Mat3::Identity() - 0.5 * dt * (cross_matrix(middle) * inverse_inertia - cross_matrix(xi));
     const Vec3 change = J.partialPivLu().solve(residual);
     middle -= change;
     if (!(change.norm() > round_off * start.norm()))

@@ -17,16 +17,16 @@ namespace kerf::dynamics {
 
 /// What it is at rest.
 struct RigidBody {
-  double mass = 0;              ///< [kg]
-  Vec3 centre = Vec3::Zero();   ///< [m]
-  Mat3 inertia = Mat3::Zero();  ///< about the centre [kg m^2]; positive definite
+  double mass = 0;             ///< [kg]
+  Vec3 centre = Vec3::Zero();  ///< [m]
+  Mat3 inertia = Mat3::Zero(); ///< about the centre [kg m^2]; positive definite
 };
 
 struct RigidMotion {
-  Vec3 x = Vec3::Zero();          ///< of the centre [m]
-  Vec3 v = Vec3::Zero();          ///< [m/s]
-  Mat3 R = Mat3::Identity();      ///< attitude
-  Vec3 spin = Vec3::Zero();       ///< angular momentum about the centre, world frame [kg m^2/s]
+  Vec3 x = Vec3::Zero();     ///< of the centre [m]
+  Vec3 v = Vec3::Zero();     ///< [m/s]
+  Mat3 R = Mat3::Identity(); ///< attitude
+  Vec3 spin = Vec3::Zero();  ///< angular momentum about the centre, world frame [kg m^2/s]
 };
 
 /// World frame [rad/s].
@@ -38,8 +38,8 @@ inline Vec3 place(const RigidBody& body, const RigidMotion& motion, const Vec3& 
 /// Of a point of the body that is at x now, with its angular velocity omega [m/s].
 inline Vec3 velocity(const RigidMotion& motion, const Vec3& omega, const Vec3& x) {
   const Vec3 r = x - motion.x;
-  return motion.v + Vec3(omega[1] * r[2] - omega[2] * r[1], omega[2] * r[0] - omega[0] * r[2],
-                         omega[0] * r[1] - omega[1] * r[0]);
+  return motion.v +
+         Vec3(omega[1] * r[2] - omega[2] * r[1], omega[2] * r[0] - omega[0] * r[2], omega[0] * r[1] - omega[1] * r[0]);
 }
 /// Of flight and rotation [J].
 double kinetic_energy(const RigidBody& body, const RigidMotion& motion);

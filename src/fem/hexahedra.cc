@@ -25,9 +25,7 @@ Frame frame_of(const material::AnyLaw& law) {
 
 ElementTableOptions table_options(const HexahedraOptions& options) {
   const bool is_hookean = options.material.law == "small strain" || options.material.law == "corotational";
-  return {options.material,
-          options.boundary,
-          {options.strain, is_hookean ? Part::whole : Part::hourglass}};
+  return {options.material, options.boundary, {options.strain, is_hookean ? Part::whole : Part::hourglass}};
 }
 
 /// The 3 x 3 block A : (. b_c^T) b_a of a law's tangent.
@@ -182,8 +180,7 @@ void Hexahedra::linearise(const Points& x) {
       frame_ == Frame::turning ? material::rotation_of(F) : Mat3(Mat3::Identity());
     if (!is_hookean())
       Eigen::Map<Tangent>(tangents_.data() + 81 * e) =
-        elements_[e].volume *
-        std::visit([&](const auto& law) { return Tangent(law.positive_tangent(F)); }, law_);
+        elements_[e].volume * std::visit([&](const auto& law) { return Tangent(law.positive_tangent(F)); }, law_);
   });
 }
 

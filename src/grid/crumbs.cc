@@ -32,9 +32,7 @@ struct Extent {
       is_empty = false;
     }
   }
-  bool is_of_one_cube() const {
-    return most[0] - least[0] <= 1 && most[1] - least[1] <= 1 && most[2] - least[2] <= 1;
-  }
+  bool is_of_one_cube() const { return most[0] - least[0] <= 1 && most[1] - least[1] <= 1 && most[2] - least[2] <= 1; }
 };
 
 /// Walks through pieces until it knows what they are.
@@ -158,9 +156,8 @@ void update_crumbs(Solid& solid, CutChange& change) {
     fresh.insert(fresh.end(), crumb.copies.begin(), crumb.copies.end());
   sort_unique(fresh);
   std::erase_if(crumbs.all, [&](const Crumb& before) {
-    return std::any_of(before.copies.begin(), before.copies.end(), [&](const CopyId c) {
-      return std::binary_search(fresh.begin(), fresh.end(), c);
-    });
+    return std::any_of(before.copies.begin(), before.copies.end(),
+                       [&](const CopyId c) { return std::binary_search(fresh.begin(), fresh.end(), c); });
   });
   std::erase_if(fresh, [&](const CopyId c) { return crumbs.holds(c); });
   change.reshaped.insert(change.reshaped.end(), fresh.begin(), fresh.end());

@@ -15,8 +15,7 @@ constexpr std::size_t worth_points = 4096; // from which on a second thread pays
 constexpr std::uint32_t nowhere = grid::NodeId::no_value;
 
 bool is_point(const grid::Solid& solid, const grid::NodeId node) {
-  return solid.grid.is_material(node) &&
-         !(solid.crumbs.any() && solid.crumbs.holds(solid.complex.real_corner[node]));
+  return solid.grid.is_material(node) && !(solid.crumbs.any() && solid.crumbs.holds(solid.complex.real_corner[node]));
 }
 
 /// Calls f(axis, lower, upper) for each step of the lattice.

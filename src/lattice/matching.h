@@ -87,8 +87,8 @@ class Matching : public dynamics::ForceModel {
 
   double stiffness_;
   Lines lines_;
-  Points rest_;                 // of the corners, from the body's middle [m]
-  std::vector<double> mass_;    // of the corners [kg]
+  Points rest_;              // of the corners, from the body's middle [m]
+  std::vector<double> mass_; // of the corners [kg]
   Riders riders_;
   Rows of_points_, of_corners_; // s_cn / N_n by point; by corner, over m_c
   std::vector<Region> regions_;

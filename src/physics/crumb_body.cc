@@ -91,11 +91,11 @@ CrumbBody measure(const grid::Solid& solid, const grid::Crumb& crumb, const doub
   const Vec3 centre = spread.first / spread.volume;
   const Mat3 around = spread.second / spread.volume - centre * centre.transpose();
   const double mass = density * spread.volume * h * h * h;
-  CrumbBody made{{mass, origin + h * centre,
-                  mass * h * h * inertia_of(at_least(around, least_thickness * least_thickness / 12))},
-                 {},
-                 {},
-                 {}};
+  CrumbBody made{
+    {mass, origin + h * centre, mass * h * h * inertia_of(at_least(around, least_thickness * least_thickness / 12))},
+    {},
+    {},
+    {}};
   for (const auto& [corner, part] : parts) {
     made.corners.push_back(corner);
     made.rest_of_corners.push_back(solid.grid.position(solid.complex.node[grid::CornerId(corner)]));

@@ -64,7 +64,7 @@ RigidMotion moved(const RigidMotion& flown, const Matrix6& inertia, const Vector
 } // namespace
 
 struct Crumbs::Push {
-  Vector6 force = Vector6::Zero();     // and torque
+  Vector6 force = Vector6::Zero(); // and torque
   Matrix6 stiffness = Matrix6::Zero();
 };
 
@@ -106,13 +106,14 @@ void Crumbs::fly(const dynamics::Loads& loads, const double dt, std::vector<Wren
       return;
     }
   }
-  throw dynamics::StepError("crumbs, pieces that move as rigid bodies, gain energy that no load gave, and 64 substeps do "
-                            "not mend it",
-                            crumbs_[0].particles.empty() ? 0 : crumbs_[0].particles[0]);
+  throw dynamics::StepError(
+    "crumbs, pieces that move as rigid bodies, gain energy that no load gave, and 64 substeps do "
+    "not mend it",
+    crumbs_[0].particles.empty() ? 0 : crumbs_[0].particles[0]);
 }
 
-bool Crumbs::gains_nothing(const dynamics::Loads& loads, const double dt, const Motions& start,
-                           const Motions& end, dynamics::State& state) const {
+bool Crumbs::gains_nothing(const dynamics::Loads& loads, const double dt, const Motions& start, const Motions& end,
+                           dynamics::State& state) const {
   constexpr double most = 0.01; // of what moves
   if (std::any_of(loads.acting.begin(), loads.acting.end(),
                   [](const auto& load) { return load->nature() == dynamics::Nature::driving; }))
@@ -206,9 +207,8 @@ class Settling {
 
 } // namespace
 
-Crumbs::Motions Crumbs::pushed(const dynamics::Loads& loads, const double dt, const Motions& start,
-                                              Motions flown, std::vector<Wrench>& wrenches,
-                                              dynamics::State& state) const {
+Crumbs::Motions Crumbs::pushed(const dynamics::Loads& loads, const double dt, const Motions& start, Motions flown,
+                               std::vector<Wrench>& wrenches, dynamics::State& state) const {
   constexpr int most = 20;
   const double drag = 1 + dt * loads.mass_damping;
   Motions motions = flown;
@@ -300,11 +300,10 @@ void Crumbs::hold(const dynamics::Loads& loads, const double dt, const Motions& 
     obey(loads, all[b], state.time, dt, body, motion);
     dynamics::Reaction& reaction = reactions_[all[b][0].support];
     const double alpha = loads.mass_damping;
-    const Vec3 force =
-      body.mass * ((motion.v - start[b].v) / dt + alpha * motion.v - loads.gravity) - pushes[b].force;
+    const Vec3 force = body.mass * ((motion.v - start[b].v) / dt + alpha * motion.v - loads.gravity) - pushes[b].force;
     reaction.force += force;
-    reaction.torque += (motion.spin - start[b].spin) / dt + alpha * motion.spin - pushes[b].torque +
-                       motion.x.cross(force);
+    reaction.torque +=
+      (motion.spin - start[b].spin) / dt + alpha * motion.spin - pushes[b].torque + motion.x.cross(force);
     work_of_supports_ += dynamics::kinetic_energy(body, motion) - dynamics::kinetic_energy(body, before) -
                          body.mass * loads.gravity.dot(motion.x - before.x);
   }

@@ -74,8 +74,7 @@ void Crumbs::carry(const Motions& motions, dynamics::State& state) const {
 void Crumbs::place_corners(const dynamics::State& state, Points& corners) const {
   for (std::size_t b = 0; b < crumbs_.size(); ++b)
     for (std::size_t i = 0; i < crumbs_[b].corners.size(); ++i)
-      corners[crumbs_[b].corners[i]] =
-        dynamics::place(crumbs_[b].body, state.crumbs[b], crumbs_[b].rest_of_corners[i]);
+      corners[crumbs_[b].corners[i]] = dynamics::place(crumbs_[b].body, state.crumbs[b], crumbs_[b].rest_of_corners[i]);
 }
 
 std::vector<RigidMotion> Crumbs::at_rest() const {

@@ -107,7 +107,7 @@ class Crumbs {
   std::vector<std::vector<Hold>> holds(const dynamics::Loads& loads) const;
 
   double density_;
-  std::vector<Crumb> crumbs_;            // as grid::Crumbs::all
+  std::vector<Crumb> crumbs_;           // as grid::Crumbs::all
   std::vector<std::uint32_t> crumb_of_; // by particle
   std::vector<std::uint8_t> carried_;
   std::vector<double> carried_mass_;

@@ -58,7 +58,12 @@ class OnCorners : public Physics {
  private:
   void follow_cut_with_model(const CutBody& body, const grid::CutChange&) { model_ = make_model_(body); }
   void follow_crumbs(const CutBody& body, dynamics::State& state) {
-    crumbs_.follow(body.solid, nullptr, [&] { return Motion{state.x, state.v}; }, state);
+    crumbs_.follow(
+      body.solid, nullptr,
+      [&] {
+        return Motion{state.x, state.v};
+      },
+      state);
   }
   /// Both are made again from what the body is now.
   void make_stepper(const CutBody& body) {

@@ -51,13 +51,12 @@ Integrator explicit_integrator(const Section& body, const std::string& section) 
 Integrator quasi_static(const Section& body) {
   const auto parameters = read_if_written<QuasiStaticSceneParameters>(body, "Quasi-static");
   auto options = parameters.statics.options();
-  options.free_modes =
-    parameters.free_modes == "allow" ? dynamics::FreeModes::allow : dynamics::FreeModes::refuse;
+  options.free_modes = parameters.free_modes == "allow" ? dynamics::FreeModes::allow : dynamics::FreeModes::refuse;
   return {[=](ElasticModel& model, const PiecesOfParticles& pieces) {
-            auto with_pieces = options;
-            with_pieces.piece = pieces();
-            return std::make_unique<dynamics::QuasiStatic>(model, with_pieces);
-          }};
+    auto with_pieces = options;
+    with_pieces.piece = pieces();
+    return std::make_unique<dynamics::QuasiStatic>(model, with_pieces);
+  }};
 }
 
 Implicit implicit_integrator(const Section& body, const std::string& name) {
@@ -87,8 +86,8 @@ Integrator with_adaptive_step(const Section& body, const Implicit& implicit) {
   if (!body.find("Adaptive step")) {
     Integrator divided = implicit.integrator;
     constexpr int of_implicit_euler = 1;
-    divided.make = sound(implicit.integrator.make,
-                         implicit.order == of_implicit_euler ? dissipative : dynamics::SoundOptions{});
+    divided.make =
+      sound(implicit.integrator.make, implicit.order == of_implicit_euler ? dissipative : dynamics::SoundOptions{});
     return divided;
   }
   const auto parameters = read_if_written<dynamics::AdaptiveParameters>(body, "Adaptive step");

@@ -89,7 +89,8 @@ void compose_skin_support(const Section& section, const Section& body_section, B
     throw section.complaint("Hold at", "lattice shape matching takes loads explicitly, and the skin's are too stiff",
                             "Write 'set Hold at = corners', or choose another backend");
   const double stiffness = section.read<SupportParameters>().skin_stiffness *
-                           read_if_written<material::Elastic>(body_section, "Material").youngs_modulus / body.solid.grid.h();
+                           read_if_written<material::Elastic>(body_section, "Material").youngs_modulus /
+                           body.solid.grid.h();
   const SupportRegion support = compose_support(section);
   body.load_makers.push_back({support.name, [=](const Body& b, LoadList& loads) {
                                 loads.push_back(std::make_unique<dynamics::SkinSupport>(
@@ -110,8 +111,7 @@ void compose_support(const Section& section, const Section& body_section, Body& 
 /// Vertices of the surface, each with a third of the rest area of its triangles.
 dynamics::ContactPoints contact_points(const Body& body) {
   const surface::Surface& surface = body.surface;
-  dynamics::ContactPoints contact{body.physics->carry(surface.weights),
-                                  std::vector<double>(surface.rest.size(), 0.0)};
+  dynamics::ContactPoints contact{body.physics->carry(surface.weights), std::vector<double>(surface.rest.size(), 0.0)};
   for (const auto& triangle : surface.triangles) {
     const auto& [a, b, c] = triangle;
     const double area = 0.5 * (surface.rest[b] - surface.rest[a]).cross(surface.rest[c] - surface.rest[a]).norm();

@@ -45,7 +45,11 @@ MassSpring::MassSpring(const grid::Solid& solid, const MassSpringOptions& option
   require_positive("Young's modulus [Pa]", options.youngs_modulus);
   std::vector<double> fill(solid.complex.n_copies());
   parallel_for(
-    fill.size(), [&](const std::size_t c) { fill[c] = solid.crumbs.holds(grid::CopyId(c)) ? 0 : grid::fill(solid, solid.complex.copies[grid::CopyId(c)]); }, 256);
+    fill.size(),
+    [&](const std::size_t c) {
+      fill[c] = solid.crumbs.holds(grid::CopyId(c)) ? 0 : grid::fill(solid, solid.complex.copies[grid::CopyId(c)]);
+    },
+    256);
   const double eighth = options.density * solid.grid.h() * solid.grid.h() * solid.grid.h() / 8;
   for (const auto c : ids<grid::CopyId>(solid.complex.n_copies()))
     for (const auto corner : solid.complex.copies[c].corners)

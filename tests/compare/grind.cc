@@ -129,8 +129,8 @@ class Grinder {
       step(ground);
     for (std::size_t b = 0; b < crumbs.size(); ++b) {
       const Vec3 way = (time_ - begin) * crumbs[b].v;
-      ground.most_drift = std::max(ground.most_drift, (body().state.crumbs[b].x - crumbs[b].x - way).norm() /
-                                                        (speed * (time_ - begin)));
+      ground.most_drift =
+        std::max(ground.most_drift, (body().state.crumbs[b].x - crumbs[b].x - way).norm() / (speed * (time_ - begin)));
     }
     const auto [end, unused] = centres(piece);
     const std::vector<bool> has_node = pieces_with_nodes(body().solid.complex);

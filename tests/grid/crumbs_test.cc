@@ -63,7 +63,8 @@ void expect_crumbs_are_those_pieces(const Body& body, const std::vector<bool>& e
 
 /// A whole body of a few nodes is none: nothing has cut it. One node alone is.
 TEST(Crumbs, OfWholeBodiesOnlyLoosePieces) {
-  for (const auto& [n, is_crumb] : {std::pair{Index3{2, 2, 2}, false}, {Index3{1, 1, 1}, true}, {Index3{5, 5, 1}, false}}) {
+  for (const auto& [n, is_crumb] :
+       {std::pair{Index3{2, 2, 2}, false}, {Index3{1, 1, 1}, true}, {Index3{5, 5, 1}, false}}) {
     Body body = support::with_copies(support::with_placed_skin(support::block(n)));
     find_crumbs(body);
     EXPECT_EQ(body.crumbs.any(), is_crumb) << n[0] << n[1] << n[2];
@@ -118,8 +119,8 @@ TEST(Crumbs, KeepTheirNamesUntilTheyAreCut) {
   std::set<std::uint32_t> names;
   for (int axis = 0; axis < 3; ++axis)
     for (const double at : {0.2, 0.4, 0.6}) {
-      CutChange change = cutter.cut(body, support::plane_cuts(body, {Vec3::Unit(axis), at}), cut::Front::none,
-                                    rest_positions(body));
+      CutChange change =
+        cutter.cut(body, support::plane_cuts(body, {Vec3::Unit(axis), at}), cut::Front::none, rest_positions(body));
       surface::place(body, change, {});
       std::set<std::uint32_t> met;
       for (const Crumb& crumb : body.crumbs.all)

@@ -56,16 +56,15 @@ std::unique_ptr<Physics> make(const std::string& backend, const CutBody& body) {
       });
   if (backend == "springs")
     return std::make_unique<Springs>(
-      body,
-      [](const CutBody& b) { return std::make_unique<spring::MassSpring>(b.solid, spring::MassSpringOptions{}); },
+      body, [](const CutBody& b) { return std::make_unique<spring::MassSpring>(b.solid, spring::MassSpringOptions{}); },
       verlet);
   if (backend == "points")
     return std::make_unique<Phyxels>(body, PhyxelsOptions{}, verlet);
   return std::make_unique<Elements>(
     body,
     [](const CutBody& b) {
-      return std::make_unique<fem::Hexahedra>(b.solid, fem::HexahedraOptions{.material = {},
-                                                                            .inertia = fem::Inertia::extended});
+      return std::make_unique<fem::Hexahedra>(b.solid,
+                                              fem::HexahedraOptions{.material = {}, .inertia = fem::Inertia::extended});
     },
     verlet);
 }
@@ -225,9 +224,11 @@ TEST(Crumbs, GoWithSupports) {
     support.rest = made.rest_of_corners;
     loads.supports.push_back(support);
   };
-  hold(0, Mat3::Identity(), [](const double t) { return Vec3(t * t, 0, 0); },
-       [](const double t) { return Eigen::AngleAxisd(t, Vec3::UnitZ()).toRotationMatrix(); });
-  hold(1, dynamics::held_axes("z"), [](double) { return Vec3(Vec3::Zero()); }, std::function<Mat3(double)>());
+  hold(
+    0, Mat3::Identity(), [](const double t) { return Vec3(t * t, 0, 0); },
+    [](const double t) { return Eigen::AngleAxisd(t, Vec3::UnitZ()).toRotationMatrix(); });
+  hold(
+    1, dynamics::held_axes("z"), [](double) { return Vec3(Vec3::Zero()); }, std::function<Mat3(double)>());
   state.crumbs[1].v = Vec3(0.5, 0, 0);
   const auto start = state.crumbs;
   const double dt = 1e-3;
@@ -270,7 +271,8 @@ TEST(Crumbs, SettleWhereLoadsBalanceTheirWeight) {
     Interpolation at_centre;
     at_centre.add_point(corners, weights);
     const Vec3 place = body.centre + Vec3(0.01, 0, 0.02);
-    loads.acting.push_back(std::make_unique<dynamics::HandleSpring>(at_centre, stiffness, [=](double) { return place; }));
+    loads.acting.push_back(
+      std::make_unique<dynamics::HandleSpring>(at_centre, stiffness, [=](double) { return place; }));
     for (int i = 0; i < 4000; ++i)
       physics->step(state, loads, 1e-3);
     const Vec3 sag = Vec3(0, 0, -9.81) * body.mass / stiffness;

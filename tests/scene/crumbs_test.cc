@@ -77,14 +77,14 @@ TEST(CrumbsScene, BooksCloseWithDust) {
   const auto missing = dust.series("missing energy"), dissipated = dust.series("dissipated energy");
   EXPECT_GT(dissipated.back(), 1);
   EXPECT_NEAR(missing.back() - missing[2], 0, 2e-3 * dissipated.back()) << "trapezoidal rule of what is dissipated";
-  EXPECT_NEAR(dust.last("reaction wall z"), 2 * 8.0 / 5 * 9.81, 0.01 * 8 * 9.81) << "of two layers, whose corners it holds";
+  EXPECT_NEAR(dust.last("reaction wall z"), 2 * 8.0 / 5 * 9.81, 0.01 * 8 * 9.81)
+    << "of two layers, whose corners it holds";
 }
 
 /// In statics what nothing holds stays where it is.
 TEST(CrumbsScene, StaticsLeavesDustWhereItIs) {
   const Trial dust(steps(0.01, 3) + gravity() +
-                   section("Body b",
-                           Keys{"Mesh = " + mesh_path("cube.off"), key("Cube edge [m]", edge)} + statics(),
+                   section("Body b", Keys{"Mesh = " + mesh_path("cube.off"), key("Cube edge [m]", edge)} + statics(),
                            material(2e4, 0.4) + section("Support wall", box("-1, -1, 0.05", "1, 1, 1"))) +
                    grind() + observe("largest displacement, crumbs, kinetic energy"));
   EXPECT_EQ(dust.last("crumbs"), 125);
@@ -94,11 +94,11 @@ TEST(CrumbsScene, StaticsLeavesDustWhereItIs) {
 
 /// A floor stops dust, whatever moves it: it lies on it at the end, with all of its weight.
 TEST(CrumbsScene, DustLandsOnAFloor) {
-  const std::string floor = section("Floor ground", {"Point [m] = 0, 0, -0.15", "Stiffness [N/m^3] = 1e7", "Friction [1] = 0"});
+  const std::string floor =
+    section("Floor ground", {"Point [m] = 0, 0, -0.15", "Stiffness [N/m^3] = 1e7", "Friction [1] = 0"});
   for (const std::string backend : {"fem", "mass-spring"}) {
-    const Trial dust(steps(0.01, 120) + gravity() +
-                     cube_of(backend, section("Damping", {"Mass damping [1/s] = 4"})) + floor + grind() +
-                     observe("crumbs, kinetic energy, load forces, mass, volume"));
+    const Trial dust(steps(0.01, 120) + gravity() + cube_of(backend, section("Damping", {"Mass damping [1/s] = 4"})) +
+                     floor + grind() + observe("crumbs, kinetic energy, load forces, mass, volume"));
     EXPECT_EQ(dust.last("crumbs"), 125);
     EXPECT_LT(dust.last("kinetic energy"), 1e-3) << backend;
     EXPECT_NEAR(dust.last("force of ground z"), 8 * 9.81, 0.02 * 8 * 9.81) << backend;

@@ -46,9 +46,9 @@ TEST(SoundScene, ASpinLosesWhatTheMethodTakesAndNoMore) {
   for (int i = 0; i < 54; ++i)
     left /= 1 + left * left * dt * dt;
   const auto kept = [&](const std::string& backend, const std::string& law, const double youngs_modulus) {
-    World world = world_of(
-      steps(dt, static_cast<int>(std::lround(end / dt))) +
-      section("Body b", cube_keys() + Keys{"Backend = " + backend}, material(youngs_modulus, 0.4, law)));
+    World world =
+      world_of(steps(dt, static_cast<int>(std::lround(end / dt))) +
+               section("Body b", cube_keys() + Keys{"Backend = " + backend}, material(youngs_modulus, 0.4, law)));
     spin(world.bodies[0], {0, 0, 4});
     const double before = angular_momentum(world.bodies[0])[2];
     run_quietly(world);
@@ -74,19 +74,18 @@ TEST(SoundScene, PairsThatHoldPointsTogetherBringNoEnergy) {
   const std::string support =
     section("Support held", {"Region = half space", "Plane normal [1] = 0.41231, -0.48931, -0.76849",
                              "Plane point [m] = -0.0029528, 0.0035042, 0.0055037"});
-  const Trial cube(
-    steps(1.0 / 60, 12) + section("Gravity", {"Acceleration [m/s^2] = 5.4, -2.31, 7.86"}) +
-    section("Body b",
-            {"Mesh = " + mesh_path("cube.off"), "Mesh unit [m] = 0.1190755", "Cube edge [m] = 0.002887",
-             "Lattice offset [1] = 0.29244, 0.79352, 0.94975", "Backend = pba"},
-            material(1.4e4, 0.024) + section("Damping", {"Mass damping [1/s] = 2"}) + support) +
-    blade("a", "-0.0253656, -0.0085118, 0.0017351; 0.0253656, 0.0085118, -0.0017351", 0, 8,
-          "-0.0055612, 0.0199378, 0.0168447; 0.0056582, -0.0203407, -0.0167301") +
-    blade("b", "-0.0063551, -0.0078156, 0.0017566; 0.0063551, 0.0078156, -0.0017566", 1, 14,
-          "0.0216865, -0.0123630, 0.0151591; -0.0043460, 0.0047087, -0.0030659") +
-    blade("c", "0.0034346, -0.0071334, -0.0109932; -0.0034346, 0.0071334, 0.0109932", 0, 13,
-          "-0.0256818, -0.0071032, -0.0044703; 0.0258680, 0.0052542, 0.0036166") +
-    observe("work of the cut, elastic energy, kinetic energy"));
+  const Trial cube(steps(1.0 / 60, 12) + section("Gravity", {"Acceleration [m/s^2] = 5.4, -2.31, 7.86"}) +
+                   section("Body b",
+                           {"Mesh = " + mesh_path("cube.off"), "Mesh unit [m] = 0.1190755", "Cube edge [m] = 0.002887",
+                            "Lattice offset [1] = 0.29244, 0.79352, 0.94975", "Backend = pba"},
+                           material(1.4e4, 0.024) + section("Damping", {"Mass damping [1/s] = 2"}) + support) +
+                   blade("a", "-0.0253656, -0.0085118, 0.0017351; 0.0253656, 0.0085118, -0.0017351", 0, 8,
+                         "-0.0055612, 0.0199378, 0.0168447; 0.0056582, -0.0203407, -0.0167301") +
+                   blade("b", "-0.0063551, -0.0078156, 0.0017566; 0.0063551, 0.0078156, -0.0017566", 1, 14,
+                         "0.0216865, -0.0123630, 0.0151591; -0.0043460, 0.0047087, -0.0030659") +
+                   blade("c", "0.0034346, -0.0071334, -0.0109932; -0.0034346, 0.0071334, 0.0109932", 0, 13,
+                         "-0.0256818, -0.0071032, -0.0044703; 0.0258680, 0.0052542, 0.0036166") +
+                   observe("work of the cut, elastic energy, kinetic energy"));
   const auto work = cube.series("work of the cut"), elastic = cube.series("elastic energy"),
              kinetic = cube.series("kinetic energy");
   for (std::size_t i = 1; i < work.size(); ++i)
@@ -108,10 +107,9 @@ TEST(SoundScene, LongStepsKeepTheVolume) {
 
 /// Weight that its law cannot bear turns a body inside out: it is told, and where.
 TEST(SoundScene, ABodyThatTurnsInsideOutEndsTheRun) {
-  World world =
-    world_of(steps(1.0 / 60, 240) + section("Gravity", {"Acceleration [m/s^2] = 0, 0, -9.81"}) +
-             section("Body bar", bar_keys(),
-                     material(100, 0.3) + clamped_end() + section("Damping", {"Mass damping [1/s] = 2"})));
+  World world = world_of(steps(1.0 / 60, 240) + section("Gravity", {"Acceleration [m/s^2] = 0, 0, -9.81"}) +
+                         section("Body bar", bar_keys(),
+                                 material(100, 0.3) + clamped_end() + section("Damping", {"Mass damping [1/s] = 2"})));
   const std::string why = why_it_fails(world);
   EXPECT_NE(why.find("body bar, step "), std::string::npos) << why;
   EXPECT_NE(why.find("rests a"), std::string::npos) << why;
@@ -126,8 +124,7 @@ TEST(SoundScene, ARunawayCornerEndsTheRun) {
   EXPECT_NO_THROW(require_sound_motion(body, 1)); // fast, all of it
   spin(body, {0, 0, 0});
   const auto mass = body.physics->model().lumped_mass();
-  const auto lightest =
-    static_cast<std::size_t>(std::min_element(mass.begin(), mass.end()) - mass.begin());
+  const auto lightest = static_cast<std::size_t>(std::min_element(mass.begin(), mass.end()) - mass.begin());
   body.state.v[lightest] = Vec3(500, 0, 0);
   if (mass[lightest] < 1000 * std::pow(body.solid.grid.h(), 3) / 16) {
     EXPECT_THROW(require_sound_motion(body, 1e-3), NumericalError);
@@ -140,8 +137,7 @@ TEST(SoundScene, ARunawayCornerEndsTheRun) {
 TEST(SoundScene, ABodyAtRestCostsNothing) {
   for (const std::string& held : {std::string(), clamped_end()})
     for (const std::string law : {"corotational", "neo-Hookean"}) {
-      const Trial bar(steps(1.0 / 60, 5) +
-                      section("Body bar", bar_keys(), material(1e6, 0.45, law) + held) +
+      const Trial bar(steps(1.0 / 60, 5) + section("Body bar", bar_keys(), material(1e6, 0.45, law) + held) +
                       observe("solver iterations, kinetic energy"));
       for (const double n : bar.series("solver iterations"))
         EXPECT_EQ(n, 0) << law << held;
@@ -191,8 +187,7 @@ TEST(SoundScene, StrangersKeepTheirEnergyOrAreRefused) {
     Body& body = world.bodies[0];
     spin(body, rate * Vec3(unit(random), unit(random), 1).normalized());
     const auto energy = [&] {
-      return body.physics->model().energy(body.state.x) +
-             dynamics::kinetic_energy(body.physics->model(), body.state.v);
+      return body.physics->model().energy(body.state.x) + dynamics::kinetic_energy(body.physics->model(), body.state.v);
     };
     const double before = energy();
     const double momentum = angular_momentum(body).norm();
