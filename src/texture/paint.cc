@@ -1,6 +1,8 @@
 #include "texture/paint.h"
 
+#include "base/error.h"
 #include "base/parallel.h"
+#include "base/parameters.h"
 
 #include <algorithm>
 #include <cmath>
@@ -168,6 +170,13 @@ Patch patch_over(const geometry::TriangleMesh& body, const Frame& frame, const d
   if (!(upper[0] > lower[0]))
     return {};
   const Vec2 size = (upper - lower) / pixel;
+  constexpr double most = 16384;
+  if (!(size.maxCoeff() <= most))
+    throw ParameterError(Complaint{.path = "--pixel",
+                                   .value = to_text(pixel),
+                                   .rule = "a picture may have 16384 pixels along a side, this one would have " +
+                                           to_text(std::ceil(size.maxCoeff())),
+                                   .remedy = "Write a larger side of a pixel, in metres"});
   return {frame.origin + lower[0] * frame.x + lower[1] * frame.y, pixel * frame.x, pixel * frame.y,
           static_cast<int>(std::ceil(size[0])) + 1, static_cast<int>(std::ceil(size[1])) + 1};
 }

@@ -30,7 +30,7 @@ image::Raster<Eigen::Array4f> paint_spans(const Interior& interior, const Patch&
                                           const std::vector<Span>& rows);
 
 /// The patch of square pixels that just covers where a plane cuts the body; without pixels where it misses it. Columns
-/// run along the frame's x, rows along y.
+/// run along the frame's x, rows along y. Throws ParameterError for more than 16384 of them along a side.
 Patch patch_over(const geometry::TriangleMesh& body, const Frame& frame, double pixel);
 
 /// The patch as a picture: transparent outside of the body.

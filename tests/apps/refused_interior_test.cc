@@ -108,6 +108,9 @@ TEST_F(AcceptedInterior, PixelsAndColumnsOfTheTextureCommand) {
   expect_error(kerf({"texture", "scene.prm", "--plane", "0, 0, 0; 0, 0, 1; 0, 0, 2"}), 1,
                {"--plane", "must not run along the normal"});
   expect_error(kerf({"texture", "scene.prm", "--plane", "0, 0, 0; 0, 0, 1", "--pixel", "0"}), 1, {"--pixel", "> 0"});
+  for (const std::string tiny : {"1e-6", "1e-12", "1e-300"})
+    expect_error(kerf({"texture", "scene.prm", "--plane", "0, 0, 0; 0, 0, 1", "--pixel", tiny}), 1,
+                 {"--pixel", "16384 pixels", "larger"});
 }
 
 } // namespace
