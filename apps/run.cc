@@ -74,8 +74,8 @@ void print_cutting(const scene::World& world) {
 }
 
 void print_summary(const scene::World& world, const Timings& seconds, const SceneArguments& arguments) {
-  for (const scene::Body& body : world.bodies)
-    print_body(body);
+  for (std::size_t b = 0; b < world.bodies.size(); ++b)
+    print_body(world.bodies[b], world.watches[b]);
   print_cutting(world);
   double all = 0, recording = 0;
   std::printf("time per stage [s]:");
