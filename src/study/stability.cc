@@ -140,6 +140,27 @@ std::string outcome_of(Seen& seen, const bool is_equilibrium) {
   return last < gone && seen.start == seen.scale && !is_equilibrium ? "damped out" : "stable";
 }
 
+/// Explicit integrators that go on beyond their stable step do not compute it: writes that they shall refuse to.
+void refuse_beyond_stable_step(scene::WrittenSection& section) {
+  if (scene::WrittenKey* const key = section.find_key("Beyond the stable step"))
+    key->value = "refuse";
+  for (scene::WrittenSection& inside : section.sections)
+    refuse_beyond_stable_step(inside);
+}
+
+/// What the integrator says of itself at the start [s]; 0: nothing.
+double predicted_step(const StabilityCase& one, double dt) {
+  constexpr int most = 8;
+  StabilityCase other = one;
+  refuse_beyond_stable_step(other.scene.root);
+  for (int n = 0; n < most; ++n, dt /= 10) {
+    other.scene = with_step(other.scene, dt, 1);
+    if (const Seen seen = run(other, 1); seen.predicted_step > 0)
+      return seen.predicted_step;
+  }
+  return 0;
+}
+
 /// The longest step with which a run completes and its energy at most doubles, to 1 % [s].
 double largest_step(const StabilityCase& one, const double first, const int n_steps) {
   const auto is_stable = [&](const double dt) {
@@ -206,9 +227,9 @@ output::StabilityRow watch(const StabilityCase& one, const int n_steps) {
   row.n_steps = seen.n_steps;
   row.n_iterations = seen.n_iterations;
   row.n_divided = seen.n_divided;
-  if (one.ask == Ask::largest_step && seen.predicted_step > 0) {
-    row.predicted_step = seen.predicted_step;
-    row.largest_step = largest_step(one, seen.predicted_step, n_steps);
+  if (one.ask == Ask::largest_step) {
+    row.predicted_step = predicted_step(one, row.dt);
+    row.largest_step = largest_step(one, row.predicted_step > 0 ? row.predicted_step : row.dt, n_steps);
   }
   row.cpu_seconds = double(std::clock() - start) / CLOCKS_PER_SEC;
   return row;
