@@ -83,8 +83,9 @@ void advance(World& world, const int step, Timings& seconds) {
     on(world, body, step, t1, [&] {
       if (body.accounts)
         body.accounts->before_step(body.state);
+      const Points before = body.state.x;
       body.report = body.physics->step(body.state, body.loads, dt);
-      require_sound_motion(body, dt);
+      require_sound_motion(body, before, dt);
       body.n_divided += body.report.n_rejected > 0 ? 1 : 0;
       if (body.accounts)
         body.accounts->after_step(*body.physics, body.loads, body.state);

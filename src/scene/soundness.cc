@@ -140,7 +140,7 @@ std::string particle_at(const Body& body, const std::size_t particle) {
          (particle < rest.size() ? ", which rests at " + place(rest[particle]) : "");
 }
 
-void require_sound_motion(const Body& body, const double dt) {
+void require_sound_motion(const Body& body, const Points& before, const double dt) {
   const dynamics::ForceModel& model = body.physics->model();
   const Vec3 mean = mean_velocity(model, body.state.v);
   const auto held = dynamics::held_corners(body.loads, body.state.x.size());
@@ -149,7 +149,7 @@ void require_sound_motion(const Body& body, const double dt) {
   for (std::size_t i = 0; i < body.state.x.size(); ++i) {
     if (!body.state.x[i].allFinite() || !body.state.v[i].allFinite())
       throw NumericalError("the motion has diverged: " + particle_at(body, i) + ", has no finite place any more");
-    if (const double own = (body.state.v[i] - mean).norm(); !held[i] && own > speed) {
+    if (const double own = ((body.state.x[i] - before[i]) / dt - mean).norm(); !held[i] && own > speed) {
       speed = own;
       fastest = i;
     }

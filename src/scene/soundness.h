@@ -21,8 +21,9 @@ struct Watch {
   bool is_sound = true; ///< what was found last
 };
 
-/// After a step of dt [s], before the surface follows. Throws NumericalError that names the particle and its place.
-void require_sound_motion(const Body& body, double dt);
+/// After a step of dt [s] from `before` [m], before the surface follows. Velocities may ring where nothing damps them:
+/// what counts is the way. Throws NumericalError that names the particle and its place.
+void require_sound_motion(const Body& body, const Points& before, double dt);
 /// After the surface followed. Pieces below a cube's volume are left out. Throws NumericalError that names the piece,
 /// its worst copy and its place.
 void require_sound_volume(const Body& body, Watch& watch);

@@ -1,7 +1,6 @@
 #include "study/stability.h"
 
 #include "base/error.h"
-#include "dynamics/quantities.h"
 #include "material/elastic.h"
 #include "scene/compose.h"
 #include "scene/run.h"

@@ -119,18 +119,24 @@ TEST(SoundScene, ABodyThatTurnsInsideOutEndsTheRun) {
 TEST(SoundScene, ARunawayCornerEndsTheRun) {
   World world = world_of(steps(1e-3, 1) + section("Body b", cube_keys(), material(1e4, 0.3)));
   Body& body = world.bodies[0];
-  EXPECT_NO_THROW(require_sound_motion(body, 1e-3));
+  const auto before = [&](const double dt) {
+    Points x = body.state.x;
+    for (std::size_t i = 0; i < x.size(); ++i)
+      x[i] -= dt * body.state.v[i];
+    return x;
+  };
+  EXPECT_NO_THROW(require_sound_motion(body, before(1e-3), 1e-3));
   spin(body, {0, 0, 40});
-  EXPECT_NO_THROW(require_sound_motion(body, 1)); // fast, all of it
+  EXPECT_NO_THROW(require_sound_motion(body, before(1), 1)); // fast, all of it
   spin(body, {0, 0, 0});
   const auto mass = body.physics->model().lumped_mass();
   const auto lightest = static_cast<std::size_t>(std::min_element(mass.begin(), mass.end()) - mass.begin());
   body.state.v[lightest] = Vec3(500, 0, 0);
   if (mass[lightest] < 1000 * std::pow(body.solid.grid.h(), 3) / 16) {
-    EXPECT_THROW(require_sound_motion(body, 1e-3), NumericalError);
+    EXPECT_THROW(require_sound_motion(body, before(1e-3), 1e-3), NumericalError);
   }
   body.state.v[lightest][1] = std::nan("");
-  EXPECT_THROW(require_sound_motion(body, 1e-3), NumericalError);
+  EXPECT_THROW(require_sound_motion(body, before(1e-3), 1e-3), NumericalError);
 }
 
 /// With no load there is nothing to solve for, with or without a support.

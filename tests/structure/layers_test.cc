@@ -47,7 +47,7 @@ const std::vector<Room> rooms = {
   {"scene",
    {"base", "geometry", "grid", "cut", "surface", "material", "dynamics", "fem", "lattice", "spring", "pba", "visibility",
     "physics", "gl", "image", "warp", "texture", "render", "output"}},
-  {"study", {"base", "output", "scene"}},
+  {"study", {"base", "material", "output", "scene"}},
 };
 
 /// Headers that only some rooms may see.
