@@ -107,7 +107,7 @@ void Interior::build_cell(const int number, const std::vector<Exemplar>& exempla
     data.sources.emplace_back(face, cell, exemplars[face.exemplar], charts_[face.exemplar], body);
   }
   data.tables = make_warps(cell, exemplars, charts_, options_.warps,
-                           known ? known->warps[number] : std::vector<warp::LatticeMap>(), maps_.warps[number]);
+                           known ? known->warps[number] : std::vector<BothWays>(), maps_.warps[number]);
   for (std::size_t j = 0; j < n; ++j)
     for (std::size_t i = 0; i < n; ++i) {
       const Face &from = cell.faces[std::min(i, j)], &to = cell.faces[std::max(i, j)];
@@ -278,8 +278,9 @@ Interior::Folds Interior::folds() const {
 double Interior::smallest_determinant() const {
   double smallest = 1e300;
   for (const auto& maps : maps_.warps)
-    for (const warp::LatticeMap& map : maps)
-      smallest = std::min(smallest, warp::smallest_determinant(map));
+    for (const BothWays& pair : maps)
+      for (const warp::LatticeMap* const map : {&pair.there, &pair.back})
+        smallest = std::min(smallest, warp::smallest_determinant(*map));
   for (const auto& fit : maps_.fits)
     if (fit)
       smallest = std::min(smallest, warp::smallest_determinant(*fit));

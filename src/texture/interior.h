@@ -44,7 +44,7 @@ struct InteriorOptions {
 /// What building an interior takes longest to find.
 struct Maps {
   std::vector<std::optional<warp::LatticeMap>> fits; ///< by exemplar
-  std::vector<std::vector<warp::LatticeMap>> warps;  ///< by cell, pairs (i, j) of faces, i < j, in order
+  std::vector<std::vector<BothWays>> warps;          ///< by cell, pairs (i, j) of faces, i < j, in order
 };
 
 /// What makes up the colour of a point.
