@@ -102,6 +102,7 @@ void paint(const image::Image& picture, const Grey& mask, const ToPicture& to_pi
     const image::Rgb& rgb = colours.values[i];
     chart.colours.values[i] = Eigen::Array4f(rgb[0], rgb[1], rgb[2], image::luminance(rgb));
   }
+  chart.luminance = image::luminance(colours);
 }
 
 } // namespace
@@ -141,6 +142,7 @@ Chart make_chart(const Exemplar& exemplar, const geometry::TriangleMesh& body,
   const auto step = [&](const Vec2& pixels) { return Vec3(plane.point(plane.to_local(pixels))); };
   Chart chart{SectionPlane(step(box.lower), step(box.lower + Vec2(1, 0)) - step(box.lower),
                            step(box.lower + Vec2(0, 1)) - step(box.lower)),
+              {},
               {},
               {},
               inside_of(shifted, static_cast<int>(size[0]) + 1, static_cast<int>(size[1]) + 1),

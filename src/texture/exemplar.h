@@ -46,6 +46,7 @@ struct Exemplar {
 struct Chart {
   SectionPlane plane;                    ///< pixel (0, 0) of the chart is its origin
   image::Raster<Eigen::Array4f> colours; ///< red, green, blue, luminance; defined everywhere
+  image::Grey luminance;                 ///< that alone
   image::Grey shown;                     ///< 1 where the picture shows the section
   image::Grey inside;                    ///< 1 where the body's own section is
   std::vector<Segment> outline;          ///< of the body's section, local coordinates [m]

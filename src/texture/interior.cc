@@ -75,7 +75,7 @@ Cell with_a_face(Cell cell, const std::vector<Chart>& charts) {
 
 Interior::Interior(const std::vector<Exemplar>& exemplars, const geometry::TriangleMesh& body,
                    const InteriorOptions& options, const Maps* known)
-  : options_(options) {
+  : options_(options), origin_(body.vertices[body.triangles.front()[0]]) {
   if (exemplars.empty())
     throw ParameterError(Complaint{.path = "Exemplar",
                                    .rule = "an interior needs at least one exemplar",
@@ -190,12 +190,13 @@ Vec2 Interior::solve_inverse(const CellData& cell, const Found& found, const int
   return best;
 }
 
-Blend Interior::blend(const Vec3& p, const Blending& how) const {
-  const CellData& cell = cells_[partition_->find(p)];
+Blend Interior::blend(const Vec3& p, const Blending& how, const int number) const {
+  Blend blend;
+  blend.cell = number;
+  const CellData& cell = cells_[blend.cell];
   Found found;
   find_sources(cell, p, how, found);
   std::array<Vec2, max_sources> q = found.pixels;
-  Blend blend;
   blend.n = static_cast<int>(cell.sources.size());
   if (how.morph == Morph::first_order || how.morph == Morph::exact_inverse)
     morph(cell, found, q);
