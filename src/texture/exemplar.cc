@@ -96,6 +96,12 @@ void paint(const image::Image& picture, const Grey& mask, const ToPicture& to_pi
       colours(c, r) = image::sample(there, x, y);
       chart.shown(c, r) = is_in && image::sample(mask, x, y) >= 0.5f ? 1.0f : 0.0f;
     }
+  double n_inside = 0, n_shown = 0;
+  for (std::size_t i = 0; i < chart.shown.values.size(); ++i) {
+    n_inside += chart.inside.values[i];
+    n_shown += chart.inside.values[i] * chart.shown.values[i];
+  }
+  chart.shown_share = n_shown / n_inside;
   colours = image::filled(colours, chart.shown);
   chart.colours = image::Raster<Eigen::Array4f>(width, height, Eigen::Array4f::Zero());
   for (std::size_t i = 0; i < colours.values.size(); ++i) {
@@ -147,6 +153,7 @@ Chart make_chart(const Exemplar& exemplar, const geometry::TriangleMesh& body,
               {},
               inside_of(shifted, static_cast<int>(size[0]) + 1, static_cast<int>(size[1]) + 1),
               {},
+              1,
               0,
               axes_of(body)};
   chart.outline = slice(body, frame_of(chart.plane));

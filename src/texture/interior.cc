@@ -114,7 +114,7 @@ void Interior::build_cell(const int number, const std::vector<Exemplar>& exempla
       const Chart &a = charts_[from.exemplar], &b = charts_[to.exemplar];
       const Mat2 linear =
         i == j ? Mat2(Mat2::Identity()) : aligned_linear(align(from, a, to, b, options_.warps.pixels), a, b);
-      data.apart.push_back(i == j || !are_partners(from, a, to, b, options_.warps.partners) ? 1 : 0);
+      data.apart.push_back(i == j || !are_partners(from, to, exemplars, charts_, options_.warps) ? 1 : 0);
       data.linear.push_back(j <= i ? linear : Mat2(linear.inverse()));
     }
   data.triangles = enclosing_triangles(cell, body);

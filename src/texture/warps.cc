@@ -128,9 +128,15 @@ int first_end(const ExemplarPin& pin, const std::string& from, const std::string
                                                               : -1;
 }
 
-} // namespace
-
-namespace {
+/// The same where both points lie in the faces; else -1.
+int joining_end(const ExemplarPin& pin, const Face& from, const Face& to, const std::vector<Exemplar>& exemplars,
+                const std::vector<Chart>& charts) {
+  const int end = first_end(pin, exemplars[from.exemplar].name, exemplars[to.exemplar].name);
+  return end >= 0 && is_in(from, charts[from.exemplar], pin.points[end]) &&
+             is_in(to, charts[to.exemplar], pin.points[1 - end])
+           ? end
+           : -1;
+}
 
 /// 1 or -1, by which side of the body's axes a vector points to: the same for a pair of faces either way round.
 double sense(const Mat3& axes, const Vec3& v) { return (axes * Vec3(0.8, 0.5, 0.33)).dot(v) < 0 ? -1 : 1; }
@@ -160,9 +166,12 @@ AlignedPair align(const Face& from, const Chart& from_chart, const Face& to, con
   return pair;
 }
 
-bool are_partners(const Face& from, const Chart& from_chart, const Face& to, const Chart& to_chart,
-                  const Partners partners) {
-  return partners == Partners::all || inward(from, from_chart).dot(inward(to, to_chart)) < -0.7;
+bool are_partners(const Face& from, const Face& to, const std::vector<Exemplar>& exemplars,
+                  const std::vector<Chart>& charts, const WarpOptions& options) {
+  const Chart &a = charts[from.exemplar], &b = charts[to.exemplar];
+  return options.partners == Partners::all || inward(from, a).dot(inward(to, b)) < -0.7 ||
+         std::any_of(options.pins.begin(), options.pins.end(),
+                     [&](const ExemplarPin& pin) { return joining_end(pin, from, to, exemplars, charts) >= 0; });
 }
 
 Mat2 aligned_linear(const AlignedPair& pair, const Chart& from, const Chart& to) {
@@ -198,15 +207,10 @@ std::vector<warp::Pin> pins_between(const Face& from, const Face& to, const std:
                                     const std::vector<Chart>& charts, const AlignedPair& pair,
                                     const std::vector<ExemplarPin>& all) {
   std::vector<warp::Pin> pins;
-  for (const ExemplarPin& pin : all) {
-    const int end = first_end(pin, exemplars[from.exemplar].name, exemplars[to.exemplar].name);
-    if (end < 0)
-      continue;
-    const Vec3 &a = pin.points[end], &b = pin.points[1 - end];
-    if (is_in(from, charts[from.exemplar], a) && is_in(to, charts[to.exemplar], b))
-      pins.push_back({from_raster(pair.from, pair).inverse()(along(pair.from, a)),
-                      from_raster(pair.to, pair).inverse()(along(pair.to, b))});
-  }
+  for (const ExemplarPin& pin : all)
+    if (const int end = joining_end(pin, from, to, exemplars, charts); end >= 0)
+      pins.push_back({from_raster(pair.from, pair).inverse()(along(pair.from, pin.points[end])),
+                      from_raster(pair.to, pair).inverse()(along(pair.to, pin.points[1 - end]))});
   return pins;
 }
 
@@ -303,7 +307,7 @@ std::vector<WarpTable> make_warps(const Cell& cell, const std::vector<Exemplar>&
     for (int j = i + 1; j < n; ++j) {
       const Face &from = cell.faces[i], &to = cell.faces[j];
       const Chart &a = charts[from.exemplar], &b = charts[to.exemplar];
-      if (!are_partners(from, a, to, b, options.partners))
+      if (!are_partners(from, to, exemplars, charts, options))
         continue;
       const AlignedPair pair = align(from, a, to, b, options.pixels);
       warp::MatchOptions of_pair = options.match;

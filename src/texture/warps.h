@@ -20,7 +20,7 @@ struct ExemplarPin {
   std::array<Vec3, 2> points;           ///< rest frame [m]
 };
 
-/// Which faces of a cell are warped to each other.
+/// Which faces of a cell are warped to each other; those that a pin joins always are.
 enum class Partners {
   all,   ///< all, as in the thesis
   facing ///< those that face each other, within 45 degrees: what lies at an angle is mixed as it is
@@ -59,7 +59,8 @@ BothWays match_faces(const Face& from, const Chart& from_chart, const Face& to, 
                      const AlignedPair& pair, const warp::MatchOptions& options);
 
 /// Whether two faces are warped to each other.
-bool are_partners(const Face& from, const Chart& from_chart, const Face& to, const Chart& to_chart, Partners partners);
+bool are_partners(const Face& from, const Face& to, const std::vector<Exemplar>& exemplars,
+                  const std::vector<Chart>& charts, const WarpOptions& options);
 
 /// Where the pixels of a face go on all faces of its cell: a lattice over the face's box, with one target a face at
 /// each node.
