@@ -82,8 +82,8 @@ TEST_F(Inside, SaysHowMuchOfASectionAPictureShows) {
       look(scene(exemplar("one", "good.png", "-0.05, -0.1, 0.01", "0.0065, 0, 0", "0, 0.0065, 0", fit)));
     return looked.composition.back();
   };
-  // 0.15 of the 0.2 m that the cube is wide.
-  EXPECT_EQ(said(""), "exemplar one: shows 76 % of the body's section; what lacks goes on from its border, as it is not "
+  // 0.15 of the 0.2 m that the cube is wide, and half a pixel.
+  EXPECT_EQ(said(""), "exemplar one: shows 77 % of the body's section; what lacks goes on from its border, as it is not "
                       "fitted (key Fit)");
   EXPECT_NE(said("      set Fit = rigid\n").find("% of the body's section, drawn to it to 0."), std::string::npos);
 }
