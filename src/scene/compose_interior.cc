@@ -120,8 +120,7 @@ texture::Skin read_skin(const Section& section, const InteriorParameters& p, con
   const auto& alpha = picture.alpha.values;
   if (picture.has_alpha() && std::all_of(alpha.begin(), alpha.end(), [](const float a) { return a < 0.5f; }))
     throw section.complaint("Skin image", "is transparent all over: it shows no skin", "Check its alpha");
-  return {picture, 0.5 * (box.lower + box.upper), axis,
-          axis.unitOrthogonal()};
+  return {picture, 0.5 * (box.lower + box.upper), axis, axis.unitOrthogonal()};
 }
 
 /// How well the pictures lie on the body's own sections.

@@ -57,8 +57,8 @@ void Atlas::fill_triangle(const std::size_t t, const SurfaceView& surface, const
                     [&](const int i, const int j) { colours_[sample++] = to_bytes(paint.skin->colour(point(i, j))); });
     return;
   }
-  const InPlane inside(*paint.inside, paint.detail,
-                       paint.relief != 0 ? InPlane::Relief::wanted : InPlane::Relief::none, corners);
+  const InPlane inside(*paint.inside, paint.detail, paint.relief != 0 ? InPlane::Relief::wanted : InPlane::Relief::none,
+                       corners);
   const double pixel = paint.inside->pixel();
   for_each_sample(n, [&](const int i, const int j) {
     const Vec3 p = point(i, j);

@@ -139,9 +139,11 @@ void InPlane::find_blends(const std::vector<Span>& rows) {
 void InPlane::find_luminance(const int row, const Span& span, Windows& windows) {
   for (int c = span.first; c <= span.last;) {
     const Around first = around(c, row);
-    const bool is_whole = first[0] == &blends_(c / step, row / step) && first[3] == &blends_(c / step + 1, row / step + 1) &&
-                          first[1] == first[0] + 1 && first[2] == first[3] - 1;
-    const int last = is_whole ? std::min(span.last, c - c % step + step - 1) : c; // else the next may be in another cell
+    const bool is_whole = first[0] == &blends_(c / step, row / step) &&
+                          first[3] == &blends_(c / step + 1, row / step + 1) && first[1] == first[0] + 1 &&
+                          first[2] == first[3] - 1;
+    const int last =
+      is_whole ? std::min(span.last, c - c % step + step - 1) : c; // else the next may be in another cell
     add_luminance(row, {c, last}, first, windows);
     c = last + 1;
   }
@@ -155,7 +157,8 @@ void InPlane::add_luminance(const int row, const Span& span, const Around& aroun
     const image::Grey& grey = inside_.charts()[around[0]->exemplars[i]].luminance;
     const auto& [a, b, c, d] = around;
     const Eigen::Array4f left(along(a->weights[i], c->weights[i]), along(a->x[i], c->x[i]), along(a->y[i], c->y[i]), 0);
-    const Eigen::Array4f right(along(b->weights[i], d->weights[i]), along(b->x[i], d->x[i]), along(b->y[i], d->y[i]), 0);
+    const Eigen::Array4f right(along(b->weights[i], d->weights[i]), along(b->x[i], d->x[i]), along(b->y[i], d->y[i]),
+                               0);
     for (int k = span.first; k <= span.last; ++k) {
       const Eigen::Array4f at = left + static_cast<float>(k % step) / step * (right - left);
       out[k] += at[0] * image::sample(grey, at[1], at[2]);

@@ -51,8 +51,8 @@ class InPlane {
   Vec3 origin_ = Vec3::Zero(), x_ = Vec3::Zero(), y_ = Vec3::Zero();
   double pixel_ = 1;
   int width_ = 0, height_in_points_ = 0;
-  std::vector<Span> spans_;         ///< of each row, what is asked for
-  image::Raster<Blend> blends_;     ///< of every step-th point
+  std::vector<Span> spans_;     ///< of each row, what is asked for
+  image::Raster<Blend> blends_; ///< of every step-th point
   struct Other {
     int column, row;
     Blend blend;

@@ -77,8 +77,8 @@ class Interior {
   const Maps& maps() const { return maps_; }
   const Vec3& origin() const { return origin_; } ///< a point that goes along with the body [m]
   double pixel() const { return pixel_; }        ///< mean side of the exemplars' pixels [m]
-  std::size_t n_pairs() const;            ///< of warps
-  std::size_t n_closed_cells() const;     ///< that exemplars alone bound: there mean value weights apply
+  std::size_t n_pairs() const;                   ///< of warps
+  std::size_t n_closed_cells() const;            ///< that exemplars alone bound: there mean value weights apply
   /// From picture to picture, as points go: a fit, a warp between faces as tabulated, the other fit. Triangles that
   /// this turns over, two in each pixel of a face, with sides of a thousandth of it: larger ones may lie across a kink of
   /// a lattice, and seem turned over where nothing is.

@@ -61,7 +61,7 @@ class Source {
   double side_ = 1;
   bool turns_ = false;
   Vec3 centre_ = Vec3::Zero(), axis_ = Vec3::Zero(), outward_ = Vec3::Zero(), inward_ = Vec3::Zero();
-  double steps_by_t_ = 0;     ///< rows of the table a unit of t
+  double steps_by_t_ = 0; ///< rows of the table a unit of t
   /// Distances from the middle to the boundary, squared: n_steps rows of n_directions + 1, the last of a row is its
   /// first [m^2].
   std::vector<float> squared_radii_;

@@ -147,8 +147,7 @@ AlignedPair align(const Face& from, const Chart& from_chart, const Face& to, con
   const Vec3 m = inward(from, from_chart), n = inward(to, to_chart);
   const Vec3 shared = m.cross(n);
   AlignedPair pair;
-  const Vec3 axis =
-    shared.norm() > 1e-3 ? Vec3(shared.normalized()) : longest_axis(from, from_chart, to, to_chart);
+  const Vec3 axis = shared.norm() > 1e-3 ? Vec3(shared.normalized()) : longest_axis(from, from_chart, to, to_chart);
   pair.from.a = sense(from_chart.body_axes, axis) * axis;
   pair.to.a = (pair.from.a - n.dot(pair.from.a) * n).normalized();
   pair.from.b = m.cross(pair.from.a);

@@ -6,9 +6,13 @@
 namespace kerf::texture {
 
 Windows::Windows(const int width, const int height, const int gutter, const int stride)
-  : width_(width), gutter_(gutter), stride_(stride),
+  : width_(width),
+    gutter_(gutter),
+    stride_(stride),
     luminance_(static_cast<std::size_t>(width + 2 * gutter) * (height + 2 * gutter)),
-    mean_(static_cast<std::size_t>(width) * height), place_(mean_.size()), sharpness_(width) {}
+    mean_(static_cast<std::size_t>(width) * height),
+    place_(mean_.size()),
+    sharpness_(width) {}
 
 /// Calls f(row of values shifted) for each of the 49 shifts.
 template <class Function>

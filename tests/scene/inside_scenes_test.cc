@@ -40,7 +40,8 @@ double jump_on_ways(const texture::Interior& inside, const geometry::TriangleMes
   double jump = 0;
   for (int i = 0; i < 40; ++i) {
     const Vec3 from = end(), to = end();
-    jump = std::max(jump, texture::largest_jump([&](const Vec3& p) { return inside.colour(p); }, is_inside, from, to, 100));
+    jump =
+      std::max(jump, texture::largest_jump([&](const Vec3& p) { return inside.colour(p); }, is_inside, from, to, 100));
   }
   return jump;
 }

@@ -83,8 +83,9 @@ TEST_F(Inside, SaysHowMuchOfASectionAPictureShows) {
     return looked.composition.back();
   };
   // 0.15 of the 0.2 m that the cube is wide, and half a pixel.
-  EXPECT_EQ(said(""), "exemplar one: shows 77 % of the body's section; what lacks goes on from its border, as it is not "
-                      "fitted (key Fit)");
+  EXPECT_EQ(said(""),
+            "exemplar one: shows 77 % of the body's section; what lacks goes on from its border, as it is not "
+            "fitted (key Fit)");
   EXPECT_NE(said("      set Fit = rigid\n").find("% of the body's section, drawn to it to 0."), std::string::npos);
 }
 

@@ -59,6 +59,5 @@ TEST(Detail, FollowsTheOrientationOfTheSurface) {
   EXPECT_LT(same_plane, 1e-5); // a square window turned by a right angle
 }
 
-
 } // namespace
 } // namespace kerf::texture

@@ -22,8 +22,7 @@ TEST_P(Error, WarpsGainAndKeepWhatIsSharp) {
   std::vector<Exemplar> exemplars;
   for (int i = 0; i < n_sections; ++i)
     exemplars.push_back(exemplar_of("e" + std::to_string(i), GetParam().solid,
-                                    Vec3(0, 0, 0.03 * (2.0 * i / (n_sections - 1) - 1)), Vec3::UnitX(),
-                                    Vec3::UnitY()));
+                                    Vec3(0, 0, 0.03 * (2.0 * i / (n_sections - 1) - 1)), Vec3::UnitX(), Vec3::UnitY()));
   const Interior inside(exemplars, ball(4), {});
   const double pixel = 0.104 / (n - 1);
   const Patch patch{Vec3(-0.052, -0.052, 0.0041), pixel * Vec3::UnitX(), pixel * Vec3::UnitY(), n, n};

@@ -55,7 +55,7 @@ class Storage : public testing::TestWithParam<Stored> {
     const Interior before(exemplars, ball(4), {}), after(GetParam().change(exemplars), ball(4), {});
     const auto plain = apart(before, after, {.morph = Morph::blend}), warped = apart(before, after, {});
     const auto effect = apart(before, before, {}); // nothing
-    double moved = 0; // by warps
+    double moved = 0;                              // by warps
     for (const Vec3& p : points_inside(3000, 21, 0.045))
       moved += 255 * difference(before.colour(p), before.colour(p, {.morph = Morph::blend})) / 3000;
     std::printf("%s, %s: blend %.2f on average, %.1f at most; with warps %.2f, %.1f; warps move %.1f\n",
@@ -74,8 +74,8 @@ TEST_P(Storage, MakesNoDifferenceToPhotographs) {
 TEST_P(Storage, MakesNoDifferenceToSolids) {
   std::vector<Exemplar> exemplars;
   for (int i = 0; i < 3; ++i)
-    exemplars.push_back(exemplar_of("e" + std::to_string(i), onion, Vec3(0, 0, 0.02 * (i - 1)), Vec3::UnitX(),
-                                    Vec3::UnitY(), 150));
+    exemplars.push_back(
+      exemplar_of("e" + std::to_string(i), onion, Vec3(0, 0, 0.02 * (i - 1)), Vec3::UnitX(), Vec3::UnitY(), 150));
   exemplars.push_back(exemplar_of("upright", onion, Vec3(0.001, 0, 0), Vec3::UnitY(), Vec3::UnitZ(), 150));
   expect_same("onion", exemplars, 1);
 }
@@ -92,8 +92,7 @@ INSTANTIATE_TEST_SUITE_P(
                          }},
                   Stored{"by_half_a_radian",
                          [](const auto& all) { return each(all, [](const auto& e) { return turned_by(e, 0.5); }); }},
-                  Stored{"reversed",
-                         [](const auto& all) { return std::vector<Exemplar>(all.rbegin(), all.rend()); }}),
+                  Stored{"reversed", [](const auto& all) { return std::vector<Exemplar>(all.rbegin(), all.rend()); }}),
   [](const auto& info) { return std::string(info.param.name); });
 
 } // namespace
