@@ -23,11 +23,13 @@ struct Options {
   Points plane = {}; ///< a point [m], a normal, and perhaps where columns run to
   double pixel = 0;  ///< [m]; 0: that of the exemplars
   std::string output = "texture.png";
+  std::string body = {}; ///< empty: the first one with an inside
   int n_threads = 0;
   void describe(Parameters& p) {
     p.points("--plane", plane, "A point [m] and a normal; if there is a third one, columns run along it.");
     p.number("--pixel", pixel, positive, "Side of a pixel [m].");
     p.text("--output", output, "PNG or JPEG.");
+    p.text("--body", body, "Name of a body that has an interior; without, the first one.");
     p.integer("--threads", n_threads, {1, 1024}, "Threads.");
   }
 };
@@ -78,7 +80,8 @@ int texture(const Arguments& arguments) {
   const SceneArguments parsed = parse_scene_arguments(rest);
   if (options.n_threads > 0)
     set_n_threads(options.n_threads);
-  const scene::LookedInto body = scene::compose_inside(scene::read_scene_text(parsed.scene, parsed.overrides));
+  const scene::LookedInto body =
+    scene::compose_inside(scene::read_scene_text(parsed.scene, parsed.overrides), options.body);
   for (const std::string& line : body.composition)
     std::printf("%s\n", line.c_str());
   const texture::Interior& inside = body.interior->inside;

@@ -27,6 +27,8 @@ DataError unwritable(const std::string& path, const std::string& rule) {
 
 Bytes read_bytes(const std::string& path) {
   std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored))
+    throw unreadable(path, "is a folder, not a picture", "Name a PNG or JPEG file in it");
   if (!std::filesystem::is_regular_file(path, ignored))
     throw unreadable(path, "there is no such file", "Check the name; relative paths start at the scene file");
   std::ifstream in(path, std::ios::binary);

@@ -116,8 +116,25 @@ texture::Skin read_skin(const Section& section, const InteriorParameters& p, con
     throw section.complaint("Skin axis [1]", "must have a length", "Give the direction of the picture's first row");
   const Box box = geometry::bounding_box(mesh);
   const Vec3 axis = p.skin_axis.normalized();
-  return {read_picture(section, "Skin image", p.skin_image), 0.5 * (box.lower + box.upper), axis,
-          axis.unitOrthogonal()};
+  const image::Image picture = read_picture(section, "Skin image", p.skin_image);
+  const auto& alpha = picture.alpha.values;
+  if (picture.has_alpha() && std::all_of(alpha.begin(), alpha.end(), [](const float a) { return a < 0.5f; }))
+    throw section.complaint("Skin image", "is transparent all over: it shows no skin", "Check its alpha");
+  return {picture, 0.5 * (box.lower + box.upper), axis, axis.unitOrthogonal()};
+}
+
+/// How well the pictures lie on the body's own sections.
+void say_fits(const InteriorInput& input, const texture::Interior& inside, std::vector<std::string>& composition) {
+  for (std::size_t i = 0; i < input.exemplars.size(); ++i) {
+    const texture::Chart& chart = inside.charts()[i];
+    std::string said = line("exemplar ", input.exemplars[i].name, ": shows ", std::lround(100 * chart.shown_share),
+                            " % of the body's section");
+    if (input.exemplars[i].fit != texture::Fit::none)
+      said += line(", drawn to it to ", to_text(std::round(100 * chart.fit_error) / 100), " pixels on average");
+    else if (chart.shown_share < 0.995)
+      said += "; what lacks goes on from its border, as it is not fitted (key Fit)";
+    composition.push_back(said);
+  }
 }
 
 /// The interior, by maps that are known where there are some.
@@ -133,6 +150,7 @@ texture::Interior build(const Section& section, const InteriorInput& input, cons
                              known  ? " read from " + file.string()
                              : kept ? " found, and kept in " + file.string()
                                     : " found; they cannot be kept in " + file.string()));
+  say_fits(input, inside, composition);
   return inside;
 }
 
@@ -168,16 +186,18 @@ std::unique_ptr<BodyInterior> compose_interior(const Section& section, const std
   }
 }
 
-LookedInto compose_inside(const SceneText& text) {
+LookedInto compose_inside(const SceneText& text, const std::string& name) {
   const Section root = parse_scene(text, grammar());
   for (const Section* body : root.all("Body"))
-    if (const Section* interior = body->find("Interior")) {
+    if (const Section* interior = body->find("Interior"); interior && (name.empty() || body->name() == name)) {
       LookedInto result;
       result.mesh = read_body_mesh(*body, body->read<BodyParameters>());
       result.interior = compose_interior(*interior, body->name(), result.mesh, result.composition);
       return result;
     }
-  throw root.complaint("no body of this scene has a section 'Interior'", "Say what is inside of one");
+  throw name.empty() ? root.complaint("no body of this scene has a section 'Interior'", "Say what is inside of one")
+                     : root.complaint("there is no body '" + name + "' with a section 'Interior'",
+                                      "Name one that has it, or none: then it is the first");
 }
 
 } // namespace kerf::scene

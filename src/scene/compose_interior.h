@@ -32,7 +32,8 @@ struct LookedInto {
   std::vector<std::string> composition;
 };
 
-/// The first body of a scene that has an interior, without grid and physics. Throws ParameterError if there is none.
-LookedInto compose_inside(const SceneText& text);
+/// The body of that name, or without a name the first one that has an interior, without grid and physics. Throws
+/// ParameterError if there is none.
+LookedInto compose_inside(const SceneText& text, const std::string& name = "");
 
 } // namespace kerf::scene

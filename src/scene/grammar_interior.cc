@@ -14,8 +14,10 @@ void InteriorParameters::describe(Parameters& p) {
     "Of source points. Mean value coordinates where these enclose the point, in cells that do not touch the skin; "
     "Shepard's elsewhere; in between a mixture of both.");
   p.number("Weight power [1]", power, positive, "Of the distances in Shepard's weights.");
-  p.choice("Warps", warps, {"all", "facing"},
-           "Between all exemplars that bound a cell, or only between those that face each other within 45 degrees.");
+  p.choice(
+    "Warps", warps, {"all", "facing"},
+    "Between all exemplars that bound a cell, or only between those that face each other within 45 degrees or are "
+    "joined by a pin.");
   p.choice("Components", components, {"one", "each", "together"},
            "When an exemplar's section has several components in a cell: refused; an exemplar each; one exemplar.");
   p.boolean("Small features", small_features,
@@ -49,9 +51,11 @@ void ExemplarParameters::describe(Parameters& p) {
   p.require_last();
   p.vector("Row [m]", row, "The step from a pixel to the one below it.");
   p.require_last();
-  p.choice("Fit", fit, {"none", "rigid", "harmonic"},
-           "Whether the picture's boundary is drawn to that of the body's own section; its inside then goes along as "
-           "rigidly as possible, or harmonically.");
+  p.choice(
+    "Fit", fit, {"none", "rigid", "harmonic"},
+    "Whether the picture's boundary is drawn to that of the body's own section; its inside then goes along as "
+    "rigidly as possible, or harmonically. Without, what the picture does not show of the section goes on from its "
+    "border; the run says how much that is.");
   p.choice(
     "Sweep", sweep, {"normal", "middles", "arc", "axis"},
     "How the plane is swept to a point: along its normal from the barycentre; along it through the barycentres of "

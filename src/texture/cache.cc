@@ -11,7 +11,7 @@ namespace kerf::texture {
 
 namespace {
 
-constexpr std::uint64_t version = 4;                   ///< of the file and of the methods that find maps
+constexpr std::uint64_t version = 5;                   ///< of the file and of the methods that find maps
 constexpr std::uint64_t magic = 0x5350414d4652454bull; // "KERFMAPS"
 
 class Hash {
@@ -143,8 +143,10 @@ Bytes encode(const std::uint64_t hash, const Maps& maps) {
   out.put(maps.warps.size());
   for (const auto& cell : maps.warps) {
     out.put(cell.size());
-    for (const warp::LatticeMap& map : cell)
-      out.put(map);
+    for (const BothWays& pair : cell) {
+      out.put(pair.there);
+      out.put(pair.back);
+    }
   }
   out.put(hash_of(out.bytes, out.bytes.size()));
   return out.bytes;
@@ -160,7 +162,7 @@ std::optional<Maps> decode(const Bytes& bytes, const std::uint64_t hash) {
   for (auto n = in.get<std::size_t>(); in.good && n > 0; --n) {
     maps.warps.emplace_back();
     for (auto m = in.get<std::size_t>(); in.good && m > 0; --m)
-      maps.warps.back().push_back(in.get_map());
+      maps.warps.back().push_back({in.get_map(), in.get_map()});
   }
   return in.good ? std::optional(std::move(maps)) : std::nullopt;
 }

@@ -63,7 +63,8 @@ Vec2 middle(const Grey& mask) {
 
 /// Boundary points of the section and of the mask that lie in the same direction from their middles [pixels].
 std::vector<warp::Pin> boundary_pairs(const Grey& inside, const Vec2& offset, const Grey& mask) {
-  const Grey section = largest_component(inside), shown = largest_component(mask);
+  // A blur takes the steps of the pixels away.
+  const Grey section = image::blurred(largest_component(inside), 1), shown = image::blurred(largest_component(mask), 1);
   const Vec2 from = middle(section), to = middle(shown);
   std::vector<warp::Pin> pairs = {{from + offset, to}};
   for (int k = 0; k < n_directions; ++k) {
@@ -95,15 +96,39 @@ void paint(const image::Image& picture, const Grey& mask, const ToPicture& to_pi
       colours(c, r) = image::sample(there, x, y);
       chart.shown(c, r) = is_in && image::sample(mask, x, y) >= 0.5f ? 1.0f : 0.0f;
     }
+  double n_inside = 0, n_shown = 0;
+  for (std::size_t i = 0; i < chart.shown.values.size(); ++i) {
+    n_inside += chart.inside.values[i];
+    n_shown += chart.inside.values[i] * chart.shown.values[i];
+  }
+  chart.shown_share = n_shown / n_inside;
   colours = image::filled(colours, chart.shown);
   chart.colours = image::Raster<Eigen::Array4f>(width, height, Eigen::Array4f::Zero());
   for (std::size_t i = 0; i < colours.values.size(); ++i) {
     const image::Rgb& rgb = colours.values[i];
     chart.colours.values[i] = Eigen::Array4f(rgb[0], rgb[1], rgb[2], image::luminance(rgb));
   }
+  chart.luminance = image::luminance(colours);
 }
 
 } // namespace
+
+Mat3 axes_of(const geometry::TriangleMesh& body) {
+  const Triangle& t = body.triangles.front();
+  const Vec3 u = body.vertices[t[1]] - body.vertices[t[0]], v = body.vertices[t[2]] - body.vertices[t[0]];
+  Mat3 axes;
+  axes.col(0) = u.normalized();
+  axes.col(2) = axes.col(0).unitOrthogonal(); // where the triangle has no area
+  if (const Vec3 normal = u.cross(v); normal.norm() > 1e-9 * u.norm() * v.norm())
+    axes.col(2) = normal.normalized();
+  axes.col(1) = axes.col(2).cross(axes.col(0));
+  return axes;
+}
+
+Vec3 in_plane(const Mat3& axes, const Vec3& normal) {
+  const Vec3 axis = std::abs(normal.dot(axes.col(0))) < 0.9 ? axes.col(0) : axes.col(1);
+  return (axis - normal.dot(axis) * normal).normalized();
+}
 
 Chart make_chart(const Exemplar& exemplar, const geometry::TriangleMesh& body,
                  const std::optional<warp::LatticeMap>& known, std::optional<warp::LatticeMap>& used) {
@@ -125,9 +150,12 @@ Chart make_chart(const Exemplar& exemplar, const geometry::TriangleMesh& body,
                            step(box.lower + Vec2(0, 1)) - step(box.lower)),
               {},
               {},
+              {},
               inside_of(shifted, static_cast<int>(size[0]) + 1, static_cast<int>(size[1]) + 1),
               {},
-              0};
+              1,
+              0,
+              axes_of(body)};
   chart.outline = slice(body, frame_of(chart.plane));
   used.reset();
   if (std::accumulate(chart.inside.values.begin(), chart.inside.values.end(), 0.0) < 16)

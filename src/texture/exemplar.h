@@ -46,11 +46,21 @@ struct Exemplar {
 struct Chart {
   SectionPlane plane;                    ///< pixel (0, 0) of the chart is its origin
   image::Raster<Eigen::Array4f> colours; ///< red, green, blue, luminance; defined everywhere
+  image::Grey luminance;                 ///< that alone
   image::Grey shown;                     ///< 1 where the picture shows the section
   image::Grey inside;                    ///< 1 where the body's own section is
   std::vector<Segment> outline;          ///< of the body's section, local coordinates [m]
+  double shown_share = 1;                ///< of the body's own section, what the picture shows
   double fit_error = 0;                  ///< mean distance of the fitted boundary [pixels]; 0 without a fit
+  Mat3 body_axes = Mat3::Identity();     ///< columns: axes that turn along with the body
 };
+
+/// Axes that turn along with a body, whatever is in it: of its first triangle.
+Mat3 axes_of(const geometry::TriangleMesh& body);
+
+/// The unit vector in a plane with that normal that lies along the first of some axes, or where that is nearly the
+/// normal along the second.
+Vec3 in_plane(const Mat3& axes, const Vec3& normal);
 
 /// Fits an exemplar to the body. `known` is the map found earlier for the same input; the map that was used is left in
 /// `used` (none for Fit::none). Throws ParameterError about the key "Origin [m]" if the plane misses the body, and as

@@ -75,7 +75,7 @@ Cell with_a_face(Cell cell, const std::vector<Chart>& charts) {
 
 Interior::Interior(const std::vector<Exemplar>& exemplars, const geometry::TriangleMesh& body,
                    const InteriorOptions& options, const Maps* known)
-  : options_(options) {
+  : options_(options), origin_(body.vertices[body.triangles.front()[0]]) {
   if (exemplars.empty())
     throw ParameterError(Complaint{.path = "Exemplar",
                                    .rule = "an interior needs at least one exemplar",
@@ -107,14 +107,14 @@ void Interior::build_cell(const int number, const std::vector<Exemplar>& exempla
     data.sources.emplace_back(face, cell, exemplars[face.exemplar], charts_[face.exemplar], body);
   }
   data.tables = make_warps(cell, exemplars, charts_, options_.warps,
-                           known ? known->warps[number] : std::vector<warp::LatticeMap>(), maps_.warps[number]);
+                           known ? known->warps[number] : std::vector<BothWays>(), maps_.warps[number]);
   for (std::size_t j = 0; j < n; ++j)
     for (std::size_t i = 0; i < n; ++i) {
       const Face &from = cell.faces[std::min(i, j)], &to = cell.faces[std::max(i, j)];
       const Chart &a = charts_[from.exemplar], &b = charts_[to.exemplar];
       const Mat2 linear =
         i == j ? Mat2(Mat2::Identity()) : aligned_linear(align(from, a, to, b, options_.warps.pixels), a, b);
-      data.apart.push_back(i == j || !are_partners(from, a, to, b, options_.warps.partners) ? 1 : 0);
+      data.apart.push_back(i == j || !are_partners(from, to, exemplars, charts_, options_.warps) ? 1 : 0);
       data.linear.push_back(j <= i ? linear : Mat2(linear.inverse()));
     }
   data.triangles = enclosing_triangles(cell, body);
@@ -190,12 +190,13 @@ Vec2 Interior::solve_inverse(const CellData& cell, const Found& found, const int
   return best;
 }
 
-Blend Interior::blend(const Vec3& p, const Blending& how) const {
-  const CellData& cell = cells_[partition_->find(p)];
+Blend Interior::blend(const Vec3& p, const Blending& how, const int number) const {
+  Blend blend;
+  blend.cell = number;
+  const CellData& cell = cells_[blend.cell];
   Found found;
   find_sources(cell, p, how, found);
   std::array<Vec2, max_sources> q = found.pixels;
-  Blend blend;
   blend.n = static_cast<int>(cell.sources.size());
   if (how.morph == Morph::first_order || how.morph == Morph::exact_inverse)
     morph(cell, found, q);
@@ -278,8 +279,9 @@ Interior::Folds Interior::folds() const {
 double Interior::smallest_determinant() const {
   double smallest = 1e300;
   for (const auto& maps : maps_.warps)
-    for (const warp::LatticeMap& map : maps)
-      smallest = std::min(smallest, warp::smallest_determinant(map));
+    for (const BothWays& pair : maps)
+      for (const warp::LatticeMap* const map : {&pair.there, &pair.back})
+        smallest = std::min(smallest, warp::smallest_determinant(*map));
   for (const auto& fit : maps_.fits)
     if (fit)
       smallest = std::min(smallest, warp::smallest_determinant(*fit));

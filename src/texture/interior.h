@@ -44,12 +44,12 @@ struct InteriorOptions {
 /// What building an interior takes longest to find.
 struct Maps {
   std::vector<std::optional<warp::LatticeMap>> fits; ///< by exemplar
-  std::vector<std::vector<warp::LatticeMap>> warps;  ///< by cell, pairs (i, j) of faces, i < j, in order
+  std::vector<std::vector<BothWays>> warps;          ///< by cell, pairs (i, j) of faces, i < j, in order
 };
 
 /// What makes up the colour of a point.
 struct Blend {
-  int n = 0;
+  int n = 0, cell = 0;
   std::array<std::uint8_t, max_sources> exemplars;
   std::array<float, max_sources> weights;
   std::array<float, max_sources> x, y; ///< in the exemplar's chart [pixels]
@@ -63,7 +63,9 @@ class Interior {
   Interior(const std::vector<Exemplar>& exemplars, const geometry::TriangleMesh& body, const InteriorOptions& options,
            const Maps* known = nullptr);
 
-  Blend blend(const Vec3& p, const Blending& how) const;
+  Blend blend(const Vec3& p, const Blending& how) const { return blend(p, how, partition_->find(p)); }
+  /// As if the point lay in that cell, which need not be its own: it may lie a little beside it.
+  Blend blend(const Vec3& p, const Blending& how, int cell) const;
   /// Red, green, blue and luminance of a point of the rest frame [m].
   Eigen::Array4f colour(const Vec3& p) const { return colour(blend(p, options_.blending)); }
   Eigen::Array4f colour(const Vec3& p, const Blending& how) const { return colour(blend(p, how)); }
@@ -73,9 +75,10 @@ class Interior {
   const std::vector<Chart>& charts() const { return charts_; }
   const Partition& partition() const { return *partition_; }
   const Maps& maps() const { return maps_; }
-  double pixel() const { return pixel_; } ///< mean side of the exemplars' pixels [m]
-  std::size_t n_pairs() const;            ///< of warps
-  std::size_t n_closed_cells() const;     ///< that exemplars alone bound: there mean value weights apply
+  const Vec3& origin() const { return origin_; } ///< a point that goes along with the body [m]
+  double pixel() const { return pixel_; }        ///< mean side of the exemplars' pixels [m]
+  std::size_t n_pairs() const;                   ///< of warps
+  std::size_t n_closed_cells() const;            ///< that exemplars alone bound: there mean value weights apply
   /// From picture to picture, as points go: a fit, a warp between faces as tabulated, the other fit. Triangles that
   /// this turns over, two in each pixel of a face, with sides of a thousandth of it: larger ones may lie across a kink of
   /// a lattice, and seem turned over where nothing is.
@@ -117,6 +120,7 @@ class Interior {
   std::optional<Partition> partition_;
   std::vector<CellData> cells_;
   Maps maps_;
+  Vec3 origin_;
   double pixel_ = 0;
 };
 

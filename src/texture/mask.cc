@@ -97,13 +97,18 @@ image::Raster<int> components(const Grey& mask, const std::size_t least, int& n_
 }
 
 double reach(const Grey& mask, const Vec2& centre, const Vec2& along) {
-  for (double s = std::hypot(mask.width, mask.height); s > 0; s -= 0.25) {
+  const auto is_in = [&](const double s) {
     const Vec2 p = centre + s * along;
-    const int c = static_cast<int>(std::lround(p[0])), r = static_cast<int>(std::lround(p[1]));
-    if (c >= 0 && r >= 0 && c < mask.width && r < mask.height && mask(c, r) > 0.5f)
-      return s;
-  }
-  return 0;
+    return p[0] >= -0.5 && p[1] >= -0.5 && p[0] <= mask.width - 0.5 && p[1] <= mask.height - 0.5 &&
+           image::sample(mask, static_cast<float>(p[0]), static_cast<float>(p[1])) > 0.5f;
+  };
+  constexpr double step = 0.25;
+  double in = std::ceil(std::hypot(mask.width, mask.height) / step) * step, out = in;
+  for (; in > 0 && !is_in(in); in -= step)
+    out = in;
+  for (int i = 0; i < 8 && in > 0; ++i)
+    (is_in(0.5 * (in + out)) ? in : out) = 0.5 * (in + out);
+  return in;
 }
 
 Grey largest_component(const Grey& mask) {

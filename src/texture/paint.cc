@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/parameters.h"
+#include "texture/windows.h"
 
 #include <algorithm>
 #include <cmath>
@@ -33,95 +34,27 @@ void paint_plain(const Interior& interior, const Patch& patch, const Blending& h
       out(c, r) = interior.colour(patch.point(c, r), how);
 }
 
-/// Luminance in a tile and around it, and what its windows say.
-struct Windows {
-  int width, height, gutter, stride;
-  std::vector<float> luminance;              ///< with the gutter
-  std::vector<float> mean, sharpness, place; ///< of the tile alone
-
-  float* row(const int r) { return &luminance[static_cast<std::size_t>(r + gutter) * (width + 2 * gutter) + gutter]; }
-};
-
-/// Calls f(row of the tile's values, row of values shifted) for each of the 49 shifts.
-template <class Function>
-void for_each_shift(Windows& w, const int r, const Function& f) {
-  for (int dr = -window_radius; dr <= window_radius; ++dr)
-    for (int dc = -window_radius; dc <= window_radius; ++dc)
-      f(w.row(r + dr * w.stride) + dc * w.stride);
-}
-
-/// Mean, spread and each value's place in its window: the share of values below it. Counted softly, so that it changes
-/// continuously: a value within a quarter of the spread counts in part.
-void find_places(Windows& w, const int r, const Span& span) {
-  constexpr float n = (2 * window_radius + 1) * (2 * window_radius + 1);
-  float* const mean = &w.mean[static_cast<std::size_t>(r) * w.width];
-  float* const sharpness = &w.sharpness[static_cast<std::size_t>(r) * w.width];
-  float* const place = &w.place[static_cast<std::size_t>(r) * w.width];
-  const float* const own = w.row(r);
-  for_each_shift(w, r, [&](const float* value) {
-    for (int c = span.first; c <= span.last; ++c) {
-      const float v = value[c];
-      mean[c] += v;
-      sharpness[c] += v * v;
-    }
-  });
-  for (int c = span.first; c <= span.last; ++c) {
-    mean[c] /= n;
-    const float variance = std::max(0.0f, sharpness[c] / n - mean[c] * mean[c]);
-    sharpness[c] = 1 / (0.25f * std::sqrt(variance) + 0.002f);
-  }
-  for_each_shift(w, r, [&](const float* value) {
-    for (int c = span.first; c <= span.last; ++c)
-      place[c] += std::min(std::max((own[c] - value[c]) * sharpness[c] + 0.5f, 0.0f), 1.0f);
-  });
-  for (int c = span.first; c <= span.last; ++c)
-    place[c] /= n;
-}
-
-/// The columns of row r that the windows of the rows around it reach; r may lie outside of the tile.
-Span reached(const std::vector<Span>& rows, const int r, const int gutter) {
-  Span span{1 << 20, -(1 << 20)};
-  for (int k = std::max(0, r - gutter); k <= std::min(static_cast<int>(rows.size()) - 1, r + gutter); ++k)
-    if (rows[k].last >= rows[k].first) {
-      span.first = std::min(span.first, rows[k].first - gutter);
-      span.last = std::max(span.last, rows[k].last + gutter);
-    }
-  return span;
-}
-
-/// `rows` are spans of the tile's columns.
 void paint_detailed(const Interior& interior, const Patch& patch, const Detail& detail, const Blending& how,
-                    const int stride, const Tile& tile, const std::vector<Span>& rows, Painted& out) {
+                    const int stride, const Tile& tile, Painted& out) {
   const int gutter = window_radius * stride;
-  const std::size_t size = static_cast<std::size_t>(tile.width) * tile.height;
-  const std::size_t with_gutter = static_cast<std::size_t>(tile.width + 2 * gutter) * (tile.height + 2 * gutter);
-  Windows w{tile.width,
-            tile.height,
-            gutter,
-            stride,
-            std::vector<float>(with_gutter),
-            std::vector<float>(size),
-            std::vector<float>(size),
-            std::vector<float>(size)};
-  std::vector<Blend> blends(size);
-  for (int r = -gutter; r < tile.height + gutter; ++r) {
-    const Span span = reached(rows, r, gutter);
-    for (int c = span.first; c <= span.last; ++c) {
+  Windows windows(tile.width, tile.height, gutter, stride);
+  std::vector<Blend> blends(static_cast<std::size_t>(tile.width) * tile.height);
+  for (int r = -gutter; r < tile.height + gutter; ++r)
+    for (int c = -gutter; c < tile.width + gutter; ++c) {
       const Blend blend = interior.blend(patch.point(tile.left + c, tile.top + r), how);
       const Eigen::Array4f colour = interior.colour(blend);
-      w.row(r)[c] = colour[3];
+      windows.luminance(c, r) = colour[3];
       if (r >= 0 && c >= 0 && r < tile.height && c < tile.width) {
         blends[static_cast<std::size_t>(r) * tile.width + c] = blend;
         out(tile.left + c, tile.top + r) = colour;
       }
     }
-  }
   for (int r = 0; r < tile.height; ++r) {
-    find_places(w, r, rows[r]);
-    for (int c = rows[r].first; c <= rows[r].last; ++c) {
-      const std::size_t i = static_cast<std::size_t>(r) * tile.width + c;
+    windows.find(r, {0, tile.width - 1});
+    for (int c = 0; c < tile.width; ++c) {
+      const Blend& blend = blends[static_cast<std::size_t>(r) * tile.width + c];
       Eigen::Array4f& colour = out(tile.left + c, tile.top + r);
-      const float change = detail.luminance(blends[i], w.place[i]) - (colour[3] - w.mean[i]);
+      const float change = detail.luminance(blend, windows.place(c, r)) - (colour[3] - windows.mean(c, r));
       colour = (colour + change).max(0.0f).min(1.0f);
     }
   }
@@ -141,8 +74,7 @@ Painted paint(const Interior& interior, const Patch& patch, const Detail* detail
   const int stride = stride_of(interior, patch);
   parallel_for(tiles.size(), [&](const std::size_t i) {
     if (detail)
-      paint_detailed(interior, patch, *detail, how, stride, tiles[i],
-                     std::vector<Span>(tiles[i].height, Span{0, tiles[i].width - 1}), out);
+      paint_detailed(interior, patch, *detail, how, stride, tiles[i], out);
     else
       paint_plain(interior, patch, how, tiles[i], out);
   });
@@ -151,13 +83,6 @@ Painted paint(const Interior& interior, const Patch& patch, const Detail* detail
 
 Painted paint(const Interior& interior, const Patch& patch, const Detail* detail) {
   return paint(interior, patch, detail, interior.options().blending);
-}
-
-Painted paint_spans(const Interior& interior, const Patch& patch, const Detail& detail, const std::vector<Span>& rows) {
-  Painted out(patch.width, patch.height, Eigen::Array4f::Zero());
-  paint_detailed(interior, patch, detail, interior.options().blending, stride_of(interior, patch),
-                 {0, 0, patch.width, patch.height}, rows, out);
-  return out;
 }
 
 Patch patch_over(const geometry::TriangleMesh& body, const Frame& frame, const double pixel) {

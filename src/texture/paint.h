@@ -14,20 +14,11 @@ struct Patch {
   Vec3 point(const double c, const double r) const { return origin + c * column + r * row; }
 };
 
-/// The columns of a row of a patch that are asked for: first to last.
-struct Span {
-  int first = 0, last = -1;
-};
-
 /// The colours of a patch, and luminance; with small features where `detail` is not null, whose windows are as wide as
 /// those of the exemplars. Any number of threads gives the same bits.
 image::Raster<Eigen::Array4f> paint(const Interior& interior, const Patch& patch, const Detail* detail,
                                     const Blending& how);
 image::Raster<Eigen::Array4f> paint(const Interior& interior, const Patch& patch, const Detail* detail = nullptr);
-
-/// The same bits in one span a row, anything elsewhere; with small features, by one thread.
-image::Raster<Eigen::Array4f> paint_spans(const Interior& interior, const Patch& patch, const Detail& detail,
-                                          const std::vector<Span>& rows);
 
 /// The patch of square pixels that just covers where a plane cuts the body; without pixels where it misses it. Columns
 /// run along the frame's x, rows along y. Throws ParameterError for more than 16384 of them along a side.

@@ -28,10 +28,11 @@ ParameterError refusal(const Exemplar& exemplar, const std::string& key, const s
   return ParameterError(Complaint{.path = key, .value = "exemplar " + exemplar.name, .rule = rule, .remedy = remedy});
 }
 
-/// No radius is zero: what would be divided by it lies outside of the body.
-void raise(std::vector<double>& radii, const double least) {
-  for (double& radius : radii)
-    radius = std::max(radius, least);
+/// Where the swept plane sees nothing in a direction, as past the end of the cell, its border stays where the row before
+/// had it. No radius is zero: what would be divided by it lies outside of the body.
+void complete(std::vector<double>& radii, const std::vector<double>& before, const double least) {
+  for (std::size_t k = 0; k < radii.size(); ++k)
+    radii[k] = std::max(radii[k] > 0 || before.empty() ? radii[k] : before[k], least);
 }
 
 } // namespace
@@ -182,7 +183,7 @@ void Source::tabulate(const Cell& cell, const Exemplar& exemplar, const geometry
       half = HalfSpace{}; // its own plane bounds no ray in it
   Vec2 middle = middles_[0];
   double least = 0;
-  std::vector<double> guess = reach_;
+  std::vector<double> guess = reach_, before;
   for (int i = 0; i < n_steps; ++i) {
     const Frame at = frame(i / steps_by_t_);
     const auto curves = slice(body, at);
@@ -194,12 +195,13 @@ void Source::tabulate(const Cell& cell, const Exemplar& exemplar, const geometry
       }
     if (i == 0)
       least = 1e-3 * *std::max_element(row.begin(), row.end()) + 1e-300;
-    raise(row, least);
+    complete(row, before, least);
+    before = row;
     if (!guess.empty())
       guess = row;
     middles_[i] = middle;
-    radii_.insert(radii_.end(), row.begin(), row.end());
-    radii_.push_back(static_cast<float>(row.front()));
+    for (int k = 0; k <= n_directions; ++k)
+      squared_radii_.push_back(static_cast<float>(row[k % n_directions] * row[k % n_directions]));
   }
 }
 
@@ -212,19 +214,20 @@ Vec2 Source::find(const Swept& swept) const {
   const int k = static_cast<int>(number);
   const double u = number - k;
   constexpr int row = n_directions + 1;
-  const auto radius = [&](const int step_number) {
-    const float* const r = &radii_[step_number * row + k];
+  const auto squared = [&](const int step_number) {
+    const float* const r = &squared_radii_[step_number * row + k];
     return (1 - u) * r[0] + u * r[1];
   };
-  const double there = (1 - s) * radius(i) + s * radius(i + 1);
+  const double here = std::sqrt(squared(0));
+  const double there = std::sqrt((1 - s) * squared(i) + s * squared(i + 1));
   const double length = arm.norm();
   if (!reach_.empty())
-    return length > 0 ? Vec2(middles_[0] + drawn_in(length * radius(0) / there, radius(0), arm / length) * arm / length)
+    return length > 0 ? Vec2(middles_[0] + drawn_in(length * here / there, here, arm / length) * arm / length)
                       : middles_[0];
   // Far beyond the boundary, outside of the body, the source point stays there. How far is far falls from infinity in
   // the face itself, where interpolated radii may cut a corner off and the source point must still be the point itself.
   const double beyond = there * (1 + 0.02 * (n_steps - 1) / std::max(step, 1e-12));
-  const double ratio = radius(0) / there * (length > beyond ? beyond / length : 1);
+  const double ratio = here / there * (length > beyond ? beyond / length : 1);
   return middles_[0] + ratio * arm;
 }
 

@@ -5,7 +5,8 @@
 /// The plane of a face is swept through the cell until it contains the point p; then the ray from the swept barycentre
 /// to p is taken back to the face, and the source point divides it in the same ratio between barycentre and boundary.
 /// Distances to the boundary are tabulated by sweep and direction, the boundary being the outermost one where a ray
-/// meets several, and bilinear in between: continuous, and exact in the face itself, whatever the table's resolution.
+/// meets several. In between their squares are bilinear: sections of what is round shrink like the root of what is left
+/// of the sweep. Continuous, and exact in the face itself, whatever the table's resolution.
 ///
 /// A face that is one component of several keeps its source points: its boundary is followed from that of the component
 /// itself, and what would lie beside the component, over another one, is drawn to its border.
@@ -60,8 +61,10 @@ class Source {
   double side_ = 1;
   bool turns_ = false;
   Vec3 centre_ = Vec3::Zero(), axis_ = Vec3::Zero(), outward_ = Vec3::Zero(), inward_ = Vec3::Zero();
-  double steps_by_t_ = 0;     ///< rows of the table a unit of t
-  std::vector<float> radii_;  ///< n_steps rows of n_directions + 1, the last of a row is its first [m]
+  double steps_by_t_ = 0; ///< rows of the table a unit of t
+  /// Distances from the middle to the boundary, squared: n_steps rows of n_directions + 1, the last of a row is its
+  /// first [m^2].
+  std::vector<float> squared_radii_;
   std::vector<Vec2> middles_; ///< the swept barycentre, by step [m]
   image::Grey beside_;        ///< of a component: how far beside it a pixel is, 1 from four pixels on; else empty
   std::vector<double> reach_; ///< of a component: from its middle to its border, by direction [m]; else empty

@@ -83,6 +83,44 @@ bool is_in(const Face& face, const Chart& chart, const Vec3& p) {
   return c >= 0 && r >= 0 && c < face.pixels.width && r < face.pixels.height && face.pixels(c, r) > 0.5f;
 }
 
+/// In which direction a face is longest, bright pixels counting more: a vector at twice the angle from x [1], shorter
+/// than 1, of no length for what is as long in all directions. Nothing of how the picture is stored is in it.
+Vec2 elongation(const Face& face, const Chart& chart, const Vec3& x, const Vec3& y) {
+  Vec2 sum = Vec2::Zero();
+  double area = 0;
+  const auto each_pixel = [&](const auto& use) {
+    for (int r = 0; r < face.pixels.height; ++r)
+      for (int c = 0; c < face.pixels.width; ++c)
+        if (face.pixels(c, r) > 0.5f) {
+          const Vec3 p = chart.plane.point(chart.plane.to_local(Vec2(c, r)));
+          use(Vec2(x.dot(p), y.dot(p)), 0.5 + chart.colours(c, r)[3]);
+        }
+  };
+  each_pixel([&](const Vec2& p, double) {
+    sum += p;
+    area += 1;
+  });
+  const Vec2 middle = sum / area;
+  Vec2 twice = Vec2::Zero();
+  double all = 0;
+  each_pixel([&](const Vec2& p, const double weight) {
+    const Vec2 d = p - middle;
+    twice += weight * Vec2(d[0] * d[0] - d[1] * d[1], 2 * d[0] * d[1]);
+    all += weight * d.squaredNorm();
+  });
+  return twice / all;
+}
+
+/// The axis along which the boxes of two parallel faces lie: where the two together are longest; along the body's own
+/// axis where they are as long in all directions.
+Vec3 longest_axis(const Face& from, const Chart& from_chart, const Face& to, const Chart& to_chart) {
+  constexpr double least = 0.02; // below, pixels decide
+  const Vec3 x = in_plane(from_chart.body_axes, from_chart.plane.normal()), y = from_chart.plane.normal().cross(x);
+  const Vec2 twice = elongation(from, from_chart, x, y) + elongation(to, to_chart, x, y);
+  const double angle = twice.norm() < least ? 0 : 0.5 * std::atan2(twice[1], twice[0]);
+  return std::cos(angle) * x + std::sin(angle) * y;
+}
+
 /// A pin as seen from two faces: which of its ends lies on the first; -1 if it does not join them.
 int first_end(const ExemplarPin& pin, const std::string& from, const std::string& to) {
   return pin.exemplars[0] == from && pin.exemplars[1] == to   ? 0
@@ -90,18 +128,34 @@ int first_end(const ExemplarPin& pin, const std::string& from, const std::string
                                                               : -1;
 }
 
+/// The same where both points lie in the faces; else -1.
+int joining_end(const ExemplarPin& pin, const Face& from, const Face& to, const std::vector<Exemplar>& exemplars,
+                const std::vector<Chart>& charts) {
+  const int end = first_end(pin, exemplars[from.exemplar].name, exemplars[to.exemplar].name);
+  return end >= 0 && is_in(from, charts[from.exemplar], pin.points[end]) &&
+             is_in(to, charts[to.exemplar], pin.points[1 - end])
+           ? end
+           : -1;
+}
+
+/// 1 or -1, by which side of the body's axes a vector points to: the same for a pair of faces either way round.
+double sense(const Mat3& axes, const Vec3& v) { return (axes * Vec3(0.8, 0.5, 0.33)).dot(v) < 0 ? -1 : 1; }
+
 } // namespace
 
 AlignedPair align(const Face& from, const Chart& from_chart, const Face& to, const Chart& to_chart, const int pixels) {
   const Vec3 m = inward(from, from_chart), n = inward(to, to_chart);
   const Vec3 shared = m.cross(n);
   AlignedPair pair;
-  pair.from.a = shared.norm() > 1e-3 ? Vec3(shared.normalized())
-                                     : Vec3((from_chart.plane.x() - n.dot(from_chart.plane.x()) * n).normalized());
+  const Vec3 axis = shared.norm() > 1e-3 ? Vec3(shared.normalized()) : longest_axis(from, from_chart, to, to_chart);
+  pair.from.a = sense(from_chart.body_axes, axis) * axis;
   pair.to.a = (pair.from.a - n.dot(pair.from.a) * n).normalized();
   pair.from.b = m.cross(pair.from.a);
   pair.to.b =
     from.exemplar == to.exemplar ? pair.from.b : Vec3((-n).cross(pair.to.a)); // components of one: as they lie
+  const double sense_of_b = sense(from_chart.body_axes, pair.from.b + pair.to.b);
+  pair.from.b *= sense_of_b;
+  pair.to.b *= sense_of_b;
   find_box(from, from_chart, pair.from);
   find_box(to, to_chart, pair.to);
   const Vec2 size = 0.5 * (pair.from.size / from_chart.plane.pixel() + pair.to.size / to_chart.plane.pixel());
@@ -111,18 +165,38 @@ AlignedPair align(const Face& from, const Chart& from_chart, const Face& to, con
   return pair;
 }
 
-bool are_partners(const Face& from, const Chart& from_chart, const Face& to, const Chart& to_chart,
-                  const Partners partners) {
-  return partners == Partners::all || inward(from, from_chart).dot(inward(to, to_chart)) < -0.7;
+bool are_partners(const Face& from, const Face& to, const std::vector<Exemplar>& exemplars,
+                  const std::vector<Chart>& charts, const WarpOptions& options) {
+  const Chart &a = charts[from.exemplar], &b = charts[to.exemplar];
+  return options.partners == Partners::all || inward(from, a).dot(inward(to, b)) < -0.7 ||
+         std::any_of(options.pins.begin(), options.pins.end(),
+                     [&](const ExemplarPin& pin) { return joining_end(pin, from, to, exemplars, charts) >= 0; });
 }
 
 Mat2 aligned_linear(const AlignedPair& pair, const Chart& from, const Chart& to) {
   return raster_to_chart(pair.to, pair, to).linear * raster_to_chart(pair.from, pair, from).linear.inverse();
 }
 
-warp::LatticeMap match_faces(const Face& from, const Chart& from_chart, const Face& to, const Chart& to_chart,
-                             const AlignedPair& pair, const warp::MatchOptions& options) {
-  return warp::match(picture_of(from, from_chart, pair.from, pair), picture_of(to, to_chart, pair.to, pair), options);
+namespace {
+
+/// Midway between a map and what undoes another one that goes back; the map itself if that folds.
+warp::LatticeMap midway(const warp::LatticeMap& map, const warp::LatticeMap& back) {
+  warp::LatticeMap middle = warp::inverse(back, map.lower, map.upper, map.n_columns, map.n_rows);
+  for (std::size_t i = 0; i < middle.nodes.size(); ++i)
+    middle.nodes[i] = 0.5 * (middle.nodes[i] + map.nodes[i]);
+  return warp::smallest_determinant(middle) > 0 ? middle : map;
+}
+
+} // namespace
+
+BothWays match_faces(const Face& from, const Chart& from_chart, const Face& to, const Chart& to_chart,
+                     const AlignedPair& pair, const warp::MatchOptions& options) {
+  const warp::Picture a = picture_of(from, from_chart, pair.from, pair), b = picture_of(to, to_chart, pair.to, pair);
+  warp::MatchOptions reversed = options;
+  for (warp::Pin& pin : reversed.pins)
+    std::swap(pin.from, pin.to);
+  const warp::LatticeMap there = warp::match(a, b, options), back = warp::match(b, a, reversed);
+  return {midway(there, back), midway(back, there)};
 }
 
 namespace {
@@ -132,15 +206,10 @@ std::vector<warp::Pin> pins_between(const Face& from, const Face& to, const std:
                                     const std::vector<Chart>& charts, const AlignedPair& pair,
                                     const std::vector<ExemplarPin>& all) {
   std::vector<warp::Pin> pins;
-  for (const ExemplarPin& pin : all) {
-    const int end = first_end(pin, exemplars[from.exemplar].name, exemplars[to.exemplar].name);
-    if (end < 0)
-      continue;
-    const Vec3 &a = pin.points[end], &b = pin.points[1 - end];
-    if (is_in(from, charts[from.exemplar], a) && is_in(to, charts[to.exemplar], b))
-      pins.push_back({from_raster(pair.from, pair).inverse()(along(pair.from, a)),
-                      from_raster(pair.to, pair).inverse()(along(pair.to, b))});
-  }
+  for (const ExemplarPin& pin : all)
+    if (const int end = joining_end(pin, from, to, exemplars, charts); end >= 0)
+      pins.push_back({from_raster(pair.from, pair).inverse()(along(pair.from, pin.points[end])),
+                      from_raster(pair.to, pair).inverse()(along(pair.to, pin.points[1 - end]))});
   return pins;
 }
 
@@ -227,7 +296,7 @@ void check_pins(const std::vector<ExemplarPin>& pins, const std::vector<Cell>& c
 
 std::vector<WarpTable> make_warps(const Cell& cell, const std::vector<Exemplar>& exemplars,
                                   const std::vector<Chart>& charts, const WarpOptions& options,
-                                  const std::vector<warp::LatticeMap>& known, std::vector<warp::LatticeMap>& used) {
+                                  const std::vector<BothWays>& known, std::vector<BothWays>& used) {
   const int n = static_cast<int>(cell.faces.size());
   std::vector<WarpTable> tables;
   for (const Face& face : cell.faces)
@@ -237,17 +306,15 @@ std::vector<WarpTable> make_warps(const Cell& cell, const std::vector<Exemplar>&
     for (int j = i + 1; j < n; ++j) {
       const Face &from = cell.faces[i], &to = cell.faces[j];
       const Chart &a = charts[from.exemplar], &b = charts[to.exemplar];
-      if (!are_partners(from, a, to, b, options.partners))
+      if (!are_partners(from, to, exemplars, charts, options))
         continue;
       const AlignedPair pair = align(from, a, to, b, options.pixels);
       warp::MatchOptions of_pair = options.match;
       of_pair.pins = pins_between(from, to, exemplars, charts, pair, options.pins);
       used.push_back(number < known.size() ? known[number++] : match_faces(from, a, to, b, pair, of_pair));
-      const warp::LatticeMap& map = used.back();
-      const warp::LatticeMap back = warp::inverse(map, map.lower, map.upper, map.n_columns, map.n_rows);
       const warp::Affine place_a = raster_to_chart(pair.from, pair, a), place_b = raster_to_chart(pair.to, pair, b);
-      fill(tables[i], j, map, place_a, place_b);
-      fill(tables[j], i, back, place_b, place_a);
+      fill(tables[i], j, used.back().there, place_a, place_b);
+      fill(tables[j], i, used.back().back, place_b, place_a);
     }
   return tables;
 }

@@ -3,9 +3,10 @@
 /// Warps between the faces of a cell (thesis §3.4.3.1.1), as tables of where a pixel of one face goes on the others.
 ///
 /// Two faces of a cell are aligned by the rotation that takes the one through the cell into the other, about the line
-/// in which their planes meet, or along the normal where they are parallel; then their axis-aligned boxes are made to
-/// match, one axis being that line; then features are matched (warp/match.h). One direction is matched, the other is
-/// its inverse.
+/// in which their planes meet, or along the normal where they are parallel; then their boxes are made to match, one axis
+/// being that line, or where there is none the direction in which the two are longest; then features are matched
+/// (warp/match.h), each way: a warp is midway between what one match found and what undoes the other. So how a picture
+/// is stored, and which exemplar stands first, makes no difference but by interpolation.
 
 #include "texture/partition.h"
 #include "warp/match.h"
@@ -19,7 +20,7 @@ struct ExemplarPin {
   std::array<Vec3, 2> points;           ///< rest frame [m]
 };
 
-/// Which faces of a cell are warped to each other.
+/// Which faces of a cell are warped to each other; those that a pin joins always are.
 enum class Partners {
   all,   ///< all, as in the thesis
   facing ///< those that face each other, within 45 degrees: what lies at an angle is mixed as it is
@@ -50,12 +51,16 @@ struct AlignedPair {
 };
 AlignedPair align(const Face& from, const Chart& from_chart, const Face& to, const Chart& to_chart, int pixels);
 
-/// A map between the pixels of two aligned boxes.
-warp::LatticeMap match_faces(const Face& from, const Chart& from_chart, const Face& to, const Chart& to_chart,
-                             const AlignedPair& pair, const warp::MatchOptions& options);
+/// Maps between the pixels of two aligned boxes.
+struct BothWays {
+  warp::LatticeMap there, back;
+};
+BothWays match_faces(const Face& from, const Chart& from_chart, const Face& to, const Chart& to_chart,
+                     const AlignedPair& pair, const warp::MatchOptions& options);
 
 /// Whether two faces are warped to each other.
-bool are_partners(const Face& from, const Chart& from_chart, const Face& to, const Chart& to_chart, Partners partners);
+bool are_partners(const Face& from, const Face& to, const std::vector<Exemplar>& exemplars,
+                  const std::vector<Chart>& charts, const WarpOptions& options);
 
 /// Where the pixels of a face go on all faces of its cell: a lattice over the face's box, with one target a face at
 /// each node.
@@ -73,7 +78,7 @@ struct WarpTable {
 /// earlier; what was used is left in `used`.
 std::vector<WarpTable> make_warps(const Cell& cell, const std::vector<Exemplar>& exemplars,
                                   const std::vector<Chart>& charts, const WarpOptions& options,
-                                  const std::vector<warp::LatticeMap>& known, std::vector<warp::LatticeMap>& used);
+                                  const std::vector<BothWays>& known, std::vector<BothWays>& used);
 
 /// The linear part of the map from chart pixels of face `from` to those of face `to`, before features are matched.
 Mat2 aligned_linear(const AlignedPair& pair, const Chart& from, const Chart& to);

@@ -10,7 +10,8 @@ namespace kerf::warp {
 struct FitOptions {
   Regularity inside = Regularity::rigid; ///< jacobian: harmonic
   int n_cells = 32;                      ///< of the finest lattice along the longer side of the rectangle
-  double stiffness = 1e-3;               ///< of the finest lattice; the coarser are stiffer
+  /// Of the finest lattice; the coarser are stiffer. Much softer ones follow the boundary's pixels, with ripples inside.
+  double stiffness = 1;
   /// Against triangles of less than half their area: what is crushed smears a pixel over a band of the section. Boundary
   /// points that ask for it give way; they then lie better, not worse, than where crushed cells hold the map back.
   double barrier = 3;

@@ -71,6 +71,8 @@ TEST_F(RefusedInterior, TheTextureCommand) {
   expect_error(kerf({"texture", "scene.prm"}), 1, {"--plane", "a point and a normal"});
   expect_error(kerf({"texture", "scene.prm", "--plane", "0, 0, 0; 0, 0, 0"}), 1, {"--plane", "must have a length"});
   expect_error(kerf({"texture", "scene.prm", "--plane", "0, 0, 9; 0, 0, 1"}), 1, {"--plane", "misses the body"});
+  expect_error(kerf({"texture", "scene.prm", "--plane", "0, 0, 0; 0, 0, 1", "--body", "sphere"}), 1,
+               {"no body 'sphere'", "Interior"});
   expect_error(kerf({"texture", "plain.prm", "--plane", "0, 0, 0; 0, 0, 1"}), 1, {"no body", "Interior"});
   expect_error(kerf({"texture", "scene.prm", "--plane", "0, 0, 0; 0, 0, 1", "--output", "x.bmp"}), 2,
                {"x.bmp", ".png"});

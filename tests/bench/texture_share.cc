@@ -1,8 +1,9 @@
 /// What colours cost while a liver is cut: params/liver.prm with three sections of a brain drawn to its own, at 1 mm,
 /// without and with small features and relief. Share of colour in the time of the frames that reveal faces: the mean of
-/// all their time, the median and the worst of them; and what the worst one filled. Nothing is written or drawn.
+/// all their time, the median and the worst of them; and what the worst one filled. Nothing is written or drawn. The same
+/// steps are run several times, and of each frame the shortest times count: what else the machine does makes them longer.
 ///
-///     bench_texture_share [THREADS]
+///     bench_texture_share [THREADS [RUNS]]
 
 #include "base/parallel.h"
 #include "scene/compose.h"
@@ -69,9 +70,21 @@ std::vector<Frame> revealing_frames(World& world) {
   return frames;
 }
 
-void measure(const char* what, const std::string& more) {
-  World world = world_with(more);
-  std::vector<Frame> frames = revealing_frames(world);
+std::vector<Frame> shortest_frames(const std::string& more, const int n_runs) {
+  std::vector<Frame> frames;
+  for (int run = 0; run < n_runs; ++run) {
+    World world = world_with(more);
+    const std::vector<Frame> again = revealing_frames(world);
+    frames.resize(again.size(), {0, 0, 1e300, 1e300});
+    for (std::size_t i = 0; i < frames.size(); ++i)
+      frames[i] = {again[i].step, again[i].n_samples, std::min(frames[i].colour, again[i].colour),
+                   std::min(frames[i].all, again[i].all)};
+  }
+  return frames;
+}
+
+void measure(const char* what, const std::string& more, const int n_runs) {
+  std::vector<Frame> frames = shortest_frames(more, n_runs);
   std::sort(frames.begin(), frames.end(), [](const Frame& a, const Frame& b) { return a.share() < b.share(); });
   double colour = 0, all = 0, samples = 0;
   for (const Frame& frame : frames) {
@@ -90,8 +103,9 @@ void measure(const char* what, const std::string& more) {
 int main(const int argc, char** const argv) {
   set_n_threads(argc > 1 ? std::atoi(argv[1]) : 1);
   std::printf("%-34s %6s %9s %9s %9s\n", "share of colour [%]", "frames", "mean", "median", "worst");
-  measure("plain", "");
-  measure("small features", "    set Small features = yes\n");
-  measure("small features and relief", "    set Small features = yes\n    set Relief [m] = 0.0005\n");
+  const int n_runs = argc > 2 ? std::atoi(argv[2]) : 5;
+  measure("plain", "", n_runs);
+  measure("small features", "    set Small features = yes\n", n_runs);
+  measure("small features and relief", "    set Small features = yes\n    set Relief [m] = 0.0005\n", n_runs);
   return 0;
 }

@@ -76,6 +76,26 @@ TEST_F(Inside, PinsThatDoNotFit) {
   expect_refused(scene(two + pin("three", "0.05, 0, 0.01")), {"Pin nose/To exemplar", "names no exemplar"});
 }
 
+TEST_F(Inside, SaysHowMuchOfASectionAPictureShows) {
+  const auto said = [&](const std::string& fit) {
+    const LookedInto looked =
+      look(scene(exemplar("one", "good.png", "-0.05, -0.1, 0.01", "0.0065, 0, 0", "0, 0.0065, 0", fit)));
+    return looked.composition.back();
+  };
+  // 0.15 of the 0.2 m that the cube is wide, and half a pixel.
+  EXPECT_EQ(said(""),
+            "exemplar one: shows 77 % of the body's section; what lacks goes on from its border, as it is not "
+            "fitted (key Fit)");
+  EXPECT_NE(said("      set Fit = rigid\n").find("% of the body's section, drawn to it to 0."), std::string::npos);
+}
+
+TEST_F(Inside, TheBodyIsNamed) {
+  const std::string text = scene(exemplar("one", "good.png", "-0.1, -0.1, 0.01"));
+  const SceneText read = scan_scene_text(text, (folder / "scene.prm").string(), {});
+  EXPECT_EQ(compose_inside(read, "cube").mesh.vertices.size(), compose_inside(read).mesh.vertices.size());
+  EXPECT_THROW(compose_inside(read, "sphere"), ParameterError);
+}
+
 TEST_F(Inside, SweepsThatCannotTurn) {
   const auto swept = [](const std::string& sweep) {
     return scene(exemplar("one", "good.png", "-0.1, -0.1, 0.01", "0.0065, 0, 0", "0, 0.0065, 0", sweep));
@@ -115,6 +135,12 @@ TEST_F(Inside, SkinPictures) {
                             {"Interior/Skin image", "nothing.png", "there is no such file"});
   expect_refused<DataError>(scene("    set Skin image = text.png\n" + one),
                             {"Interior/Skin image", "neither a PNG nor a JPEG"});
+  image::write_image(image::Image{image::Colours(32, 32, image::Rgb::Ones()), image::Grey(32, 32, 0)},
+                     (folder / "empty.png").string());
+  expect_refused(scene("    set Skin image = empty.png\n" + one), {"Interior/Skin image", "transparent all over"});
+  std::filesystem::create_directory(folder / "pictures");
+  expect_refused<DataError>(scene("    set Skin image = pictures\n" + one),
+                            {"Interior/Skin image", "is a folder, not a picture"});
   expect_refused(scene("    set Skin image = good.png\n    set Skin axis [1] = 0, 0, 0\n" + one),
                  {"Interior/Skin axis [1]", "must have a length"});
 }

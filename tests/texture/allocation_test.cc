@@ -1,6 +1,7 @@
 // A colour at a point takes no memory: every allocation of this program is counted.
 
 #include "tests/texture/solids.h"
+#include "texture/atlas.h"
 
 #include <gtest/gtest.h>
 
@@ -35,6 +36,25 @@ TEST(Allocation, AColourTakesNone) {
       EXPECT_GT(sum, 0);
       EXPECT_EQ(n_allocations, before);
     }
+}
+
+/// What a triangle is filled from is found once and for all its samples: memory is taken by triangles, not by points.
+TEST(Allocation, FinerSamplesOfATriangleTakeNoMoreOfThem) {
+  const Interior inside(axis_exemplars(onion, 5, 60), ball(2), {});
+  const Detail detail(inside);
+  const Points rest = {Vec3(0, 0, 0.01), Vec3(0.02, 0, 0.01), Vec3(0, 0.02, 0.012)};
+  const std::vector<Triangle> triangles = {{0, 1, 2}};
+  const std::vector<std::uint16_t> labels = {1};
+  for (const Detail* const used : {static_cast<const Detail*>(nullptr), &detail}) {
+    const auto allocations = [&](const double resolution) {
+      Atlas atlas(resolution);
+      const std::size_t before = n_allocations;
+      atlas.fill({rest, triangles, labels}, {&inside, used, nullptr, used ? 1e-3 : 0});
+      EXPECT_GT(atlas.colours().size(), 10u);
+      return n_allocations - before;
+    };
+    EXPECT_EQ(allocations(0.005), allocations(0.0005)); // 28 and 1,711 samples
+  }
 }
 
 } // namespace

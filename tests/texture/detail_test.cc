@@ -59,19 +59,5 @@ TEST(Detail, FollowsTheOrientationOfTheSurface) {
   EXPECT_LT(same_plane, 1e-5); // a square window turned by a right angle
 }
 
-TEST(Detail, SpansOfRowsAreTheSameBits) {
-  const Interior inside(axis_exemplars(onion, 3, 100), ball(3), {});
-  const Detail detail(inside);
-  const Patch patch{Vec3(-0.01, 0.004, 0.007), 6e-4 * Vec3::UnitX(), 6e-4 * Vec3::UnitY(), 40, 30};
-  std::vector<Span> rows(30);
-  for (int r = 3; r < 28; ++r)
-    rows[r] = {r / 2, std::min(39, 2 * r)};
-  rows[14] = {};
-  const auto all = paint(inside, patch, &detail), some = paint_spans(inside, patch, detail, rows);
-  for (int r = 0; r < 30; ++r)
-    for (int c = rows[r].first; c <= rows[r].last; ++c)
-      ASSERT_TRUE((all(c, r) == some(c, r)).all()) << c << ", " << r;
-}
-
 } // namespace
 } // namespace kerf::texture

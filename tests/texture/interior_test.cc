@@ -165,6 +165,21 @@ TEST(Interior, WarpsBeatTheBlendWhereFeaturesAreContinuous) {
   EXPECT_LT(error(Morph::first_order), error(Morph::blend) - 2); // dB
 }
 
+TEST(Pins, JoinFacesAtRightAnglesUnderFacing) {
+  const auto exemplars = axis_exemplars(onion, 2, 80); // z = 0.0005 and x = 0.0005
+  InteriorOptions options;
+  options.warps.partners = Partners::facing;
+  const Interior without(exemplars, ball(3), options);
+  EXPECT_EQ(without.n_pairs(), 0u);
+  options.warps.pins = {{"p", {"e0", "e1"}, {Vec3(0.015, 0.01, 0.0005), Vec3(0.0005, 0.02, 0.02)}}};
+  const Interior with(exemplars, ball(3), options);
+  EXPECT_EQ(with.n_pairs(), 1u); // in the one cell that both points bound
+  double change = 0;
+  for (const Vec3& p : points_inside(500, 6))
+    change = std::max(change, difference(with.colour(p), without.colour(p)));
+  EXPECT_GT(change, 0.05);
+}
+
 TEST(Cache, ComesBackAndSurvivesDamage) {
   const output::TemporaryFolder folder;
   const auto exemplars = axis_exemplars(onion, 2, 60);
