@@ -22,6 +22,8 @@ std::string folder_name(std::string name) {
   return name;
 }
 
+} // namespace
+
 void make_folder(const std::filesystem::path& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
@@ -30,8 +32,6 @@ void make_folder(const std::filesystem::path& folder) {
                               .rule = "the results folder cannot be made: " + error.message(),
                               .remedy = "Choose another folder with --output, or change its permissions"});
 }
-
-} // namespace
 
 void tell_orders(std::vector<output::StudyRow>& rows) {
   std::map<std::string, const output::StudyRow*> before;

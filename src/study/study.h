@@ -10,6 +10,9 @@
 
 namespace kerf::study {
 
+/// With those above it. Throws DataError.
+void make_folder(const std::filesystem::path& folder);
+
 /// Runs all rows. FOLDER/study.h5 holds the rows so far at any time, FOLDER/rows/NAME/run.h5 the series of each;
 /// `done` is told each row. A row that fails does not end the study. Throws as make_plan() and measure(), and
 /// NumericalError, with the table written, when all rows have failed.
