@@ -94,9 +94,15 @@ void Hexahedra::follow(const grid::Solid& solid, const std::span<const grid::Cop
 void Hexahedra::batch(const grid::Solid& solid) {
   std::vector<std::uint32_t> order; // by cell
   order.reserve(n_elements());
-  for (const auto cell : ids<grid::CellId>(solid.grid.n_cells()))
-    for (const grid::CopyId c : solid.complex.copies_of(cell))
+  places_.resize(n_elements());
+  multigrid_ = nullptr;
+  for (const auto cell : ids<grid::CellId>(solid.grid.n_cells())) {
+    const Index3 place = solid.grid.index(solid.grid.nodes(cell)[0]);
+    for (const grid::CopyId c : solid.complex.copies_of(cell)) {
       order.push_back(c.value);
+      places_[c.value] = place;
+    }
+  }
   batching_ = Batching(
     order, [this](const std::uint32_t copy) { return kind(copy); }, incidence_.corners(0), incidence_.n_corners());
   batched_ = batched<double>(batching_, h_, material_, elements_.full(),
@@ -258,6 +264,33 @@ void Hexahedra::stiffness_diagonal(std::vector<Mat3>& blocks) const {
       blocks[i] << d.x + penalty[i], s.x, s.z, s.x, d.y + penalty[i], s.y, s.z, s.y, d.z + penalty[i];
     },
     worth);
+}
+
+void Hexahedra::make_multigrid() {
+  CellsOfLevel cells{places_, {}, incidence_.n_corners()};
+  cells.corners.assign(incidence_.corners(0), incidence_.corners(0) + 8 * n_elements());
+  multigrid_ = std::make_unique<Multigrid>(FinestLevel{
+    std::move(cells), h_, material_, elements_.full(), [this](const std::uint32_t copy) { return kind(copy); },
+    [this](const std::uint32_t copy) -> const Element& { return elements_[copy]; }, batching_,
+    ghost_penalty_.faces()});
+}
+
+dynamics::Preconditioner* Hexahedra::preconditioner(const dynamics::LinearEquation& equation) {
+  constexpr std::size_t worth_levels = 200;  // corners
+  constexpr double stiff = 100;              // K over M from which on conjugate gradients alone take longer
+  if (incidence_.n_corners() < worth_levels)
+    return nullptr;
+  double inertia = 0, all = 0;
+  for (std::size_t i = 0; i < equation.blocks.size(); ++i) {
+    inertia += 3 * equation.mass_factor * equation.mass[i];
+    all += equation.blocks[i].trace();
+  }
+  if (all < stiff * inertia)
+    return nullptr;
+  if (!multigrid_)
+    make_multigrid();
+  multigrid_->prepare(equation, batched_.rotations);
+  return multigrid_.get();
 }
 
 Matrix24 Hexahedra::element_matrix(const std::size_t copy, const Points& x, const dynamics::Tangent kind) const {

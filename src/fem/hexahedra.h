@@ -27,6 +27,7 @@
 #include "fem/element_table.h"
 #include "fem/ghost_penalty.h"
 #include "fem/incidence.h"
+#include "fem/multigrid.h"
 #include "fem/scratch.h"
 #include "fem/turned.h"
 #include "material/laws.h"
@@ -64,6 +65,8 @@ class Hexahedra : public dynamics::ElasticModel, public dynamics::StiffnessMatri
   void linearise(const Points& x) override;
   void apply_stiffness(std::span<const double> p, std::span<double> y) const override;
   void stiffness_diagonal(std::vector<Mat3>& blocks) const override;
+  /// Multigrid, where that pays.
+  dynamics::Preconditioner* preconditioner(const dynamics::LinearEquation& equation) override;
   Eigen::SparseMatrix<double> stiffness_matrix(const Points& x, dynamics::Tangent kind) const override;
 
   /// Volume of the material that the elements integrate over [m^3].
@@ -87,6 +90,7 @@ class Hexahedra : public dynamics::ElasticModel, public dynamics::StiffnessMatri
   /// Part of its cube that a copy's material is [1].
   double fill(const std::size_t copy) const { return elements_[copy].volume / (h_ * h_ * h_); }
   void batch(const grid::Solid& solid);
+  void make_multigrid();
   Kind kind(const std::size_t copy) const {
     return !incidence_.is_used(copy) ? Kind::unused : elements_.is_full(copy) ? Kind::full : Kind::partial;
   }
@@ -116,6 +120,8 @@ class Hexahedra : public dynamics::ElasticModel, public dynamics::StiffnessMatri
   BatchedElements<double> batched_; // rotations and tangents at the linearisation point
   GhostPenalty ghost_penalty_;
   std::vector<double> mass_;
+  std::vector<Index3> places_; // of the copies' cells
+  std::unique_ptr<Multigrid> multigrid_; // none until it is asked for
   mutable Scratch<Row<double>> scratch_;
 };
 
