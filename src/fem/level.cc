@@ -55,7 +55,7 @@ std::array<ChebyshevStep, n_steps> chebyshev_steps(const double lower, const dou
   return steps;
 }
 std::array<ChebyshevStep, n_steps> chebyshev_steps(const double bound) {
-  constexpr double part = 1.0 / 10; // of the spectrum's range that the coarse level sees to
+  constexpr double part = 1.0 / 16; // of the spectrum's range that the coarse level sees to
   return chebyshev_steps(part * bound, bound);
 }
 
