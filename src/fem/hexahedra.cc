@@ -277,7 +277,7 @@ void Hexahedra::make_multigrid() {
 
 dynamics::Preconditioner* Hexahedra::preconditioner(const dynamics::LinearEquation& equation) {
   constexpr std::size_t worth_levels = 200;  // corners
-  constexpr double stiff = 100;              // K over M from which on conjugate gradients alone take longer
+  constexpr double stiff = 10;              // K over M from which on conjugate gradients alone take longer
   if (incidence_.n_corners() < worth_levels)
     return nullptr;
   double inertia = 0, all = 0;
