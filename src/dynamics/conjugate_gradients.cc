@@ -3,7 +3,6 @@
 #include "base/parallel.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numeric>
 
@@ -17,7 +16,8 @@ constexpr std::size_t worth_blocks = 3; // from which on a second thread pays
 /// Of the error, by what iterations take off its square.
 class Estimate {
  public:
-  explicit Estimate(const CgStop& stop) : stop_(stop) {}
+  /// `delay`: how many of the last iterations an error is told by.
+  Estimate(const CgStop& stop, const std::size_t delay) : stop_(stop), last_(delay) {}
 
   /// The start is nearer than what was given by so much, in squares.
   void start_nearer(const double excess) { all_ += excess; }
@@ -34,7 +34,7 @@ class Estimate {
 
  private:
   CgStop stop_;
-  std::array<double, 8> last_ = {};
+  std::vector<double> last_;
   std::size_t n_ = 0;
   double all_ = 0;
 };
@@ -69,7 +69,7 @@ CgReport conjugate_gradients(const CgEquation& equation, const std::span<const d
                              const int max_iterations, const std::span<double> x) {
   const std::size_t n = b.size();
   std::vector<double> r(n), z(n), p(n), Ap(n);
-  Estimate estimate(stop);
+  Estimate estimate(stop, equation.J ? 3 : 8); // one iteration with more than block Jacobi is worth many
   const auto is_zero = [](const double value) { return value == 0; };
   if (!std::all_of(x.begin(), x.end(), is_zero)) {
     equation.A(x, Ap);

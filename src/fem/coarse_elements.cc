@@ -1,9 +1,6 @@
 #include "fem/coarse_elements.h"
 
-#include <Eigen/Cholesky>
-
 #include <bit>
-#include <cmath>
 
 namespace kerf::fem {
 
@@ -102,31 +99,8 @@ Element coarse_element(const std::span<const Child> children, const double h, co
   for (int p = 0; p < n_hourglass; ++p)
     for (int q = 0; q <= p; ++q)
       coarse.hourglass[pair_index(p, q)] = 0.5 * (K(p, q) + K(q, p));
+  coarse.bound = jacobi_bound(coarse, material);
   return coarse;
-}
-
-double jacobi_bound(const Element& element, const material::Elastic& material) {
-  constexpr int n_iterations = 16;
-  constexpr double most = 8, unseen = 1.05; // by so few iterations
-  Matrix24 K = stiffness(element, material);
-  for (int a = 0; a < 8; ++a) {
-    Mat3 D = K.block<3, 3>(3 * a, 3 * a);
-    D += 1e-9 * (D.trace() + 1e-300) * Mat3::Identity();
-    const Eigen::LLT<Mat3> factor(D);
-    K.middleRows<3>(3 * a) = factor.matrixL().solve(K.middleRows<3>(3 * a)).eval();
-    K.middleCols<3>(3 * a) = factor.matrixL().solve(K.middleCols<3>(3 * a).transpose()).transpose().eval();
-  }
-  Vector24 v;
-  for (int i = 0; i < 24; ++i)
-    v[i] = std::cos(1 + 2.4 * i); // of no symmetry
-  double bound = 0;
-  for (int n = 0; n < n_iterations; ++n) {
-    v.normalize();
-    const Vector24 w = K * v;
-    bound = w.norm();
-    v = w;
-  }
-  return std::isfinite(bound) ? std::min(most, unseen * bound) : most;
 }
 
 } // namespace kerf::fem

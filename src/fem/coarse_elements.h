@@ -1,6 +1,6 @@
 #pragma once
 
-/// Elements of coarse copies, and how far block Jacobi may be trusted with any element.
+/// Elements of coarse copies.
 ///
 /// Galerkin's coarse element is the sum of its children's energies for trilinear motions of the coarse cube, in one frame.
 /// It is again a mean gradient against Hooke's law and a matrix against hourglass modes, as for every motion u the mean
@@ -21,9 +21,5 @@ struct Child {
 
 /// `h`: edge of the children's cubes [m]. Masses and centroid are left at zero.
 Element coarse_element(std::span<const Child> children, double h, const material::Elastic& material);
-
-/// The largest eigenvalue of D^-1 K for the 3 x 3 diagonal blocks D of an element [1]: at most 8. The largest over all
-/// elements, weighted with `weight` each in D, bounds that of every body whose elements turn as they will.
-double jacobi_bound(const Element& element, const material::Elastic& material);
 
 } // namespace kerf::fem

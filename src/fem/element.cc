@@ -1,7 +1,10 @@
 #include "fem/element.h"
 
+#include <Eigen/Cholesky>
+
 #include <algorithm>
 #include <bit>
+#include <cmath>
 
 namespace kerf::fem {
 
@@ -78,6 +81,7 @@ Element make_element(const Moments& moments, const double h, const material::Ela
       element.hourglass[pair_index(p, q)] = 0.5 * (of_modes(p, q) + of_modes(q, p));
   for (Vec3& gradient : element.gradient)
     gradient /= h;
+  element.bound = jacobi_bound(element, material);
   return element;
 }
 
@@ -90,6 +94,30 @@ Matrix24 stiffness(const Element& element, const material::Elastic& material, co
   if (part == Part::whole)
     K += mean_stiffness(element.volume, element.gradient, material);
   return 0.5 * (K + K.transpose());
+}
+
+double jacobi_bound(const Element& element, const material::Elastic& material) {
+  constexpr int n_iterations = 16;
+  constexpr double most = 8, unseen = 1.05; // by so few iterations
+  Matrix24 K = stiffness(element, material);
+  for (int a = 0; a < 8; ++a) {
+    Mat3 D = K.block<3, 3>(3 * a, 3 * a);
+    D += 1e-9 * (D.trace() + 1e-300) * Mat3::Identity();
+    const Eigen::LLT<Mat3> factor(D);
+    K.middleRows<3>(3 * a) = factor.matrixL().solve(K.middleRows<3>(3 * a)).eval();
+    K.middleCols<3>(3 * a) = factor.matrixL().solve(K.middleCols<3>(3 * a).transpose()).transpose().eval();
+  }
+  Vector24 v;
+  for (int i = 0; i < 24; ++i)
+    v[i] = std::cos(1 + 2.4 * i); // of no symmetry
+  double bound = 0;
+  for (int n = 0; n < n_iterations; ++n) {
+    v.normalize();
+    const Vector24 w = K * v;
+    bound = w.norm();
+    v = w;
+  }
+  return std::isfinite(bound) ? std::min(most, unseen * bound) : most;
 }
 
 std::array<double, n_hourglass> mode_gradients(const Element& element) {

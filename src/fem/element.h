@@ -18,6 +18,7 @@ struct Element {
   std::array<double, 8> mass;                      ///< lumped: density times the integral of N_a [kg]
   Vec3 centroid;                                   ///< of the material, in the unit cube [1]
   double volume = 0;                               ///< of the material [m^3]
+  double bound = 0;                                ///< of the eigenvalues of D^-1 K, see jacobi_bound() [1]
 };
 
 /// Hooke's law, small strain, exact for the material as it lies.
@@ -31,6 +32,10 @@ enum class Part {
 };
 /// Of an element as a matrix, symmetric [N/m].
 Matrix24 stiffness(const Element& element, const material::Elastic& material, Part part = Part::whole);
+
+/// The largest eigenvalue of D^-1 K for the 3 x 3 diagonal blocks D of Hooke's stiffness [1]: at most 8. The largest over
+/// all elements of a body bounds that of the body, however the elements turn.
+double jacobi_bound(const Element& element, const material::Elastic& material);
 
 /// Mean gradients of the hourglass modes, at 3 k + j (kernels.h) [1/m].
 std::array<double, n_hourglass> mode_gradients(const Element& element);

@@ -276,8 +276,8 @@ void Hexahedra::make_multigrid() {
 }
 
 dynamics::Preconditioner* Hexahedra::preconditioner(const dynamics::LinearEquation& equation) {
-  constexpr std::size_t worth_levels = 200;  // corners
-  constexpr double stiff = 10;              // K over M from which on conjugate gradients alone take longer
+  constexpr std::size_t worth_levels = 200; // corners
+  constexpr double stiff = 30;              // K over M from which on conjugate gradients alone take longer
   if (incidence_.n_corners() < worth_levels)
     return nullptr;
   double inertia = 0, all = 0;
@@ -289,6 +289,8 @@ dynamics::Preconditioner* Hexahedra::preconditioner(const dynamics::LinearEquati
     return nullptr;
   if (!multigrid_)
     make_multigrid();
+  if (multigrid_->n_levels() == 1)
+    return nullptr;
   multigrid_->prepare(equation, batched_.rotations);
   return multigrid_.get();
 }

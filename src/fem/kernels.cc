@@ -1,6 +1,6 @@
 #include "fem/kernels.h"
 
-#include "fem/element_loops.h"
+#include "fem/force_loops.h"
 
 namespace kerf::fem {
 
@@ -24,15 +24,15 @@ namespace {
 }
 [[gnu::target("arch=x86-64-v4")]] unsigned turn_wide(const CubeConstants<double>& cube, const Batch<double>& batch, const Row<double>* const x,
   Turns& turns) {
-  return ElementLoops<double, 8>::turn_all(cube, batch, x, turns);
+  return ForceLoops<double, 8>::turn_all(cube, batch, x, turns);
 }
 [[gnu::target("arch=x86-64-v4")]] void force_wide(const CubeConstants<double>& cube, const Batch<double>& batch, const Turns& turns, const MeanPart mean,
   const double (*const P)[n_lanes], const double spins, const Row<double>* const x, Row<double>* const forces) {
-  ElementLoops<double, 8>::force(cube, batch, turns, mean, P, spins, x, forces);
+  ForceLoops<double, 8>::force(cube, batch, turns, mean, P, spins, x, forces);
 }
 [[gnu::target("arch=x86-64-v4")]] void energy_wide(const CubeConstants<double>& cube, const Batch<double>& batch, const Turns& turns, const MeanPart mean,
   const Row<double>* const x, double* const energies) {
-  ElementLoops<double, 8>::energy(cube, batch, turns, mean, x, energies);
+  ForceLoops<double, 8>::energy(cube, batch, turns, mean, x, energies);
 }
 
 // --- middle: AVX2 ---
@@ -53,15 +53,15 @@ namespace {
 }
 [[gnu::target("arch=x86-64-v3")]] unsigned turn_middle(const CubeConstants<double>& cube, const Batch<double>& batch, const Row<double>* const x,
   Turns& turns) {
-  return ElementLoops<double, 4>::turn_all(cube, batch, x, turns);
+  return ForceLoops<double, 4>::turn_all(cube, batch, x, turns);
 }
 [[gnu::target("arch=x86-64-v3")]] void force_middle(const CubeConstants<double>& cube, const Batch<double>& batch, const Turns& turns, const MeanPart mean,
   const double (*const P)[n_lanes], const double spins, const Row<double>* const x, Row<double>* const forces) {
-  ElementLoops<double, 4>::force(cube, batch, turns, mean, P, spins, x, forces);
+  ForceLoops<double, 4>::force(cube, batch, turns, mean, P, spins, x, forces);
 }
 [[gnu::target("arch=x86-64-v3")]] void energy_middle(const CubeConstants<double>& cube, const Batch<double>& batch, const Turns& turns, const MeanPart mean,
   const Row<double>* const x, double* const energies) {
-  ElementLoops<double, 4>::energy(cube, batch, turns, mean, x, energies);
+  ForceLoops<double, 4>::energy(cube, batch, turns, mean, x, energies);
 }
 
 // --- narrow: any x86-64 ---
@@ -82,15 +82,15 @@ void diagonal_narrow(const CubeConstants<float>& cube, const Batch<float>& batch
 }
 unsigned turn_narrow(const CubeConstants<double>& cube, const Batch<double>& batch, const Row<double>* const x,
   Turns& turns) {
-  return ElementLoops<double, 4>::turn_all(cube, batch, x, turns);
+  return ForceLoops<double, 4>::turn_all(cube, batch, x, turns);
 }
 void force_narrow(const CubeConstants<double>& cube, const Batch<double>& batch, const Turns& turns, const MeanPart mean,
   const double (*const P)[n_lanes], const double spins, const Row<double>* const x, Row<double>* const forces) {
-  ElementLoops<double, 4>::force(cube, batch, turns, mean, P, spins, x, forces);
+  ForceLoops<double, 4>::force(cube, batch, turns, mean, P, spins, x, forces);
 }
 void energy_narrow(const CubeConstants<double>& cube, const Batch<double>& batch, const Turns& turns, const MeanPart mean,
   const Row<double>* const x, double* const energies) {
-  ElementLoops<double, 4>::energy(cube, batch, turns, mean, x, energies);
+  ForceLoops<double, 4>::energy(cube, batch, turns, mean, x, energies);
 }
 
 } // namespace

@@ -23,54 +23,71 @@ constexpr std::size_t few = 48;     // corners that are factorised as they are
 /// What a level is made of.
 struct Elements {
   Element full;
-  std::vector<Element> of_copy; // nothing where the copy is full
-  std::vector<Kind> kind;
+  std::vector<Kind> kind;          // of each copy
+  std::vector<std::uint32_t> which; // of `made`, for partial copies
+  std::vector<Element> made;
+
+  const Element& operator[](const std::size_t copy) const { return kind[copy] == Kind::full ? full : made[which[copy]]; }
 };
 
-void fill(Level& level, const Elements& elements, const double h, const material::Elastic& material) {
-  const double bound = jacobi_bound(elements.full, material);
-  level.bound = bound;
-  level.volume.resize(level.cells.n_copies());
-  for (std::size_t c = 0; c < level.volume.size(); ++c)
-    level.volume[c] = elements.kind[c] == Kind::full      ? elements.full.volume
-                      : elements.kind[c] == Kind::partial ? elements.of_copy[c].volume
-                                                          : 0;
-  level.elements = batched<float>(level.batching, h, material, elements.full,
-                                  [&](const std::uint32_t c) -> const Element& { return elements.of_copy[c]; });
+void fill(Level& level, const std::function<const Element&(std::uint32_t)>& element, const Element& full, const double h,
+          const material::Elastic& material) {
+  level.bound = full.bound;
+  level.volume.assign(level.cells.n_copies(), 0);
+  level.elements = batched<float>(level.batching, h, material, full, element);
   level.batching.for_each([&](const std::size_t i) {
     const BatchOfCopies& batch = level.batching.batches()[i];
-    for (std::size_t lane = 0; lane < n_lanes && batch.partial != BatchOfCopies::none; ++lane)
-      if (const std::uint32_t c = batch.copies[lane]; c != BatchOfCopies::none)
-        level.elements.partial[batch.partial].weight[lane] =
-          float(std::max(1.0, jacobi_bound(elements.of_copy[c], material) / bound));
+    const bool is_partial = batch.partial != BatchOfCopies::none;
+    for (std::size_t lane = 0; lane < n_lanes; ++lane) {
+      const std::uint32_t c = batch.copies[lane];
+      if (c == BatchOfCopies::none)
+        continue;
+      level.volume[c] = is_partial ? element(c).volume : full.volume;
+      if (is_partial)
+        level.elements.partial[batch.partial].weight[lane] = float(std::max(1.0, element(c).bound / full.bound));
+    }
   });
   level.resize();
 }
 
-Elements coarse_elements(const Coarsening& coarsening, const Elements& fine, const double h,
+/// `fine(copy)`: any that is used, `is_full(copy)` or not.
+Elements coarse_elements(const Coarsening& coarsening, const std::function<const Element&(std::uint32_t)>& fine,
+                         const std::function<bool(std::uint32_t)>& is_full, const Element& full, const double h,
                          const material::Elastic& material) {
   const std::size_t n = coarsening.coarse.n_copies();
-  std::vector<std::vector<Child>> children(n);
-  std::vector<int> n_full(n, 0);
-  for (std::size_t c = 0; c < fine.kind.size(); ++c) {
-    if (fine.kind[c] == Kind::unused)
-      continue;
-    const bool is_full = fine.kind[c] == Kind::full;
-    children[coarsening.parent[c]].push_back({is_full ? &fine.full : &fine.of_copy[c], coarsening.octant[c]});
-    n_full[coarsening.parent[c]] += is_full;
-  }
+  std::vector<std::uint32_t> begin(n + 1, 0), order, n_full(n, 0); // children by parent
+  for (const std::uint32_t parent : coarsening.parent)
+    if (parent != CellsOfLevel::unused)
+      ++begin[parent + 1];
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  order.resize(begin[n]);
+  std::vector<std::uint32_t> end(begin.begin(), begin.end() - 1);
+  for (std::uint32_t c = 0; c < coarsening.parent.size(); ++c)
+    if (const std::uint32_t parent = coarsening.parent[c]; parent != CellsOfLevel::unused) {
+      order[end[parent]++] = c;
+      n_full[parent] += is_full(c) ? 1 : 0;
+    }
   std::vector<Child> eight;
   for (int octant = 0; octant < 8; ++octant)
-    eight.push_back({&fine.full, octant});
-  Elements coarse{coarse_element(eight, h, material), std::vector<Element>(n), std::vector<Kind>(n)};
+    eight.push_back({&full, octant});
+  Elements coarse{coarse_element(eight, h, material), std::vector<Kind>(n), std::vector<std::uint32_t>(n), {}};
+  std::vector<std::uint32_t> partial;
+  for (std::uint32_t c = 0; c < n; ++c) {
+    coarse.kind[c] = n_full[c] == 8 ? Kind::full : Kind::partial;
+    coarse.which[c] = static_cast<std::uint32_t>(partial.size());
+    if (coarse.kind[c] == Kind::partial)
+      partial.push_back(c);
+  }
+  coarse.made.resize(partial.size());
   parallel_for(
-    n,
-    [&](const std::size_t c) {
-      coarse.kind[c] = n_full[c] == 8 ? Kind::full : Kind::partial;
-      if (coarse.kind[c] == Kind::partial)
-        coarse.of_copy[c] = coarse_element(children[c], h, material);
+    partial.size(),
+    [&](const std::size_t i) {
+      std::vector<Child> children;
+      for (std::uint32_t k = begin[partial[i]]; k < begin[partial[i] + 1]; ++k)
+        children.push_back({&fine(order[k]), coarsening.octant[order[k]]});
+      coarse.made[i] = coarse_element(children, h, material);
     },
-    256);
+    64);
   return coarse;
 }
 
@@ -130,6 +147,8 @@ struct Multigrid::Coarsest {
   void factorise(const Multigrid::Level& level, std::span<const Mat3> rotations);
   void solve(Multigrid::Level& level) const;
   static bool is_dense(const fem::Level& level) { return level.n_corners() <= 2 * few; }
+  /// What does not get coarser, like dust, is smoothed alone.
+  static bool is_too_large(const fem::Level& level) { return level.n_corners() > 8 * few; }
 };
 
 struct Multigrid::Level : fem::Level {
@@ -171,9 +190,10 @@ void add_entries(const Level& level, const std::function<Matrix24(std::size_t co
 } // namespace
 
 void Multigrid::Coarsest::factorise(const Multigrid::Level& level, const std::span<const Mat3> rotations) {
+  if (is_too_large(level))
+    return;
   const auto matrix = [&](const std::size_t c) {
-    const Element& element = elements.kind[c] == Kind::full ? elements.full : elements.of_copy[c];
-    return turned_stiffness(stiffness(element, material), rotations[c]);
+    return turned_stiffness(stiffness(elements[c], material), rotations[c]);
   };
   const auto n = static_cast<Eigen::Index>(3 * level.n_corners());
   if (is_dense(level)) {
@@ -196,6 +216,10 @@ void Multigrid::Coarsest::factorise(const Multigrid::Level& level, const std::sp
 }
 
 void Multigrid::Coarsest::solve(Multigrid::Level& level) const {
+  if (is_too_large(level)) {
+    level.smooth_from_zero();
+    return;
+  }
   Eigen::VectorXd b(3 * level.n_corners());
   for (std::size_t i = 0; i < level.n_corners(); ++i)
     b.segment<3>(3 * i) << level.r[i].x, level.r[i].y, level.r[i].z;
@@ -210,34 +234,41 @@ std::size_t Multigrid::n_levels() const { return levels_.size(); }
 
 Multigrid::Multigrid(const FinestLevel& finest) {
   constexpr double stands_still = 0.7; // corners over those of the level before
-  Elements elements{finest.full, std::vector<Element>(finest.cells.n_copies()), {}};
-  for (std::uint32_t c = 0; c < finest.cells.n_copies(); ++c) {
-    elements.kind.push_back(finest.kind(c));
-    if (elements.kind[c] == Kind::partial)
-      elements.of_copy[c] = finest.element(c);
-  }
+  const auto finest_element = [&](const std::uint32_t c) -> const Element& {
+    return finest.kind(c) == Kind::full ? finest.full : finest.element(c);
+  };
   double h = finest.h;
   levels_.emplace_back();
   levels_[0].cells = finest.cells;
   levels_[0].batching = finest.batching;
   levels_[0].lines = lines_of(finest.faces);
-  fill(levels_[0], elements, h, finest.material);
+  fill(levels_[0], finest_element, finest.full, h, finest.material);
+  Elements elements;
   while (levels_.back().n_corners() > few) {
     Level& fine = levels_.back();
+    const bool is_finest = levels_.size() == 1;
     Coarsening coarsening = coarsened(fine.cells);
     if (double(coarsening.coarse.n_corners) > stands_still * double(fine.n_corners()))
       break;
+    elements =
+      is_finest
+        ? coarse_elements(
+            coarsening, finest_element, [&](const std::uint32_t c) { return finest.kind(c) == Kind::full; },
+            finest.full, h, finest.material)
+        : coarse_elements(
+            coarsening, [&](const std::uint32_t c) -> const Element& { return elements[c]; },
+            [&](const std::uint32_t c) { return elements.kind[c] == Kind::full; }, elements.full, h, finest.material);
+    h *= 2;
     Level coarse;
     coarse.cells = coarsening.coarse;
     coarse.lines = coarsened(fine.lines, fine.cells, coarsening);
-    elements = coarse_elements(coarsening, elements, h, finest.material);
-    h *= 2;
     std::vector<std::uint32_t> order(coarse.cells.n_copies());
     std::iota(order.begin(), order.end(), 0);
     coarse.batching = Batching(
       order, [&](const std::uint32_t c) { return elements.kind[c]; }, coarse.cells.corners.data(),
       coarse.cells.n_corners);
-    fill(coarse, elements, h, finest.material);
+    fill(
+      coarse, [&](const std::uint32_t c) -> const Element& { return elements[c]; }, elements.full, h, finest.material);
     fine.to_coarse = std::move(coarsening);
     levels_.push_back(std::move(coarse));
   }

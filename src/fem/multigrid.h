@@ -13,8 +13,8 @@
 /// A cycle is a V, smoothed before and after by the same Chebyshev polynomial of block Jacobi's matrix (Adams, Brezina, Hu
 /// and Tuminaro 2003, Parallel multigrid smoothing, J. Comput. Phys. 188), so it is symmetric; it is positive as long as
 /// the polynomial knows a bound for the largest eigenvalue, which is had element by element (jacobi_bound): elements
-/// whose own bound is above that of a full cube count more in the diagonal blocks. The coarsest level is factorised.
-/// All is single precision, but that.
+/// whose own bound is above that of a full cube count more in the diagonal blocks. The coarsest level is factorised,
+/// unless it is large as dust is. All is single precision, but that.
 ///
 /// Departs from Galerkin: a coarse cube turns as a whole, and masses, loads and penalties are lumped; laws other than
 /// Hooke's are replaced by his.
@@ -45,6 +45,7 @@ class Multigrid : public dynamics::Preconditioner {
   explicit Multigrid(const FinestLevel& finest);
   ~Multigrid() override;
 
+  /// With one there is nothing coarser, and nothing gained.
   std::size_t n_levels() const;
 
   /// Takes over an equation. `rotations`: of the finest batches, at the linearisation point.
