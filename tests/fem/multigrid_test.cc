@@ -172,7 +172,8 @@ TEST(Multigrid, TakesAsManyIterationsForLargeBodies) {
     }
 }
 
-/// A block that more and more of its edges are cut of, until it is dust.
+/// A block of which more and more edges are cut, three tenths of them after two rounds, until it is dust: random cuts leave
+/// a sponge, which coarse cubes know less of than of a body that a blade has cut.
 TEST(Multigrid, SeesCutsOnEveryLevel) {
   std::vector<int> counts;
   Draw draw(330);
@@ -189,7 +190,9 @@ TEST(Multigrid, SeesCutsOnEveryLevel) {
   for (const int count : counts)
     all += std::to_string(count) + ' ';
   RecordProperty("iterations", all);
-  EXPECT_LE(*std::max_element(counts.begin(), counts.end()), 60) << all;
+  EXPECT_LE(counts[1], 12) << all;
+  EXPECT_LE(counts[2], 30) << all;
+  EXPECT_LE(*std::max_element(counts.begin(), counts.end()), 100) << all;
 }
 
 /// A plane that parts a body parts its coarse copies: two halves know nothing of each other, at any level.
