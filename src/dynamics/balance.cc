@@ -8,7 +8,6 @@
 #include "dynamics/forces.h"
 #include "dynamics/state.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 
 #include <cmath>
@@ -26,22 +25,6 @@ Eigen::Map<const Vec3> at(const std::span<const double> values, const std::size_
 }
 Eigen::Map<Vec3> at(const std::span<double> values, const std::size_t i) {
   return Eigen::Map<Vec3>(values.data() + 3 * i);
-}
-
-/// L^-1 of a diagonal block among its free directions, in whose basis it maps; zero rows for those held.
-Mat3 inverse_factor(const Mat3& block, const Constraints::Freedom& freedom) {
-  const int n = freedom.n_free;
-  Mat3 inverse = Mat3::Zero();
-  if (n == 0)
-    return inverse;
-  const Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 3> Q = freedom.basis.leftCols(n);
-  const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 3> reduced = Q.transpose() * block * Q;
-  const Eigen::LLT<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 3>> factor(reduced);
-  if (factor.info() == Eigen::Success)
-    inverse.topRows(n) = factor.matrixL().solve(Eigen::Matrix<double, Eigen::Dynamic, 3, 0, 3, 3>(Q.transpose()));
-  else if (reduced.trace() > 0) // a block that is no more than semi-definite: at least its size
-    inverse.topRows(n) = std::sqrt(n / reduced.trace()) * Q.transpose();
-  return inverse;
 }
 
 double norm(const Points& values) { return std::sqrt(dot(flat(values), flat(values))); }
@@ -270,9 +253,14 @@ void BalanceSolver::factorise(const Problem& problem) {
       problem.stiffness_factor * stiffness_blocks_[i] + problem.mass_factor * problem.mass[i] * Mat3::Identity();
   tangent_.add_diagonal(blocks_);
   scaling_.resize(blocks_.size());
+  inverse_blocks_.resize(blocks_.size());
   parallel_for(
     blocks_.size(),
-    [&](const std::size_t i) { scaling_[i] = inverse_factor(blocks_[i], problem.constraints.freedom(i)); }, worth);
+    [&](const std::size_t i) {
+      scaling_[i] = inverse_factor(blocks_[i], problem.constraints.freedom(i));
+      inverse_blocks_[i] = scaling_[i].transpose() * scaling_[i];
+    },
+    worth);
 }
 
 double BalanceSolver::assemble_residual(const Problem& problem) {
@@ -333,25 +321,38 @@ double BalanceSolver::scaled_round_off() const {
 }
 
 void BalanceSolver::apply(const Problem& problem, const std::span<const double> p, const std::span<double> y) {
-  scratch_.resize(p.size());
-  const std::span<double> q = scratch_;
-  parallel_for(
-    force_.size(), [&](const std::size_t i) { at(q, i) = scaling_[i].transpose() * at(p, i); }, worth);
-  model_.apply_stiffness(q, y);
+  model_.apply_stiffness(p, y);
   if (!tangent_.empty()) {
     load_product_.assign(p.size(), 0);
-    tangent_.add_product(q, load_product_);
+    tangent_.add_product(p, load_product_);
   }
   parallel_for(
     force_.size(),
     [&](const std::size_t i) {
-      Vec3 Aq = problem.mass_factor * problem.mass[i] * at(std::span<const double>(q), i) +
+      Vec3 Ap = problem.mass_factor * problem.mass[i] * at(p, i) +
                 problem.stiffness_factor * at(std::span<const double>(y), i);
       if (!tangent_.empty())
-        Aq += at(std::span<const double>(load_product_), i);
-      at(y, i) = scaling_[i] * Aq;
+        Ap += at(std::span<const double>(load_product_), i);
+      if (!problem.constraints.is_free(i))
+        Ap = (problem.constraints.freedom(i).project * Ap).eval();
+      at(y, i) = Ap;
     },
     worth);
+}
+
+void BalanceSolver::apply_inverse_blocks(const std::span<const double> r, const std::span<double> z) const {
+  parallel_for(
+    inverse_blocks_.size(), [&](const std::size_t i) { at(z, i) = inverse_blocks_[i] * at(r, i); }, worth);
+}
+
+Preconditioner* BalanceSolver::preconditioner(const Problem& problem) {
+  load_bounds_.clear();
+  if (!tangent_.empty()) {
+    load_bounds_.assign(blocks_.size(), Mat3::Zero());
+    tangent_.add_bound(load_bounds_);
+  }
+  return model_.preconditioner(
+    {problem.mass_factor, problem.stiffness_factor, problem.mass, blocks_, load_bounds_, problem.constraints});
 }
 
 int BalanceSolver::correct(const Problem& problem, const Points& guess, const double scale) {
@@ -371,20 +372,22 @@ int BalanceSolver::correct(const Problem& problem, const Points& guess, const do
 
 int BalanceSolver::correct_by_cg(const Problem& problem, const Points& guess, const double scale) {
   const std::size_t n = force_.size();
-  Points rhs(n), d(n, Vec3::Zero());
-  for (std::size_t i = 0; i < n; ++i) {
-    rhs[i] = scaling_[i] * residual_[i];
-    if (!guess.empty())
-      d[i] = scaling_[i] * (blocks_[i] * (problem.constraints.freedom(i).project * guess[i]));
-  }
+  correction_.assign(n, Vec3::Zero());
+  for (std::size_t i = 0; i < n && !guess.empty(); ++i)
+    correction_[i] = problem.constraints.freedom(i).project * guess[i];
   const double of_own = 0.5 * options_.step_tolerance; // the step's own error is half the way from the guess
   constexpr double of_rest = 1e-3;                     // of what a correction may leave where others follow
-  const double left = options_.n_mixed > 0 ? of_rest * norm(rhs) : 0;
+  const double left = options_.n_mixed > 0 ? of_rest * scaled_residual() : 0;
   const CgStop stop{.residual = std::max({options_.cg_tolerance * scale, left, scaled_round_off()}),
                     .error = of_own * way_,
                     .of_way = guess.empty() ? 0 : of_own};
-  const auto report = conjugate_gradients([&](const auto p, const auto y) { apply(problem, p, y); }, flat(rhs), stop,
-                                          options_.max_cg_iterations, flat(d));
+  const Product A = [&](const auto p, const auto y) { apply(problem, p, y); },
+                J = [&](const auto r, const auto z) { apply_inverse_blocks(r, z); };
+  CgEquation equation{A, J, {}};
+  if (Preconditioner* const own = preconditioner(problem))
+    equation = {A, [own](const auto r, const auto z) { own->apply(r, z); }, J};
+  const auto report =
+    conjugate_gradients(equation, flat(residual_), stop, options_.max_cg_iterations, flat(correction_));
   if (!report.converged && !report.indefinite)
     throw NumericalError("conjugate gradients left a relative residual of " + to_text(report.residual / scale) +
                          " after " + std::to_string(report.n_iterations) + " iterations. Use " +
@@ -392,9 +395,6 @@ int BalanceSolver::correct_by_cg(const Problem& problem, const Points& guess, co
                          "more CG iterations or a larger CG tolerance");
   if (!guess.empty())
     way_ = report.way;
-  correction_.resize(n);
-  for (std::size_t i = 0; i < n; ++i)
-    correction_[i] = scaling_[i].transpose() * d[i];
   return report.n_iterations;
 }
 

@@ -9,9 +9,10 @@
 /// Element Method, 2000, ch. 9), statics is kappa = omega = 0. K is the model's stiffness at the iterate.
 ///
 /// Newton's method from x_0. A correction solves A d = r with A = (kappa + alpha omega) M + (1 + beta omega) K +
-/// loads, by conjugate gradients or by a factorisation. Both see L^-1 A L^-T with the Cholesky factors L of A's
-/// diagonal 3 x 3 blocks, restricted to the directions that supports leave free: each corner is solved in its own
-/// measure, one of hardly any mass like every other.
+/// loads, by conjugate gradients or by a factorisation, among the directions that supports leave free. Residuals are
+/// measured by the inverses of A's diagonal 3 x 3 blocks, L^-T L^-1 with their Cholesky factors L: each corner counts in
+/// its own measure, one of hardly any mass like every other. The same are the preconditioner, or what the model offers
+/// in their place (preconditioner.h).
 ///
 /// The line search halves a correction until the incremental potential falls by 1e-4 of what its slope promises
 /// (Armijo), or, where the fall drowns in round-off, until the slope has (Hager and Zhang 2005, A new conjugate
@@ -44,6 +45,7 @@
 
 #include "dynamics/constraints.h"
 #include "dynamics/mixing.h"
+#include "dynamics/preconditioner.h"
 
 #include <Eigen/SparseCore>
 
@@ -127,7 +129,7 @@ class BalanceSolver {
   double round_off_of_forces(const Points& x) const;
   /// The same in the scaled norm.
   double scaled_round_off() const;
-  /// y = S A S^T p with the scaling S.
+  /// y = A p among the free directions, for p among them.
   void apply(const Problem& problem, std::span<const double> p, std::span<double> y);
   /// Tests the first correction where it ends, and moves there.
   Verdict judge(const Problem& problem, const Points& end);
@@ -146,6 +148,10 @@ class BalanceSolver {
   /// Returns the iterations of the linear solver.
   int correct(const Problem& problem, const Points& guess, double scale);
   int correct_by_cg(const Problem& problem, const Points& guess, double scale);
+  /// z = S^T S r.
+  void apply_inverse_blocks(std::span<const double> r, std::span<double> z) const;
+  /// The model's, for A; null: none.
+  Preconditioner* preconditioner(const Problem& problem);
   void correct_directly(const Problem& problem, Tangent kind);
   /// Mixes the correction with those before, where that leads downhill and far; returns how much of it to take.
   double mixed_search(const Problem& problem, const Points& x, Mixing& mixing);
@@ -166,7 +172,9 @@ class BalanceSolver {
   LoadTangent tangent_;
   std::vector<Mat3> stiffness_blocks_, blocks_; // diagonals of K and of A
   std::vector<Mat3> scaling_; // L^-1 from the free directions' basis, a row of zeros for each that is held
-  std::vector<double> scratch_, load_product_;
+  std::vector<Mat3> inverse_blocks_; // S^T S
+  std::vector<Mat3> load_bounds_;    // see LoadTangent::add_bound
+  std::vector<double> load_product_;
   double most_work_ = 0; // of what is out of balance, in the step at hand [J]
   double way_ = 0;       // from the guess to the first iterate, in the energy norm; 0: unknown
 };

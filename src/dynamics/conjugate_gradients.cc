@@ -3,7 +3,6 @@
 #include "base/parallel.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numeric>
 
@@ -17,7 +16,8 @@ constexpr std::size_t worth_blocks = 3; // from which on a second thread pays
 /// Of the error, by what iterations take off its square.
 class Estimate {
  public:
-  explicit Estimate(const CgStop& stop) : stop_(stop) {}
+  /// `delay`: how many of the last iterations an error is told by.
+  Estimate(const CgStop& stop, const std::size_t delay) : stop_(stop), last_(delay) {}
 
   /// The start is nearer than what was given by so much, in squares.
   void start_nearer(const double excess) { all_ += excess; }
@@ -34,7 +34,7 @@ class Estimate {
 
  private:
   CgStop stop_;
-  std::array<double, 8> last_ = {};
+  std::vector<double> last_;
   std::size_t n_ = 0;
   double all_ = 0;
 };
@@ -65,14 +65,14 @@ double dot(const std::span<const double> a, const std::span<const double> b) {
   });
 }
 
-CgReport conjugate_gradients(const Product& A, const std::span<const double> b, const CgStop& stop,
+CgReport conjugate_gradients(const CgEquation& equation, const std::span<const double> b, const CgStop& stop,
                              const int max_iterations, const std::span<double> x) {
   const std::size_t n = b.size();
-  std::vector<double> r(n), p(n), Ap(n);
-  Estimate estimate(stop);
-  const bool given = std::any_of(x.begin(), x.end(), [](const double value) { return value != 0; });
-  if (given) {
-    A(x, Ap);
+  std::vector<double> r(n), z(n), p(n), Ap(n);
+  Estimate estimate(stop, equation.J ? 3 : 8); // one iteration with more than block Jacobi is worth many
+  const auto is_zero = [](const double value) { return value == 0; };
+  if (!std::all_of(x.begin(), x.end(), is_zero)) {
+    equation.A(x, Ap);
     const double excess = dot(x, Ap) - 2 * dot(b, x); // of the error's square over that of zero
     if (excess > 0) {
       estimate.start_nearer(excess);
@@ -81,39 +81,46 @@ CgReport conjugate_gradients(const Product& A, const std::span<const double> b, 
     }
   }
   for (std::size_t i = 0; i < n; ++i)
-    p[i] = r[i] = b[i] - Ap[i];
-  double rr = dot(r, r);
-  CgReport report{.residual = std::sqrt(rr), .way = estimate.way(), .converged = std::sqrt(rr) <= stop.residual};
+    r[i] = b[i] - Ap[i];
+  CgReport report{.way = estimate.way()};
+  double rz = 0; // r.Br
+  const auto measure = [&] {
+    (equation.J ? equation.J : equation.B)(r, z);
+    const double square = dot(r, z);
+    report.residual = std::sqrt(square);
+    report.converged = report.residual <= stop.residual || estimate.says_enough();
+    if (report.converged)
+      return;
+    if (equation.J)
+      equation.B(r, z);
+    const double rz_new = equation.J ? dot(r, z) : square, beta = rz > 0 ? rz_new / rz : 0;
+    rz = rz_new;
+    parallel_ranges(n, worth_blocks * block, [&](const std::size_t begin, const std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i)
+        p[i] = z[i] + beta * p[i];
+    });
+  };
+  measure();
   while (!report.converged && report.n_iterations < max_iterations) {
-    A(p, Ap);
+    equation.A(p, Ap);
     const double pAp = dot(p, Ap);
-    if (!(pAp > 0)) {
+    if (!(pAp > 0 && rz > 0)) {
       report.indefinite = true;
-      if (report.n_iterations == 0 && std::all_of(x.begin(), x.end(), [](const double value) { return value == 0; }))
+      if (report.n_iterations == 0 && std::all_of(x.begin(), x.end(), is_zero))
         std::copy(p.begin(), p.end(), x.begin());
       return report;
     }
-    const double alpha = rr / pAp;
-    const double rr_new = sum_of(n, [&](const std::size_t begin, const std::size_t end) {
-      double sum = 0;
+    const double alpha = rz / pAp;
+    parallel_ranges(n, worth_blocks * block, [&](const std::size_t begin, const std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         x[i] += alpha * p[i];
         r[i] -= alpha * Ap[i];
-        sum += r[i] * r[i];
       }
-      return sum;
     });
-    estimate.take_off(alpha * rr);
-    const double beta = rr_new / rr;
-    rr = rr_new;
+    estimate.take_off(alpha * rz);
     ++report.n_iterations;
-    report.residual = std::sqrt(rr);
     report.way = estimate.way();
-    report.converged = report.residual <= stop.residual || estimate.says_enough();
-    parallel_ranges(n, worth_blocks * block, [&](const std::size_t begin, const std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i)
-        p[i] = r[i] + beta * p[i];
-    });
+    measure();
   }
   return report;
 }

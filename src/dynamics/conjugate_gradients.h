@@ -1,6 +1,6 @@
 #pragma once
 
-/// Conjugate gradients (Hestenes and Stiefel 1952) that stop where the matrix is not positive (Steihaug 1983): a
+/// Preconditioned conjugate gradients (Hestenes and Stiefel 1952) that stop where the matrix is not positive (Steihaug 1983): a
 /// direction p with p.Ap <= 0 ends the iteration at the last iterate, or at p itself when nothing was found yet, so
 /// that what comes back is a descent direction of 1/2 x.Ax - b.x. Sums are taken in blocks of fixed size, so any
 /// number of threads gives the same bits.
@@ -18,14 +18,14 @@ double dot(std::span<const double> a, std::span<const double> b);
 
 /// Where to stop: at whichever comes first. Errors are in the energy norm |e|_A = sqrt(e.Ae).
 struct CgStop {
-  double residual = 0; ///< Euclidean norm of b - A x
+  double residual = 0; ///< of b - A x, in the measure of the equation
   double error = 0;    ///< of x
   double of_way = 0;   ///< error of x over the way from the x that was given to the solution [1]
 };
 
 struct CgReport {
   int n_iterations = 0;
-  double residual = 0;     ///< Euclidean norm of b - A x
+  double residual = 0;     ///< of b - A x, in the measure of the equation
   double way = 0;          ///< |x - x that was given|_A
   bool converged = false;  ///< as the stop says
   bool indefinite = false; ///< stopped by a direction that the matrix does not resist
@@ -34,13 +34,19 @@ struct CgReport {
 /// y = A p.
 using Product = std::function<void(std::span<const double> p, std::span<double> y)>;
 
+/// A x = b, with B near A^-1 and J the measure of a residual, sqrt(r.Jr): all symmetric, B and J positive.
+struct CgEquation {
+  Product A, B;
+  Product J = {}; ///< empty: B
+};
+
 /// Solves A x = b from the x that is given, or from zero where that is nearer in the energy norm.
 ///
-/// An iteration takes alpha |r|^2 off the error's square, exactly (Hestenes and Stiefel 1952, theorem 6:3), so what the
+/// An iteration takes alpha r.Br off the error's square, exactly (Hestenes and Stiefel 1952, theorem 6:3), so what the
 /// last few took is a lower bound for the error before them that round-off does not spoil (Strakos and Tichy 2002, On
 /// error estimation in the conjugate gradient method and why it works in finite precision computations, ETNA 13), and
 /// the sum of all is the square of the way.
-CgReport conjugate_gradients(const Product& A, std::span<const double> b, const CgStop& stop, int max_iterations,
-                             std::span<double> x);
+CgReport conjugate_gradients(const CgEquation& equation, std::span<const double> b, const CgStop& stop,
+                             int max_iterations, std::span<double> x);
 
 } // namespace kerf::dynamics

@@ -1,5 +1,6 @@
-#include "dynamics/constraints.h"
+#include "dynamics/preconditioner.h"
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
@@ -144,6 +145,26 @@ void Constraints::project(Points& values) const {
     for (std::size_t i = 0; i < values.size(); ++i)
       if (is_carried(loads_, i))
         values[i].setZero();
+}
+
+Mat3 inverse_factor(const Mat3& block, const Constraints::Freedom& freedom) {
+  const int n = freedom.n_free;
+  Mat3 inverse = Mat3::Zero();
+  if (n == 0)
+    return inverse;
+  if (n == 3 && freedom.sum.isZero()) { // nearly all are free in all directions, in the basis of the axes
+    const Eigen::LLT<Mat3> factor(block);
+    if (factor.info() == Eigen::Success)
+      return factor.matrixL().solve(Mat3::Identity());
+  }
+  const Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 3> Q = freedom.basis.leftCols(n);
+  const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 3> reduced = Q.transpose() * block * Q;
+  const Eigen::LLT<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 3>> factor(reduced);
+  if (factor.info() == Eigen::Success)
+    inverse.topRows(n) = factor.matrixL().solve(Eigen::Matrix<double, Eigen::Dynamic, 3, 0, 3, 3>(Q.transpose()));
+  else if (reduced.trace() > 0) // a block that is no more than semi-definite: at least its size
+    inverse.topRows(n) = std::sqrt(n / reduced.trace()) * Q.transpose();
+  return inverse;
 }
 
 } // namespace kerf::dynamics

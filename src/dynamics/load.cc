@@ -1,5 +1,7 @@
 #include "dynamics/load.h"
 
+#include <cmath>
+
 namespace kerf::dynamics {
 
 void LoadTangent::add_product(const std::span<const double> p, const std::span<double> y) const {
@@ -22,6 +24,20 @@ void LoadTangent::add_diagonal(std::vector<Mat3>& blocks) const {
       for (auto l = w.start[term.j]; l < w.start[term.j + 1]; ++l)
         if (w.corners[k] == w.corners[l])
           blocks[w.corners[k]] += w.values[k] * w.values[l] * symmetric;
+  }
+}
+
+/// |sum w_k p_k|^2 <= sum |w_l| sum |w_k| |p_k|^2; a pair of two points is bounded by the size of its block at both.
+void LoadTangent::add_bound(std::vector<Mat3>& blocks) const {
+  for (const Term& term : terms_) {
+    const Interpolation& w = *term.points;
+    double sum = 0;
+    for (auto k = w.start[term.i]; k < w.start[term.i + 1]; ++k)
+      sum += std::abs(w.values[k]);
+    const Mat3 symmetric = 0.5 * (term.block + term.block.transpose()),
+               block = term.i == term.j ? symmetric : Mat3(symmetric.norm() * Mat3::Identity());
+    for (auto k = w.start[term.i]; k < w.start[term.i + 1]; ++k)
+      blocks[w.corners[k]] += sum * std::abs(w.values[k]) * block;
   }
 }
 

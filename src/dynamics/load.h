@@ -29,6 +29,8 @@ class LoadTangent {
   void add_product(std::span<const double> p, std::span<double> y) const;
   /// Adds the symmetric part of the diagonal 3 x 3 blocks.
   void add_diagonal(std::vector<Mat3>& blocks) const;
+  /// Adds blocks that together are at least what all is, where all is symmetric and positive.
+  void add_bound(std::vector<Mat3>& blocks) const;
   /// All entries, by the numbers of the 3 n components.
   void add_entries(std::vector<Eigen::Triplet<double>>& entries) const;
 

@@ -24,6 +24,9 @@ class ForceModel {
   virtual void force(const Points& x, Points& forces) const = 0;
 };
 
+class Preconditioner;
+struct LinearEquation;
+
 /// What implicit integrators ask beside it: a symmetric, positive semi-definite stiffness at a linearisation point.
 class ElasticModel : public ForceModel {
  public:
@@ -33,6 +36,9 @@ class ElasticModel : public ForceModel {
   virtual void apply_stiffness(std::span<const double> p, std::span<double> y) const = 0;
   /// The diagonal 3 x 3 blocks of K [N/m], one a corner.
   virtual void stiffness_diagonal(std::vector<Mat3>& blocks) const = 0;
+  /// An approximate inverse (preconditioner.h) at the linearisation point, good until the next one; null where the
+  /// inverse of the equation's diagonal blocks is as good.
+  virtual Preconditioner* preconditioner(const LinearEquation&) { return nullptr; }
 };
 
 /// Which derivative of the forces.

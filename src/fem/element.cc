@@ -1,6 +1,10 @@
 #include "fem/element.h"
 
+#include <Eigen/Cholesky>
+
 #include <algorithm>
+#include <bit>
+#include <cmath>
 
 namespace kerf::fem {
 
@@ -35,13 +39,25 @@ double integral_of_product(const Moments& m, const int a, const int b) {
 }
 
 void fill_mass(Element& element, const Moments& moments, const double mass_of_cube) {
-  for (int a = 0; a < 8; ++a) {
-    // Far from a sliver the integral is below the round-off of its moments, and may come out negative.
+  for (int a = 0; a < 8; ++a) // Far from a sliver the integral is below the round-off of its moments, or even negative.
     element.mass[a] = mass_of_cube * std::max(0.0, integral_of_shape(moments, a));
-    for (int b = 0; b <= a; ++b)
-      element.consistent_mass[8 * a + b] = element.consistent_mass[8 * b + a] =
-        mass_of_cube * integral_of_product(moments, a, b);
-  }
+}
+
+/// Sign of a mode at a vertex.
+int sign(const int mode, const int vertex) { return std::popcount(unsigned(mode & ~vertex)) % 2 == 0 ? 1 : -1; }
+
+/// From the 24 displacements to the 12 hourglass unknowns.
+using ToHourglass = Eigen::Matrix<double, n_hourglass, 24>;
+const ToHourglass& to_hourglass() {
+  static const ToHourglass S = [] {
+    ToHourglass all = ToHourglass::Zero();
+    for (int k = 0; k < 4; ++k)
+      for (int a = 0; a < 8; ++a)
+        for (int i = 0; i < 3; ++i)
+          all(3 * k + i, 3 * a + i) = sign(hourglass_modes[k], a);
+    return all;
+  }();
+  return S;
 }
 
 } // namespace
@@ -57,13 +73,69 @@ Element make_element(const Moments& moments, const double h, const material::Ela
   element.centroid = as_it_lies.centroid;
   element.gradient = mean_gradients(as_it_lies);
   // The mean gradient is that of the material as it is: so affine motions meet exact forces.
-  Matrix24 K = hourglass_stiffness(centred(positive), material, options.strain);
-  if (options.part == Part::whole)
-    K += mean_stiffness(as_it_lies.volume, element.gradient, material);
-  Eigen::Map<Matrix24>(element.stiffness.data()) = 0.5 * h * (K + K.transpose());
+  const Matrix24 K = h * hourglass_stiffness(centred(positive), material, options.strain);
+  const ToHourglass& S = to_hourglass(); // S S^T = 8
+  const Eigen::Matrix<double, n_hourglass, n_hourglass> of_modes = S * K * S.transpose() / 64;
+  for (int p = 0; p < n_hourglass; ++p)
+    for (int q = 0; q <= p; ++q)
+      element.hourglass[pair_index(p, q)] = 0.5 * (of_modes(p, q) + of_modes(q, p));
   for (Vec3& gradient : element.gradient)
     gradient /= h;
+  element.bound = jacobi_bound(element, material);
   return element;
+}
+
+Matrix24 stiffness(const Element& element, const material::Elastic& material, const Part part) {
+  Eigen::Matrix<double, n_hourglass, n_hourglass> of_modes;
+  for (int p = 0; p < n_hourglass; ++p)
+    for (int q = 0; q <= p; ++q)
+      of_modes(p, q) = of_modes(q, p) = element.hourglass[pair_index(p, q)];
+  Matrix24 K = to_hourglass().transpose() * of_modes * to_hourglass();
+  if (part == Part::whole)
+    K += mean_stiffness(element.volume, element.gradient, material);
+  return 0.5 * (K + K.transpose());
+}
+
+double jacobi_bound(const Element& element, const material::Elastic& material) {
+  constexpr int n_iterations = 16;
+  constexpr double most = 8, unseen = 1.05; // by so few iterations
+  Matrix24 K = stiffness(element, material);
+  for (int a = 0; a < 8; ++a) {
+    Mat3 D = K.block<3, 3>(3 * a, 3 * a);
+    D += 1e-9 * (D.trace() + 1e-300) * Mat3::Identity();
+    const Eigen::LLT<Mat3> factor(D);
+    K.middleRows<3>(3 * a) = factor.matrixL().solve(K.middleRows<3>(3 * a)).eval();
+    K.middleCols<3>(3 * a) = factor.matrixL().solve(K.middleCols<3>(3 * a).transpose()).transpose().eval();
+  }
+  Vector24 v;
+  for (int i = 0; i < 24; ++i)
+    v[i] = std::cos(1 + 2.4 * i); // of no symmetry
+  double bound = 0;
+  for (int n = 0; n < n_iterations; ++n) {
+    v.normalize();
+    const Vector24 w = K * v;
+    bound = w.norm();
+    v = w;
+  }
+  return std::isfinite(bound) ? std::min(most, unseen * bound) : most;
+}
+
+std::array<double, n_hourglass> mode_gradients(const Element& element) {
+  std::array<double, n_hourglass> all{};
+  for (int k = 0; k < 4; ++k)
+    for (int a = 0; a < 8; ++a)
+      for (int j = 0; j < 3; ++j)
+        all[3 * k + j] += sign(hourglass_modes[k], a) * element.gradient[a][j] / 8;
+  return all;
+}
+
+Eigen::Matrix<double, 8, 8> consistent_mass(const Moments& moments, const double mass_of_cube) {
+  const Moments positive = without_negative_squares(moments);
+  Eigen::Matrix<double, 8, 8> mass;
+  for (int a = 0; a < 8; ++a)
+    for (int b = 0; b <= a; ++b)
+      mass(a, b) = mass(b, a) = mass_of_cube * integral_of_product(positive, a, b);
+  return mass;
 }
 
 } // namespace kerf::fem

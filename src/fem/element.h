@@ -4,31 +4,43 @@
 /// and direction i. A cube of edge h scales as K ~ h, mass ~ h^3, gradients ~ 1 / h.
 
 #include "fem/hourglass.h"
+#include "fem/kernels.h"
 
 namespace kerf::fem {
 
-/// Which part of Hooke's stiffness an element keeps as a matrix.
-enum class Part {
-  whole,    ///< for laws that are Hooke's in a turned frame
-  hourglass ///< beside a law that is evaluated at the mean deformation gradient
-};
-
 struct ElementOptions {
   Strain strain = Strain::trilinear;
-  Part part = Part::whole;
 };
 
 struct Element {
-  alignas(64) std::array<double, 576> stiffness; ///< symmetric, column by column [N/m]
-  std::array<Vec3, 8> gradient;                  ///< mean of grad N_a over the material [1/m]
-  std::array<double, 8> mass;                    ///< lumped: density times the integral of N_a [kg]
-  std::array<double, 64> consistent_mass;        ///< density times the integral of N_a N_b, symmetric [kg]
-  Vec3 centroid;                                 ///< of the material, in the unit cube [1]
-  double volume = 0;                             ///< of the material [m^3]
+  std::array<double, n_hourglass_pairs> hourglass; ///< stiffness against the hourglass modes (kernels.h) [N/m]
+  std::array<Vec3, 8> gradient;                    ///< mean of grad N_a over the material [1/m]
+  std::array<double, 8> mass;                      ///< lumped: density times the integral of N_a [kg]
+  Vec3 centroid;                                   ///< of the material, in the unit cube [1]
+  double volume = 0;                               ///< of the material [m^3]
+  double bound = 0;                                ///< of the eigenvalues of D^-1 K, see jacobi_bound() [1]
 };
 
 /// Hooke's law, small strain, exact for the material as it lies.
 Element make_element(const Moments& moments, double h, const material::Elastic& material,
                      const ElementOptions& options);
+
+/// Which part of Hooke's stiffness.
+enum class Part {
+  whole,    ///< for laws that are Hooke's in a turned frame
+  hourglass ///< beside a law that is evaluated at the mean deformation gradient
+};
+/// Of an element as a matrix, symmetric [N/m].
+Matrix24 stiffness(const Element& element, const material::Elastic& material, Part part = Part::whole);
+
+/// The largest eigenvalue of D^-1 K for the 3 x 3 diagonal blocks D of Hooke's stiffness [1]: at most 8. The largest over
+/// all elements of a body bounds that of the body, however the elements turn.
+double jacobi_bound(const Element& element, const material::Elastic& material);
+
+/// Mean gradients of the hourglass modes, at 3 k + j (kernels.h) [1/m].
+std::array<double, n_hourglass> mode_gradients(const Element& element);
+
+/// Density times the integral of N_a N_b for each pair of vertices [kg]; `mass_of_cube`: of a full one.
+Eigen::Matrix<double, 8, 8> consistent_mass(const Moments& moments, double mass_of_cube);
 
 } // namespace kerf::fem

@@ -35,9 +35,8 @@ class ElementTable {
   /// How many copies have an element of their own.
   std::size_t n_partial() const { return elements_.size() - 1 - free_.size(); }
 
-  /// For the kernels: all elements in a row, and which of them each copy has.
-  const Element* elements() const { return elements_.data(); }
-  const std::uint32_t* element_of() const { return element_of_.data(); }
+  bool is_full(const std::size_t copy) const { return element_of_[copy] == 0; }
+  const Element& full() const { return elements_[0]; }
 
  private:
   bool is_partial(const grid::Solid& solid, const grid::Copy& copy) const;

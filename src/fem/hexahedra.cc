@@ -1,8 +1,8 @@
 #include "fem/hexahedra.h"
 
 #include "base/parallel.h"
+#include "dynamics/state.h"
 #include "fem/assembly.h"
-#include "fem/kernels.h"
 #include "material/polar.h"
 
 #include <algorithm>
@@ -12,10 +12,7 @@ namespace kerf::fem {
 
 namespace {
 
-/// A second thread pays from about this many elements (1 us each) and corners (0.1 us each) on.
-constexpr std::size_t worth_elements = 256, worth_corners = 4096;
-/// Elements in one call of a kernel, and in one piece of work of a thread.
-constexpr std::size_t run_size = 64;
+constexpr std::size_t worth = 4096; // corners from which on a second thread pays
 
 using material::Tangent;
 
@@ -24,8 +21,7 @@ Frame frame_of(const material::AnyLaw& law) {
 }
 
 ElementTableOptions table_options(const HexahedraOptions& options) {
-  const bool is_hookean = options.material.law == "small strain" || options.material.law == "corotational";
-  return {options.material, options.boundary, {options.strain, is_hookean ? Part::whole : Part::hourglass}};
+  return {options.material, options.boundary, {options.strain}};
 }
 
 /// The 3 x 3 block A : (. b_c^T) b_a of a law's tangent.
@@ -37,6 +33,30 @@ Mat3 tangent_block(const Eigen::Ref<const Tangent>& A, const Vec3& b_a, const Ve
   return sum;
 }
 
+Mat3 gradient_of(const Turns& turns, const std::size_t lane) {
+  Mat3 F;
+  for (int i = 0; i < 9; ++i)
+    F.data()[i] = turns.F[i][lane];
+  return F;
+}
+
+void clear(Row<double>* const rows, const std::size_t n) {
+  parallel_for(
+    n, [&](const std::size_t i) { rows[i] = {}; }, worth);
+}
+
+/// Three numbers of each row.
+void write(const Row<double>* const rows, const std::span<double> y) {
+  parallel_for(
+    y.size() / 3,
+    [&](const std::size_t i) {
+      y[3 * i] = rows[i].x;
+      y[3 * i + 1] = rows[i].y;
+      y[3 * i + 2] = rows[i].z;
+    },
+    worth);
+}
+
 } // namespace
 
 Hexahedra::Hexahedra(const grid::Solid& solid, const HexahedraOptions& options)
@@ -44,6 +64,7 @@ Hexahedra::Hexahedra(const grid::Solid& solid, const HexahedraOptions& options)
     law_(material::law_of(options.material)),
     frame_(frame_of(law_)),
     inertia_(options.inertia),
+    material_(options.material),
     elements_(solid, table_options(options)),
     incidence_(solid),
     ghost_penalty_(options.ghost_penalty, options.material, h_) {
@@ -64,34 +85,28 @@ void Hexahedra::update(const grid::Solid& solid, const std::span<const grid::Cop
 
 void Hexahedra::follow(const grid::Solid& solid, const std::span<const grid::CopyId> changed,
                        const std::span<const std::uint32_t> corners) {
-  find_runs();
+  batch(solid);
   sum_mass(corners);
   ghost_penalty_.update( // to which a crumb's copies are as good as full
     solid, changed, [this](const std::size_t copy) { return incidence_.is_used(copy) ? fill(copy) : 1; }, mass_);
 }
 
-void Hexahedra::find_runs() {
-  runs_.clear();
-  for (std::size_t e = 0; e < n_elements(); ++e) {
-    if (!incidence_.is_used(e))
-      continue;
-    const bool goes_on = !runs_.empty() && runs_.back().first + runs_.back().n == e && runs_.back().n < run_size;
-    if (goes_on)
-      ++runs_.back().n;
-    else
-      runs_.push_back({e, 1});
+void Hexahedra::batch(const grid::Solid& solid) {
+  std::vector<std::uint32_t> order; // by cell
+  order.reserve(n_elements());
+  places_.resize(n_elements());
+  multigrid_ = nullptr;
+  for (const auto cell : ids<grid::CellId>(solid.grid.n_cells())) {
+    const Index3 place = solid.grid.index(solid.grid.nodes(cell)[0]);
+    for (const grid::CopyId c : solid.complex.copies_of(cell)) {
+      order.push_back(c.value);
+      places_[c.value] = place;
+    }
   }
-}
-
-template <class Function>
-void Hexahedra::for_each_element(const Function& f) const {
-  parallel_for(
-    runs_.size(),
-    [&](const std::size_t r) {
-      for (std::size_t e = runs_[r].first; e < runs_[r].first + runs_[r].n; ++e)
-        f(e);
-    },
-    worth_elements / run_size);
+  batching_ = Batching(
+    order, [this](const std::uint32_t copy) { return kind(copy); }, incidence_.corners(0), incidence_.n_corners());
+  batched_ = batched<double>(batching_, h_, material_, elements_.full(),
+                             [this](const std::uint32_t copy) -> const Element& { return elements_[copy]; });
 }
 
 void Hexahedra::sum_mass(const std::span<const std::uint32_t> corners) {
@@ -127,113 +142,165 @@ Turned Hexahedra::turned_element(const std::size_t copy, const Points& x) const 
   return turned(elements_[copy], h_, corners_of(copy, x), frame_);
 }
 
-void Hexahedra::gather(const double* const values, double* const y) const {
+void Hexahedra::put_rows(const std::span<const double> values, Rows& rows) const {
+  const std::size_t n = incidence_.n_corners();
   parallel_for(
-    incidence_.n_corners(),
-    [&](const std::size_t corner) {
-      Vec3 sum = Vec3::Zero();
-      for (const auto user : incidence_.users(corner))
-        sum += Eigen::Map<const Vec3>(values + 3 * std::size_t(user));
-      Eigen::Map<Vec3>(y + 3 * corner) = sum;
+    batching_.n_rows(),
+    [&](const std::size_t i) {
+      rows.data()[i] = i < n ? Row<double>{values[3 * i], values[3 * i + 1], values[3 * i + 2]} : Row<double>{};
     },
-    worth_corners);
+    worth);
+}
+
+template <class Function>
+void Hexahedra::for_each_lane(const std::size_t batch, const Function& f) const {
+  for (std::size_t lane = 0; lane < n_lanes; ++lane)
+    if (const std::uint32_t copy = batching_.batches()[batch].copies[lane]; copy != BatchOfCopies::none)
+      f(lane, copy);
+}
+
+Turns Hexahedra::turns(const std::size_t batch, const Row<double>* const x) const {
+  Turns all{};
+  const auto put = [&](const std::size_t lane, const Mat3& R) {
+    for (int i = 0; i < 9; ++i)
+      all.R[i][lane] = R.data()[i];
+  };
+  if (frame_ == Frame::fixed) {
+    for (std::size_t lane = 0; lane < n_lanes; ++lane)
+      put(lane, Mat3::Identity());
+    return all;
+  }
+  const unsigned unknown = force_kernels().turn(batched_.cube, batched_.batch(batching_, batch), x, all);
+  for (std::size_t lane = 0; lane < n_lanes; ++lane)
+    if ((unknown >> lane & 1) != 0)
+      put(lane, material::rotation_of(gradient_of(all, lane)));
+  return all;
 }
 
 double Hexahedra::energy(const Points& x) const {
-  auto energies = scratch_.borrow(n_elements());
-  for_each_element([&](const std::size_t e) {
-    const Turned state = turned_element(e, x);
-    double& energy = energies.data()[e];
-    energy = 0.5 * state.u.dot(Eigen::Map<const Matrix24>(elements_[e].stiffness.data()) * state.u);
-    if (!is_hookean())
-      energy += elements_[e].volume * std::visit([&](const auto& law) { return law.energy(state.F); }, law_);
+  Rows rows = scratch_.borrow(batching_.n_rows());
+  put_rows(dynamics::flat(x), rows);
+  const std::size_t n = batching_.batches().size();
+  std::vector<double> energies(n);
+  batching_.for_each([&](const std::size_t i) {
+    const Turns turns = this->turns(i, rows.data());
+    alignas(64) double of_lanes[n_lanes];
+    force_kernels().energy(batched_.cube, batched_.batch(batching_, i), turns, mean_part(), rows.data(), of_lanes);
+    for_each_lane(i, [&](const std::size_t lane, const std::uint32_t copy) {
+      energies[i] += of_lanes[lane];
+      if (!is_hookean())
+        energies[i] += elements_[copy].volume *
+                       std::visit([&](const auto& law) { return law.energy(gradient_of(turns, lane)); }, law_);
+    });
   });
-  double sum = ghost_penalty_.energy(x);
-  for (const Run& run : runs_)
-    sum = std::accumulate(energies.data() + run.first, energies.data() + run.first + run.n, sum);
-  return sum;
+  return std::accumulate(energies.begin(), energies.end(), ghost_penalty_.energy(x));
 }
 
 void Hexahedra::force(const Points& x, Points& forces) const {
-  auto values = scratch_.borrow(24 * n_elements());
-  for_each_element([&](const std::size_t e) {
-    const Turned state = turned_element(e, x);
-    Eigen::Map<Vector24> f(values.data() + 24 * e);
-    f = -gradient(elements_[e], state, frame_);
-    if (is_hookean())
-      return;
-    const Mat3 P = std::visit([&](const auto& law) { return Mat3(law.stress(state.F)); }, law_);
-    for (int a = 0; a < 8; ++a)
-      f.segment<3>(3 * a) -= elements_[e].volume * P * elements_[e].gradient[a];
+  Rows rows = scratch_.borrow(batching_.n_rows());
+  put_rows(dynamics::flat(x), rows);
+  Rows sums = scratch_.borrow(batching_.n_rows());
+  clear(sums.data(), batching_.n_rows());
+  const double spins = frame_ == Frame::turning ? 1 : 0;
+  batching_.for_each_in_order([&](const std::size_t i) {
+    const Turns turns = this->turns(i, rows.data());
+    Lanes9<double> stress{};
+    if (!is_hookean())
+      for_each_lane(i, [&](const std::size_t lane, const std::uint32_t copy) {
+        const Mat3 P = elements_[copy].volume *
+                       std::visit([&](const auto& law) { return Mat3(law.stress(gradient_of(turns, lane))); }, law_);
+        for (int k = 0; k < 9; ++k)
+          stress.row[k][lane] = P.data()[k];
+      });
+    force_kernels().force(batched_.cube, batched_.batch(batching_, i), turns, mean_part(),
+                          is_hookean() ? nullptr : stress.row, spins, rows.data(), sums.data());
   });
   forces.resize(mass_.size());
-  gather(values.data(), forces[0].data());
+  write(sums.data(), dynamics::flat(forces));
   ghost_penalty_.add_force(x, forces);
 }
 
 void Hexahedra::linearise(const Points& x) {
-  rotations_.resize(9 * n_elements());
-  tangents_.resize(is_hookean() ? 0 : 81 * n_elements());
-  for_each_element([&](const std::size_t e) {
-    const Mat3 F = deformation_gradient(e, x);
-    Eigen::Map<Mat3>(rotations_.data() + 9 * e) =
-      frame_ == Frame::turning ? material::rotation_of(F) : Mat3(Mat3::Identity());
-    if (!is_hookean())
-      Eigen::Map<Tangent>(tangents_.data() + 81 * e) =
-        elements_[e].volume * std::visit([&](const auto& law) { return Tangent(law.positive_tangent(F)); }, law_);
+  Rows rows = scratch_.borrow(batching_.n_rows());
+  put_rows(dynamics::flat(x), rows);
+  const std::size_t n = batching_.batches().size();
+  batched_.tangents.resize(is_hookean() ? 0 : n);
+  batching_.for_each([&](const std::size_t i) {
+    const Turns turns = this->turns(i, rows.data());
+    std::copy_n(turns.R[0], 9 * n_lanes, batched_.rotations[i].row[0]);
+    if (is_hookean())
+      return;
+    for_each_lane(i, [&](const std::size_t lane, const std::uint32_t copy) {
+      const Tangent A =
+        elements_[copy].volume *
+        std::visit([&](const auto& law) { return Tangent(law.positive_tangent(gradient_of(turns, lane))); }, law_);
+      for (int p = 0; p < 9; ++p)
+        for (int q = 0; q <= p; ++q)
+          batched_.tangents[i].row[pair_index(p, q)][lane] = A(p, q);
+    });
   });
 }
 
 void Hexahedra::apply_stiffness(const std::span<const double> p, const std::span<double> y) const {
-  static_assert(sizeof(Element) % sizeof(double) == 0);
-  auto values = scratch_.borrow(24 * n_elements());
-  parallel_for(
-    runs_.size(),
-    [&](const std::size_t r) {
-      const auto& [first, n] = runs_[r];
-      const ElementBlock elements{n,
-                                  incidence_.corners(first),
-                                  elements_.element_of() + first,
-                                  elements_.elements()->stiffness.data(),
-                                  elements_.elements()->gradient[0].data(),
-                                  sizeof(Element) / sizeof(double),
-                                  rotations_.data() + 9 * first};
-      fem::apply_stiffness(elements, p.data(), values.data() + 24 * first);
-      if (!is_hookean())
-        add_mean_tangent(elements, tangents_.data() + 81 * first, p.data(), values.data() + 24 * first);
-    },
-    worth_elements / run_size);
-  gather(values.data(), y.data());
+  Rows rows = scratch_.borrow(batching_.n_rows());
+  put_rows(p, rows);
+  Rows sums = scratch_.borrow(batching_.n_rows());
+  clear(sums.data(), batching_.n_rows());
+  add_product(batching_, batched_, rows.data(), sums.data());
+  write(sums.data(), y);
   ghost_penalty_.add_product(p, y);
 }
 
 void Hexahedra::stiffness_diagonal(std::vector<Mat3>& blocks) const {
   blocks.resize(mass_.size());
   const std::vector<double> penalty = ghost_penalty_.diagonal(mass_.size());
+  Rows sums = scratch_.borrow(2 * batching_.n_rows());
+  clear(sums.data(), 2 * batching_.n_rows());
+  add_diagonal(batching_, batched_, sums.data());
   parallel_for(
     mass_.size(),
-    [&](const std::size_t corner) {
-      Mat3 sum = penalty[corner] * Mat3::Identity();
-      for (const auto user : incidence_.users(corner)) {
-        const std::size_t e = user / 8;
-        const int a = user % 8;
-        const Eigen::Map<const Mat3> R(rotations_.data() + 9 * e);
-        const Eigen::Map<const Matrix24> K(elements_[e].stiffness.data());
-        sum += R * K.block<3, 3>(3 * a, 3 * a) * R.transpose();
-        if (!is_hookean())
-          sum += tangent_block(Eigen::Map<const Tangent>(tangents_.data() + 81 * e), elements_[e].gradient[a],
-                               elements_[e].gradient[a]);
-      }
-      blocks[corner] = sum;
+    [&](const std::size_t i) {
+      const Row<double>&d = sums.data()[2 * i], &s = sums.data()[2 * i + 1];
+      blocks[i] << d.x + penalty[i], s.x, s.z, s.x, d.y + penalty[i], s.y, s.z, s.y, d.z + penalty[i];
     },
-    worth_corners);
+    worth);
+}
+
+void Hexahedra::make_multigrid() {
+  CellsOfLevel cells{places_, {}, incidence_.n_corners()};
+  cells.corners.assign(incidence_.corners(0), incidence_.corners(0) + 8 * n_elements());
+  multigrid_ = std::make_unique<Multigrid>(FinestLevel{
+    std::move(cells), h_, material_, elements_.full(), [this](const std::uint32_t copy) { return kind(copy); },
+    [this](const std::uint32_t copy) -> const Element& { return elements_[copy]; }, batching_,
+    ghost_penalty_.faces()});
+}
+
+dynamics::Preconditioner* Hexahedra::preconditioner(const dynamics::LinearEquation& equation) {
+  constexpr std::size_t worth_levels = 200; // corners
+  constexpr double stiff = 30;              // K over M from which on conjugate gradients alone take longer
+  if (incidence_.n_corners() < worth_levels)
+    return nullptr;
+  double inertia = 0, all = 0;
+  for (std::size_t i = 0; i < equation.blocks.size(); ++i) {
+    inertia += 3 * equation.mass_factor * equation.mass[i];
+    all += equation.blocks[i].trace();
+  }
+  if (all < stiff * inertia)
+    return nullptr;
+  if (!multigrid_)
+    make_multigrid();
+  if (multigrid_->n_levels() == 1)
+    return nullptr;
+  multigrid_->prepare(equation, batched_.rotations);
+  return multigrid_.get();
 }
 
 Matrix24 Hexahedra::element_matrix(const std::size_t copy, const Points& x, const dynamics::Tangent kind) const {
   const Element& element = elements_[copy];
   const Turned state = turned_element(copy, x);
   const bool is_exact = kind == dynamics::Tangent::exact;
-  Matrix24 K = is_exact ? hessian(element, state, frame_) : turned_stiffness(element, state.R);
+  Matrix24 K = stiffness(element, material_, is_hookean() ? Part::whole : Part::hourglass);
+  K = is_exact ? hessian(element, K, state, frame_) : turned_stiffness(K, state.R);
   if (is_hookean())
     return K;
   const Tangent A = std::visit(
@@ -252,18 +319,6 @@ Eigen::SparseMatrix<double> Hexahedra::stiffness_matrix(const Points& x, const d
   K.setFromTriplets(penalty.begin(), penalty.end());
   K += assemble(incidence_, [&](const std::size_t copy) { return element_matrix(copy, x, kind); });
   return K;
-}
-
-void Hexahedra::apply_mass(const std::span<const double> p, const std::span<double> y) const {
-  auto values = scratch_.borrow(24 * n_elements());
-  for_each_element([&](const std::size_t e) {
-    Eigen::Matrix<double, 3, 8> q;
-    for (int a = 0; a < 8; ++a)
-      q.col(a) = Eigen::Map<const Vec3>(p.data() + 3 * std::size_t(incidence_.corners(e)[a]));
-    Eigen::Map<Eigen::Matrix<double, 3, 8>>(values.data() + 24 * e) =
-      q * Eigen::Map<const Eigen::Matrix<double, 8, 8>>(elements_[e].consistent_mass.data());
-  });
-  gather(values.data(), y.data());
 }
 
 } // namespace kerf::fem

@@ -13,18 +13,21 @@
 /// The linearisation leaves the derivatives of R out and takes the law's positive tangent, which keeps it positive
 /// semi-definite; stiffness_matrix() has the exact second derivative too.
 ///
-/// Copies of crumbs (grid/crumbs.h) have neither mass nor stiffness, and cost nothing in the loops over elements: they
-/// are left out in the runs of consecutive copies over which these go.
+/// Copies of crumbs (grid/crumbs.h) have neither mass nor stiffness, and cost nothing in the loops over elements, which
+/// go over batches of like ones (batches.h).
 ///
-/// Every copy's element is its own, and sums over copies are taken in their order: any number of threads, and any way
-/// of getting to a complex, gives the same bits. Functions that are const may be called from several threads at once.
+/// Every copy's element is its own, and sums over copies are taken in an order that the complex alone says: any number
+/// of threads, and any way of getting to a complex, gives the same bits. Functions that are const may be called from
+/// several threads at once.
 ///
 /// Limits: strain beside the mean one is taken as small, so thin parts one cell across are good for moderate strain.
 
 #include "dynamics/model.h"
+#include "fem/batches.h"
 #include "fem/element_table.h"
 #include "fem/ghost_penalty.h"
 #include "fem/incidence.h"
+#include "fem/multigrid.h"
 #include "fem/scratch.h"
 #include "fem/turned.h"
 #include "material/laws.h"
@@ -62,10 +65,9 @@ class Hexahedra : public dynamics::ElasticModel, public dynamics::StiffnessMatri
   void linearise(const Points& x) override;
   void apply_stiffness(std::span<const double> p, std::span<double> y) const override;
   void stiffness_diagonal(std::vector<Mat3>& blocks) const override;
+  /// Multigrid, where that pays.
+  dynamics::Preconditioner* preconditioner(const dynamics::LinearEquation& equation) override;
   Eigen::SparseMatrix<double> stiffness_matrix(const Points& x, dynamics::Tangent kind) const override;
-
-  /// y = M p with the consistent mass, whose rows sum to the lumped one [kg].
-  void apply_mass(std::span<const double> p, std::span<double> y) const;
 
   /// Volume of the material that the elements integrate over [m^3].
   double volume() const;
@@ -87,33 +89,40 @@ class Hexahedra : public dynamics::ElasticModel, public dynamics::StiffnessMatri
   void sum_mass(std::span<const std::uint32_t> corners);
   /// Part of its cube that a copy's material is [1].
   double fill(const std::size_t copy) const { return elements_[copy].volume / (h_ * h_ * h_); }
-  void find_runs();
-  /// Calls f(copy) for each that has an element, on several threads.
-  template <class Function>
-  void for_each_element(const Function& f) const;
+  void batch(const grid::Solid& solid);
+  void make_multigrid();
+  Kind kind(const std::size_t copy) const {
+    return !incidence_.is_used(copy) ? Kind::unused : elements_.is_full(copy) ? Kind::full : Kind::partial;
+  }
   std::array<Vec3, 8> corners_of(std::size_t copy, const Points& x) const;
   Turned turned_element(std::size_t copy, const Points& x) const;
   Matrix24 element_matrix(std::size_t copy, const Points& x, dynamics::Tangent kind) const;
-  /// y = sum over copies of their 24 values.
-  void gather(const double* values, double* y) const;
+
+  using Rows = Scratch<Row<double>>::Loan;
+  /// A row for each corner, and zeros after them.
+  void put_rows(std::span<const double> values, Rows& rows) const;
+  /// F and R of a batch.
+  Turns turns(std::size_t batch, const Row<double>* x) const;
+  /// Calls f(lane, copy) for each lane of a batch that is used.
+  template <class Function>
+  void for_each_lane(std::size_t batch, const Function& f) const;
+  MeanPart mean_part() const { return is_hookean() ? MeanPart::hooke : MeanPart::none; }
 
   double h_;
   material::AnyLaw law_;
   Frame frame_;
   Inertia inertia_;
-  /// Copies first, ..., first + n - 1 that have elements.
-  struct Run {
-    std::size_t first, n;
-  };
+  material::Elastic material_;
 
   ElementTable elements_;
   Incidence incidence_;
-  std::vector<Run> runs_; // of at most run_size
+  Batching batching_;
+  BatchedElements<double> batched_; // rotations and tangents at the linearisation point
   GhostPenalty ghost_penalty_;
   std::vector<double> mass_;
-  std::vector<double> rotations_; // 9 a copy, at the linearisation point
-  std::vector<double> tangents_;  // 81 a copy, times its volume; none where the law is Hooke's
-  mutable Scratch scratch_;
+  std::vector<Index3> places_; // of the copies' cells
+  std::unique_ptr<Multigrid> multigrid_; // none until it is asked for
+  mutable Scratch<Row<double>> scratch_;
 };
 
 } // namespace kerf::fem

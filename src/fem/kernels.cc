@@ -1,50 +1,121 @@
 #include "fem/kernels.h"
 
+#include "fem/force_loops.h"
+
 namespace kerf::fem {
 
-__attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default"))) void apply_stiffness(
-  const ElementBlock& block, const double* const p, double* const out) {
-  for (std::size_t e = 0; e < block.n; ++e) {
-    const std::uint32_t* const corners = block.corners + 8 * e;
-    const double* const K = block.stiffness + block.stride * block.element[e];
-    const double* const R = block.rotations + 9 * e;
-    alignas(64) double q[24], y[24] = {};
-    for (int a = 0; a < 8; ++a) {
-      const double* const pa = p + 3 * std::size_t(corners[a]);
-      for (int i = 0; i < 3; ++i)
-        q[3 * a + i] = R[3 * i] * pa[0] + R[3 * i + 1] * pa[1] + R[3 * i + 2] * pa[2];
-    }
-    for (int j = 0; j < 24; ++j)
-      for (int i = 0; i < 24; ++i)
-        y[i] += K[24 * j + i] * q[j];
-    double* const f = out + 24 * e;
-    for (int a = 0; a < 8; ++a)
-      for (int i = 0; i < 3; ++i)
-        f[3 * a + i] = R[i] * y[3 * a] + R[3 + i] * y[3 * a + 1] + R[6 + i] * y[3 * a + 2];
-  }
+namespace {
+
+// --- wide: AVX-512 ---
+
+[[gnu::target("arch=x86-64-v4")]] void product_wide(const CubeConstants<double>& cube, const Batch<double>& batch, const Row<double>* const p,
+  Row<double>* const y) {
+  ElementLoops<double, 8>::product(cube, batch, p, y);
+}
+[[gnu::target("arch=x86-64-v4")]] void diagonal_wide(const CubeConstants<double>& cube, const Batch<double>& batch, Row<double>* const blocks) {
+  ElementLoops<double, 8>::diagonal(cube, batch, blocks);
+}
+[[gnu::target("arch=x86-64-v4")]] void product_wide(const CubeConstants<float>& cube, const Batch<float>& batch, const Row<float>* const p,
+  Row<float>* const y) {
+  ElementLoops<float, 16>::product(cube, batch, p, y);
+}
+[[gnu::target("arch=x86-64-v4")]] void diagonal_wide(const CubeConstants<float>& cube, const Batch<float>& batch, Row<float>* const blocks) {
+  ElementLoops<float, 16>::diagonal(cube, batch, blocks);
+}
+[[gnu::target("arch=x86-64-v4")]] unsigned turn_wide(const CubeConstants<double>& cube, const Batch<double>& batch, const Row<double>* const x,
+  Turns& turns) {
+  return ForceLoops<double, 8>::turn_all(cube, batch, x, turns);
+}
+[[gnu::target("arch=x86-64-v4")]] void force_wide(const CubeConstants<double>& cube, const Batch<double>& batch, const Turns& turns, const MeanPart mean,
+  const double (*const P)[n_lanes], const double spins, const Row<double>* const x, Row<double>* const forces) {
+  ForceLoops<double, 8>::force(cube, batch, turns, mean, P, spins, x, forces);
+}
+[[gnu::target("arch=x86-64-v4")]] void energy_wide(const CubeConstants<double>& cube, const Batch<double>& batch, const Turns& turns, const MeanPart mean,
+  const Row<double>* const x, double* const energies) {
+  ForceLoops<double, 8>::energy(cube, batch, turns, mean, x, energies);
 }
 
-__attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default"))) void add_mean_tangent(
-  const ElementBlock& block, const double* const tangents, const double* const p, double* const out) {
-  for (std::size_t e = 0; e < block.n; ++e) {
-    const std::uint32_t* const corners = block.corners + 8 * e;
-    const double* const b = block.gradients + block.stride * block.element[e];
-    const double* const A = tangents + 81 * e;
-    double G[9] = {}, P[9] = {};
-    for (int a = 0; a < 8; ++a) {
-      const double* const pa = p + 3 * std::size_t(corners[a]);
-      for (int j = 0; j < 3; ++j)
-        for (int i = 0; i < 3; ++i)
-          G[3 * j + i] += pa[i] * b[3 * a + j];
-    }
-    for (int j = 0; j < 9; ++j)
-      for (int i = 0; i < 9; ++i)
-        P[i] += A[9 * j + i] * G[j];
-    double* const f = out + 24 * e;
-    for (int a = 0; a < 8; ++a)
-      for (int i = 0; i < 3; ++i)
-        f[3 * a + i] += P[i] * b[3 * a] + P[3 + i] * b[3 * a + 1] + P[6 + i] * b[3 * a + 2];
-  }
+// --- middle: AVX2 ---
+
+[[gnu::target("arch=x86-64-v3")]] void product_middle(const CubeConstants<double>& cube, const Batch<double>& batch, const Row<double>* const p,
+  Row<double>* const y) {
+  ElementLoops<double, 4>::product(cube, batch, p, y);
+}
+[[gnu::target("arch=x86-64-v3")]] void diagonal_middle(const CubeConstants<double>& cube, const Batch<double>& batch, Row<double>* const blocks) {
+  ElementLoops<double, 4>::diagonal(cube, batch, blocks);
+}
+[[gnu::target("arch=x86-64-v3")]] void product_middle(const CubeConstants<float>& cube, const Batch<float>& batch, const Row<float>* const p,
+  Row<float>* const y) {
+  ElementLoops<float, 8>::product(cube, batch, p, y);
+}
+[[gnu::target("arch=x86-64-v3")]] void diagonal_middle(const CubeConstants<float>& cube, const Batch<float>& batch, Row<float>* const blocks) {
+  ElementLoops<float, 8>::diagonal(cube, batch, blocks);
+}
+[[gnu::target("arch=x86-64-v3")]] unsigned turn_middle(const CubeConstants<double>& cube, const Batch<double>& batch, const Row<double>* const x,
+  Turns& turns) {
+  return ForceLoops<double, 4>::turn_all(cube, batch, x, turns);
+}
+[[gnu::target("arch=x86-64-v3")]] void force_middle(const CubeConstants<double>& cube, const Batch<double>& batch, const Turns& turns, const MeanPart mean,
+  const double (*const P)[n_lanes], const double spins, const Row<double>* const x, Row<double>* const forces) {
+  ForceLoops<double, 4>::force(cube, batch, turns, mean, P, spins, x, forces);
+}
+[[gnu::target("arch=x86-64-v3")]] void energy_middle(const CubeConstants<double>& cube, const Batch<double>& batch, const Turns& turns, const MeanPart mean,
+  const Row<double>* const x, double* const energies) {
+  ForceLoops<double, 4>::energy(cube, batch, turns, mean, x, energies);
+}
+
+// --- narrow: any x86-64 ---
+
+void product_narrow(const CubeConstants<double>& cube, const Batch<double>& batch, const Row<double>* const p,
+  Row<double>* const y) {
+  ElementLoops<double, 4>::product(cube, batch, p, y);
+}
+void diagonal_narrow(const CubeConstants<double>& cube, const Batch<double>& batch, Row<double>* const blocks) {
+  ElementLoops<double, 4>::diagonal(cube, batch, blocks);
+}
+void product_narrow(const CubeConstants<float>& cube, const Batch<float>& batch, const Row<float>* const p,
+  Row<float>* const y) {
+  ElementLoops<float, 4>::product(cube, batch, p, y);
+}
+void diagonal_narrow(const CubeConstants<float>& cube, const Batch<float>& batch, Row<float>* const blocks) {
+  ElementLoops<float, 4>::diagonal(cube, batch, blocks);
+}
+unsigned turn_narrow(const CubeConstants<double>& cube, const Batch<double>& batch, const Row<double>* const x,
+  Turns& turns) {
+  return ForceLoops<double, 4>::turn_all(cube, batch, x, turns);
+}
+void force_narrow(const CubeConstants<double>& cube, const Batch<double>& batch, const Turns& turns, const MeanPart mean,
+  const double (*const P)[n_lanes], const double spins, const Row<double>* const x, Row<double>* const forces) {
+  ForceLoops<double, 4>::force(cube, batch, turns, mean, P, spins, x, forces);
+}
+void energy_narrow(const CubeConstants<double>& cube, const Batch<double>& batch, const Turns& turns, const MeanPart mean,
+  const Row<double>* const x, double* const energies) {
+  ForceLoops<double, 4>::energy(cube, batch, turns, mean, x, energies);
+}
+
+} // namespace
+
+InstructionSet instruction_set() {
+  static const InstructionSet set = __builtin_cpu_supports("x86-64-v4")   ? InstructionSet::wide
+                                    : __builtin_cpu_supports("x86-64-v3") ? InstructionSet::middle
+                                                                          : InstructionSet::narrow;
+  return set;
+}
+
+template <class T>
+const ElementKernels<T>& element_kernels(const InstructionSet set) {
+  static constexpr ElementKernels<T> kernels[3] = {
+    {product_narrow, diagonal_narrow}, {product_middle, diagonal_middle}, {product_wide, diagonal_wide}};
+  return kernels[static_cast<int>(set)];
+}
+template const ElementKernels<double>& element_kernels<double>(InstructionSet);
+template const ElementKernels<float>& element_kernels<float>(InstructionSet);
+
+const ForceKernels& force_kernels(const InstructionSet set) {
+  static constexpr ForceKernels kernels[3] = {{turn_narrow, force_narrow, energy_narrow},
+                                              {turn_middle, force_middle, energy_middle},
+                                              {turn_wide, force_wide, energy_wide}};
+  return kernels[static_cast<int>(set)];
 }
 
 } // namespace kerf::fem

@@ -9,24 +9,26 @@
 
 namespace kerf::fem {
 
+template <class T>
 class Scratch {
  public:
   class Loan {
    public:
-    Loan(Scratch& owner, std::vector<double> values) : owner_(owner), values_(std::move(values)) {}
+    Loan(Scratch& owner, std::vector<T> values) : owner_(owner), values_(std::move(values)) {}
     Loan(const Loan&) = delete;
     Loan& operator=(const Loan&) = delete;
     ~Loan() { owner_.take_back(std::move(values_)); }
-    double* data() { return values_.data(); }
+    T* data() { return values_.data(); }
+    const T* data() const { return values_.data(); }
 
    private:
     Scratch& owner_;
-    std::vector<double> values_;
+    std::vector<T> values_;
   };
 
   /// At least n numbers of any value.
   Loan borrow(const std::size_t n) {
-    std::vector<double> values;
+    std::vector<T> values;
     {
       const std::lock_guard lock(mutex_);
       if (!idle_.empty()) {
@@ -39,13 +41,13 @@ class Scratch {
   }
 
  private:
-  void take_back(std::vector<double> values) {
+  void take_back(std::vector<T> values) {
     const std::lock_guard lock(mutex_);
     idle_.push_back(std::move(values));
   }
 
   std::mutex mutex_;
-  std::vector<std::vector<double>> idle_;
+  std::vector<std::vector<T>> idle_;
 };
 
 } // namespace kerf::fem

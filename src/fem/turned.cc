@@ -9,8 +9,6 @@ namespace kerf::fem {
 
 namespace {
 
-using ConstMatrix24 = Eigen::Map<const Matrix24>;
-
 Vec3 vertex_offset(const int a) { return Vec3(a & 1, a >> 1 & 1, a >> 2 & 1); }
 
 /// A^-1; zero where R has no derivative, or none is wanted.
@@ -52,17 +50,7 @@ Turned turned(const Element& element, const double h, const std::array<Vec3, 8>&
   return state;
 }
 
-Vector24 gradient(const Element& element, const Turned& state, const Frame frame) {
-  const Vector24 Ku = ConstMatrix24(element.stiffness.data()) * state.u;
-  const Vec3 z = inverse_spin(state, frame) * torque(state.y, Ku);
-  Vector24 g = local_gradient(element, Ku, z);
-  for (int a = 0; a < 8; ++a)
-    g.segment<3>(3 * a) = (state.R * g.segment<3>(3 * a)).eval();
-  return g;
-}
-
-Matrix24 turned_stiffness(const Element& element, const Mat3& R) {
-  const ConstMatrix24 K(element.stiffness.data());
+Matrix24 turned_stiffness(const Matrix24& K, const Mat3& R) {
   Matrix24 result;
   for (int a = 0; a < 8; ++a)
     for (int b = 0; b < 8; ++b)
@@ -72,8 +60,7 @@ Matrix24 turned_stiffness(const Element& element, const Mat3& R) {
 
 /// Column by column: the change of the gradient with one coordinate. In the turned frame x_b moves by e_i for
 /// p = R e_i, so all but the last turn is done with the unit vectors of that frame.
-Matrix24 hessian(const Element& element, const Turned& state, const Frame frame) {
-  const ConstMatrix24 K(element.stiffness.data());
+Matrix24 hessian(const Element& element, const Matrix24& K, const Turned& state, const Frame frame) {
   const Mat3 inverse = inverse_spin(state, frame), S = state.R.transpose() * state.F;
   const Vector24 Ku = K * state.u;
   const Vec3 z = inverse * torque(state.y, Ku);

@@ -28,13 +28,10 @@ struct Turned {
 /// `x`: the 8 corners [m].
 Turned turned(const Element& element, double h, const std::array<Vec3, 8>& x, Frame frame);
 
-/// dE/dx [N].
-Vector24 gradient(const Element& element, const Turned& state, Frame frame);
-
 /// R K R^T: positive semi-definite [N/m].
-Matrix24 turned_stiffness(const Element& element, const Mat3& R);
+Matrix24 turned_stiffness(const Matrix24& K, const Mat3& R);
 
-/// The second derivative of E [N/m], symmetric.
-Matrix24 hessian(const Element& element, const Turned& state, Frame frame);
+/// The second derivative of E [N/m], symmetric. `K`: the element's stiffness, or its part that E is of.
+Matrix24 hessian(const Element& element, const Matrix24& K, const Turned& state, Frame frame);
 
 } // namespace kerf::fem

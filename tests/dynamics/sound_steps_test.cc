@@ -168,9 +168,10 @@ struct System {
   double size(const Eigen::VectorXd& e) const { return std::sqrt(e.dot(A * e)); }
   CgReport solve(const CgStop& stop, Eigen::VectorXd& x) const {
     return conjugate_gradients(
-      [&](const auto p, const auto y) {
-        Eigen::Map<Eigen::VectorXd>(y.data(), b.size()) = A * Eigen::Map<const Eigen::VectorXd>(p.data(), b.size());
-      },
+      {[&](const auto p, const auto y) {
+         Eigen::Map<Eigen::VectorXd>(y.data(), b.size()) = A * Eigen::Map<const Eigen::VectorXd>(p.data(), b.size());
+       },
+       [](const auto r, const auto z) { std::copy(r.begin(), r.end(), z.begin()); }},
       {b.data(), static_cast<std::size_t>(b.size())}, stop, 10000, {x.data(), static_cast<std::size_t>(x.size())});
   }
 };

@@ -2,7 +2,7 @@
 
 #include "base/parallel.h"
 #include "dynamics/state.h"
-#include "fem/kernels.h"
+#include "fem/batches.h"
 #include "tests/fem/bodies.h"
 
 #include <gtest/gtest.h>
@@ -100,8 +100,7 @@ TEST(Stiffness, IsTheSumOfItsElements) {
   const Matrix found = assembled(model);
   Matrix K = Matrix::Zero(found.rows(), found.cols());
   for (const grid::Copy& copy : body.complex.copies) {
-    const Element element = make_element(material_moments(body, copy), body.grid.h(), rubber, {});
-    const Eigen::Map<const Matrix24> k(element.stiffness.data());
+    const Matrix24 k = stiffness(make_element(material_moments(body, copy), body.grid.h(), rubber, {}), rubber);
     for (int a = 0; a < 8; ++a)
       for (int b = 0; b < 8; ++b)
         K.block<3, 3>(3 * copy.corners[a].value, 3 * copy.corners[b].value) += k.block<3, 3>(3 * a, 3 * b);
@@ -148,67 +147,120 @@ TEST(Stiffness, IsTheDerivativeOfTheForceAtRest) {
   RecordProperty("error", std::to_string((derivative + K).norm() / K.norm() * 1e10) + "e-10");
 }
 
-/// Elements for the kernels: 37 of five kinds, at 50 corners.
-struct Kernels {
-  static constexpr std::size_t n = 37, n_corners = 50, stride = 600;
-  std::vector<double> kinds, rotations, tangents, p;
-  std::vector<std::uint32_t> corners, element;
+/// 40 elements at 50 corners, one in eight full, with any material, rotation and tangent.
+template <class T>
+struct AnyElements {
+  static constexpr std::uint32_t n = 40, n_corners = 50;
+  std::vector<Element> elements;
+  std::vector<std::uint32_t> corners, order;
+  std::vector<Mat3> rotations;
+  std::vector<material::Tangent> tangents;
+  Batching batching;
+  BatchedElements<T> batched;
+  std::vector<Row<T>> p;
 
-  Kernels() : kinds(5 * stride), p(3 * n_corners) {
+  explicit AnyElements(const bool has_tangents) {
     Draw draw(36);
-    for (std::vector<double>* values : {&kinds, &p})
-      for (double& value : *values)
-        value = draw(-1, 1);
-    for (std::size_t e = 0; e < n; ++e) {
-      element.push_back(static_cast<std::uint32_t>(draw(0, 5)));
-      const Mat3 R = draw.rotation();
-      rotations.insert(rotations.end(), R.data(), R.data() + 9);
+    const Element full = make_element(full_cube_moments(), 0.3, rubber, {});
+    for (std::uint32_t e = 0; e < n; ++e) {
+      Moments moments = full_cube_moments();
+      for (double& m : moments)
+        m *= 1 + (e % 8 == 0 ? 0 : 0.1 * draw(-1, 1));
+      elements.push_back(e % 8 == 0 ? full : make_element(moments, 0.3, rubber, {}));
+      order.push_back(e);
+      rotations.push_back(draw.rotation());
       for (int a = 0; a < 8; ++a)
         corners.push_back(static_cast<std::uint32_t>(draw(0, n_corners)));
       const material::Tangent A = material::Tangent::Random();
-      const material::Tangent symmetric = A + A.transpose();
-      tangents.insert(tangents.end(), symmetric.data(), symmetric.data() + 81);
+      tangents.push_back(A + A.transpose());
     }
+    batching = Batching(
+      order, [](const std::uint32_t e) { return e % 8 == 0 ? Kind::full : Kind::partial; }, corners.data(), n_corners);
+    batched = fem::batched<T>(batching, 0.3, rubber, full,
+                              [&](const std::uint32_t e) -> const Element& { return elements[e]; });
+    batched.tangents.resize(has_tangents ? batching.batches().size() : 0);
+    for (std::size_t i = 0; i < batching.batches().size(); ++i)
+      for (std::size_t lane = 0; lane < n_lanes; ++lane)
+        if (const std::uint32_t e = batching.batches()[i].copies[lane]; e != BatchOfCopies::none)
+          put(i, lane, e);
+    p.resize(batching.n_rows());
+    for (std::uint32_t c = 0; c < n_corners; ++c)
+      p[c] = {T(draw(-1, 1)), T(draw(-1, 1)), T(draw(-1, 1))};
   }
-  ElementBlock block() const {
-    return {n, corners.data(), element.data(), kinds.data(), kinds.data() + 576, stride, rotations.data()};
+  void put(const std::size_t batch, const std::size_t lane, const std::uint32_t e) {
+    for (int k = 0; k < 9; ++k)
+      batched.rotations[batch].row[k][lane] = T(rotations[e].data()[k]);
+    if (!batched.tangents.empty())
+      for (int i = 0; i < 9; ++i)
+        for (int j = 0; j <= i; ++j)
+          batched.tangents[batch].row[pair_index(i, j)][lane] = T(tangents[e](i, j));
   }
-  Vec3 at(const std::size_t e, const int a) const { return Eigen::Map<const Vec3>(&p[3 * corners[8 * e + a]]); }
+  /// The sum of the elements' matrices.
+  Matrix expected() const {
+    Matrix K = Matrix::Zero(3 * n_corners, 3 * n_corners);
+    for (std::uint32_t e = 0; e < n; ++e) {
+      const auto& b = elements[e].gradient;
+      const Matrix24 k = stiffness(elements[e], rubber, batched.tangents.empty() ? Part::whole : Part::hourglass);
+      for (int r = 0; r < 8; ++r)
+        for (int c = 0; c < 8; ++c) {
+          Mat3 block = rotations[e] * k.block<3, 3>(3 * r, 3 * c) * rotations[e].transpose();
+          for (int j = 0; j < 3 && !batched.tangents.empty(); ++j)
+            for (int l = 0; l < 3; ++l)
+              block += b[r][j] * b[c][l] * tangents[e].block<3, 3>(3 * j, 3 * l);
+          K.block<3, 3>(3 * corners[8 * e + r], 3 * corners[8 * e + c]) += block;
+        }
+    }
+    return K;
+  }
 };
 
-TEST(Stiffness, KernelIsTheProductsOfItsMatrices) {
-  const Kernels kernels;
-  std::vector<double> out(24 * Kernels::n, 1e300);
-  apply_stiffness(kernels.block(), kernels.p.data(), out.data());
-  for (std::size_t e = 0; e < Kernels::n; ++e) {
-    Matrix24 R = Matrix24::Zero();
-    Vector24 q;
-    for (int a = 0; a < 8; ++a) {
-      R.block<3, 3>(3 * a, 3 * a) = Eigen::Map<const Mat3>(&kernels.rotations[9 * e]);
-      q.segment<3>(3 * a) = kernels.at(e, a);
-    }
-    const Eigen::Map<const Matrix24> K(&kernels.kinds[Kernels::stride * kernels.element[e]]);
-    const Vector24 expected = R * (K * (R.transpose() * q));
-    EXPECT_LT((Eigen::Map<const Vector24>(&out[24 * e]) - expected).norm(), 1e-13);
-  }
+std::vector<InstructionSet> instruction_sets() {
+  std::vector<InstructionSet> all = {InstructionSet::narrow};
+  for (const auto set : {InstructionSet::middle, InstructionSet::wide})
+    if (set <= instruction_set())
+      all.push_back(set);
+  return all;
 }
 
-TEST(Stiffness, KernelOfTangentsIsTheProductsOfThem) {
-  const Kernels kernels;
-  std::vector<double> out(24 * Kernels::n, 1);
-  add_mean_tangent(kernels.block(), kernels.tangents.data(), kernels.p.data(), out.data());
-  for (std::size_t e = 0; e < Kernels::n; ++e) {
-    const double* const gradients = &kernels.kinds[Kernels::stride * kernels.element[e] + 576];
-    Mat3 G = Mat3::Zero(), P;
-    for (int a = 0; a < 8; ++a)
-      G += kernels.at(e, a) * Eigen::Map<const Vec3>(gradients + 3 * a).transpose();
-    Eigen::Map<Eigen::Matrix<double, 9, 1>>(P.data()) = Eigen::Map<const material::Tangent>(&kernels.tangents[81 * e]) *
-                                                        Eigen::Map<const Eigen::Matrix<double, 9, 1>>(G.data());
-    for (int a = 0; a < 8; ++a) {
-      const Vec3 expected = Vec3::Ones() + P * Eigen::Map<const Vec3>(gradients + 3 * a);
-      EXPECT_LT((Eigen::Map<const Vec3>(&out[24 * e + 3 * a]) - expected).norm(), 1e-13);
+template <class T>
+void expect_kernels_are_the_matrices(const double tolerance) {
+  for (const bool has_tangents : {false, true})
+    for (const InstructionSet set : instruction_sets()) {
+      const AnyElements<T> all(has_tangents);
+      const Matrix K = all.expected();
+      std::vector<Row<T>> y(all.p.size()), blocks(2 * all.p.size());
+      for (std::size_t i = 0; i < all.batching.batches().size(); ++i) {
+        const auto batch = all.batched.batch(all.batching, i);
+        element_kernels<T>(set).product(all.batched.cube, batch, all.p.data(), y.data());
+        element_kernels<T>(set).diagonal(all.batched.cube, batch, blocks.data());
+      }
+      Eigen::VectorXd p(K.rows()), product(K.rows());
+      Matrix diagonal = Matrix::Zero(K.rows(), 3), found = diagonal;
+      for (std::uint32_t c = 0; c < all.n_corners; ++c) {
+        const Row<T>&d = blocks[2 * c], &s = blocks[2 * c + 1];
+        p.segment<3>(3 * c) << all.p[c].x, all.p[c].y, all.p[c].z;
+        product.segment<3>(3 * c) << y[c].x, y[c].y, y[c].z;
+        found.middleRows<3>(3 * c) << d.x, s.x, s.z, s.x, d.y, s.y, s.z, s.y, d.z;
+      }
+      EXPECT_LT((product - K * p).norm(), tolerance * (K * p).norm()) << static_cast<int>(set);
+      for (std::uint32_t e = 0; e < all.n; ++e) {
+        const Matrix24 k = stiffness(all.elements[e], rubber, has_tangents ? Part::hourglass : Part::whole);
+        for (int a = 0; a < 8; ++a) {
+          Mat3 block = all.rotations[e] * k.block<3, 3>(3 * a, 3 * a) * all.rotations[e].transpose();
+          const Vec3& b = all.elements[e].gradient[a];
+          for (int j = 0; j < 3 && has_tangents; ++j)
+            for (int l = 0; l < 3; ++l)
+              block += b[j] * b[l] * all.tangents[e].template block<3, 3>(3 * j, 3 * l);
+          diagonal.middleRows<3>(3 * all.corners[8 * e + a]) += 0.5 * (block + block.transpose());
+        }
+      }
+      EXPECT_LT((diagonal - found).norm(), tolerance * diagonal.norm()) << static_cast<int>(set);
     }
-  }
+}
+
+TEST(Stiffness, KernelsAreTheMatricesOfTheirElements) {
+  expect_kernels_are_the_matrices<double>(1e-14);
+  expect_kernels_are_the_matrices<float>(1e-6);
 }
 
 TEST(Stiffness, OneAndTwoThreadsGiveTheSameBits) {

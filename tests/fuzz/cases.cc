@@ -118,6 +118,8 @@ class Run {
       strokes_.push_back({static_cast<grid::CutLabel>(label)});
   }
 
+  const grid::Solid& solid() const { return subject_.solid; }
+
   void all_sweeps() {
     for (const std::uint32_t number : case_.sweeps) {
       ++outcome_.n_done;
@@ -271,11 +273,15 @@ std::string to_string(const Case& one) {
   return text;
 }
 
-Outcome run(const Case& one, const std::vector<Specimen>& specimens, Tally& tally) {
+Outcome run(const Case& one, const std::vector<Specimen>& specimens, Tally& tally,
+            const std::function<void(const grid::Solid&)>& judge) {
   Outcome outcome;
   try {
     ++tally.n_cases;
-    Run(one, specimens, tally, outcome).all_sweeps();
+    Run run(one, specimens, tally, outcome);
+    run.all_sweeps();
+    if (judge)
+      judge(run.solid());
   } catch (const std::exception& error) {
     outcome.failure = error.what();
   }

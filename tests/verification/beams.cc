@@ -128,13 +128,16 @@ namespace {
 using Sparse = Eigen::SparseMatrix<double>;
 using Vector = Eigen::VectorXd;
 
-Sparse mass_matrix(const fem::Hexahedra& model, const MassMatrix kind) {
+Sparse mass_matrix(const Built& built, const double density, const MassMatrix kind) {
+  const fem::Hexahedra& model = *built.model;
   if (kind == MassMatrix::consistent)
     return fem::assemble(model.incidence(), [&](const std::size_t copy) {
+      const auto mass = fem::consistent_mass(
+        fem::material_moments(built.body, built.body.complex.copies[grid::CopyId(copy)]), density * std::pow(model.h(), 3));
       fem::Matrix24 M = fem::Matrix24::Zero();
       for (int a = 0; a < 8; ++a)
         for (int b = 0; b < 8; ++b)
-          M.block<3, 3>(3 * a, 3 * b) = model.element(copy).consistent_mass[8 * a + b] * Mat3::Identity();
+          M.block<3, 3>(3 * a, 3 * b) = mass(a, b) * Mat3::Identity();
       return M;
     });
   Vector diagonal(3 * model.lumped_mass().size());
@@ -210,7 +213,7 @@ BeamResult frequency(const Vibration kind, const double slenderness, const int n
     shape.segment<3>(3 * c) = wave.shape(kind, rest[c]);
   const double expected = wave.squared_frequency(kind);
   const double found =
-    lowest_eigenvalue(built.model->stiffness_matrix(rest, dynamics::Tangent::exact), mass_matrix(*built.model, mass),
+    lowest_eigenvalue(built.model->stiffness_matrix(rest, dynamics::Tangent::exact), mass_matrix(built, options_of(model, 1, wave.nu).material.density, mass),
                       free_components(rest, slenderness), shape, expected);
   return result_of(built, timer, std::sqrt(found / expected));
 }

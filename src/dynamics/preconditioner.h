@@ -1,0 +1,34 @@
+#pragma once
+
+/// The contract of an approximate inverse that a model makes of its own linear equations.
+
+#include "dynamics/constraints.h"
+
+#include <span>
+
+namespace kerf::dynamics {
+
+/// A = mass_factor M + stiffness_factor K + loads, among the directions that supports leave free, with K at the model's
+/// linearisation point.
+struct LinearEquation {
+  double mass_factor, stiffness_factor; ///< [1/s^2], [1]
+  std::span<const double> mass;         ///< of each corner [kg]
+  std::span<const Mat3> blocks;         ///< A's diagonal 3 x 3 blocks, one a corner [N/m]
+  std::span<const Mat3> loads;          ///< blocks that are at least what loads add to A; empty: none [N/m]
+  const Constraints& constraints;
+};
+
+class Preconditioner {
+ public:
+  virtual ~Preconditioner() = default;
+
+  /// z = B r [m] for r [N], 3 n numbers each, with B near A^-1: symmetric, and positive among the free directions. What r
+  /// has along others is not looked at, and z has none there.
+  virtual void apply(std::span<const double> r, std::span<double> z) = 0;
+};
+
+/// L^-1 for the Cholesky factor L of a diagonal block among its free directions, from whose basis it maps; zero rows for
+/// those that are held. So S^T S is the block's inverse.
+Mat3 inverse_factor(const Mat3& block, const Constraints::Freedom& freedom);
+
+} // namespace kerf::dynamics

@@ -1,0 +1,399 @@
+#pragma once
+
+/// The loops of kernels.h for numbers T and vectors of W of them. All is inlined into functions of one instruction set
+/// each, so this file is for kernels.cc alone.
+
+#include "fem/kernels.h"
+
+namespace kerf::fem {
+
+template <class T, int W>
+struct ElementLoops {
+  typedef T V __attribute__((vector_size(sizeof(T) * W)));
+  typedef T Four __attribute__((vector_size(sizeof(T) * 4)));
+
+  /// Do reflections leave this pair of hourglass unknowns coupled in a full cube? Each must change the sign of both or
+  /// of none.
+  static constexpr bool is_coupled(const int p, const int q) {
+    return (hourglass_modes[p / 3] ^ 1 << p % 3) == (hourglass_modes[q / 3] ^ 1 << q % 3);
+  }
+
+  [[gnu::always_inline]] static V load(const T* const p) { return *reinterpret_cast<const V*>(p); }
+  [[gnu::always_inline]] static void store(T* const p, const V& v) { *reinterpret_cast<V*>(p) = v; }
+
+  // --- Rows of corners ---------------------------------------------------------------------------------------------
+
+  [[gnu::always_inline]] static Four row(const Row<T>* const p, const std::uint32_t i) {
+    return *reinterpret_cast<const Four*>(p + i);
+  }
+  template <int first>
+  [[gnu::always_inline]] static Four four_of(const V& v) {
+    return __builtin_shufflevector(v, v, first, first + 1, first + 2, first + 3);
+  }
+  [[gnu::always_inline]] static V joined(const Four (&f)[W / 4]) {
+    if constexpr (W == 4) {
+      return f[0];
+    } else {
+      const auto low = __builtin_shufflevector(f[0], f[1], 0, 1, 2, 3, 4, 5, 6, 7);
+      if constexpr (W == 8) {
+        return low;
+      } else {
+        const auto high = __builtin_shufflevector(f[2], f[3], 0, 1, 2, 3, 4, 5, 6, 7);
+        return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+      }
+    }
+  }
+  /// Reads the rows of W corners.
+  [[gnu::always_inline]] static void read(const std::uint32_t* const corners, const Row<T>* const p, V (&v)[3]) {
+    Four part[3][W / 4];
+    for (int g = 0; g < W / 4; ++g) {
+      const Four r0 = row(p, corners[4 * g]), r1 = row(p, corners[4 * g + 1]), r2 = row(p, corners[4 * g + 2]),
+                 r3 = row(p, corners[4 * g + 3]);
+      const Four low01 = __builtin_shufflevector(r0, r1, 0, 4, 1, 5), low23 = __builtin_shufflevector(r2, r3, 0, 4, 1, 5);
+      const Four high01 = __builtin_shufflevector(r0, r1, 2, 6, 3, 7),
+                 high23 = __builtin_shufflevector(r2, r3, 2, 6, 3, 7);
+      part[0][g] = __builtin_shufflevector(low01, low23, 0, 1, 4, 5);
+      part[1][g] = __builtin_shufflevector(low01, low23, 2, 3, 6, 7);
+      part[2][g] = __builtin_shufflevector(high01, high23, 0, 1, 4, 5);
+    }
+    for (int i = 0; i < 3; ++i)
+      v[i] = joined(part[i]);
+  }
+  /// Adds to the rows of 4 corners, one after the other.
+  [[gnu::always_inline]] static void add_four(const Four& x, const Four& y, const Four& z,
+                                              const std::uint32_t* const corners, Row<T>* const p, const int stride) {
+    const Four none = {};
+    const Four xy01 = __builtin_shufflevector(x, y, 0, 4, 1, 5), xy23 = __builtin_shufflevector(x, y, 2, 6, 3, 7);
+    const Four z01 = __builtin_shufflevector(z, none, 0, 4, 1, 5), z23 = __builtin_shufflevector(z, none, 2, 6, 3, 7);
+    *reinterpret_cast<Four*>(p + stride * corners[0]) += __builtin_shufflevector(xy01, z01, 0, 1, 4, 5);
+    *reinterpret_cast<Four*>(p + stride * corners[1]) += __builtin_shufflevector(xy01, z01, 2, 3, 6, 7);
+    *reinterpret_cast<Four*>(p + stride * corners[2]) += __builtin_shufflevector(xy23, z23, 0, 1, 4, 5);
+    *reinterpret_cast<Four*>(p + stride * corners[3]) += __builtin_shufflevector(xy23, z23, 2, 3, 6, 7);
+  }
+  [[gnu::always_inline]] static void add(const V& x, const V& y, const V& z, const std::uint32_t* const corners,
+                                         Row<T>* const p, const int stride = 1) {
+    add_four(four_of<0>(x), four_of<0>(y), four_of<0>(z), corners, p, stride);
+    if constexpr (W >= 8)
+      add_four(four_of<4>(x), four_of<4>(y), four_of<4>(z), corners + 4, p, stride);
+    if constexpr (W == 16) {
+      add_four(four_of<8>(x), four_of<8>(y), four_of<8>(z), corners + 8, p, stride);
+      add_four(four_of<12>(x), four_of<12>(y), four_of<12>(z), corners + 12, p, stride);
+    }
+  }
+
+  // --- Modes -------------------------------------------------------------------------------------------------------
+
+  /// Nodes to modes, in place.
+  [[gnu::always_inline]] static void to_modes(V (&c)[8][3]) {
+#pragma GCC unroll 3
+    for (int bit = 1; bit < 8; bit *= 2)
+#pragma GCC unroll 8
+      for (int a = 0; a < 8; ++a)
+        if ((a & bit) == 0)
+#pragma GCC unroll 3
+          for (int i = 0; i < 3; ++i) {
+            const V low = c[a][i], high = c[a | bit][i];
+            c[a][i] = low + high;
+            c[a | bit][i] = high - low;
+          }
+  }
+  /// The transpose of that: forces on modes to forces on nodes.
+  template <int n>
+  [[gnu::always_inline]] static void to_nodes(V (&c)[8][n]) {
+#pragma GCC unroll 3
+    for (int bit = 1; bit < 8; bit *= 2)
+#pragma GCC unroll 8
+      for (int a = 0; a < 8; ++a)
+        if ((a & bit) == 0)
+#pragma GCC unroll 6
+          for (int i = 0; i < n; ++i) {
+            const V even = c[a][i], odd = c[a | bit][i];
+            c[a][i] = even - odd;
+            c[a | bit][i] = even + odd;
+          }
+  }
+  [[gnu::always_inline]] static void read_modes(const std::uint32_t (*const corners)[n_lanes], const int lane,
+                                                const Row<T>* const p, V (&c)[8][3]) {
+#pragma GCC unroll 8
+    for (int a = 0; a < 8; ++a)
+      read(corners[a] + lane, p, c[a]);
+    to_modes(c);
+  }
+  /// The same of positions: differences first, so that the distance from the origin is not rounded.
+  [[gnu::always_inline]] static void read_shape(const std::uint32_t (*const corners)[n_lanes], const int lane,
+                                                const Row<T>* const x, V (&c)[8][3]) {
+#pragma GCC unroll 8
+    for (int a = 0; a < 8; ++a)
+      read(corners[a] + lane, x, c[a]);
+#pragma GCC unroll 7
+    for (int a = 7; a >= 0; --a)
+#pragma GCC unroll 3
+      for (int i = 0; i < 3; ++i)
+        c[a][i] -= c[0][i];
+    to_modes(c);
+  }
+  [[gnu::always_inline]] static void add_modes(V (&f)[8][3], const std::uint32_t (*const corners)[n_lanes],
+                                               const int lane, Row<T>* const y) {
+    to_nodes(f);
+#pragma GCC unroll 8
+    for (int a = 0; a < 8; ++a)
+      add(f[a][0], f[a][1], f[a][2], corners[a] + lane, y);
+  }
+  /// v = R^T v.
+  [[gnu::always_inline]] static void turn_back(const V (&R)[9], V (&v)[3]) {
+    const V x = v[0], y = v[1], z = v[2];
+#pragma GCC unroll 3
+    for (int i = 0; i < 3; ++i)
+      v[i] = R[3 * i] * x + R[3 * i + 1] * y + R[3 * i + 2] * z;
+  }
+  /// v = R v.
+  [[gnu::always_inline]] static void turn(const V (&R)[9], V (&v)[3]) {
+    const V x = v[0], y = v[1], z = v[2];
+#pragma GCC unroll 3
+    for (int i = 0; i < 3; ++i)
+      v[i] = R[i] * x + R[3 + i] * y + R[6 + i] * z;
+  }
+  [[gnu::always_inline]] static void load_nine(const T (*const rows)[n_lanes], const int lane, V (&M)[9]) {
+#pragma GCC unroll 9
+    for (int i = 0; i < 9; ++i)
+      M[i] = load(rows[i] + lane);
+  }
+
+  // --- What meets modes --------------------------------------------------------------------------------------------
+
+  /// G = sum c_m b_m^T, column by column.
+  template <bool is_partial>
+  [[gnu::always_inline]] static void mean_gradient(const CubeConstants<T>& cube, const Batch<T>& batch, const int lane,
+                                                   const V (&c)[8][3], V (&G)[9]) {
+    const T slope = T(0.25) / cube.h;
+#pragma GCC unroll 3
+    for (int j = 0; j < 3; ++j)
+#pragma GCC unroll 3
+      for (int i = 0; i < 3; ++i) {
+        G[3 * j + i] = slope * c[linear_modes[j]][i];
+        if constexpr (is_partial)
+#pragma GCC unroll 4
+          for (int k = 0; k < 4; ++k)
+            G[3 * j + i] += load(batch.partial->gradient[3 * k + j] + lane) * c[hourglass_modes[k]][i];
+      }
+  }
+  /// f_m = P b_m for the linear modes, f_m += P b_m for the others.
+  template <bool is_partial>
+  [[gnu::always_inline]] static void put_stress(const CubeConstants<T>& cube, const Batch<T>& batch, const int lane,
+                                                const V (&P)[9], V (&f)[8][3]) {
+    const T slope = T(0.25) / cube.h;
+#pragma GCC unroll 3
+    for (int j = 0; j < 3; ++j)
+#pragma GCC unroll 3
+      for (int i = 0; i < 3; ++i) {
+        f[linear_modes[j]][i] = slope * P[3 * j + i];
+        if constexpr (is_partial)
+#pragma GCC unroll 4
+          for (int k = 0; k < 4; ++k)
+            f[hourglass_modes[k]][i] += load(batch.partial->gradient[3 * k + j] + lane) * P[3 * j + i];
+      }
+  }
+  template <bool is_partial>
+  [[gnu::always_inline]] static V volume(const CubeConstants<T>& cube, const Batch<T>& batch, const int lane) {
+    if constexpr (is_partial)
+      return load(batch.partial->volume + lane);
+    else
+      return cube.volume - V{};
+  }
+  /// V (lambda tr G I + mu (G + G^T)).
+  template <bool is_partial>
+  [[gnu::always_inline]] static void hooke(const CubeConstants<T>& cube, const Batch<T>& batch, const int lane,
+                                           const V (&G)[9], V (&P)[9]) {
+    const V v = volume<is_partial>(cube, batch, lane), mu = cube.mu * v, pressure = cube.lambda * v * (G[0] + G[4] + G[8]);
+#pragma GCC unroll 3
+    for (int j = 0; j < 3; ++j)
+#pragma GCC unroll 3
+      for (int i = 0; i < 3; ++i) {
+        P[3 * j + i] = mu * (G[3 * j + i] + G[3 * i + j]);
+        if (i == j)
+          P[3 * j + i] += pressure;
+      }
+  }
+  [[gnu::always_inline]] static void law_tangent(const Batch<T>& batch, const int lane, const V (&G)[9], V (&P)[9]) {
+#pragma GCC unroll 9
+    for (int i = 0; i < 9; ++i)
+      P[i] = V{};
+#pragma GCC unroll 9
+    for (int i = 0; i < 9; ++i)
+#pragma GCC unroll 9
+      for (int j = 0; j <= i; ++j) {
+        const V A = load(batch.tangent[pair_index(i, j)] + lane);
+        P[i] += A * G[j];
+        if (i != j)
+          P[j] += A * G[i];
+      }
+  }
+  /// f of the hourglass modes, from zero.
+  template <bool is_partial>
+  [[gnu::always_inline]] static void hourglass(const CubeConstants<T>& cube, const Batch<T>& batch, const int lane,
+                                               const V (&c)[8][3], V (&f)[8][3]) {
+#pragma GCC unroll 12
+    for (int p = 0; p < n_hourglass; ++p)
+      f[hourglass_modes[p / 3]][p % 3] = V{};
+#pragma GCC unroll 12
+    for (int p = 0; p < n_hourglass; ++p)
+#pragma GCC unroll 12
+      for (int q = 0; q <= p; ++q) {
+        if (!is_partial && !is_coupled(p, q))
+          continue;
+        const V K = is_partial ? load(batch.partial->hourglass[pair_index(p, q)] + lane)
+                               : cube.hourglass[pair_index(p, q)] - V{};
+        const int m = hourglass_modes[p / 3], n = hourglass_modes[q / 3];
+        f[m][p % 3] += K * c[n][q % 3];
+        if (p != q)
+          f[n][q % 3] += K * c[m][p % 3];
+      }
+  }
+
+  // --- Products ----------------------------------------------------------------------------------------------------
+
+  template <bool is_partial>
+  [[gnu::always_inline]] static void product_hooke(const CubeConstants<T>& cube, const Batch<T>& batch, const int lane,
+                                                   const Row<T>* const p, Row<T>* const y) {
+    V c[8][3], R[9], G[9], P[9], f[8][3];
+    read_modes(batch.corners, lane, p, c);
+    load_nine(batch.rotation, lane, R);
+#pragma GCC unroll 7
+    for (int m = 1; m < 8; ++m)
+      turn_back(R, c[m]);
+    hourglass<is_partial>(cube, batch, lane, c, f);
+    mean_gradient<is_partial>(cube, batch, lane, c, G);
+    hooke<is_partial>(cube, batch, lane, G, P);
+    put_stress<is_partial>(cube, batch, lane, P, f);
+#pragma GCC unroll 7
+    for (int m = 1; m < 8; ++m)
+      turn(R, f[m]);
+#pragma GCC unroll 3
+    for (int i = 0; i < 3; ++i)
+      f[0][i] = V{};
+    add_modes(f, batch.corners, lane, y);
+  }
+  /// The law's tangent is not turned, the hourglass modes are.
+  template <bool is_partial>
+  [[gnu::always_inline]] static void product_law(const CubeConstants<T>& cube, const Batch<T>& batch, const int lane,
+                                                 const Row<T>* const p, Row<T>* const y) {
+    V c[8][3], R[9], G[9], P[9], f[8][3];
+    read_modes(batch.corners, lane, p, c);
+    load_nine(batch.rotation, lane, R);
+    mean_gradient<is_partial>(cube, batch, lane, c, G);
+    law_tangent(batch, lane, G, P);
+#pragma GCC unroll 4
+    for (int k = 0; k < 4; ++k)
+      turn_back(R, c[hourglass_modes[k]]);
+    hourglass<is_partial>(cube, batch, lane, c, f);
+#pragma GCC unroll 4
+    for (int k = 0; k < 4; ++k)
+      turn(R, f[hourglass_modes[k]]);
+    put_stress<is_partial>(cube, batch, lane, P, f);
+#pragma GCC unroll 3
+    for (int i = 0; i < 3; ++i)
+      f[0][i] = V{};
+    add_modes(f, batch.corners, lane, y);
+  }
+  [[gnu::always_inline]] static void product(const CubeConstants<T>& cube, const Batch<T>& batch, const Row<T>* const p,
+                                             Row<T>* const y) {
+    for (int lane = 0; lane < int(n_lanes); lane += W)
+      if (batch.tangent && batch.partial)
+        product_law<true>(cube, batch, lane, p, y);
+      else if (batch.tangent)
+        product_law<false>(cube, batch, lane, p, y);
+      else if (batch.partial)
+        product_hooke<true>(cube, batch, lane, p, y);
+      else
+        product_hooke<false>(cube, batch, lane, p, y);
+  }
+
+  // --- Diagonal blocks ---------------------------------------------------------------------------------------------
+
+  /// xx, yy, zz, xy, yz, zx.
+  static constexpr int block_row[6] = {0, 1, 2, 0, 1, 2}, block_column[6] = {0, 1, 2, 1, 2, 0};
+
+  /// Of the hourglass modes, in the turned frame: sums over pairs of modes by their product, which is a mode again.
+  template <bool is_partial>
+  [[gnu::always_inline]] static void hourglass_blocks(const CubeConstants<T>& cube, const Batch<T>& batch,
+                                                      const int lane, V (&D)[8][6]) {
+    for (int m = 0; m < 8; ++m)
+      for (int ij = 0; ij < 6; ++ij)
+        D[m][ij] = V{};
+    for (int k = 0; k < 4; ++k)
+      for (int l = 0; l < 4; ++l)
+        for (int ij = 0; ij < 6; ++ij) {
+          const int p = 3 * k + block_row[ij], q = 3 * l + block_column[ij], pair = p > q ? pair_index(p, q) : pair_index(q, p);
+          D[hourglass_modes[k] ^ hourglass_modes[l]][ij] +=
+            is_partial ? load(batch.partial->hourglass[pair] + lane) : cube.hourglass[pair] - V{};
+        }
+    to_nodes(D);
+  }
+  /// b_a of the mean gradient.
+  template <bool is_partial>
+  [[gnu::always_inline]] static void node_gradient(const CubeConstants<T>& cube, const Batch<T>& batch, const int lane,
+                                                   const int a, V (&b)[3]) {
+    const T slope = T(0.25) / cube.h;
+    for (int j = 0; j < 3; ++j) {
+      b[j] = (a >> j & 1 ? slope : -slope) - V{};
+      if constexpr (is_partial)
+        for (int k = 0; k < 4; ++k) {
+          const V part = load(batch.partial->gradient[3 * k + j] + lane);
+          const bool is_odd = __builtin_popcount(hourglass_modes[k] & ~a) & 1;
+          b[j] += is_odd ? -part : part;
+        }
+    }
+  }
+  [[gnu::always_inline]] static V tangent_entry(const Batch<T>& batch, const int lane, const int i, const int j) {
+    return load(batch.tangent[i > j ? pair_index(i, j) : pair_index(j, i)] + lane);
+  }
+  [[gnu::always_inline]] static void turn_block(const V (&R)[9], V (&D)[6]) {
+    const V full[3][3] = {{D[0], D[3], D[5]}, {D[3], D[1], D[4]}, {D[5], D[4], D[2]}};
+    V RD[3][3];
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j)
+        RD[i][j] = R[i] * full[0][j] + R[3 + i] * full[1][j] + R[6 + i] * full[2][j];
+    for (int ij = 0; ij < 6; ++ij) {
+      const int i = block_row[ij], j = block_column[ij];
+      D[ij] = RD[i][0] * R[j] + RD[i][1] * R[3 + j] + RD[i][2] * R[6 + j];
+    }
+  }
+  template <bool is_partial>
+  [[gnu::always_inline]] static void diagonal_of(const CubeConstants<T>& cube, const Batch<T>& batch, const int lane,
+                                                 Row<T>* const blocks) {
+    V D[8][6], R[9], b[3] = {V{}, V{}, V{}};
+    hourglass_blocks<is_partial>(cube, batch, lane, D);
+    load_nine(batch.rotation, lane, R);
+    const V v = volume<is_partial>(cube, batch, lane);
+    for (int a = 0; a < 8; ++a) {
+      node_gradient<is_partial>(cube, batch, lane, a, b);
+      if (!batch.tangent)
+        for (int ij = 0; ij < 6; ++ij) {
+          const int i = block_row[ij], j = block_column[ij];
+          D[a][ij] += (cube.lambda + cube.mu) * v * b[i] * b[j];
+          if (i == j)
+            D[a][ij] += cube.mu * v * (b[0] * b[0] + b[1] * b[1] + b[2] * b[2]);
+        }
+      turn_block(R, D[a]);
+      if (batch.tangent)
+        for (int ij = 0; ij < 6; ++ij)
+          for (int j = 0; j < 3; ++j)
+            for (int l = 0; l < 3; ++l)
+              D[a][ij] += b[j] * b[l] * tangent_entry(batch, lane, 3 * j + block_row[ij], 3 * l + block_column[ij]);
+      if constexpr (is_partial)
+        for (V& d : D[a])
+          d *= load(batch.partial->weight + lane);
+      add(D[a][0], D[a][1], D[a][2], batch.corners[a] + lane, blocks, 2);
+      add(D[a][3], D[a][4], D[a][5], batch.corners[a] + lane, blocks + 1, 2);
+    }
+  }
+  [[gnu::always_inline]] static void diagonal(const CubeConstants<T>& cube, const Batch<T>& batch, Row<T>* const blocks) {
+    for (int lane = 0; lane < int(n_lanes); lane += W)
+      if (batch.partial)
+        diagonal_of<true>(cube, batch, lane, blocks);
+      else
+        diagonal_of<false>(cube, batch, lane, blocks);
+  }
+};
+
+} // namespace kerf::fem

@@ -1,0 +1,211 @@
+#pragma once
+
+/// The loops of kernels.h for rotations, forces and energies (turned.h), beside those of element_loops.h. For kernels.cc
+/// alone.
+
+#include "fem/element_loops.h"
+
+namespace kerf::fem {
+
+template <class T, int W>
+struct ForceLoops : ElementLoops<T, W> {
+  using Loops = ElementLoops<T, W>;
+  using typename Loops::V;
+  using Loops::add_modes;
+  using Loops::load;
+  using Loops::load_nine;
+  using Loops::read_shape;
+  using Loops::store;
+  using Loops::turn;
+  using Loops::turn_back;
+
+  // --- Rotations ---------------------------------------------------------------------------------------------------
+
+  /// R^-T times its determinant, which is returned.
+  [[gnu::always_inline]] static V cofactors(const V (&R)[9], V (&C)[9]) {
+    for (int j = 0; j < 3; ++j)
+      for (int i = 0; i < 3; ++i) {
+        const int j1 = (j + 1) % 3, j2 = (j + 2) % 3, i1 = (i + 1) % 3, i2 = (i + 2) % 3;
+        C[3 * j + i] = R[3 * j1 + i1] * R[3 * j2 + i2] - R[3 * j1 + i2] * R[3 * j2 + i1];
+      }
+    return R[0] * C[0] + R[1] * C[1] + R[2] * C[2];
+  }
+  /// Newton's iteration R <- (R + R^-T) / 2 (Higham 1986) in each lane until it stands; returns bits of lanes where it
+  /// does not, or F is near singular or inverted.
+  [[gnu::always_inline]] static unsigned nearest_rotation(const V (&F)[9], V (&R)[9]) {
+    constexpr int most = 12;
+    constexpr T well_conditioned = T(1e-3), stands = T(1e-28);
+    V C[9], size = V{};
+    for (int i = 0; i < 9; ++i) {
+      R[i] = F[i];
+      size += F[i] * F[i];
+    }
+    V det = cofactors(R, C);
+    const auto is_bad = ~(det * det * 36 > well_conditioned * well_conditioned * size * size * size) | (det <= 0);
+    auto is_done = is_bad;
+    for (int n = 0; n < most; ++n) {
+      V change = V{};
+      for (int i = 0; i < 9; ++i) {
+        const V next = T(0.5) * (R[i] + C[i] / det);
+        change += (next - R[i]) * (next - R[i]);
+        R[i] = is_done ? R[i] : next;
+      }
+      is_done |= change < stands;
+      bool all = true;
+      for (int l = 0; l < W; ++l)
+        all &= is_done[l] != 0;
+      if (all)
+        break;
+      det = cofactors(R, C);
+    }
+    unsigned unknown = 0;
+    for (int l = 0; l < W; ++l)
+      unknown |= unsigned(is_bad[l] != 0 || is_done[l] == 0) << l;
+    return unknown;
+  }
+  template <bool is_partial>
+  [[gnu::always_inline]] static unsigned turn_of(const CubeConstants<T>& cube, const Batch<T>& batch, const int lane,
+                                                 const Row<T>* const x, Turns& turns) {
+    V c[8][3], F[9], R[9];
+    read_shape(batch.corners, lane, x, c);
+    Loops::template mean_gradient<is_partial>(cube, batch, lane, c, F);
+    const unsigned unknown = nearest_rotation(F, R);
+    for (int i = 0; i < 9; ++i) {
+      store(turns.F[i] + lane, F[i]);
+      store(turns.R[i] + lane, R[i]);
+    }
+    return unknown << lane;
+  }
+  [[gnu::always_inline]] static unsigned turn_all(const CubeConstants<T>& cube, const Batch<T>& batch,
+                                                  const Row<T>* const x, Turns& turns) {
+    unsigned unknown = 0;
+    for (int lane = 0; lane < int(n_lanes); lane += W)
+      unknown |= batch.partial ? turn_of<true>(cube, batch, lane, x, turns) : turn_of<false>(cube, batch, lane, x, turns);
+    return unknown;
+  }
+
+  // --- Forces ------------------------------------------------------------------------------------------------------
+
+  /// Y_m = R^T c_m of the shape, u_m without the cube at rest, and f_m = dE/du_m.
+  template <bool is_partial>
+  [[gnu::always_inline]] static void strain(const CubeConstants<T>& cube, const Batch<T>& batch, const int lane,
+                                            const V (&R)[9], const MeanPart mean, const Row<T>* const x, V (&Y)[8][3],
+                                            V (&u)[8][3], V (&f)[8][3]) {
+    V G[9], P[9];
+    read_shape(batch.corners, lane, x, Y);
+    for (int m = 0; m < 8; ++m) {
+      turn_back(R, Y[m]);
+      for (int i = 0; i < 3; ++i)
+        u[m][i] = Y[m][i];
+    }
+    for (int k = 0; k < 3; ++k)
+      u[linear_modes[k]][k] -= 4 * cube.h;
+    Loops::template hourglass<is_partial>(cube, batch, lane, u, f);
+    if (mean == MeanPart::hooke) {
+      Loops::template mean_gradient<is_partial>(cube, batch, lane, u, G);
+      Loops::template hooke<is_partial>(cube, batch, lane, G, P);
+    } else {
+      for (V& p : P)
+        p = V{};
+    }
+    Loops::template put_stress<is_partial>(cube, batch, lane, P, f);
+    for (int i = 0; i < 3; ++i)
+      f[0][i] = V{};
+  }
+  /// a x b.
+  [[gnu::always_inline]] static void cross(const V (&a)[3], const V (&b)[3], V (&c)[3]) {
+    for (int i = 0; i < 3; ++i)
+      c[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
+  }
+  /// z with A z = t, A = tr(S) I - S and S = R^T F; zero where A has collapsed (turned.h).
+  [[gnu::always_inline]] static void spin(const V (&R)[9], const V (&F)[9], const V (&t)[3], V (&z)[3]) {
+    constexpr T collapsed = T(1e-6);
+    V A[9], C[9];
+    for (int j = 0; j < 3; ++j)
+      for (int i = 0; i < 3; ++i)
+        A[3 * j + i] = -(R[3 * i] * F[3 * j] + R[3 * i + 1] * F[3 * j + 1] + R[3 * i + 2] * F[3 * j + 2]);
+    const V trace = -(A[0] + A[4] + A[8]);
+    for (int i = 0; i < 3; ++i)
+      A[4 * i] += trace;
+    const V det = cofactors(A, C);
+    const auto is_sound = det > collapsed;
+    for (int i = 0; i < 3; ++i) { // A^-1 = C^T / det
+      const V value = (C[3 * i] * t[0] + C[3 * i + 1] * t[1] + C[3 * i + 2] * t[2]) / det;
+      z[i] = is_sound ? value : V{};
+    }
+  }
+  template <bool is_partial>
+  [[gnu::always_inline]] static void force_of(const CubeConstants<T>& cube, const Batch<T>& batch, const int lane,
+                                              const Turns& turns, const MeanPart mean, const T (*const stress)[n_lanes],
+                                              const T spins, const Row<T>* const x, Row<T>* const forces) {
+    V R[9], F[9], P[9], Y[8][3], u[8][3], f[8][3], t[3] = {V{}, V{}, V{}}, z[3], w[3];
+    load_nine(turns.R, lane, R);
+    load_nine(turns.F, lane, F);
+    strain<is_partial>(cube, batch, lane, R, mean, x, Y, u, f);
+    for (int m = 1; m < 8; ++m) {
+      cross(Y[m], f[m], w);
+      for (int i = 0; i < 3; ++i)
+        t[i] += w[i];
+    }
+    spin(R, F, t, z);
+    for (V& component : z)
+      component *= spins;
+    for (int k = 0; k < 3; ++k) { // z x e_k / (4 h)
+      const int next = (k + 1) % 3, after = (k + 2) % 3;
+      f[linear_modes[k]][next] -= T(0.25) / cube.h * z[after];
+      f[linear_modes[k]][after] += T(0.25) / cube.h * z[next];
+    }
+    if constexpr (is_partial)
+      for (int k = 0; k < 4; ++k) {
+        const V b[3] = {load(batch.partial->gradient[3 * k] + lane), load(batch.partial->gradient[3 * k + 1] + lane),
+                        load(batch.partial->gradient[3 * k + 2] + lane)};
+        cross(z, b, w);
+        for (int i = 0; i < 3; ++i)
+          f[hourglass_modes[k]][i] -= w[i];
+      }
+    for (int m = 1; m < 8; ++m)
+      turn(R, f[m]);
+    if (stress) {
+      load_nine(stress, lane, P);
+      for (int j = 0; j < 3; ++j)
+        for (int i = 0; i < 3; ++i) {
+          f[linear_modes[j]][i] += T(0.25) / cube.h * P[3 * j + i];
+          if constexpr (is_partial)
+            for (int k = 0; k < 4; ++k)
+              f[hourglass_modes[k]][i] += load(batch.partial->gradient[3 * k + j] + lane) * P[3 * j + i];
+        }
+    }
+    for (int m = 1; m < 8; ++m)
+      for (int i = 0; i < 3; ++i)
+        f[m][i] = -f[m][i];
+    add_modes(f, batch.corners, lane, forces);
+  }
+  [[gnu::always_inline]] static void force(const CubeConstants<T>& cube, const Batch<T>& batch, const Turns& turns,
+                                           const MeanPart mean, const T (*const stress)[n_lanes], const T spins,
+                                           const Row<T>* const x, Row<T>* const forces) {
+    for (int lane = 0; lane < int(n_lanes); lane += W)
+      if (batch.partial)
+        force_of<true>(cube, batch, lane, turns, mean, stress, spins, x, forces);
+      else
+        force_of<false>(cube, batch, lane, turns, mean, stress, spins, x, forces);
+  }
+  template <bool is_partial>
+  [[gnu::always_inline]] static V energy_of(const CubeConstants<T>& cube, const Batch<T>& batch, const int lane,
+                                            const Turns& turns, const MeanPart mean, const Row<T>* const x) {
+    V R[9], Y[8][3], u[8][3], f[8][3], sum = V{};
+    load_nine(turns.R, lane, R);
+    strain<is_partial>(cube, batch, lane, R, mean, x, Y, u, f);
+    for (int m = 1; m < 8; ++m)
+      for (int i = 0; i < 3; ++i)
+        sum += u[m][i] * f[m][i];
+    return T(0.5) * sum;
+  }
+  [[gnu::always_inline]] static void energy(const CubeConstants<T>& cube, const Batch<T>& batch, const Turns& turns,
+                                            const MeanPart mean, const Row<T>* const x, T* const energies) {
+    for (int lane = 0; lane < int(n_lanes); lane += W)
+      store(energies + lane, batch.partial ? energy_of<true>(cube, batch, lane, turns, mean, x)
+                                           : energy_of<false>(cube, batch, lane, turns, mean, x));
+  }
+};
+
+} // namespace kerf::fem

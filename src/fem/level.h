@@ -1,0 +1,65 @@
+#pragma once
+
+/// One level of multigrid.h: its operator, its smoother, its vectors.
+
+#include "fem/batches.h"
+#include "fem/coarsening.h"
+#include "fem/ghost_penalty.h"
+
+namespace kerf::fem {
+
+/// k / 2 |x_a - 2 x_b + x_c|^2 across the face between two glued copies.
+struct GhostLine {
+  std::uint32_t lower, upper; ///< copies
+  int axis, vertex;           ///< b is this vertex of the lower copy
+  std::uint32_t a, b, c;      ///< corners
+  double stiffness;           ///< [N/m]
+};
+std::vector<GhostLine> lines_of(std::span<const GhostFace> faces);
+/// For motions of coarse cubes, lumped to the lines of the coarse faces.
+std::vector<GhostLine> coarsened(std::span<const GhostLine> fine, const CellsOfLevel& cells,
+                                 const Coarsening& coarsening);
+
+/// A symmetric 3 x 3 block at a corner [N/m].
+struct Spring {
+  std::uint32_t corner;
+  Mat3 block;
+};
+
+struct Level {
+  CellsOfLevel cells;
+  Batching batching;
+  BatchedElements<float> elements;
+  std::vector<double> volume; ///< of each copy [m^3]
+  double bound = 0;           ///< of the eigenvalues of D^-1 A [1]
+  std::vector<GhostLine> lines;
+  Coarsening to_coarse; ///< of no use on the coarsest
+
+  // The equation, over its stiffness factor.
+  std::vector<float> mass;
+  std::vector<Spring> springs;
+  std::vector<Row<float>> diagonal; ///< of K and the penalties, two rows a corner (kernels.h)
+  std::vector<Row<float>> inverse;  ///< of all blocks among the free directions, likewise
+  std::vector<Spring> held;         ///< projectors onto the free directions of corners that are held
+
+  std::vector<Row<float>> r, x, d, t; ///< residual, solution, its last change, and A times that
+
+  std::size_t n_corners() const { return cells.n_corners; }
+
+  void resize();
+  /// From rotations, masses and springs.
+  void make_diagonal();
+  void invert_diagonal();
+
+  /// Smooths x = 0 towards A x = r, and leaves in r what is left.
+  void smooth_from_zero();
+  /// x += d, and goes on smoothing.
+  void smooth_after_change();
+
+ private:
+  template <class Function>
+  void for_each_corner(const Function& f) const;
+  void add_products();
+};
+
+} // namespace kerf::fem

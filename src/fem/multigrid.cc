@@ -1,0 +1,413 @@
+#include "fem/multigrid.h"
+
+#include "base/parallel.h"
+#include "fem/coarse_elements.h"
+#include "fem/level.h"
+#include "fem/turned.h"
+#include "material/polar.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/SparseCholesky>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace kerf::fem {
+
+namespace {
+
+constexpr std::size_t worth = 8192; // corners from which on a second thread pays
+constexpr std::size_t few = 48;     // corners that are factorised as they are
+
+/// What a level is made of.
+struct Elements {
+  Element full;
+  std::vector<Kind> kind;          // of each copy
+  std::vector<std::uint32_t> which; // of `made`, for partial copies
+  std::vector<Element> made;
+
+  const Element& operator[](const std::size_t copy) const { return kind[copy] == Kind::full ? full : made[which[copy]]; }
+};
+
+void fill(Level& level, const std::function<const Element&(std::uint32_t)>& element, const Element& full, const double h,
+          const material::Elastic& material) {
+  level.bound = full.bound;
+  level.volume.assign(level.cells.n_copies(), 0);
+  level.elements = batched<float>(level.batching, h, material, full, element);
+  level.batching.for_each([&](const std::size_t i) {
+    const BatchOfCopies& batch = level.batching.batches()[i];
+    const bool is_partial = batch.partial != BatchOfCopies::none;
+    for (std::size_t lane = 0; lane < n_lanes; ++lane) {
+      const std::uint32_t c = batch.copies[lane];
+      if (c == BatchOfCopies::none)
+        continue;
+      level.volume[c] = is_partial ? element(c).volume : full.volume;
+      if (is_partial)
+        level.elements.partial[batch.partial].weight[lane] = float(std::max(1.0, element(c).bound / full.bound));
+    }
+  });
+  level.resize();
+}
+
+/// `fine(copy)`: any that is used, `is_full(copy)` or not.
+Elements coarse_elements(const Coarsening& coarsening, const std::function<const Element&(std::uint32_t)>& fine,
+                         const std::function<bool(std::uint32_t)>& is_full, const Element& full, const double h,
+                         const material::Elastic& material) {
+  const std::size_t n = coarsening.coarse.n_copies();
+  std::vector<std::uint32_t> begin(n + 1, 0), order, n_full(n, 0); // children by parent
+  for (const std::uint32_t parent : coarsening.parent)
+    if (parent != CellsOfLevel::unused)
+      ++begin[parent + 1];
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  order.resize(begin[n]);
+  std::vector<std::uint32_t> end(begin.begin(), begin.end() - 1);
+  for (std::uint32_t c = 0; c < coarsening.parent.size(); ++c)
+    if (const std::uint32_t parent = coarsening.parent[c]; parent != CellsOfLevel::unused) {
+      order[end[parent]++] = c;
+      n_full[parent] += is_full(c) ? 1 : 0;
+    }
+  std::vector<Child> eight;
+  for (int octant = 0; octant < 8; ++octant)
+    eight.push_back({&full, octant});
+  Elements coarse{coarse_element(eight, h, material), std::vector<Kind>(n), std::vector<std::uint32_t>(n), {}};
+  std::vector<std::uint32_t> partial;
+  for (std::uint32_t c = 0; c < n; ++c) {
+    coarse.kind[c] = n_full[c] == 8 ? Kind::full : Kind::partial;
+    coarse.which[c] = static_cast<std::uint32_t>(partial.size());
+    if (coarse.kind[c] == Kind::partial)
+      partial.push_back(c);
+  }
+  coarse.made.resize(partial.size());
+  parallel_for(
+    partial.size(),
+    [&](const std::size_t i) {
+      std::vector<Child> children;
+      for (std::uint32_t k = begin[partial[i]]; k < begin[partial[i] + 1]; ++k)
+        children.push_back({&fine(order[k]), coarsening.octant[order[k]]});
+      coarse.made[i] = coarse_element(children, h, material);
+    },
+    64);
+  return coarse;
+}
+
+void multiply(const Weights& weights, const std::vector<Row<float>>& from, std::vector<Row<float>>& to) {
+  parallel_for(
+    weights.begin.size() - 1,
+    [&](const std::size_t i) {
+      Row<float> sum;
+      for (std::uint32_t k = weights.begin[i]; k < weights.begin[i + 1]; ++k) {
+        const Row<float>& row = from[weights.column[k]];
+        const float w = weights.weight[k];
+        sum.x += w * row.x;
+        sum.y += w * row.y;
+        sum.z += w * row.z;
+      }
+      to[i] = sum;
+    },
+    worth);
+}
+
+/// Blocks at coarse corners, of the sum of the fine ones.
+std::vector<Spring> restricted(const std::vector<Spring>& fine, const Weights& prolongation, const std::size_t n_coarse) {
+  std::vector<std::uint32_t> place(n_coarse, CellsOfLevel::unused);
+  std::vector<Spring> coarse;
+  for (const Spring& spring : fine)
+    for (std::uint32_t k = prolongation.begin[spring.corner]; k < prolongation.begin[spring.corner + 1]; ++k) {
+      std::uint32_t& p = place[prolongation.column[k]];
+      if (p == CellsOfLevel::unused) {
+        p = static_cast<std::uint32_t>(coarse.size());
+        coarse.push_back({prolongation.column[k], Mat3::Zero()});
+      }
+      coarse[p].block += double(prolongation.weight[k]) * spring.block;
+    }
+  return coarse;
+}
+
+/// A projector with values in a row.
+void project(const std::vector<Spring>& held, std::vector<Row<float>>& rows) {
+  for (const Spring& one : held) {
+    Row<float>& row = rows[one.corner];
+    const Eigen::Vector3f v = one.block.cast<float>() * Eigen::Vector3f(row.x, row.y, row.z);
+    row = {v.x(), v.y(), v.z()};
+  }
+}
+
+} // namespace
+
+/// A factorisation of the coarsest level, shifted by what single precision does not see: a free body's motion is singular.
+struct Multigrid::Coarsest {
+  Coarsest(Elements made, const material::Elastic& of) : elements(std::move(made)), material(of) {}
+
+  Elements elements;
+  material::Elastic material;
+  Eigen::LLT<Eigen::MatrixXd> dense;
+  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> sparse;
+
+  void factorise(const Multigrid::Level& level, std::span<const Mat3> rotations);
+  void solve(Multigrid::Level& level) const;
+  static bool is_dense(const fem::Level& level) { return level.n_corners() <= 2 * few; }
+  /// What does not get coarser, like dust, is smoothed alone.
+  static bool is_too_large(const fem::Level& level) { return level.n_corners() > 8 * few; }
+};
+
+struct Multigrid::Level : fem::Level {
+  std::vector<Mat3> rotations; // of each copy; of coarse levels
+};
+
+namespace {
+
+/// Adds a block for a pair of corners.
+template <class Add>
+void add_entries(const Level& level, const std::function<Matrix24(std::size_t copy)>& matrix, const Add& add) {
+  for (std::size_t c = 0; c < level.cells.n_copies(); ++c) {
+    if (!level.cells.is_used(c))
+      continue;
+    const std::uint32_t* const corners = level.cells.corners.data() + 8 * c;
+    const Matrix24 K = matrix(c);
+    for (int a = 0; a < 8; ++a)
+      for (int b = 0; b < 8; ++b)
+        add(corners[a], corners[b], Mat3(K.block<3, 3>(3 * a, 3 * b)));
+  }
+  constexpr double second_difference[3] = {1, -2, 1};
+  for (const GhostLine& line : level.lines) {
+    const std::uint32_t corners[3] = {line.a, line.b, line.c};
+    for (int p = 0; p < 3; ++p)
+      for (int q = 0; q < 3; ++q)
+        add(corners[p], corners[q],
+            Mat3(line.stiffness * second_difference[p] * second_difference[q] * Mat3::Identity()));
+  }
+  for (const Spring& spring : level.springs)
+    add(spring.corner, spring.corner, spring.block);
+  constexpr double unseen = 1e-5;
+  for (std::uint32_t i = 0; i < level.n_corners(); ++i) {
+    const Row<float>& d = level.diagonal[2 * std::size_t(i)];
+    const double size = d.x + d.y + d.z;
+    add(i, i, Mat3((double(level.mass[i]) + (size > 0 ? unseen * size : 1)) * Mat3::Identity()));
+  }
+}
+
+} // namespace
+
+void Multigrid::Coarsest::factorise(const Multigrid::Level& level, const std::span<const Mat3> rotations) {
+  if (is_too_large(level))
+    return;
+  const auto matrix = [&](const std::size_t c) {
+    return turned_stiffness(stiffness(elements[c], material), rotations[c]);
+  };
+  const auto n = static_cast<Eigen::Index>(3 * level.n_corners());
+  if (is_dense(level)) {
+    Eigen::MatrixXd A = Eigen::MatrixXd::Zero(n, n);
+    add_entries(level, matrix, [&](const std::uint32_t i, const std::uint32_t j, const Mat3& block) {
+      A.block<3, 3>(3 * i, 3 * j) += block;
+    });
+    dense.compute(A);
+    return;
+  }
+  std::vector<Eigen::Triplet<double>> entries;
+  add_entries(level, matrix, [&](const std::uint32_t i, const std::uint32_t j, const Mat3& block) {
+    for (int a = 0; a < 3; ++a)
+      for (int b = 0; b < 3; ++b)
+        entries.emplace_back(3 * i + a, 3 * j + b, block(a, b));
+  });
+  Eigen::SparseMatrix<double> A(n, n);
+  A.setFromTriplets(entries.begin(), entries.end());
+  sparse.compute(A);
+}
+
+void Multigrid::Coarsest::solve(Multigrid::Level& level) const {
+  if (is_too_large(level)) {
+    level.smooth_from_zero();
+    return;
+  }
+  Eigen::VectorXd b(3 * level.n_corners());
+  for (std::size_t i = 0; i < level.n_corners(); ++i)
+    b.segment<3>(3 * i) << level.r[i].x, level.r[i].y, level.r[i].z;
+  const Eigen::VectorXd y = is_dense(level) ? Eigen::VectorXd(dense.solve(b)) : Eigen::VectorXd(sparse.solve(b));
+  for (std::size_t i = 0; i < level.n_corners(); ++i)
+    level.x[i] = {float(y[3 * i]), float(y[3 * i + 1]), float(y[3 * i + 2])};
+}
+
+Multigrid::~Multigrid() = default;
+
+std::size_t Multigrid::n_levels() const { return levels_.size(); }
+
+Multigrid::Multigrid(const FinestLevel& finest) {
+  constexpr double stands_still = 0.7; // corners over those of the level before
+  const auto finest_element = [&](const std::uint32_t c) -> const Element& {
+    return finest.kind(c) == Kind::full ? finest.full : finest.element(c);
+  };
+  double h = finest.h;
+  levels_.emplace_back();
+  levels_[0].cells = finest.cells;
+  levels_[0].batching = finest.batching;
+  levels_[0].lines = lines_of(finest.faces);
+  fill(levels_[0], finest_element, finest.full, h, finest.material);
+  Elements elements;
+  while (levels_.back().n_corners() > few) {
+    Level& fine = levels_.back();
+    const bool is_finest = levels_.size() == 1;
+    Coarsening coarsening = coarsened(fine.cells);
+    if (double(coarsening.coarse.n_corners) > stands_still * double(fine.n_corners()))
+      break;
+    elements =
+      is_finest
+        ? coarse_elements(
+            coarsening, finest_element, [&](const std::uint32_t c) { return finest.kind(c) == Kind::full; },
+            finest.full, h, finest.material)
+        : coarse_elements(
+            coarsening, [&](const std::uint32_t c) -> const Element& { return elements[c]; },
+            [&](const std::uint32_t c) { return elements.kind[c] == Kind::full; }, elements.full, h, finest.material);
+    h *= 2;
+    Level coarse;
+    coarse.cells = coarsening.coarse;
+    coarse.lines = coarsened(fine.lines, fine.cells, coarsening);
+    std::vector<std::uint32_t> order(coarse.cells.n_copies());
+    std::iota(order.begin(), order.end(), 0);
+    coarse.batching = Batching(
+      order, [&](const std::uint32_t c) { return elements.kind[c]; }, coarse.cells.corners.data(),
+      coarse.cells.n_corners);
+    fill(
+      coarse, [&](const std::uint32_t c) -> const Element& { return elements[c]; }, elements.full, h, finest.material);
+    fine.to_coarse = std::move(coarsening);
+    levels_.push_back(std::move(coarse));
+  }
+  coarsest_ = std::make_unique<Coarsest>(std::move(elements), finest.material);
+}
+
+void Multigrid::prepare(const dynamics::LinearEquation& equation, const std::span<const Lanes9<double>> rotations) {
+  stiffness_factor_ = equation.stiffness_factor;
+  put_rotations(rotations);
+  for (Level& level : levels_)
+    level.make_diagonal();
+  put_masses(equation);
+  hold(equation);
+  for (Level& level : levels_)
+    level.invert_diagonal();
+  for (std::size_t i = 0; i < levels_[0].n_corners(); ++i) // exactly, and among the free directions alone
+    if (!equation.constraints.is_free(i)) {
+      const Mat3 S = dynamics::inverse_factor(equation.blocks[i] / stiffness_factor_, equation.constraints.freedom(i)),
+                 inverse = S.transpose() * S;
+      levels_[0].inverse[2 * i] = {float(inverse(0, 0)), float(inverse(1, 1)), float(inverse(2, 2))};
+      levels_[0].inverse[2 * i + 1] = {float(inverse(0, 1)), float(inverse(1, 2)), float(inverse(2, 0))};
+    }
+  coarsest_->factorise(levels_.back(), levels_.back().rotations);
+}
+
+void Multigrid::put_rotations(const std::span<const Lanes9<double>> finest) {
+  for (std::size_t l = 0; l < levels_.size(); ++l) {
+    Level& level = levels_[l];
+    const bool is_last = l + 1 == levels_.size();
+    std::vector<Mat3> sums(is_last ? 0 : levels_[l + 1].cells.n_copies(), Mat3::Zero());
+    if (l == 0)
+      level.rotations.resize(level.cells.n_copies());
+    for (std::size_t i = 0; i < level.batching.batches().size(); ++i) {
+      const BatchOfCopies& batch = level.batching.batches()[i];
+      for (std::size_t lane = 0; lane < n_lanes; ++lane) {
+        const std::uint32_t c = batch.copies[lane];
+        if (c == BatchOfCopies::none)
+          continue;
+        Mat3& R = level.rotations[c];
+        for (int k = 0; k < 9 && l == 0; ++k)
+          R.data()[k] = finest[i].row[k][lane];
+        for (int k = 0; k < 9; ++k)
+          level.elements.rotations[i].row[k][lane] = float(R.data()[k]);
+        if (!is_last)
+          sums[level.to_coarse.parent[c]] += level.volume[c] * R;
+      }
+    }
+    if (is_last)
+      break;
+    std::vector<Mat3>& coarse = levels_[l + 1].rotations;
+    coarse.resize(sums.size());
+    parallel_for(
+      sums.size(),
+      [&](const std::size_t c) {
+        const double volume = levels_[l + 1].volume[c];
+        coarse[c] = volume > 0 ? material::rotation_of(sums[c] / volume) : Mat3(Mat3::Identity());
+      },
+      256);
+  }
+}
+
+void Multigrid::put_masses(const dynamics::LinearEquation& equation) {
+  const double factor = equation.mass_factor / equation.stiffness_factor;
+  for (std::size_t i = 0; i < levels_[0].n_corners(); ++i)
+    levels_[0].mass[i] = float(factor * equation.mass[i]);
+  for (std::size_t l = 0; l + 1 < levels_.size(); ++l) {
+    const Weights& restriction = levels_[l].to_coarse.restriction;
+    for (std::size_t j = 0; j < levels_[l + 1].n_corners(); ++j) {
+      float sum = 0;
+      for (std::uint32_t k = restriction.begin[j]; k < restriction.begin[j + 1]; ++k)
+        sum += restriction.weight[k] * levels_[l].mass[restriction.column[k]];
+      levels_[l + 1].mass[j] = sum;
+    }
+  }
+}
+
+void Multigrid::hold(const dynamics::LinearEquation& equation) {
+  Level& finest = levels_[0];
+  finest.springs.clear();
+  finest.held.clear();
+  std::vector<Spring> springs; // for the coarse levels
+  for (std::uint32_t i = 0; i < finest.n_corners(); ++i) {
+    Mat3 coarse = Mat3::Zero();
+    if (!equation.loads.empty() && equation.loads[i].cwiseAbs().maxCoeff() > 0) {
+      coarse = equation.loads[i] / equation.stiffness_factor;
+      finest.springs.push_back({i, coarse});
+    }
+    if (!equation.constraints.is_free(i)) {
+      const Mat3& free = equation.constraints.freedom(i).project;
+      const Row<float>& d = finest.diagonal[2 * std::size_t(i)];
+      coarse += double(d.x + d.y + d.z) / 3 * (Mat3::Identity() - free);
+      finest.held.push_back({i, free});
+    }
+    if (coarse.cwiseAbs().maxCoeff() > 0)
+      springs.push_back({i, coarse});
+  }
+  for (std::size_t l = 1; l < levels_.size(); ++l) {
+    springs = restricted(springs, levels_[l - 1].to_coarse.prolongation, levels_[l].n_corners());
+    levels_[l].springs = springs;
+  }
+}
+
+void Multigrid::cycle(const std::size_t l) {
+  Level& level = levels_[l];
+  if (l + 1 == levels_.size()) {
+    coarsest_->solve(level);
+    return;
+  }
+  level.smooth_from_zero();
+  project(level.held, level.r);
+  multiply(level.to_coarse.restriction, level.r, levels_[l + 1].r);
+  cycle(l + 1);
+  multiply(level.to_coarse.prolongation, levels_[l + 1].x, level.d);
+  project(level.held, level.d);
+  level.smooth_after_change();
+}
+
+void Multigrid::apply(const std::span<const double> r, const std::span<double> z) {
+  Level& level = levels_[0];
+  double most = 0;
+  for (const double value : r)
+    most = std::max(most, std::abs(value));
+  const double scale = most > 0 ? most : 1; // single precision has a short range
+  parallel_for(
+    level.n_corners(),
+    [&](const std::size_t i) {
+      level.r[i] = {float(r[3 * i] / scale), float(r[3 * i + 1] / scale), float(r[3 * i + 2] / scale)};
+    },
+    worth);
+  cycle(0);
+  const double back = scale / stiffness_factor_;
+  parallel_for(
+    level.n_corners(),
+    [&](const std::size_t i) {
+      z[3 * i] = back * level.x[i].x;
+      z[3 * i + 1] = back * level.x[i].y;
+      z[3 * i + 2] = back * level.x[i].z;
+    },
+    worth);
+}
+
+} // namespace kerf::fem

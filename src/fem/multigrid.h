@@ -1,0 +1,70 @@
+#pragma once
+
+/// Geometric multigrid on the copies of a cut body, a preconditioner for the equations of implicit steps and of statics:
+///
+///     A = mass_factor M + stiffness_factor K + loads, among the directions that supports leave free.
+///
+/// Levels: coarsening.h, elements on them: coarse_elements.h, with the mean rotation of their children; so all levels are
+/// the same kernels. M is lumped on every level, restricted with the weights of the transfer; so are loads. Penalties of
+/// near-empty copies (ghost_penalty.h) go along: for motions of the coarse cubes a face's second differences are half
+/// those across the coarse face, and vanish within a coarse copy. Coarse levels do not know supports, but springs in their
+/// place, of the size of the stiffness that they hold.
+///
+/// A cycle is a V, smoothed before and after by the same Chebyshev polynomial of block Jacobi's matrix (Adams, Brezina, Hu
+/// and Tuminaro 2003, Parallel multigrid smoothing, J. Comput. Phys. 188), so it is symmetric; it is positive as long as
+/// the polynomial knows a bound for the largest eigenvalue, which is had element by element (jacobi_bound): elements
+/// whose own bound is above that of a full cube count more in the diagonal blocks. The coarsest level is factorised,
+/// unless it is large as dust is. All is single precision, but that.
+///
+/// Departs from Galerkin: a coarse cube turns as a whole, and masses, loads and penalties are lumped; laws other than
+/// Hooke's are replaced by his.
+
+#include "dynamics/preconditioner.h"
+#include "fem/batches.h"
+#include "fem/coarsening.h"
+#include "fem/ghost_penalty.h"
+
+#include <memory>
+
+namespace kerf::fem {
+
+/// What multigrid starts from.
+struct FinestLevel {
+  CellsOfLevel cells;
+  double h; ///< [m]
+  const material::Elastic& material;
+  const Element& full;
+  std::function<Kind(std::uint32_t copy)> kind;
+  std::function<const Element&(std::uint32_t copy)> element;
+  const Batching& batching;
+  std::span<const GhostFace> faces;
+};
+
+class Multigrid : public dynamics::Preconditioner {
+ public:
+  explicit Multigrid(const FinestLevel& finest);
+  ~Multigrid() override;
+
+  /// With one there is nothing coarser, and nothing gained.
+  std::size_t n_levels() const;
+
+  /// Takes over an equation. `rotations`: of the finest batches, at the linearisation point.
+  void prepare(const dynamics::LinearEquation& equation, std::span<const Lanes9<double>> rotations);
+
+  void apply(std::span<const double> r, std::span<double> z) override;
+
+ private:
+  struct Level;
+  struct Coarsest;
+
+  void put_rotations(std::span<const Lanes9<double>> finest);
+  void put_masses(const dynamics::LinearEquation& equation);
+  void hold(const dynamics::LinearEquation& equation);
+  void cycle(std::size_t level);
+
+  std::vector<Level> levels_;
+  std::unique_ptr<Coarsest> coarsest_;
+  double stiffness_factor_ = 1;
+};
+
+} // namespace kerf::fem

@@ -1,0 +1,258 @@
+/// Multigrid on copies: symmetric, positive, and as good for large bodies as for small ones, however they are cut.
+
+#include "fem/multigrid.h"
+
+#include "base/parallel.h"
+#include "dynamics/conjugate_gradients.h"
+#include "dynamics/state.h"
+#include "tests/fem/models.h"
+
+#include <gtest/gtest.h>
+#include <Eigen/Eigenvalues>
+
+namespace kerf::fem {
+namespace {
+
+using dynamics::Constraints;
+using dynamics::flat;
+using Matrix = Eigen::MatrixXd;
+
+material::Elastic rubber(const double nu) { return {.density = 1000, .youngs_modulus = 1e5, .poissons_ratio = nu}; }
+
+/// Supports that hold corners along directions, where they are.
+dynamics::Loads holding(const Body& body, const std::function<bool(const Vec3&)>& is_held, const Mat3& held) {
+  dynamics::Loads loads;
+  dynamics::Support support;
+  support.displacement = [](double) { return Vec3(Vec3::Zero()); };
+  support.held = held;
+  const Points rest = body.rest();
+  for (std::uint32_t c = 0; c < rest.size(); ++c)
+    if (is_held(rest[c])) {
+      support.corners.push_back(c);
+      support.rest.push_back(rest[c]);
+    }
+  loads.supports.push_back(support);
+  return loads;
+}
+dynamics::Loads clamped_below(const Body& body, const double z) {
+  return holding(
+    body, [z](const Vec3& X) { return X[2] < z; }, Mat3::Identity());
+}
+
+/// The equation of a model at x, with what it needs beside it.
+struct Equation {
+  Hexahedra& model;
+  const Constraints constraints;
+  double mass_factor;
+  std::vector<Mat3> blocks;
+
+  Equation(Hexahedra& of, const dynamics::Loads& loads, const Points& x, const double mass)
+    : model(of), constraints(loads, x.size()), mass_factor(mass) {
+    model.linearise(x);
+    model.stiffness_diagonal(blocks);
+    for (std::size_t i = 0; i < blocks.size(); ++i)
+      blocks[i] += mass_factor * model.lumped_mass()[i] * Mat3::Identity();
+  }
+  dynamics::Preconditioner& multigrid() {
+    dynamics::Preconditioner* const found =
+      model.preconditioner({mass_factor, 1, model.lumped_mass(), blocks, {}, constraints});
+    if (!found)
+      throw std::logic_error("no multigrid");
+    return *found;
+  }
+  void project(const std::span<double> y) const {
+    for (std::size_t i = 0; i < blocks.size(); ++i) {
+      Eigen::Map<Vec3> v(y.data() + 3 * i);
+      v = (constraints.freedom(i).project * v).eval();
+    }
+  }
+  void apply(const std::span<const double> p, const std::span<double> y) const {
+    model.apply_stiffness(p, y);
+    for (std::size_t i = 0; i < y.size(); ++i)
+      y[i] += mass_factor * model.lumped_mass()[i / 3] * p[i];
+    project(y);
+  }
+  void apply_inverse_blocks(const std::span<const double> r, const std::span<double> z) const {
+    for (std::size_t i = 0; i < blocks.size(); ++i) {
+      const Mat3 S = dynamics::inverse_factor(blocks[i], constraints.freedom(i));
+      Eigen::Map<Vec3>(z.data() + 3 * i) = S.transpose() * (S * Eigen::Map<const Vec3>(r.data() + 3 * i));
+    }
+  }
+};
+
+/// To 1e-6 of a right-hand side drawn at random, which has every wavelength.
+dynamics::CgReport solve(Equation& equation, const unsigned seed) {
+  Draw draw(seed);
+  Points b(equation.blocks.size()), x(b.size(), Vec3::Zero()), z(b.size());
+  for (std::size_t i = 0; i < b.size(); ++i)
+    b[i] = equation.model.lumped_mass()[i] * draw.vector();
+  equation.project(flat(b));
+  const dynamics::Product J = [&](const auto r, const auto y) { equation.apply_inverse_blocks(r, y); };
+  J(flat(b), flat(z));
+  auto& own = equation.multigrid();
+  return dynamics::conjugate_gradients({[&](const auto p, const auto y) { equation.apply(p, y); },
+                                        [&](const auto r, const auto y) { own.apply(r, y); }, J},
+                                       flat(b), {.residual = 1e-6 * std::sqrt(dynamics::dot(flat(b), flat(z)))}, 400,
+                                       flat(x));
+}
+
+Points disturbed(const Body& body, const double size, Draw& draw) {
+  const Mat3 R = draw.rotation();
+  Points x = body.rest();
+  for (Vec3& p : x)
+    p = R * p + size * draw.vector();
+  return x;
+}
+
+/// B among the free directions, column by column, with each corner measured by its block of A.
+Matrix scaled_inverse(Equation& equation) {
+  const auto n = static_cast<Eigen::Index>(3 * equation.blocks.size());
+  auto& own = equation.multigrid();
+  std::vector<Mat3> L;
+  for (std::size_t i = 0; i < equation.blocks.size(); ++i)
+    L.push_back(equation.blocks[i].llt().matrixL());
+  Matrix B(n, n);
+  for (Eigen::Index j = 0; j < n; ++j) {
+    Eigen::VectorXd r = Eigen::VectorXd::Zero(n), z(n);
+    r.segment<3>(3 * (j / 3)) = L[j / 3].col(j % 3);
+    own.apply({r.data(), r.data() + n}, {z.data(), z.data() + n});
+    for (Eigen::Index i = 0; i < n / 3; ++i)
+      B.block<3, 1>(3 * i, j) = L[i].transpose() * z.segment<3>(3 * i);
+  }
+  return B;
+}
+
+TEST(Multigrid, IsSymmetricAndPositiveForAnyCut) {
+  double least = 1e300;
+  for (int n = 0; n < 6; ++n) {
+    Draw draw(300 + n);
+    const double near = n % 3 == 0 ? 1e-9 : 0.1;
+    Body body = make_block({5, 5, 4}, 0.1, draw, {near, 1 - near});
+    cut_at_random(body, 0.03 * n, draw, {near, 1 - near});
+    Hexahedra model(body, {.material = rubber(n % 2 == 0 ? 0.3 : 0.49),
+                           .strain = n % 4 == 0 ? Strain::enhanced : Strain::trilinear});
+    const Mat3 held = n % 2 == 0 ? Mat3(Mat3::Identity()) : Mat3(Vec3(1, 2, 3) * Vec3(1, 2, 3).transpose() / 14);
+    const dynamics::Loads loads = holding(
+      body, [](const Vec3& X) { return X[2] < 0.15 || (X - Vec3(0.5, 0, 0.4)).norm() < 0.15; }, held);
+    Equation equation(model, loads, disturbed(body, 0.01, draw), n % 4 == 3 ? 0 : 20);
+    const Matrix B = scaled_inverse(equation);
+    EXPECT_LT((B - B.transpose()).norm(), 2e-4 * B.norm()) << n;
+    const Eigen::VectorXd values =
+      Eigen::SelfAdjointEigenSolver<Matrix>(0.5 * (B + B.transpose()), Eigen::EigenvaluesOnly).eigenvalues();
+    Eigen::Index n_held = 0;
+    for (std::size_t i = 0; i < equation.blocks.size(); ++i)
+      n_held += 3 - equation.constraints.freedom(i).n_free;
+    EXPECT_GT(n_held, 0);
+    EXPECT_LT(values.head(n_held).cwiseAbs().maxCoeff(), 1e-5 * values[values.size() - 1]) << n;
+    EXPECT_GT(values[n_held], 0.05) << n << ": block Jacobi alone has 1";
+    least = std::min(least, values[n_held]);
+  }
+  RecordProperty("least_of_block_jacobi", std::to_string(least));
+}
+
+/// Cubes of up to 30,000 elements, in statics, and with the inertia of a step in which sound crosses the body.
+TEST(Multigrid, TakesAsManyIterationsForLargeBodies) {
+  for (const double mass_factor : {0.0, 10.0})
+    for (const double nu : {0.3, 0.45}) {
+      std::vector<int> counts;
+      for (const int n : {7, 15, 30}) {
+        Draw draw(320);
+        const double h = 1.0 / n;
+        Body body = make_block({n, n, n}, h, draw, {0.3, 0.7});
+        Hexahedra model(body, {.material = rubber(nu)});
+        Equation equation(model, clamped_below(body, 0.1 + 0.1), body.rest(), mass_factor);
+        const auto report = solve(equation, 321);
+        EXPECT_TRUE(report.converged);
+        counts.push_back(report.n_iterations);
+      }
+      RecordProperty("iterations_nu_" + std::to_string(nu) + "_mass_" + std::to_string(mass_factor),
+                     std::to_string(counts[0]) + " " + std::to_string(counts[1]) + " " + std::to_string(counts[2]));
+      EXPECT_LE(counts[2], 1.2 * counts[0] + 4) << nu << ' ' << mass_factor << ": " << counts[0] << ' ' << counts[1];
+      EXPECT_LE(counts[2], nu < 0.4 ? 20 : 40);
+    }
+}
+
+/// A block of which more and more edges are cut, three tenths of them after two rounds, until it is dust: random cuts leave
+/// a sponge, which coarse cubes know less of than of a body that a blade has cut.
+TEST(Multigrid, SeesCutsOnEveryLevel) {
+  std::vector<int> counts;
+  Draw draw(330);
+  Body body = make_block({16, 16, 16}, 0.05, draw, {0.3, 0.7});
+  for (int n = 0; n < 6; ++n) {
+    Hexahedra model(body, {.material = rubber(0.3)});
+    Equation equation(model, clamped_below(body, 0.3), body.rest(), 36);
+    const auto report = solve(equation, 331);
+    EXPECT_TRUE(report.converged);
+    counts.push_back(report.n_iterations);
+    cut_at_random(body, 0.15, draw, {0.1, 0.9});
+  }
+  std::string all;
+  for (const int count : counts)
+    all += std::to_string(count) + ' ';
+  RecordProperty("iterations", all);
+  EXPECT_LE(counts[1], 12) << all;
+  EXPECT_LE(counts[2], 30) << all;
+  EXPECT_LE(*std::max_element(counts.begin(), counts.end()), 100) << all;
+}
+
+/// A plane that parts a body parts its coarse copies: two halves know nothing of each other, at any level.
+TEST(Multigrid, HalvesKnowNothingOfEachOther) {
+  Draw draw(340);
+  Body body = make_block({9, 9, 9}, 0.1, draw, {0.5, 0.5});
+  cut_plane(body, 0, 5, 0.5);
+  Hexahedra model(body, {.material = rubber(0.3)});
+  Equation equation(model, clamped_below(body, 0.1), body.rest(), 36);
+  const auto pieces = grid::pieces(body.complex);
+  std::vector<std::uint32_t> piece(body.complex.n_corners());
+  for (const auto c : ids<grid::CopyId>(body.complex.n_copies()))
+    for (const auto corner : body.complex.copies[c].corners)
+      piece[corner.value] = pieces.piece[c];
+  ASSERT_EQ(pieces.n_pieces, 2u);
+  Points r(piece.size()), z(piece.size());
+  for (std::size_t i = 0; i < r.size(); ++i)
+    r[i] = piece[i] == 0 ? draw.vector() : Vec3(Vec3::Zero());
+  equation.multigrid().apply(flat(r), flat(z));
+  double here = 0;
+  for (std::size_t i = 0; i < r.size(); ++i)
+    if (piece[i] == 0)
+      here += z[i].norm();
+    else
+      EXPECT_EQ(z[i], Vec3(Vec3::Zero()));
+  EXPECT_GT(here, 0);
+}
+
+/// Bits do not depend on threads, nor on whether a cut was followed or the model built anew.
+TEST(Multigrid, GivesTheSameBitsByAnyWay) {
+  Draw draw(350);
+  Body body = make_block({9, 8, 9}, 0.1, draw, {0.3, 0.7});
+  Hexahedra followed(body, {.material = rubber(0.3)});
+  Points x = body.rest();
+  Equation(followed, clamped_below(body, 0.3), x, 36).multigrid();
+  std::vector<grid::EdgeId> edges;
+  for (const auto e : inner_edges(body))
+    if (draw(0, 1) < 0.1) {
+      body.cuts.add(body.grid, {e, draw(0.1, 0.9), draw.vector().normalized(), 1});
+      edges.push_back(e);
+    }
+  surface::place(body, {});
+  followed.update(body, grid::update_complex(body, edges).reshaped);
+  Hexahedra anew(body, {.material = rubber(0.3)});
+  x = disturbed(body, 0.01, draw);
+  Points r(x.size()), reference;
+  for (Vec3& value : r)
+    value = draw.vector();
+  const int n_before = n_threads();
+  for (Hexahedra* const model : {&followed, &anew})
+    for (const int n : {1, 2}) {
+      set_n_threads(n);
+      Points z(x.size());
+      Equation(*model, clamped_below(body, 0.3), x, 36).multigrid().apply(flat(r), flat(z));
+      if (reference.empty())
+        reference = z;
+      EXPECT_EQ(z, reference) << n;
+    }
+  set_n_threads(n_before);
+}
+
+} // namespace
+} // namespace kerf::fem
