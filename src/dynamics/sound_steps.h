@@ -74,6 +74,7 @@ class SoundSteps : public Stepper {
   /// substeps fail too, with the reason of the whole step.
   StepReport step(State& state, const Loads& loads, double dt) override;
 
+  void archive(Archive& a) override { stepper_->archive(a); }
   const Stepper& watched() const { return *stepper_; }
 
  private:

@@ -1,6 +1,7 @@
 #include "output/study_file.h"
 
 #include "base/error.h"
+#include "output/checkpoint_file.h"
 #include "output/h5_array.h"
 #include "output/names.h"
 #include "output/run_info.h"
@@ -90,16 +91,25 @@ void write_rows(const h5::Object& root, const StudyTable& table) {
 } // namespace
 
 void write_study_file(const std::filesystem::path& path, const StudyTable& table, const RunInfo& info) {
-  h5::WritableFile file(path, JournaledFile::Mode::create);
-  file.transaction([&] {
-    const h5::Object& root = file.root();
-    write_info(root, info);
-    h5::set_attribute(root, "title", table.title);
-    h5::set_attribute(root, "outcome", to_string(table.outcome));
-    h5::create_group(root, "/study");
-    h5::write_text(root, "/study/text", table.text);
-    write_rows(root, table);
-  });
+  const auto beside = name_beside(path);
+  {
+    h5::WritableFile file(beside, JournaledFile::Mode::create);
+    file.transaction([&] {
+      const h5::Object& root = file.root();
+      write_info(root, info);
+      h5::set_attribute(root, "title", table.title);
+      h5::set_attribute(root, "outcome", to_string(table.outcome));
+      h5::create_group(root, "/study");
+      h5::write_text(root, "/study/text", table.text);
+      write_rows(root, table);
+    });
+  }
+  std::error_code error;
+  std::filesystem::rename(beside, path, error);
+  if (error)
+    throw DataError({.file = path.string(),
+                     .rule = "cannot be written: " + error.message(),
+                     .remedy = "Name a file in a folder that exists and where you may write"});
 }
 
 StudyTable read_study_file(const std::filesystem::path& path) {
