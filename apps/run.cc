@@ -13,7 +13,7 @@ namespace kerf::apps {
 
 namespace {
 
-void print_body(const scene::Body& body) {
+void print_body(const scene::Body& body, const scene::Watch& watch) {
   const double volume = surface::enclosed_volume(body.positions, body.surface.triangles);
   const double rest = surface::enclosed_volume(body.surface.rest, body.surface.triangles);
   std::printf("body %s: %zu cells, %zu copies, %u pieces, %zu surface triangles\n", body.name.c_str(),
@@ -24,6 +24,8 @@ void print_body(const scene::Body& body) {
               100 * (volume / rest - 1));
   std::printf("  energy: elastic %.4e J, kinetic %.4e J\n", body.physics->model().energy(body.state.x),
               scene::find_observable("kinetic energy")->value(body));
+  if (body.initial && !watch.was_sound)
+    std::printf("  it has not come back from its initial state: parts of it are still crushed or inside out\n");
   if (body.n_divided > 0)
     std::printf("  %d steps taken again in substeps: whole ones failed or gained energy that nothing gave\n",
                 body.n_divided);
@@ -78,8 +80,8 @@ void print_cutting(const scene::World& world) {
 }
 
 void print_summary(const scene::World& world, const Timings& seconds, const SceneArguments& arguments) {
-  for (const scene::Body& body : world.bodies)
-    print_body(body);
+  for (std::size_t b = 0; b < world.bodies.size(); ++b)
+    print_body(world.bodies[b], world.watches[b]);
   print_cutting(world);
   double all = 0, recording = 0;
   std::printf("time per stage [s]:");

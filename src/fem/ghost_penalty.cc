@@ -10,6 +10,8 @@ namespace {
 
 using grid::CopyId;
 
+constexpr std::uint8_t far = 9; // the distance of copies without a well-filled one within eight
+
 Eigen::Map<const Vec3> at(const std::span<const double> values, const std::uint32_t corner) {
   return Eigen::Map<const Vec3>(values.data() + 3 * std::size_t(corner));
 }
@@ -66,7 +68,7 @@ void GhostPenalty::update(const grid::Solid& solid, const std::span<const CopyId
   known_.insert(known_.end(), found.begin(), found.end());
   std::inplace_merge(known_.begin(), known_.begin() + n_kept, known_.end(), comes_before);
   choose_faces(complex.n_copies());
-  extend_mass(mass);
+  extend_mass();
   weigh_faces();
 }
 
@@ -84,7 +86,7 @@ void GhostPenalty::add_faces_above(const grid::Solid& solid, const CopyId lower,
                  needed = std::max(below_needs, above_needs);
     if (needed == 0 || !grid::are_glued(below.part(), above.part(), axis))
       continue;
-    GhostFace face{lower, upper, static_cast<std::uint8_t>(axis), needed, {}, {}, {}, {}, 0};
+    GhostFace face{lower, upper, static_cast<std::uint8_t>(axis), needed, {}, {}, {}, {}};
     if (below_needs == 0 || above_needs == 0)
       face.well_filled = below_needs == 0 ? lower : upper;
     for (int i = 0; i < 4; ++i) {
@@ -99,7 +101,6 @@ void GhostPenalty::add_faces_above(const grid::Solid& solid, const CopyId lower,
 
 /// Distances by sweeps over the faces, there and back: in as many as the farthest way changes its direction.
 void GhostPenalty::choose_faces(const std::size_t n_copies) {
-  constexpr std::uint8_t far = 9;
   std::vector<std::uint8_t> distance(n_copies, far);
   bool has_changed = false;
   const auto relax = [&](const GhostFace& face) {
@@ -122,18 +123,28 @@ void GhostPenalty::choose_faces(const std::size_t n_copies) {
   } while (has_changed);
   faces_.clear();
   for (const GhostFace& face : known_)
-    if (const auto p = distance[face.lower.value], q = distance[face.upper.value]; p != q || p == far)
+    if (const auto p = distance[face.lower.value], q = distance[face.upper.value]; p != q || p == far) {
       faces_.push_back(face);
+      faces_.back().distance = std::max(p, q);
+    }
 }
 
-void GhostPenalty::extend_mass(const std::span<const double> mass) {
+/// From the well-filled copies outwards: what a corner was given at one distance it passes on at the next.
+void GhostPenalty::extend_mass() {
+  for (int distance = 1; distance <= far; ++distance)
+    extend_mass_across(distance);
+}
+
+void GhostPenalty::extend_mass_across(const int distance) {
   constexpr double theta = 1.0 / 16, most_shares = 6; // 12 theta < 1: something is left of every mass
+  const auto mass = extended_mass_;
   std::vector<double> shares(mass.size(), 0.0);
   for (const GhostFace& face : faces_)
-    for (const auto b : face.b)
-      shares[b] += 0.5 * face.need; // a quarter of it for each of the line's two ends
+    if (face.distance == distance)
+      for (const auto b : face.b)
+        shares[b] += 0.5 * face.need; // a quarter of it for each of the line's two ends
   for (const GhostFace& face : faces_)
-    for (int i = 0; i < 4; ++i) {
+    for (int i = 0; i < 4 && face.distance == distance; ++i) {
       const auto a = face.a[i], b = face.b[i], c = face.c[i];
       const double part = 0.25 * face.need * theta * std::min(1.0, most_shares / shares[b]);
       const double shift = part * (std::max(0.0, mass[b] - 4 * mass[a]) + std::max(0.0, mass[b] - 4 * mass[c]));

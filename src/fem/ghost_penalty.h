@@ -26,9 +26,10 @@
 ///
 ///     m_a + d, m_b - 2 d, m_c + d,    d = need / 4  theta max(0, m_b - 4 m_c)  for each face, theta = 1/16,
 ///
-/// and so with a and c exchanged. That keeps the total and the centre of mass, and changes moments of inertia by the
-/// order of h^2, as lumping does. Then no corner has less than about theta of the mass of the next one, k is bounded by
-/// that, and the largest frequency is that of full cubes.
+/// and so with a and c exchanged; distance by distance, so that what a corner was given goes on to the next. That keeps
+/// the total and the centre of mass, and changes moments of inertia by the order of h^2, as lumping does. Then k falls by
+/// a factor for each line between a corner and a well-filled copy, however little material is there, and the largest
+/// frequency is that of full cubes.
 ///
 /// What it keeps: E is zero, and exerts no force, for every affine motion, large ones too, so patch tests and rigid
 /// motions stay; it is quadratic and convex in x, whatever the deformation and the law; for smooth motions the second
@@ -63,6 +64,7 @@ struct GhostFace {
   double need;                          ///< in (0, 1] [1]
   std::array<std::uint32_t, 4> a, b, c; ///< corners of the four lines across it: below, in, and above the face
   grid::CopyId well_filled;             ///< of the two copies; invalid: neither
+  std::uint8_t distance = 0;            ///< of the farther one of the two copies
   double stiffness = 0;                 ///< k [N/m]
 };
 
@@ -97,13 +99,14 @@ class GhostPenalty {
                        const std::function<double(std::size_t copy)>& fill, std::vector<GhostFace>& faces) const;
 
   void choose_faces(std::size_t n_copies);
-  void extend_mass(std::span<const double> mass);
+  void extend_mass();
+  void extend_mass_across(int distance);
   void weigh_faces();
 
   GhostPenaltyOptions options_;
   double stiffness_of_cube_, mass_of_cube_; // mu h [N/m], density h^3 [kg]
-  std::vector<GhostFace> known_; // all between a near-empty copy and one that it is glued to
-  std::vector<GhostFace> faces_; // those of them that have a penalty
+  std::vector<GhostFace> known_;            // all between a near-empty copy and one that it is glued to
+  std::vector<GhostFace> faces_;            // those of them that have a penalty
   std::vector<double> extended_mass_;
 };
 

@@ -64,6 +64,13 @@ void sync_folder(const std::filesystem::path& folder) {
 
 std::filesystem::path name_beside(const std::filesystem::path& path) { return path.string() + ".new"; }
 
+void take_name(const std::filesystem::path& path) {
+  std::error_code error;
+  std::filesystem::rename(name_beside(path), path, error);
+  if (error)
+    refuse(path, "cannot be written: " + error.message());
+}
+
 void write_checkpoint(const std::filesystem::path& path, const Checkpoint& checkpoint) {
   Archive archive;
   Checkpoint copy = checkpoint;
@@ -75,10 +82,7 @@ void write_checkpoint(const std::filesystem::path& path, const Checkpoint& check
     std::filesystem::remove(beside, ignored);
     refuse(path, "the checkpoint cannot be written: " + std::generic_category().message(error));
   }
-  std::error_code error;
-  std::filesystem::rename(beside, path, error);
-  if (error)
-    refuse(path, "the checkpoint cannot be written: " + error.message());
+  take_name(path);
   sync_folder(path.parent_path());
 }
 

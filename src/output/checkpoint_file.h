@@ -28,5 +28,7 @@ std::optional<Checkpoint> read_checkpoint(const std::filesystem::path& path);
 
 /// The name under which it is written before it takes its own.
 std::filesystem::path name_beside(const std::filesystem::path& path);
+/// Gives what was written beside its name, in place of what has it. Throws DataError.
+void take_name(const std::filesystem::path& path);
 
 } // namespace kerf::output

@@ -71,6 +71,12 @@ void Crumbs::carry(const Motions& motions, dynamics::State& state) const {
   }
 }
 
+void Crumbs::put(const Motion& of_corners, dynamics::State& state) const {
+  for (std::size_t b = 0; b < crumbs_.size(); ++b)
+    state.crumbs[b] = motion_of(crumbs_[b], of_corners);
+  carry(state.crumbs, state);
+}
+
 void Crumbs::place_corners(const dynamics::State& state, Points& corners) const {
   for (std::size_t b = 0; b < crumbs_.size(); ++b)
     for (std::size_t i = 0; i < crumbs_[b].corners.size(); ++i)

@@ -44,6 +44,8 @@ class Crumbs {
   /// Throws dynamics::StepError where loads leave no way.
   void step(const dynamics::Loads& loads, double dt, dynamics::MotionKind kind, dynamics::State& state);
 
+  /// Lets all crumbs move as their corners do now, with what they carry.
+  void put(const Motion& of_corners, dynamics::State& state) const;
   /// Puts the corners of crumbs where they are.
   void place_corners(const dynamics::State& state, Points& corners) const;
 

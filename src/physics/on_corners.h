@@ -30,6 +30,7 @@ class OnCorners : public Physics {
 
   Model& model() override { return *model_; }
   const Points& rest() const override { return rest_; }
+  bool particles_are_corners() const override { return true; }
   const Crumbs& crumbs() const override { return crumbs_; }
 
   dynamics::StepReport step(dynamics::State& state, const dynamics::Loads& loads, const double dt) override {

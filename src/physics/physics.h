@@ -37,6 +37,8 @@ class Physics {
   virtual dynamics::ForceModel& model() = 0;
   /// Rest positions of the particles [m].
   virtual const Points& rest() const = 0;
+  /// Whether the particles are the corners of the copies, and not samples of its own.
+  virtual bool particles_are_corners() const = 0;
   /// What the model does not know: pieces that move as rigid bodies. Loads must carry what they carry.
   virtual const Crumbs& crumbs() const = 0;
 

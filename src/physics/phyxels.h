@@ -52,6 +52,7 @@ class Phyxels : public Physics {
 
   pba::PhyxelModel& model() override { return model_; }
   const Points& rest() const override { return model_.phyxels().rest; }
+  bool particles_are_corners() const override { return false; }
   const Crumbs& crumbs() const override { return crumbs_; }
   dynamics::StepReport step(dynamics::State& state, const dynamics::Loads& loads, double dt) override;
   void follow_cut(const CutBody& body, const grid::CutChange& change, dynamics::State& state) override;

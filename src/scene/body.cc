@@ -2,22 +2,20 @@
 
 #include "cut/fit.h"
 #include "grid/locate.h"
+#include "scene/held.h"
 
 namespace kerf::scene {
 
 namespace {
 
-/// Particles whose rest position lies in a region.
 void find_supports(Body& body) {
   body.loads.supports.clear();
   const Points& rest = body.physics->rest();
   for (const SupportRegion& region : body.regions) {
     dynamics::Support support{{}, {}, region.displacement, region.rotation, region.held};
-    for (std::uint32_t i = 0; i < rest.size(); ++i)
-      if (contains(region.region, rest[i])) {
-        support.corners.push_back(i);
-        support.rest.push_back(rest[i]);
-      }
+    support.corners = particles_in(body, region.region);
+    for (const auto i : support.corners)
+      support.rest.push_back(rest[i]);
     body.loads.supports.push_back(std::move(support));
   }
   body.grips.clear();

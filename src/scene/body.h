@@ -28,6 +28,11 @@ struct SupportRegion {
   Mat3 held = Mat3::Identity();                   ///< dynamics::Support::held
 };
 
+/// Displacement from rest [m] and velocity [m/s] of the rest position X [m]; the time is 0.
+struct InitialState {
+  std::function<Vec3(const Vec3& X, double time)> displacement, velocity;
+};
+
 struct Body;
 /// Makes loads of what the body is now; asked again after every cut.
 struct LoadMaker {
@@ -63,6 +68,7 @@ struct Body {
   std::unique_ptr<physics::Physics> physics = nullptr;
   double density = 0;         ///< of its material [kg/m^3]
   dynamics::State state = {}; ///< of the particles of its physics
+  std::optional<InitialState> initial = {}; ///< empty: at rest
   dynamics::Loads loads = {};
   dynamics::StepReport report = {}; ///< of the last step
   int n_divided = 0;                ///< steps so far that were taken again in substeps

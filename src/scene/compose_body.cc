@@ -7,6 +7,7 @@
 #include "scene/compose_interior.h"
 #include "scene/compose_loads.h"
 #include "scene/compose_physics.h"
+#include "scene/initial_state.h"
 
 #include <cmath>
 
@@ -100,6 +101,10 @@ Body compose_body(const Section& section, const GravityParameters* gravity, cons
   if (const std::size_t n_cuts = world.blades.size() + world.cut_surfaces.size(); n_cuts > 0)
     body.cutter = std::make_unique<cut::Cutter>(n_cuts);
   start(body, mesh, physics_maker(section, parameters, world.time_step), world.setup_seconds);
+  if (const Section* initial = section.find("Initial state")) {
+    body.initial = compose_initial_state(*initial);
+    put_in_initial_state(body);
+  }
   if (const Section* interior = section.find("Interior")) {
     {
       const ScopedTimer timer(world.setup_seconds, "colour");

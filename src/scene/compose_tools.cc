@@ -3,6 +3,7 @@
 #include "cut/blade_edge.h"
 #include "cut/scissors.h"
 #include "geometry/box_tree.h"
+#include "scene/held.h"
 
 #include <algorithm>
 #include <limits>
@@ -91,8 +92,7 @@ bool comes_near(const cut::Blade& blade, const Body& body) {
 std::size_t n_particles_in(const Region& region, const World& world) {
   std::size_t n = 0;
   for (const Body& body : world.bodies)
-    for (const Vec3& X : body.physics->rest())
-      n += contains(region, X) ? 1 : 0;
+    n += particles_in(body, region).size();
   return n;
 }
 

@@ -1,5 +1,7 @@
 #include "scene/forceps.h"
 
+#include "scene/held.h"
+
 namespace kerf::scene {
 
 namespace {
@@ -11,12 +13,9 @@ dynamics::Support grip(const Body& body, const Forceps& forceps, const double t0
                             {},
                             [frames](const double t) { return cut::pose(frames, t).position; },
                             [frames](const double t) { return cut::pose(frames, t).rotation; }};
-  const Points& rest = body.physics->rest();
-  for (std::uint32_t i = 0; i < rest.size(); ++i)
-    if (contains(forceps.region, rest[i])) {
-      support.corners.push_back(i);
-      support.rest.push_back(before.rotation.transpose() * (body.state.x[i] - before.position));
-    }
+  support.corners = particles_in(body, forceps.region);
+  for (const auto i : support.corners)
+    support.rest.push_back(before.rotation.transpose() * (body.state.x[i] - before.position));
   return support;
 }
 

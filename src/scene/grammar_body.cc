@@ -8,6 +8,7 @@
 #include "material/elastic.h"
 #include "scene/grammar_interior.h"
 #include "scene/grammar_physics.h"
+#include "scene/initial_state.h"
 #include "scene/region.h"
 
 namespace kerf::scene {
@@ -73,6 +74,11 @@ std::vector<SectionKind> body_kinds() {
      Occurrence::once,
      "Rayleigh damping. Without this section there is none.",
      keys_of<DampingParameters>(),
+     {}},
+    {"Initial state",
+     Occurrence::once,
+     "Where the body is at time 0, and how it moves. Without this section it is at rest.",
+     keys_of<InitialStateParameters>(),
      {}},
     {"Support",
      Occurrence::named,

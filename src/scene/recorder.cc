@@ -187,7 +187,7 @@ int Recorder::resume(World& world) {
   Archive state(checkpoint->state, checkpoint_file(folder()).string());
   for (Body& body : world.bodies)
     archive(state, body);
-  state(bodies_);
+  state(bodies_, world.watches);
   return static_cast<int>(checkpoint->step);
 }
 
@@ -210,7 +210,7 @@ void Recorder::keep_now(World& world, const int step) {
   Archive state;
   for (Body& body : world.bodies)
     archive(state, body);
-  state(bodies_);
+  state(bodies_, world.watches);
   output::write_checkpoint(checkpoint_file(folder()), {program_, inputs_, step, state.bytes()});
 }
 

@@ -3,7 +3,10 @@
 #include "base/error.h"
 #include "base/interrupt.h"
 #include "dynamics/sound_steps.h"
+#include "scene/initial_state.h"
 #include "scene/soundness.h"
+
+#include <algorithm>
 
 namespace kerf::scene {
 
@@ -35,6 +38,21 @@ void on(const World& world, const Body& body, const int step, const double time,
   }
 }
 
+/// With the surfaces whose time has come. What is in an initial state is cut at rest at time 0.
+void cut_at_once(Body& body, const World& world, const int step, Timings& seconds) {
+  const auto is_now = [&](const TimedSurface& timed) { return timed.step == step; };
+  if (std::none_of(world.cut_surfaces.begin(), world.cut_surfaces.end(), is_now))
+    return;
+  const bool is_put = step == 1 && body.initial;
+  if (is_put)
+    put_at_rest(body);
+  for (const TimedSurface& timed : world.cut_surfaces)
+    if (is_now(timed))
+      cut_at_once(body, timed.surface, seconds);
+  if (is_put)
+    put_in_initial_state(body);
+}
+
 void cut(World& world, const int step, Timings& seconds) {
   const double dt = world.time_step, t0 = (step - 1) * dt, t1 = step * dt;
   for (Body& body : world.bodies) {
@@ -43,9 +61,7 @@ void cut(World& world, const int step, Timings& seconds) {
     on(world, body, step, t1, [&] {
       const int n_recuts = body.n_recuts;
       const double before = body.accounts ? total_energy(*body.physics, body.loads, body.state) : 0;
-      for (const TimedSurface& timed : world.cut_surfaces)
-        if (timed.step == step)
-          cut_at_once(body, timed.surface, seconds);
+      cut_at_once(body, world, step, seconds);
       recut(body, world.blades, t0, t1, seconds);
       if (body.accounts && body.n_recuts != n_recuts)
         body.accounts->add_work_of_cut(total_energy(*body.physics, body.loads, body.state) - before);

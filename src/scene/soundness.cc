@@ -48,7 +48,8 @@ std::vector<double> piece_volumes(const Body& body, const Watch& watch, const Po
   std::vector<double> volumes(watch.rest_volumes.size(), 0);
   for (std::size_t t = 0; t < body.surface.triangles.size(); ++t) {
     const Triangle& v = body.surface.triangles[t];
-    volumes[watch.piece_of_copy[body.surface.copies[t].value]] += points[v[0]].dot(points[v[1]].cross(points[v[2]])) / 6;
+    volumes[watch.piece_of_copy[body.surface.copies[t].value]] +=
+      points[v[0]].dot(points[v[1]].cross(points[v[2]])) / 6;
   }
   return volumes;
 }
@@ -102,6 +103,27 @@ double inverted_part(const Body& body) {
 
 constexpr char remedy[] = ". What acts on it is more than its material bears: use a stiffer material or smaller loads";
 
+/// What is wrong with the body's volumes; nothing: they are sound.
+std::string unsound_volume(const Body& body, const Watch& watch) {
+  constexpr double most = 10, most_inverted = 0.1;
+  const std::vector<double> now = piece_volumes(body, watch, body.positions);
+  for (std::uint32_t p = 0; p < now.size(); ++p) {
+    const double rest = watch.rest_volumes[p], ratio = now[p] / rest;
+    if (rest < std::pow(body.solid.grid.h(), 3) || (ratio > 1 / most && ratio < most))
+      continue;
+    return "piece " + std::to_string(p) + " is " +
+           (ratio > 1   ? "blown up"
+            : ratio > 0 ? "crushed"
+                        : "inside out") +
+           ": its volume is " + in_short(100 * ratio) + " % of that at rest. Worst is " +
+           worst_copy(body, [&](const std::size_t c) { return watch.piece_of_copy[c] == p; }) + remedy;
+  }
+  if (const double part = inverted_part(body); part > most_inverted)
+    return in_short(100 * part) + " % of the body are inside out. Worst is " +
+           worst_copy(body, [](std::size_t) { return true; }) + remedy;
+  return "";
+}
+
 } // namespace
 
 std::string particle_at(const Body& body, const std::size_t particle) {
@@ -135,23 +157,11 @@ void require_sound_motion(const Body& body, const double dt) {
 }
 
 void require_sound_volume(const Body& body, Watch& watch) {
-  constexpr double most = 10, most_inverted = 0.1;
   bring_up_to_date(body, watch);
-  const std::vector<double> now = piece_volumes(body, watch, body.positions);
-  for (std::uint32_t p = 0; p < now.size(); ++p) {
-    const double rest = watch.rest_volumes[p], ratio = now[p] / rest;
-    if (rest < std::pow(body.solid.grid.h(), 3) || (ratio > 1 / most && ratio < most))
-      continue;
-    throw NumericalError("piece " + std::to_string(p) + " is " +
-                         (ratio > 1   ? "blown up"
-                          : ratio > 0 ? "crushed"
-                                      : "inside out") +
-                         ": its volume is " + in_short(100 * ratio) + " % of that at rest. Worst is " +
-                         worst_copy(body, [&](const std::size_t c) { return watch.piece_of_copy[c] == p; }) + remedy);
-  }
-  if (const double part = inverted_part(body); part > most_inverted)
-    throw NumericalError(in_short(100 * part) + " % of the body are inside out. Worst is " +
-                         worst_copy(body, [](std::size_t) { return true; }) + remedy);
+  const std::string what = unsound_volume(body, watch);
+  watch.was_sound = watch.was_sound || what.empty();
+  if (!what.empty() && (watch.was_sound || !body.initial))
+    throw NumericalError(what);
 }
 
 } // namespace kerf::scene

@@ -17,6 +17,9 @@ struct Watch {
   int n_recuts = -1;
   std::vector<std::uint32_t> piece_of_copy;
   std::vector<double> rest_volumes; ///< of each piece [m^3]
+  bool was_sound = false;           ///< once: a body may be put inside out by its initial state, and is given time
+
+  void archive(Archive& a) { a(was_sound); } // the rest is found again
 };
 
 /// After a step of dt [s], before the surface follows. Throws NumericalError that names the particle and its place.

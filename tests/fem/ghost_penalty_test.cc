@@ -246,5 +246,21 @@ TEST(GhostPenalty, SpectraDoNotDependOnWhereACutLies) {
   EXPECT_GT(spectra_of(body, 0).frequency, 1e3);
 }
 
+/// The penalty falls by a factor for each copy that lies between it and a well-filled one, and not as the mass there does:
+/// a far corner that nothing holds would swing until its copy is inside out.
+TEST(GhostPenalty, HoldsCornersFarFromWellFilledCopies) {
+  for (const Family& family : families) {
+    support::Body body = family.body(1e-12);
+    surface::place(body, {});
+    body.complex = grid::build_complex(body);
+    const Hexahedra model(body, {.material = rubber});
+    for (const GhostFace& face : model.ghost_penalty().faces()) {
+      const double of_full_mass = 0.25 * GhostPenaltyOptions().weight * rubber.mu() * face.need;
+      EXPECT_GT(face.stiffness / of_full_mass, 0.003 * std::pow(0.125, face.distance - 1))
+        << family.name << ": distance " << int(face.distance);
+    }
+  }
+}
+
 } // namespace
 } // namespace kerf::fem

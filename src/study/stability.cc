@@ -1,0 +1,261 @@
+#include "study/stability.h"
+
+#include "base/error.h"
+#include "base/interrupt.h"
+#include "dynamics/quantities.h"
+#include "material/elastic.h"
+#include "output/checkpoint_file.h"
+#include "scene/compose.h"
+#include "scene/run.h"
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+#include <limits>
+
+namespace kerf::study {
+
+namespace {
+
+constexpr char file_name[] = "stability.h5";
+constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+
+/// What was seen of a run.
+struct Seen {
+  enum class End { completed, refused, stopped } end = End::completed;
+  std::string reason;
+  double start = 0, largest = 0, last = 0; ///< energies [J]
+  double scale = 0;                        ///< energy that the others are measured by [J]
+  double momentum = 0, mass = 0;           ///< its change [kg m/s], [kg]
+  double volume = 1;                       ///< over that at rest [1]
+  bool is_back = true;                     ///< was sound once
+  int n_steps = 0, n_divided = 0;
+  std::int64_t n_iterations = 0;
+  double predicted_step = 0; ///< [s]
+};
+
+std::string in_one_line(std::string text) {
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  return text;
+}
+
+Vec3 momentum_of(scene::Body& body) {
+  const auto mass = body.physics->model().lumped_mass();
+  Vec3 sum = body.physics->crumbs().momentum(body.state);
+  for (std::size_t i = 0; i < mass.size(); ++i)
+    sum += mass[i] * body.state.v[i];
+  return sum;
+}
+
+double mass_of(scene::Body& body) {
+  double sum = body.physics->crumbs().mass();
+  for (const double m : body.physics->model().lumped_mass())
+    sum += m;
+  return sum;
+}
+
+/// A strain of 1e-4 all over: what is less passes for nothing [J].
+double hardly_any_energy(const scene::Body& body, const StabilityCase& one) {
+  const auto root = scene::parse_scene(one.scene, scene::grammar());
+  const scene::Section* section = root.require("Body").find("Material");
+  const double E = section ? section->read<material::Elastic>().youngs_modulus : material::Elastic().youngs_modulus;
+  return 1e-8 * E * body.first_volume;
+}
+
+void see_start(scene::Body& body, const StabilityCase& one, const Vec3& momentum, Seen& seen) {
+  seen.start = body.accounts->start_energy() + body.accounts->work_of_cut();
+  seen.scale = std::max(seen.start, hardly_any_energy(body, one));
+  seen.mass = mass_of(body);
+  seen.momentum = (momentum_of(body) - momentum).norm();
+}
+
+/// Steps a body that is alone, and looks at it after each.
+void step_through(scene::World& world, const StabilityCase& one, const int n_steps, Seen& seen) {
+  scene::Body& body = world.bodies.front();
+  const Vec3 momentum = momentum_of(body);
+  Timings seconds;
+  for (int step = 1; step <= n_steps; ++step) {
+    scene::advance(world, step, seconds);
+    if (step == 1)
+      see_start(body, one, momentum, seen);
+    seen.last = scene::total_energy(*body.physics, body.loads, body.state);
+    seen.largest = std::max(seen.largest, seen.last);
+    seen.momentum = std::max(seen.momentum, (momentum_of(body) - momentum).norm());
+    seen.n_iterations += body.report.n_iterations;
+    seen.predicted_step = body.report.stable_step;
+    seen.n_steps = step;
+  }
+  seen.n_divided = body.n_divided;
+  seen.is_back = world.watches.front().was_sound;
+  seen.volume = surface::enclosed_volume(body.positions, body.surface.triangles) /
+                surface::enclosed_volume(body.surface.rest, body.surface.triangles);
+}
+
+/// Runs until it ends, however it does.
+Seen run(const StabilityCase& one, const int n_steps) {
+  Seen seen;
+  const auto end = [&](const Seen::End how, const std::exception& error) {
+    seen.end = how;
+    seen.reason = in_one_line(error.what());
+  };
+  try {
+    scene::World world = scene::compose(one.scene);
+    scene::Body& body = world.bodies.front();
+    body.accounts = std::make_unique<scene::Accounts>();
+    body.accounts->open(*body.physics, body.loads, body.state);
+    step_through(world, one, n_steps, seen);
+  } catch (const ParameterError& error) {
+    end(Seen::End::refused, error);
+  } catch (const std::exception& error) {
+    end(Seen::End::stopped, error);
+  }
+  return seen;
+}
+
+std::string per_cent(const double part) { return to_text(std::round(1e3 * part) / 10) + " %"; }
+
+/// The word for what was seen; and the reason, where that is not told.
+std::string outcome_of(Seen& seen, const bool is_equilibrium) {
+  constexpr double doubled = 2, drift = 0.01, gone = 1e-3, off = 0.3;
+  if (seen.end == Seen::End::refused)
+    return "refused";
+  if (seen.end == Seen::End::stopped)
+    return "stopped";
+  const double largest = seen.largest / seen.scale, last = seen.last / seen.scale,
+               momentum = seen.momentum / std::sqrt(2 * seen.mass * seen.scale);
+  if (!(largest < doubled)) {
+    seen.reason = "energy grew to " + per_cent(largest);
+    return "failed";
+  }
+  if (!seen.is_back)
+    return "not back";
+  if (!(std::abs(seen.volume - 1) < off) && last < gone) {
+    seen.reason = "volume is " + per_cent(seen.volume);
+    return "failed";
+  }
+  if (!(largest < 1 + drift) || !(momentum < drift)) {
+    seen.reason =
+      largest < 1 + drift ? "momentum changed by " + per_cent(momentum) : "energy grew to " + per_cent(largest);
+    return "drifted";
+  }
+  return last < gone && seen.start == seen.scale && !is_equilibrium ? "damped out" : "stable";
+}
+
+/// The longest step with which a run completes and its energy at most doubles, to 1 % [s].
+double largest_step(const StabilityCase& one, const double first, const int n_steps) {
+  const auto is_stable = [&](const double dt) {
+    StabilityCase other = one;
+    other.scene = with_step(one.scene, dt, n_steps);
+    const Seen seen = run(other, n_steps);
+    return seen.end == Seen::End::completed && seen.largest < 2 * seen.scale;
+  };
+  constexpr double factor = 1.5, precise = 1.01;
+  constexpr int most = 40;
+  double low = first, high = first;
+  int n = 0;
+  if (is_stable(first))
+    for (; n < most && is_stable(high *= factor); ++n)
+      low = high;
+  else
+    for (; n < most && !is_stable(low /= factor); ++n)
+      high = low;
+  if (n == most)
+    return low < first ? 0 : std::numeric_limits<double>::infinity();
+  while (high > precise * low) {
+    const double middle = std::sqrt(low * high);
+    (is_stable(middle) ? low : high) = middle;
+  }
+  return low;
+}
+
+std::string joined(const std::vector<std::string>& texts) {
+  std::string all;
+  for (const std::string& text : texts)
+    all += (all.empty() ? "" : " | ") + text;
+  return all;
+}
+
+/// Names, and what is known before the run.
+output::StabilityRow described(const StabilityCase& one) {
+  const auto root = scene::parse_scene(one.scene, scene::grammar());
+  const auto body = root.require("Body").read<scene::BodyParameters>();
+  output::StabilityRow row;
+  row.sweep = one.sweep;
+  row.variant = one.variant;
+  row.cases = one.cases;
+  row.changes = joined(one.overrides);
+  row.backend = body.backend;
+  row.integrator = body.backend == "lattice" ? "shape matching" : body.integrator;
+  row.dt = root.require("Time").read<scene::TimeParameters>().time_step;
+  row.predicted_step = row.largest_step = unknown;
+  return row;
+}
+
+} // namespace
+
+output::StabilityRow watch(const StabilityCase& one, const int n_steps) {
+  output::StabilityRow row = described(one);
+  const std::clock_t start = std::clock();
+  Seen seen = run(one, n_steps);
+  row.outcome = outcome_of(seen, row.integrator == "quasi-static");
+  row.reason = seen.reason;
+  row.start_energy = seen.start;
+  row.largest_energy = seen.largest / seen.scale;
+  row.last_energy = seen.last / seen.scale;
+  row.momentum = seen.momentum / std::sqrt(2 * seen.mass * seen.scale);
+  row.volume = seen.volume;
+  row.n_steps = seen.n_steps;
+  row.n_iterations = seen.n_iterations;
+  row.n_divided = seen.n_divided;
+  if (one.ask == Ask::largest_step && seen.predicted_step > 0) {
+    row.predicted_step = seen.predicted_step;
+    row.largest_step = largest_step(one, seen.predicted_step, n_steps);
+  }
+  row.cpu_seconds = double(std::clock() - start) / CLOCKS_PER_SEC;
+  return row;
+}
+
+namespace {
+
+/// The rows of an earlier run of the same study, to be taken as they are.
+std::vector<output::StabilityRow> earlier_rows(const StabilityPlan& plan, const std::filesystem::path& file) {
+  std::error_code error;
+  if (!std::filesystem::exists(file, error))
+    return {};
+  const output::StabilityTable table = output::read_stability_file(file);
+  if (table.text != plan.text || table.rows.size() > plan.cases.size())
+    throw ParameterError(Complaint{.file = file.string(),
+                                   .rule = "cannot be resumed: it is of another study",
+                                   .remedy = "Give the study as it was, or start again with --force"});
+  return table.rows;
+}
+
+} // namespace
+
+output::StabilityTable run_stability_study(const StabilityPlan& plan, const std::filesystem::path& folder,
+                                           const output::RunInfo& info, const output::Earlier earlier,
+                                           const std::function<void(const output::StabilityRow&)>& done) {
+  constexpr std::size_t every = 20; // rows between two times that the file is written
+  const output::ResultsFolder claimed(folder, earlier, {file_name, output::name_beside(file_name).string()});
+  output::StabilityTable table{plan.parameters.title, plan.text, {}, {}};
+  const auto write = [&](const output::Outcome outcome) {
+    table.outcome = outcome;
+    output::write_stability_file(folder / file_name, table, info);
+  };
+  if (earlier == output::Earlier::resume)
+    table.rows = earlier_rows(plan, folder / file_name);
+  for (std::size_t r = table.rows.size(); r < plan.cases.size(); ++r) {
+    if (const int signal = wish_to_end(); signal != 0) {
+      write(output::Outcome::interrupted);
+      throw Interrupted(signal, " after row " + std::to_string(r) + " of " + std::to_string(plan.cases.size()));
+    }
+    table.rows.push_back(watch(plan.cases[r], plan.parameters.n_steps));
+    if (table.rows.size() % every == 0)
+      write(output::Outcome::running);
+    done(table.rows.back());
+  }
+  write(output::Outcome::completed);
+  return table;
+}
+
+} // namespace kerf::study
