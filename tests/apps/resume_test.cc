@@ -3,6 +3,7 @@
 #include "tests/apps/program.h"
 #include "output/h5_array.h"
 #include "output/reader.h"
+#include "output/study_file.h"
 
 #include <chrono>
 #include <csignal>
@@ -206,6 +207,40 @@ TEST_F(Resume, RefusesAnotherScene) {
   bytes[bytes.size() / 2] ^= 1;
   write("out/checkpoint.kerf", bytes);
   expect_error(kerf({"run", "scene.prm", "--output", "out", "--resume"}), 2, {"checkpoint.kerf", "is damaged", "--force"});
+}
+
+/// Ten moments; rows that were finished are not run again, the one under way goes on.
+TEST_F(Resume, StudiesGoOnToo) {
+  std::string scene = busy_scene("fem");
+  for (const std::string kind : {"subsection Images", "subsection Surface file"})
+    scene.erase(scene.find(kind), scene.find("end\n", scene.find(kind)) + 4 - scene.find(kind));
+  write("scene.prm", scene);
+  write("study.prm", "subsection Study\n  set Title = t\n  set Scene = scene.prm\n  set Answer = elastic energy\n"
+                     "  set Unit = J\nend\nsubsection Variant one\nend\n"
+                     "subsection Variant two\n  set Set = Body cube/Material/Poisson's ratio [1]=0.2\nend\n"
+                     "subsection Variant three\n  set Set = Body cube/Element=enhanced\nend\n");
+  const auto start = std::chrono::steady_clock::now();
+  ASSERT_EQ(kerf({"study", "study.prm", "--output", "whole"}).exit_code, 0) << read_text(folder / "stderr");
+  const auto took = std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::steady_clock::now() - start);
+  std::mt19937 random(5);
+  const Words resumed = {"study", "study.prm", "--output", "out", "--resume"};
+  for (int i = 0; i < 10; ++i) {
+    const int signal = i % 2 == 0 ? SIGKILL : SIGTERM;
+    const int status = disturbed(resumed, signal, 50 + static_cast<int>(random() % (took.count() / 3 + 1)));
+    EXPECT_TRUE(WIFSIGNALED(status) || WEXITSTATUS(status) == 128 + signal || WEXITSTATUS(status) == 0)
+      << read_text(folder / "stderr");
+  }
+  const Result last = kerf(resumed);
+  ASSERT_EQ(last.exit_code, 0) << last.err;
+  const auto a = output::read_study_file(folder / "whole/study.h5"), b = output::read_study_file(folder / "out/study.h5");
+  EXPECT_EQ(b.outcome, output::Outcome::completed);
+  ASSERT_EQ(a.rows.size(), b.rows.size());
+  for (std::size_t i = 0; i < a.rows.size(); ++i) {
+    EXPECT_EQ(a.rows[i].name, b.rows[i].name);
+    EXPECT_EQ(a.rows[i].value, b.rows[i].value);
+    EXPECT_EQ(a.rows[i].n_steps, b.rows[i].n_steps);
+    EXPECT_EQ(b.rows[i].outcome, "completed");
+  }
 }
 
 /// /scene is a scene by itself: from anywhere, with what --set has changed, the same bits.
