@@ -11,6 +11,8 @@ namespace {
 
 /// A corner with less than this part of the largest mass has none but for round-off: it takes no acceleration at first.
 constexpr double massless = 1e-12;
+/// One with less than this part moves with the mean velocity of the step.
+constexpr double light = 1.0 / 32;
 constexpr double part_of_step = 1e-2; // for velocities of supports, by central differences
 
 void require(const bool holds, const std::string& path, const double value, const std::string& rule) {
@@ -79,12 +81,15 @@ StepReport GeneralisedAlpha::step(State& state, const Loads& loads, const double
   Points a = known ? *known : first_acceleration(state, loads, dt), x;
   const StepReport report = accepted(solver_.solve(loads, constraints, balance(state, a, constraints, dt), x));
   const auto [alpha_m, alpha_f, beta, gamma] = c_;
+  const auto mass = model_.lumped_mass();
+  const double most = *std::max_element(mass.begin(), mass.end());
+  const auto is_light = [&](const std::size_t i) { return mass[i] < light * most; };
   for (std::size_t i = 0; i < x.size(); ++i) {
     const Vec3 moved = (x[i] - state.x[i]) / (1 - alpha_f);
     const Vec3 a_1 = (moved - dt * state.v[i]) / (beta * dt * dt) - (0.5 / beta - 1) * a[i];
     state.x[i] += moved;
-    state.v[i] += dt * ((1 - gamma) * a[i] + gamma * a_1);
-    a[i] = a_1;
+    state.v[i] = is_light(i) ? Vec3(moved / dt) : Vec3(state.v[i] + dt * ((1 - gamma) * a[i] + gamma * a_1));
+    a[i] = is_light(i) ? Vec3(Vec3::Zero()) : a_1;
   }
   state.time += dt;
   constraints.place(state.time, state.x);

@@ -196,7 +196,7 @@ EnergyChange energy_change(const ForceModel& model, ElasticEnergies& energies, c
 }
 
 void SoundSteps::add_checked(Tried& tried, const Loads& loads, const double dt) {
-  constexpr double most_in_sum = 0.9;
+  constexpr double most_in_sum = 0.5;
   State& state = tried.state;
   State after = state;
   const StepReport report = stepper_->step(after, loads, dt);
@@ -230,6 +230,16 @@ SoundSteps::Tried SoundSteps::divided(const State& state, const Loads& loads, co
   return tried;
 }
 
+StepReport SoundSteps::by_last_resort(State& state, const Loads& loads, const double dt) {
+  State after = state;
+  forget_past(after);
+  StepReport report = last_resort_->step(after, loads, dt);
+  forget_past(after);
+  after.numbers["energy gained [J]"] = 0;
+  state = std::move(after);
+  return report;
+}
+
 StepReport SoundSteps::step(State& state, const Loads& loads, const double dt) {
   constexpr int most_for_wanted = 4;
   std::optional<StepError> first;
@@ -256,6 +266,11 @@ StepReport SoundSteps::step(State& state, const Loads& loads, const double dt) {
   if (bearable) {
     state = std::move(bearable->state);
     return bearable->report;
+  }
+  if (last_resort_) {
+    StepReport report = by_last_resort(state, loads, dt);
+    report.n_rejected += n_rejected;
+    return report;
   }
   if (options_.most_substeps == 1)
     throw *first;

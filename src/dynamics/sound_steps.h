@@ -14,8 +14,11 @@
 /// substeps, which remove any error of second order. A method that takes energy and gives none is held to less
 /// (SoundOptions::wanted_gain); steps of it that gain more, as Newton's method has not come to an end, are tried again in 2
 /// and 4 substeps, of which the first that gains no more is taken, or else what gained least. And an integrator that gains a little in each step is watched by
-/// the sum (Page 1954, Continuous inspection schemes, Biometrika 41: S = max(0, S + gain)): once nine tenths of all
-/// kinetic and elastic energy are gained that way, the motion is no more the body's.
+/// the sum (Page 1954, Continuous inspection schemes, Biometrika 41: S = max(0, S + gain)): once half of all kinetic and
+/// elastic energy is gained that way, the motion is no more the body's.
+///
+/// An integrator that takes no energy may have another for the last resort, which does: a step that nothing mends is
+/// then taken by that one, and the next starts anew.
 ///
 /// State::numbers "energy gained [J]" is that sum.
 
@@ -67,14 +70,23 @@ class ElasticEnergies {
 class SoundSteps : public Stepper {
  public:
   /// The model must outlive the stepper, and stay as it is: after a cut both are made again.
-  SoundSteps(ForceModel& model, std::unique_ptr<Stepper> stepper, const SoundOptions& options)
-    : model_(model), stepper_(std::move(stepper)), options_(options), energies_(model) {}
+  SoundSteps(ForceModel& model, std::unique_ptr<Stepper> stepper, const SoundOptions& options,
+             std::unique_ptr<Stepper> last_resort = nullptr)
+    : model_(model),
+      stepper_(std::move(stepper)),
+      last_resort_(std::move(last_resort)),
+      options_(options),
+      energies_(model) {}
 
   /// Counts substeps where there are several, and steps tried and thrown away. Throws StepError when the shortest
   /// substeps fail too, with the reason of the whole step.
   StepReport step(State& state, const Loads& loads, double dt) override;
 
-  void archive(Archive& a) override { stepper_->archive(a); }
+  void archive(Archive& a) override {
+    stepper_->archive(a);
+    if (last_resort_)
+      last_resort_->archive(a);
+  }
   const Stepper& watched() const { return *stepper_; }
 
  private:
@@ -88,9 +100,10 @@ class SoundSteps : public Stepper {
   /// From a state, all in `n` substeps.
   Tried divided(const State& state, const Loads& loads, double dt, int n);
   void add_checked(Tried& tried, const Loads& loads, double dt);
+  StepReport by_last_resort(State& state, const Loads& loads, double dt);
 
   ForceModel& model_;
-  std::unique_ptr<Stepper> stepper_;
+  std::unique_ptr<Stepper> stepper_, last_resort_;
   SoundOptions options_;
   ElasticEnergies energies_;
 };

@@ -45,4 +45,10 @@ inline void forget_forces(State& state) {
     state.history.erase(name);
 }
 
+/// Of what integrators remember beside x and v, nothing: the next step starts anew.
+inline void forget_past(State& state) {
+  state.history.clear();
+  state.numbers.erase("step before [s]");
+}
+
 } // namespace kerf::dynamics

@@ -87,8 +87,7 @@ Riders::Riders(const grid::CellComplex& complex, const std::span<const double> m
   std::vector<std::uint32_t> carrier(mass.size(), none); // of each rider; its own copy, if that carries
   for (const auto c : ids<CopyId>(complex.n_copies()))
     for (const auto corner : complex.copies[c].corners)
-      if (const auto k = carrier_of_copy[c.value];
-          k != none && mass[corner.value] > 0 && mass[corner.value] < light * mass_of_cube)
+      if (const auto k = carrier_of_copy[c.value]; k != none && mass[corner.value] < light * mass_of_cube)
         if (auto& known = carrier[corner.value]; known == none || (k == c.value && known != k))
           known = k;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs; // carrier, corner

@@ -30,9 +30,12 @@ double gravity_energy(physics::Physics& physics, const dynamics::Loads& loads, c
   return dynamics::gravity_energy(physics.model(), loads, state.x) + physics.crumbs().gravity_energy(loads, state);
 }
 
+double inner_energy(physics::Physics& physics, const dynamics::State& state) {
+  return physics.model().energy(state.x) + kinetic_energy(physics, state);
+}
+
 double total_energy(physics::Physics& physics, const dynamics::Loads& loads, const dynamics::State& state) {
-  const dynamics::ForceModel& model = physics.model();
-  return model.energy(state.x) + kinetic_energy(physics, state) + gravity_energy(physics, loads, state) +
+  return inner_energy(physics, state) + gravity_energy(physics, loads, state) +
          dynamics::load_energy(loads, state.time, state.x);
 }
 

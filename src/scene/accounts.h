@@ -21,6 +21,8 @@ namespace kerf::scene {
 /// With those of crumbs [J].
 double kinetic_energy(physics::Physics& physics, const dynamics::State& state);
 double gravity_energy(physics::Physics& physics, const dynamics::Loads& loads, const dynamics::State& state);
+/// Kinetic and elastic energies [J].
+double inner_energy(physics::Physics& physics, const dynamics::State& state);
 /// Kinetic, elastic and potential energies together [J].
 double total_energy(physics::Physics& physics, const dynamics::Loads& loads, const dynamics::State& state);
 

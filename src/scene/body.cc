@@ -71,6 +71,8 @@ void archive(Archive& a, Body& body) {
     a(*body.cutter);
   body.physics->archive(a, seen(body));
   a(body.state, body.report, body.n_divided);
+  if (body.initial)
+    a(body.initial->energy);
   if (body.accounts)
     a(*body.accounts);
   if (body.interior)

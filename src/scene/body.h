@@ -31,6 +31,7 @@ struct SupportRegion {
 /// Displacement from rest [m] and velocity [m/s] of the rest position X [m]; the time is 0.
 struct InitialState {
   std::function<Vec3(const Vec3& X, double time)> displacement, velocity;
+  double energy = 0; ///< kinetic and elastic, once the body is put there [J]
 };
 
 struct Body;

@@ -20,6 +20,12 @@ struct Implicit {
   int order; ///< of its error
 };
 
+/// A fifth of the 1 % to which an energy book may stay open.
+constexpr dynamics::SoundOptions dissipative{.wanted_gain = 2e-3};
+constexpr dynamics::SoundOptions conservative{.wanted_gain = 1e-2};
+constexpr dynamics::SoundOptions as_they_are{.most_substeps = 1};
+constexpr dynamics::SoundOptions explicit_ones{.most_substeps = 1, .most_gain = 0.75};
+
 /// Watches the energy of an integrator's steps, and divides those that gain some.
 physics::StepperMaker sound(const physics::StepperMaker& make, const dynamics::SoundOptions& options) {
   return [=](ElasticModel& model, const PiecesOfParticles& pieces) -> Stepper {
@@ -27,10 +33,15 @@ physics::StepperMaker sound(const physics::StepperMaker& make, const dynamics::S
   };
 }
 
-/// A fifth of the 1 % to which an energy book may stay open.
-constexpr dynamics::SoundOptions dissipative{.wanted_gain = 2e-3};
-constexpr dynamics::SoundOptions as_they_are{.most_substeps = 1};
-constexpr dynamics::SoundOptions explicit_ones{.most_substeps = 1, .most_gain = 0.75};
+/// The same for one that takes no energy: what cannot be mended is a step of implicit Euler.
+physics::StepperMaker sound_or_implicit_euler(const physics::StepperMaker& make) {
+  return [=](ElasticModel& model, const PiecesOfParticles& pieces) -> Stepper {
+    const auto options = dynamics::implicit_euler_options(dynamics::NewtonParameters());
+    auto last_resort = std::make_unique<dynamics::SoundSteps>(
+      model, std::make_unique<dynamics::ImplicitEuler>(model, options), dissipative);
+    return std::make_unique<dynamics::SoundSteps>(model, make(model, pieces), conservative, std::move(last_resort));
+  };
+}
 
 /// `make` gets the model, and the integrator's own settings.
 template <class Fields, class Make>
@@ -59,6 +70,12 @@ Integrator quasi_static(const Section& body) {
   }};
 }
 
+/// Nothing damps what rings: corners of hardly any mass get some of their neighbours', as with explicit integrators.
+Implicit undamped(Implicit implicit) {
+  implicit.integrator.inertia = fem::Inertia::extended;
+  return implicit;
+}
+
 Implicit implicit_integrator(const Section& body, const std::string& name) {
   using dynamics::GeneralisedAlpha;
   if (name == "BDF2")
@@ -67,15 +84,15 @@ Implicit implicit_integrator(const Section& body, const std::string& name) {
                                                  return std::make_unique<dynamics::Bdf2>(model, p.newton.options());
                                                });
   if (name == "Newmark")
-    return implicit<dynamics::NewmarkParameters>(
+    return undamped(implicit<dynamics::NewmarkParameters>(
       body, "Newmark", 2, [](ElasticModel& model, const dynamics::NewmarkParameters& p) {
         return std::make_unique<GeneralisedAlpha>(model, dynamics::newmark(p.beta, p.gamma), p.newton.options());
-      });
+      }));
   if (name == "generalised alpha")
-    return implicit<dynamics::GeneralisedAlphaParameters>(
+    return undamped(implicit<dynamics::GeneralisedAlphaParameters>(
       body, "Generalised alpha", 2, [](ElasticModel& model, const dynamics::GeneralisedAlphaParameters& p) {
         return std::make_unique<GeneralisedAlpha>(model, dynamics::generalised_alpha(p.rho_inf), p.newton.options());
-      });
+      }));
   return implicit<dynamics::NewtonParameters>(
     body, "Implicit Euler", 1, [](ElasticModel& model, const dynamics::NewtonParameters& p) {
       return std::make_unique<dynamics::ImplicitEuler>(model, dynamics::implicit_euler_options(p));
@@ -86,8 +103,8 @@ Integrator with_adaptive_step(const Section& body, const Implicit& implicit) {
   if (!body.find("Adaptive step")) {
     Integrator divided = implicit.integrator;
     constexpr int of_implicit_euler = 1;
-    divided.make =
-      sound(implicit.integrator.make, implicit.order == of_implicit_euler ? dissipative : dynamics::SoundOptions{});
+    divided.make = implicit.order == of_implicit_euler ? sound(implicit.integrator.make, dissipative)
+                                                       : sound_or_implicit_euler(implicit.integrator.make);
     return divided;
   }
   const auto parameters = read_if_written<dynamics::AdaptiveParameters>(body, "Adaptive step");

@@ -28,7 +28,7 @@ void InitialStateParameters::describe(Parameters& p) {
 InitialState compose_initial_state(const Section& section) {
   const auto parameters = section.read<InitialStateParameters>();
   return {vector_of_place(section, "Displacement [m]", parameters.displacement),
-          vector_of_place(section, "Velocity [m/s]", parameters.velocity)};
+          vector_of_place(section, "Velocity [m/s]", parameters.velocity), 0};
 }
 
 void put_in_initial_state(Body& body) {
@@ -52,6 +52,7 @@ void put_in_initial_state(Body& body) {
     body.physics->crumbs().put(now, body.state);
   }
   forget_motion(body);
+  body.initial->energy = inner_energy(*body.physics, body.state);
 }
 
 void put_at_rest(Body& body) {

@@ -97,7 +97,7 @@ void advance(World& world, const int step, Timings& seconds) {
         body.accounts->before_step(body.state);
       body.report = body.physics->step(body.state, body.loads, dt);
       require_sound_motion(body, dt);
-      body.n_divided += body.report.n_substeps > 1 && body.report.n_rejected > 0 ? 1 : 0;
+      body.n_divided += body.report.n_rejected > 0 ? 1 : 0;
       if (body.accounts)
         body.accounts->after_step(*body.physics, body.loads, body.state);
     });

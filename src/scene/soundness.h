@@ -6,7 +6,8 @@
 /// step against the mean motion while all kinetic and elastic energy of the body could not move an eighth of a full
 /// cube, which is the least that a corner of whole cubes has, that fast: what moves so is lighter than anything that
 /// the grid resolves. And a piece that is inside out, or crushed to a tenth or blown up to ten times its volume, which no
-/// law here is meant for, or a body with a tenth of its copies inside out.
+/// law here is meant for, or a body with a tenth of its copies inside out: unless its initial state gave it an energy
+/// with which it may come there, and it has at most a quarter more.
 
 #include "scene/body.h"
 
@@ -17,9 +18,9 @@ struct Watch {
   int n_recuts = -1;
   std::vector<std::uint32_t> piece_of_copy;
   std::vector<double> rest_volumes; ///< of each piece [m^3]
-  bool was_sound = false;           ///< once: a body may be put inside out by its initial state, and is given time
+  bool is_sound = true; ///< what was found last
 
-  void archive(Archive& a) { a(was_sound); } // the rest is found again
+  void archive(Archive& a) { a(is_sound); } // the rest is found again
 };
 
 /// After a step of dt [s], before the surface follows. Throws NumericalError that names the particle and its place.

@@ -8,7 +8,8 @@
 ///   failed      it went on to its end, and is wrong: its energy more than doubled, or its volume is off by more than
 ///               30 % though its energy is gone. A run with exit code 0 that lies
 ///   not back    its initial state was inside out or crushed, and it still is
-///   drifted     energy grew by more than 1 %, or momentum changed by more than 1 %, which nothing here gives it
+///   drifted     energy grew by more than 1 % in the mean over the second half of the steps, or momentum changed by more
+///               than 1 %: nothing here gives them
 ///   damped out  less than 1e-3 of the energy is left; of equilibria this is what is asked, and they are stable
 ///   stable      none of these
 

@@ -1,5 +1,6 @@
 // What a study may say, and what it is told when it says something else.
 
+#include "study/stability_plan.h"
 #include "tests/study/study_text.h"
 
 #include <gtest/gtest.h>
@@ -132,8 +133,8 @@ TEST(Plan, OfEveryStudyInParams) {
   std::size_t n = 0;
   for (const auto& entry : std::filesystem::directory_iterator(std::string(KERF_SOURCE_DIR) + "/params/studies")) {
     SCOPED_TRACE(entry.path().string());
-    const Plan plan = make_plan(scene::read_scene_text(entry.path().string(), {}));
-    EXPECT_GE(plan.rows.size(), 4u);
+    const scene::SceneText text = scene::read_scene_text(entry.path().string(), {});
+    EXPECT_GE(is_stability_study(text) ? make_stability_plan(text).cases.size() : make_plan(text).rows.size(), 4u);
     ++n;
   }
   EXPECT_GE(n, 5u);

@@ -1,0 +1,124 @@
+// Bodies that start displaced or in motion, against closed forms.
+
+#include "base/error.h"
+#include "tests/scene/trials.h"
+
+#include <gtest/gtest.h>
+#include <Eigen/Geometry>
+
+#include <cmath>
+
+namespace kerf::scene {
+namespace {
+
+World thrown(const std::string& backend, const Keys& initial, const Overrides& more = {}) {
+  World world = world_of(cube_scene() + "subsection Gravity\nend\n", [&] {
+    Overrides all = more;
+    all.push_back("Body cube/Backend=" + backend);
+    for (const std::string& key : initial)
+      all.push_back("Body cube/Initial state/" + key);
+    return all;
+  }());
+  return world;
+}
+
+Vec3 centre(Body& body) {
+  const auto mass = body.physics->model().lumped_mass();
+  Vec3 sum = Vec3::Zero();
+  double all = 0;
+  for (std::size_t i = 0; i < mass.size(); ++i) {
+    sum += mass[i] * body.state.x[i];
+    all += mass[i];
+  }
+  return sum / all;
+}
+
+/// Implicit Euler falls by g dt^2 n (n + 1) / 2 in n steps; shape matching as symplectic Euler, alike.
+TEST(InitialState, AThrownBodyFliesAsItShould) {
+  for (const std::string backend : {"fem", "pba", "lattice", "mass-spring"}) {
+    World world = thrown(backend, {"Displacement [m]=0.1; 0.2; 0.3", "Velocity [m/s]=1; -2; 3"});
+    Body& body = world.bodies[0];
+    const Vec3 start = centre(body);
+    const Points& rest = body.physics->rest();
+    for (std::size_t i = 0; i < rest.size(); ++i)
+      ASSERT_LT((body.state.x[i] - rest[i] - Vec3(0.1, 0.2, 0.3)).norm(), 1e-15) << backend;
+    const output::TemporaryFolder folder;
+    run_silently(world, folder / "out");
+    EXPECT_LT((centre(body) - start - Vec3(0.05, -0.1, 0.15 - 9.81 * 1e-4 * 15)).norm(), 1e-9) << backend;
+  }
+}
+
+/// A field of velocities w x X is a spin, whose angular momentum is that of a cube.
+TEST(InitialState, AVelocityFieldSpinsABody) {
+  World world = thrown("fem", {"Velocity [m/s]=-3*y; 3*x; 0"});
+  Body& body = world.bodies[0];
+  const double mass = value(body, "mass");
+  const double momentum = dynamics::angular_momentum(body.physics->model(), body.state, Vec3::Zero())[2];
+  EXPECT_NEAR(momentum / (3 * mass * 0.2 * 0.2 / 6), 1, 0.1); // lumped: of order h^2 more
+}
+
+/// What is held stays, and a turned body starts turned.
+TEST(InitialState, SupportsHoldWhatTheyHold) {
+  World world = thrown("fem", {"Displacement [m]=x*cos(1)-y*sin(1)-x; x*sin(1)+y*cos(1)-y; 0"},
+                       {"Body cube/Support left/Lower [m]=-1, -1, -1", "Body cube/Support left/Upper [m]=-0.05, 1, 1"});
+  const Body& body = world.bodies[0];
+  const Points& rest = body.physics->rest();
+  const Mat3 turn = Eigen::AngleAxisd(1, Vec3::UnitZ()).toRotationMatrix();
+  std::size_t n_held = 0;
+  for (std::size_t i = 0; i < rest.size(); ++i) {
+    const bool is_held = rest[i][0] <= -0.05;
+    n_held += is_held ? 1 : 0;
+    EXPECT_LT((body.state.x[i] - (is_held ? rest[i] : Vec3(turn * rest[i]))).norm(), 1e-15);
+  }
+  EXPECT_GT(n_held, 10u);
+}
+
+/// A cut at time 0 is where it is at rest, however far the body starts from there; and dust starts in motion.
+TEST(InitialState, WhatCutsAtTimeZeroCutsTheBodyAtRest) {
+  const Overrides plane = {"Cut surface half/Shape=plane", "Cut surface half/Point [m]=0.003, 0, 0",
+                           "Cut surface half/Normal [1]=1, 0, 0"};
+  World world = thrown("fem", {"Displacement [m]=5; 0; -z", "Velocity [m/s]=1; 0; 0"}, plane);
+  Timings seconds;
+  advance(world, 1, seconds);
+  EXPECT_EQ(grid::n_pieces(world.bodies[0].solid.complex), 2u);
+  EXPECT_GT(centre(world.bodies[0])[0], 4.9);
+
+  Overrides dice;
+  for (const std::string axis : {"x", "y", "z"})
+    for (const std::string place : {"-0.05", "0.0", "0.05"})
+      for (const std::string& key : {std::string("Shape=plane"), "Point [m]=" + place + "," + place + "," + place,
+                                     "Normal [1]=" + std::string(axis == "x"   ? "1,0,0"
+                                                                 : axis == "y" ? "0,1,0"
+                                                                               : "0,0,1")})
+        dice.push_back("Cut surface " + axis + std::to_string(dice.size() / 3) + "/" + key);
+  World dust = thrown("fem", {"Velocity [m/s]=1; 2; 3"}, dice);
+  advance(dust, 1, seconds);
+  const Body& body = dust.bodies[0];
+  ASSERT_EQ(body.physics->crumbs().size(), 64u);
+  for (const auto& crumb : body.state.crumbs)
+    EXPECT_LT((crumb.v - Vec3(1, 2, 3 - 9.81 * 0.01)).norm(), 1e-9);
+}
+
+/// Squeezed flat and turned inside out, an elastic body comes back, and is not taken for a nonsense on its way.
+TEST(InitialState, ABodyComesBackFromBeingFlatOrInsideOut) {
+  for (const std::string displacement : {"0; 0; -z", "-2*x; 0; 0", "-x; -y; -z"}) {
+    World world = thrown("fem", {"Displacement [m]=" + displacement}, {"Time/End time [s]=1"});
+    const output::TemporaryFolder folder;
+    run_silently(world, folder / "out");
+    EXPECT_TRUE(world.watches[0].is_sound) << displacement;
+    EXPECT_NEAR(value(world.bodies[0], "volume") / value(world.bodies[0], "rest volume"), 1, 0.01) << displacement;
+  }
+}
+
+TEST(InitialState, WhatIsNoExpressionIsRefusedWithItsPlace) {
+  for (const std::string bad : {"1; 2", "x +; 0; 0", "1/(x-x); 0; 0"})
+    try {
+      thrown("fem", {"Displacement [m]=" + bad});
+      ADD_FAILURE() << bad << " was accepted";
+    } catch (const ParameterError& error) {
+      EXPECT_NE(std::string(error.what()).find("Displacement"), std::string::npos) << error.what();
+    }
+}
+
+} // namespace
+} // namespace kerf::scene
