@@ -13,6 +13,9 @@ namespace kerf::lattice {
 
 namespace {
 
+/// Of a cube: a rind without volume has corners too, and they are to move with its node.
+constexpr double least_share = 1e-12;
+
 /// Integral over a tetrahedron of a product of three functions that are linear in it and not negative at its vertices,
 /// over its volume: products of barycentric coordinates integrate to 3! times the factorials of the exponents over 6!.
 double mean_product(const Eigen::Array4d& f, const Eigen::Array4d& g, const Eigen::Array4d& h) {
@@ -123,8 +126,7 @@ std::vector<Share> material_shares(const grid::Solid& solid, const double densit
     const grid::Copy& copy = solid.complex.copies[c];
     const auto integrals = integrals_of(solid, copy).elsewhere;
     for (int a = 0; a < 8; ++a)
-      if (integrals[a] > 0)
-        shares.push_back({node, copy.corners[a], scale * integrals[a]});
+      shares.push_back({node, copy.corners[a], scale * std::max(integrals[a], least_share)});
   }
   for (const auto c : ids<grid::CopyId>(solid.complex.n_copies())) {
     const grid::Copy& copy = solid.complex.copies[c];
