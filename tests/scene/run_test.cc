@@ -82,7 +82,8 @@ TEST(Run, AFramesComplexAndSurfaceBelongToItsCorners) {
 
 TEST(Run, ClearsImagesOfAnEarlierRun) {
   const output::TemporaryFolder folder;
-  std::filesystem::create_directories(folder / "out/frames");
+  World earlier = world_of(cube_scene() + all_outputs());
+  run_silently(earlier, folder / "out");
   std::ofstream(folder / "out/frames/000077.png") << "old";
   std::ofstream(folder / "out/frames/notes.txt") << "mine";
   World world = world_of(cube_scene() + all_outputs());
