@@ -9,7 +9,7 @@ namespace kerf::apps {
 
 int check(const Arguments& arguments) {
   for (const std::string& argument : arguments)
-    if (argument == "--output" || argument == "--threads")
+    if (argument == "--output" || argument == "--threads" || argument == "--force" || argument == "--resume")
       throw ParameterError(
         Complaint{.value = argument, .rule = "check takes no such option", .remedy = "Nothing is run"});
   const SceneArguments parsed = parse_scene_arguments(arguments);

@@ -1,7 +1,10 @@
 #include "commands.h"
 
 #include "base/error.h"
+#include "base/interrupt.h"
+#include "scene/build_info.h"
 
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <exception>
@@ -11,16 +14,30 @@
 namespace {
 
 constexpr const char* usage = R"(usage:
-  kerf run SCENE.prm [--set "Section/Key=value"]... [--output DIR] [--threads N]
+  kerf run SCENE.prm... [--set "Section/Key=value"]... [--output DIR] [--threads N] [--force | --resume] [--jobs N]
+                                                          one scene, or several: N at a time, each into DIR/SCENE;
+                                                          --force replaces the results of an earlier run, --resume
+                                                          goes on from its last checkpoint
   kerf check SCENE.prm [--set "Section/Key=value"]...     parse and compose, run nothing
-  kerf study STUDY.prm [--set ...] [--output DIR] [--threads N]
+  kerf study STUDY.prm [--set ...] [--output DIR] [--threads N] [--force | --resume]
                                                           a scene in variants: error against run time, as a table
   kerf weights WEIGHTS.prm [--set ...] [--output DIR]     weights of points near cuts, as images and a table
   kerf texture SCENE.prm --plane "x, y, z; normal x, y, z" [--pixel M] [--output FILE.png] [--set ...] [--threads N]
                                                           the inside of its first body that has one, on any plane
   kerf params [study]                                     every section and key of a scene, or of a study
   kerf table --output FILE.h5                             the Splitting Cubes table as a file
+  kerf --version                                          version, commit, compiler, libraries
+exit codes: 1 the scene, 2 a file, 3 the computation; 128 + n: ended by signal n
 )";
+
+int print_version() {
+  const kerf::output::RunInfo info = kerf::scene::build_info();
+  std::printf("kerf %s, commit %s, %s", info.version.c_str(), info.git_commit.c_str(), info.compiler.c_str());
+  for (const auto& [name, version] : info.libraries)
+    std::printf(", %s %s", name.c_str(), version.c_str());
+  std::printf("\n");
+  return 0;
+}
 
 int dispatch(const kerf::apps::Arguments& arguments) {
   using Command = int (*)(const kerf::apps::Arguments&);
@@ -28,10 +45,13 @@ int dispatch(const kerf::apps::Arguments& arguments) {
                                                    {"study", kerf::apps::study},   {"weights", kerf::apps::weights},
                                                    {"params", kerf::apps::params}, {"texture", kerf::apps::texture},
                                                    {"table", kerf::apps::table}};
-  if (arguments.empty() || arguments[0] == "help" || arguments[0] == "--help") {
+  const auto asks_for_help = [](const std::string& word) { return word == "--help" || word == "-h"; };
+  if (arguments.empty() || arguments[0] == "help" || std::any_of(arguments.begin(), arguments.end(), asks_for_help)) {
     std::printf("%s", usage);
     return arguments.empty() ? 1 : 0;
   }
+  if (arguments[0] == "--version")
+    return print_version();
   const auto command = commands.find(arguments[0]);
   if (command == commands.end())
     throw kerf::ParameterError("there is no command '" + arguments[0] + "'.\n" + usage);
@@ -41,6 +61,7 @@ int dispatch(const kerf::apps::Arguments& arguments) {
 } // namespace
 
 int main(const int argc, char** const argv) {
+  kerf::heed_signals();
   std::signal(SIGXFSZ, SIG_IGN); // a file size limit is then an error of the write, like a full disk
   try {
     return dispatch({argv + 1, argv + argc});

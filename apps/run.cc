@@ -1,8 +1,10 @@
+#include "batch.h"
 #include "run_info.h"
 #include "scene_arguments.h"
 
 #include "base/parallel.h"
 #include "scene/compose.h"
+#include "scene/inputs.h"
 #include "scene/run.h"
 
 #include <cstdio>
@@ -42,11 +44,15 @@ void print_body(const scene::Body& body, const scene::Watch& watch) {
 
 void print_cut(const scene::World& world, const grid::CutLabel label, const std::string& what,
                const std::string& remedy) {
-  std::size_t n = 0;
-  for (const scene::Body& body : world.bodies)
+  std::size_t n = 0, n_passed = 0;
+  for (const scene::Body& body : world.bodies) {
     n += body.cutter->counts().n_cut_edges[label - 1];
-  std::printf("%s: cut %zu grid edges%s\n", what.c_str(), n,
-              n == 0 ? (": it never met a body. " + remedy).c_str() : "");
+    n_passed += body.cutter->n_passed_cells(label);
+  }
+  const std::string why = n > 0          ? ""
+                          : n_passed > 0 ? ": it passed between them. Use a smaller cube edge, or cut deeper"
+                                         : ": it never met a body. " + remedy;
+  std::printf("%s: cut %zu grid edges%s\n", what.c_str(), n, why.c_str());
 }
 
 void print_cutting(const scene::World& world) {
@@ -94,22 +100,25 @@ void print_summary(const scene::World& world, const Timings& seconds, const Scen
 } // namespace
 
 int run(const Arguments& arguments) {
-  const SceneArguments parsed = parse_scene_arguments(arguments);
+  const SceneArguments parsed = parse_scene_arguments(arguments, Scenes::several);
+  if (parsed.scenes.size() > 1)
+    return run_batch(parsed);
   if (parsed.n_threads > 0)
     set_n_threads(parsed.n_threads);
   const scene::SceneText text = scene::read_scene_text(parsed.scene, parsed.overrides);
-  scene::require_writable(parsed.output);
+  output::require_claimable(parsed.output, parsed.earlier);
+  if (parsed.earlier == output::Earlier::resume && scene::is_complete(parsed.output)) {
+    std::printf("%s holds a complete run: nothing is left to resume\n", parsed.output.c_str());
+    return 0;
+  }
   scene::World world = scene::compose(text);
   for (const std::string& line : world.composition)
     std::printf("%s\n", line.c_str());
   std::fflush(stdout);
 
-  std::string scene_text = text.text;
-  if (!scene_text.ends_with('\n'))
-    scene_text += '\n';
-  for (const std::string& change : parsed.overrides)
-    scene_text += "# --set \"" + change + "\"\n";
-  scene::Recorder recorder(parsed.output, world, run_info("run", arguments), scene_text);
+  const scene::Source source{run_info("run", arguments), scene::standalone_text(text, scene::grammar()),
+                             scene::hashes_of_inputs(text, scene::grammar())};
+  scene::Recorder recorder(parsed.output, world, source, parsed.earlier);
   scene::Progress progress(world.n_steps, world.n_steps * world.time_step, scene::progress_style(stdout), stdout);
   const Timings seconds = scene::run(world, recorder, progress);
   print_summary(world, seconds, parsed);

@@ -8,18 +8,28 @@ namespace kerf::apps {
 
 namespace {
 
-int parse_threads(const std::string& text) {
+int parse_number(const std::string& option, const std::string& text) {
   int n = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), n);
   if (error != std::errc() || end != text.data() + text.size() || n < 1 || n > 1024)
-    throw ParameterError(
-      Complaint{.path = "--threads", .value = text, .rule = "must be a whole number from 1 to 1024"});
+    throw ParameterError(Complaint{.path = option, .value = text, .rule = "must be a whole number from 1 to 1024"});
   return n;
+}
+
+void add_scene(const std::string& scene, const Scenes scenes, SceneArguments& parsed) {
+  if (!parsed.scenes.empty() && scenes == Scenes::one)
+    throw ParameterError(Complaint{
+      .value = scene, .rule = "only one scene can be given", .remedy = "Put quotes around arguments with spaces"});
+  parsed.scenes.push_back(scene);
 }
 
 } // namespace
 
-SceneArguments parse_scene_arguments(const Arguments& arguments) {
+std::filesystem::path default_output(const std::string& scene, const std::filesystem::path& folder) {
+  return folder / std::filesystem::path(scene).stem();
+}
+
+SceneArguments parse_scene_arguments(const Arguments& arguments, const Scenes scenes) {
   SceneArguments parsed;
   for (std::size_t i = 0; i < arguments.size(); ++i) {
     const std::string& argument = arguments[i];
@@ -33,20 +43,23 @@ SceneArguments parse_scene_arguments(const Arguments& arguments) {
     else if (argument == "--output")
       parsed.output = value();
     else if (argument == "--threads")
-      parsed.n_threads = parse_threads(value());
+      parsed.n_threads = parse_number(argument, value());
+    else if (argument == "--jobs" && scenes == Scenes::several)
+      parsed.n_jobs = parse_number(argument, value());
+    else if (argument == "--force" || argument == "--resume")
+      parsed.earlier = argument == "--force" ? output::Earlier::replace : output::Earlier::resume;
     else if (argument.starts_with("-"))
-      throw ParameterError(Complaint{
-        .value = argument, .rule = "is no option", .remedy = "The options are --set, --output and --threads"});
-    else if (parsed.scene.empty())
-      parsed.scene = argument;
+      throw ParameterError(Complaint{.value = argument,
+                                     .rule = "is no option",
+                                     .remedy = "The options are --set, --output, --threads, --force, --resume, and --jobs of run"});
     else
-      throw ParameterError(Complaint{
-        .value = argument, .rule = "only one scene can be given", .remedy = "Put quotes around arguments with spaces"});
+      add_scene(argument, scenes, parsed);
   }
-  if (parsed.scene.empty())
+  if (parsed.scenes.empty())
     throw ParameterError(Complaint{.rule = "a scene file must be given", .remedy = "For example: params/liver.prm"});
+  parsed.scene = parsed.scenes.front();
   if (parsed.output.empty())
-    parsed.output = std::filesystem::path("results") / std::filesystem::path(parsed.scene).stem();
+    parsed.output = parsed.scenes.size() == 1 ? default_output(parsed.scene) : "results";
   return parsed;
 }
 

@@ -1,20 +1,30 @@
 #pragma once
 
 #include "commands.h"
+#include "output/results_folder.h"
 
 #include <filesystem>
 
 namespace kerf::apps {
 
-/// What `run` and `check` are told.
+/// What `run`, `check` and others are told.
 struct SceneArguments {
-  std::string scene;
+  std::string scene;               ///< the first
+  std::vector<std::string> scenes; ///< all; more than one for `run` alone
   std::vector<std::string> overrides;
-  std::filesystem::path output; ///< results/SCENE when not given
+  std::filesystem::path output; ///< results/SCENE when not given; of several scenes what is given, or results
+  int n_jobs = 1;               ///< at a time, of several scenes
   int n_threads = 0;            ///< 0: as many as there are processors
+  output::Earlier earlier = output::Earlier::refuse; ///< what to do about an earlier run's results
 };
 
+/// Whether a command takes several scenes.
+enum class Scenes { one, several };
+
 /// Throws ParameterError for what is no valid argument.
-SceneArguments parse_scene_arguments(const Arguments& arguments);
+SceneArguments parse_scene_arguments(const Arguments& arguments, Scenes scenes = Scenes::one);
+
+/// FOLDER/SCENE, without the scene's own folder and ending.
+std::filesystem::path default_output(const std::string& scene, const std::filesystem::path& folder = "results");
 
 } // namespace kerf::apps

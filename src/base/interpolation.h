@@ -4,6 +4,7 @@
 /// in a body, points of files. Forces on them go to the corners by the transpose, so that power, and with weights that
 /// sum to 1 momentum too, are the same on both sides.
 
+#include "base/archive.h"
 #include "base/vec.h"
 
 #include <cstddef>
@@ -18,6 +19,7 @@ struct Interpolation {
   std::vector<std::uint32_t> corners = {};
   std::vector<double> values = {}; ///< [1]
 
+  void archive(Archive& a) { a(start, corners, values); }
   std::size_t n_points() const { return start.size() - 1; }
 
   void add_point(const std::span<const std::uint32_t> of_corners, const std::span<const double> of_weights) {

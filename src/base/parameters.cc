@@ -174,6 +174,11 @@ void Parameters::text(const std::string& name, std::string& field, const std::st
   add(name, field, field, "must be a text", text, [](const std::string& v) { return std::optional(trimmed(v)); });
 }
 
+void Parameters::file(const std::string& name, std::string& field, const std::string& text) {
+  this->text(name, field, text);
+  list_.back().is_file = true;
+}
+
 void Parameters::choice(const std::string& name, std::string& field, const std::vector<std::string>& words,
                         const std::string& text) {
   const auto as_it_is = [](const std::string& word) { return word; };

@@ -39,6 +39,7 @@ struct Parameter {
   std::string rule;     ///< what must hold, for people
   std::string text;     ///< what it does
   bool required = false;
+  bool is_file = false; ///< names a file that is read
   std::vector<std::string> words; ///< what a choice may be; empty for other keys
   /// Returns what is wrong with the value, or an empty string; does not touch the field.
   std::function<std::string(const std::string& value)> check;
@@ -57,6 +58,8 @@ class Parameters {
   /// Yes or no; true and false are read too.
   void boolean(const std::string& name, bool& field, const std::string& text);
   void text(const std::string& name, std::string& field, const std::string& text);
+  /// The name of a file that is read; a relative one starts at the file that says it.
+  void file(const std::string& name, std::string& field, const std::string& text);
   /// A word out of `words`.
   void choice(const std::string& name, std::string& field, const std::vector<std::string>& words,
               const std::string& text);

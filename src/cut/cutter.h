@@ -32,6 +32,8 @@ struct CutCounts {
   std::vector<std::size_t> n_cut_edges; ///< by label, from 1
   std::size_t n_double_crossings = 0;   ///< edges that one cut crossed an even number of times: left uncut
   std::size_t n_tips = 0;               ///< edges of the skin whose cuts would have cut a tip off alone: left uncut
+
+  void archive(Archive& a) { a(n_cut_edges, n_double_crossings, n_tips); }
 };
 
 /// What blades meet in a step: two edges of a cell at most are cut in it, the rest waits (pending.h); or all are.
@@ -66,6 +68,12 @@ class Cutter {
   std::size_t n_waiting() const { return pending_.size(); }
   /// Cells that blades have passed without a cut (passed.h).
   std::size_t n_passed_cells() const;
+  std::size_t n_passed_cells(const grid::CutLabel label) const { return passed_[label - 1].cells().size(); }
+  /// All but the boxes, which are made of the body before its first cut and fitted in each step.
+  void archive(Archive& a) {
+    a.name("cutter");
+    a(pending_, passed_, open_ends_, x_before_, counts_);
+  }
   /// Memory of what grows with the body [B].
   std::size_t n_bytes() const { return boxes_->n_bytes() + sizeof(Vec3) * x_before_.capacity(); }
 

@@ -25,12 +25,14 @@ class OpenEnds {
                                   grid::Solid& solid, const Points& x, grid::CutLabel label);
 
   std::size_t size() const { return faces_.size() + cells_.size(); }
+  void archive(Archive& a) { a(faces_, cells_); }
 
  private:
   struct Face {
     grid::CellId cell;
     int face;
     auto operator<=>(const Face&) const = default;
+    void archive(Archive& a) { a(cell, face); }
   };
   std::vector<Face> faces_;         // ascending
   std::vector<grid::CellId> cells_; // ascending

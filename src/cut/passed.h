@@ -29,6 +29,7 @@ class PassedCells {
   void remove_around(const grid::Grid& grid, grid::EdgeId edge);
 
   const std::set<grid::CellId>& cells() const { return cells_; }
+  void archive(Archive& a) { a(cells_); }
 
  private:
   std::set<grid::CellId> cells_;

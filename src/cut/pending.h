@@ -26,6 +26,7 @@ class PendingCuts {
 
   std::size_t size() const { return queue_.size(); }
   bool waits(grid::EdgeId e) const { return waiting_.contains(e); }
+  void archive(Archive& a) { a(queue_, waiting_); }
 
  private:
   std::deque<grid::EdgeCut> queue_;

@@ -41,6 +41,7 @@ class AdaptiveStepper : public Stepper {
 
   /// Counts substeps kept and thrown away. Throws NumericalError when substeps become too short.
   StepReport step(State& state, const Loads& loads, double dt) override;
+  void archive(Archive& a) override { stepper_->archive(a); }
 
  private:
   /// Two halves of a substep in `state`; returns their error over what is allowed, infinite when a solution failed.

@@ -26,6 +26,7 @@ class ExplicitEuler : public Stepper {
     : model_(model), limit_(model, scheme(), options) {}
 
   StepReport step(State& state, const Loads& loads, double dt) override;
+  void archive(Archive& a) override { limit_.archive(a); }
   static ExplicitScheme scheme();
 
  private:
@@ -41,6 +42,7 @@ class MidpointRungeKutta : public Stepper {
     : model_(model), limit_(model, scheme(), options) {}
 
   StepReport step(State& state, const Loads& loads, double dt) override;
+  void archive(Archive& a) override { limit_.archive(a); }
   static ExplicitScheme scheme();
 
  private:
@@ -56,6 +58,7 @@ class VelocityVerlet : public Stepper {
     : model_(model), limit_(model, scheme(), options) {}
 
   StepReport step(State& state, const Loads& loads, double dt) override;
+  void archive(Archive& a) override { limit_.archive(a); }
   static ExplicitScheme scheme();
 
  private:

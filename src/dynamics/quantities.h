@@ -20,6 +20,8 @@ Points mean_acceleration(const State& before, const State& after);
 struct Reaction {
   Vec3 force = Vec3::Zero();  ///< of the support on the body [N]
   Vec3 torque = Vec3::Zero(); ///< of it about a point [N m]
+
+  void archive(Archive& a) { a(force, torque); }
 };
 
 /// One for each of loads.supports; torques about `about` [m]. acceleration [m/s^2] a corner.

@@ -11,6 +11,7 @@
 ///
 /// That keeps L and the energy of rotation to round-off for any dt; the attitude is of second order in dt.
 
+#include "base/archive.h"
 #include "base/vec.h"
 
 namespace kerf::dynamics {
@@ -20,6 +21,8 @@ struct RigidBody {
   double mass = 0;             ///< [kg]
   Vec3 centre = Vec3::Zero();  ///< [m]
   Mat3 inertia = Mat3::Zero(); ///< about the centre [kg m^2]; positive definite
+
+  void archive(Archive& a) { a(mass, centre, inertia); }
 };
 
 struct RigidMotion {
@@ -27,6 +30,8 @@ struct RigidMotion {
   Vec3 v = Vec3::Zero();     ///< [m/s]
   Mat3 R = Mat3::Identity(); ///< attitude
   Vec3 spin = Vec3::Zero();  ///< angular momentum about the centre, world frame [kg m^2/s]
+
+  void archive(Archive& a) { a(x, v, R, spin); }
 };
 
 /// World frame [rad/s].

@@ -82,6 +82,11 @@ class SoundSteps : public Stepper {
   /// substeps fail too, with the reason of the whole step.
   StepReport step(State& state, const Loads& loads, double dt) override;
 
+  void archive(Archive& a) override {
+    stepper_->archive(a);
+    if (last_resort_)
+      last_resort_->archive(a);
+  }
   const Stepper& watched() const { return *stepper_; }
 
  private:

@@ -70,6 +70,7 @@ class StepLimit {
   void require(const State& state, const Loads& loads, double dt);
   /// The stable step when it was computed last [s]; 0: never.
   double last() const { return last_; }
+  void archive(Archive& a) { a(longest_checked_, last_); }
   /// At a state [s].
   double at(const State& state, const Loads& loads) const;
 

@@ -22,6 +22,11 @@ struct State {
   std::map<std::string, double> numbers = {};
   /// Of the body's crumbs, in the order of grid::Crumbs::all.
   std::vector<RigidMotion> crumbs = {};
+
+  void archive(Archive& a) {
+    a.name("state");
+    a(x, v, time, history, numbers, crumbs);
+  }
 };
 
 /// The 3 n numbers of n points.

@@ -13,6 +13,8 @@ struct StepReport {
   int n_rejected = 0;     ///< of them tried and thrown away
   double stable_step = 0; ///< of an explicit integrator when it was computed last [s]
   double residual = 0;    ///< forces out of balance at the end over the forces that balance, if it was measured [1]
+
+  void archive(Archive& a) { a(n_iterations, n_newton, n_substeps, n_rejected, stable_step, residual); }
 };
 
 /// What a stepper makes of inertia.
@@ -26,6 +28,8 @@ class Stepper {
   /// Advances the state by dt [s]. Throws NumericalError when it cannot, and then leaves the state as it was.
   virtual StepReport step(State& state, const Loads& loads, double dt) = 0;
   virtual MotionKind motion() const { return MotionKind::dynamic; }
+  /// What it knows beside the state, and would not find again by itself.
+  virtual void archive(Archive&) {}
 };
 
 } // namespace kerf::dynamics

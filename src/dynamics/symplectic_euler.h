@@ -16,6 +16,7 @@ class SymplecticEuler : public Stepper {
     : model_(model), limit_(model, scheme(), options) {}
 
   StepReport step(State& state, const Loads& loads, double dt) override;
+  void archive(Archive& a) override { limit_.archive(a); }
   static ExplicitScheme scheme();
 
  private:

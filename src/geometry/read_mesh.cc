@@ -1,4 +1,5 @@
 #include "base/error.h"
+#include "geometry/mesh_fault.h"
 #include "geometry/triangle_mesh.h"
 
 #include <CGAL/IO/polygon_soup_io.h>
@@ -35,24 +36,34 @@ std::string extension(const std::string& path) {
 }
 
 void require_file(const std::string& path) {
-  if (!std::filesystem::is_regular_file(path))
-    refuse(path, "the mesh file does not exist", "Check the path");
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error))
+    refuse(path, std::filesystem::exists(path, error) ? "is not a file that holds a mesh" : "the mesh file does not exist",
+           "Check the path");
   const std::array<std::string, 4> known = {".off", ".obj", ".stl", ".ply"};
   if (std::find(known.begin(), known.end(), extension(path)) == known.end())
     refuse(path, "the name must end in .off, .obj, .stl or .ply", "Convert the mesh to one of these");
 }
 
+/// " (line 12: ...)" where there is a line.
+std::string in_fault(const std::string& path) {
+  const auto fault = find_fault(path);
+  return fault ? " (" + *fault + ")" : "";
+}
+
 Soup read_soup(const std::string& path) {
   const std::string remedy = "Open it in a mesh viewer and export it again";
+  require_room_for_header(path);
   Soup soup;
   bool read = false;
+  std::string reason = "its contents are not what its name promises";
   try {
     read = CGAL::IO::read_polygon_soup(path, soup.points, soup.polygons);
   } catch (const std::exception& error) {
-    refuse(path, "the mesh cannot be read: " + std::string(error.what()), remedy);
+    reason = error.what();
   }
   if (!read)
-    refuse(path, "the mesh cannot be read: its contents are not what its name promises", remedy);
+    refuse(path, "the mesh cannot be read: " + find_fault(path).value_or(reason), remedy);
   if (soup.points.empty() || soup.polygons.empty())
     refuse(path,
            "the mesh is empty: " + std::to_string(soup.points.size()) + " vertices, " +
@@ -67,7 +78,8 @@ Points scaled_points(const std::string& path, const Soup& soup, const double uni
   for (const FilePoint& p : soup.points) {
     vertices.emplace_back(unit * p.x(), unit * p.y(), unit * p.z());
     if (!vertices.back().allFinite())
-      refuse(path, "vertex " + std::to_string(vertices.size() - 1) + " has a coordinate that is not finite",
+      refuse(path,
+             "vertex " + std::to_string(vertices.size() - 1) + " has a coordinate that is not finite" + in_fault(path),
              "Repair or remove the vertex");
   }
   return vertices;
@@ -135,7 +147,7 @@ TriangleMesh read_mesh(const std::string& path, const double unit) {
   mesh.triangles.reserve(soup.polygons.size());
   for (const Polygon& polygon : soup.polygons) {
     if (std::any_of(polygon.begin(), polygon.end(), [&](const std::size_t v) { return v >= mesh.vertices.size(); }))
-      refuse(path, "a face names a vertex that does not exist", "Export the mesh again");
+      refuse(path, "a face names a vertex that does not exist" + in_fault(path), "Export the mesh again");
     append_triangles(path, mesh.vertices, polygon, mesh.triangles);
   }
   if (extension(path) == ".stl")

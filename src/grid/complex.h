@@ -27,6 +27,7 @@ struct Copy {
   CopyId next;                     ///< the cell's next copy, by its part (parts.h); invalid for the last
 
   Part part() const { return {nodes, rinds}; }
+  void archive(Archive& a) { a(cell, nodes, rinds, corners, next); }
 };
 
 /// The copies of one cell: for (const CopyId c : complex.copies_of(cell)).
@@ -68,6 +69,7 @@ struct CellComplex {
   CopyId copy_with_rind(CellId cell, int line) const;
   /// Memory of all tables [B].
   std::size_t n_bytes() const;
+  void archive(Archive& a) { a(copies, first_copy, node, real_corner); }
 };
 
 /// Of what is cut. Copies are ordered by cell, then as their parts are (parts.h); corners by node.

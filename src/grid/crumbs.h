@@ -11,6 +11,7 @@
 /// Found by walking from the copies that a cut has changed, over glued faces, for as long as it may be a crumb: what it
 /// costs depends on the cut alone, but for a byte a copy.
 
+#include "base/archive.h"
 #include "base/id.h"
 
 #include <cstdint>
@@ -30,6 +31,8 @@ constexpr double well_filled = 0.25;
 struct Crumb {
   std::uint32_t name;         ///< of its own for as long as no cut meets it
   std::vector<CopyId> copies; ///< ascending
+
+  void archive(Archive& a) { a(name, copies); }
 };
 
 /// None, until somebody looks for them.
@@ -39,6 +42,7 @@ struct Crumbs {
   std::vector<std::uint8_t> of_corner;
   std::uint32_t n_named = 0;
 
+  void archive(Archive& a) { a(all, of_copy, of_corner, n_named); }
   bool any() const { return !all.empty(); }
   bool holds(const CopyId c) const { return c.value < of_copy.size() && of_copy[c.value] != 0; }
   bool holds(const CornerId c) const { return c.value < of_corner.size() && of_corner[c.value] != 0; }

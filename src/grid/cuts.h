@@ -32,6 +32,8 @@ struct EdgeCut {
   double t = 0.5;              ///< position along the edge from its lower node, in [min_edge_parameter, 1 - ...] [1]
   Vec3 normal = Vec3::UnitX(); ///< unit normal of the cutting surface, rest frame; the sign has no meaning
   CutLabel label = skin_label;
+
+  void archive(Archive& a) { a(edge, t, normal, label); }
 };
 
 /// Whether a cut that parts the material of a face reaches its skin there. Where it does, at the rim of the cut, the
@@ -48,6 +50,8 @@ struct SkinPoint {
   /// Bits of the lines of the skin to which it belongs: of the cell, or by their place in the face (cube::face_lines).
   std::uint16_t lines = all;
   bool has_rim = false; ///< the vertex of the cuts lies on a rim: later cuts leave it, but where it would fold the skin
+
+  void archive(Archive& a) { a(p, lines, has_rim); }
 };
 
 class Cuts {
@@ -118,6 +122,10 @@ class Cuts {
   }
   /// Memory of all tables [B].
   std::size_t n_bytes() const;
+  void archive(Archive& a) {
+    a(edge_cut_, outer_cut_, seam_, face_point_, face_skin_point_, cell_point_, cell_skin_point_, cuts_);
+    a(n_cut_twice_, n_settled_, newly_parted_, points_, skin_points_);
+  }
 
  private:
   static constexpr std::uint32_t none = Id<void>::no_value;

@@ -13,6 +13,12 @@ struct Solid {
   Cuts cuts;
   CellComplex complex = {};
   Crumbs crumbs = {}; ///< pieces that are too small to be deformed
+
+  /// All but the grid, which is the mesh's.
+  void archive(Archive& a) {
+    a.name("solid");
+    a(cuts, complex, crumbs);
+  }
 };
 
 } // namespace kerf::grid

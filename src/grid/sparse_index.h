@@ -3,6 +3,7 @@
 /// A number for a few of many keys that lie along surfaces: keys in order come in groups of 16, and only groups with a
 /// number take room. What a key without number costs is a quarter of a byte.
 
+#include "base/archive.h"
 #include "base/id.h"
 
 #include <array>
@@ -33,6 +34,7 @@ class SparseIndex {
     return groups_[group][key.value % size];
   }
 
+  void archive(Archive& a) { a(group_of_, groups_); }
   std::size_t n_bytes() const {
     return group_of_.capacity() * sizeof(std::uint32_t) + groups_.capacity() * sizeof(Group);
   }

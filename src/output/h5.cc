@@ -207,6 +207,11 @@ bool exists(const Object& parent, const std::string& name) {
   return H5Lexists(parent.id(), name.c_str(), H5P_DEFAULT) > 0;
 }
 
+void remove(const Object& parent, const std::string& name) {
+  if (H5Ldelete(parent.id(), name.c_str(), H5P_DEFAULT) < 0)
+    fail(parent, name, "remove");
+}
+
 std::vector<std::string> children(const Object& parent, const std::string& name) {
   const auto group = open_group(parent, name);
   std::vector<std::string> names;

@@ -81,6 +81,7 @@ Object open_group(const Object& parent, const std::string& name);
 /// A group or a dataset.
 Object open_any(const Object& parent, const std::string& name);
 bool exists(const Object& parent, const std::string& name);
+void remove(const Object& parent, const std::string& name);
 /// Names of the links in a group, sorted.
 std::vector<std::string> children(const Object& parent, const std::string& name);
 /// Makes `name` stand for the object at an absolute path.

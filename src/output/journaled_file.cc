@@ -1,6 +1,7 @@
 #include "output/journaled_file.h"
 
 #include "base/error.h"
+#include "output/checksum.h"
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -25,20 +26,9 @@ struct Trailer {
   std::uint64_t checksum = 0;
 };
 
-/// In the manner of FNV-1a, eight bytes at a time.
-std::uint64_t checksum(std::uint64_t sum, const std::span<const std::byte> bytes) {
-  for (std::size_t i = 0; i < bytes.size(); i += 8) {
-    std::uint64_t word = 0;
-    std::memcpy(&word, &bytes[i], std::min<std::size_t>(8, bytes.size() - i));
-    sum = (sum ^ word) * 0x100000001b3u;
-    sum ^= sum >> 29;
-  }
-  return sum;
-}
-
 std::uint64_t checksum(const Trailer& t, const std::span<const std::byte> journal) {
   const std::array<std::uint64_t, 4> head = {t.magic, t.size, t.begin, t.n_pages};
-  return checksum(checksum(0xcbf29ce484222325u, std::as_bytes(std::span(head))), journal);
+  return output::checksum(output::checksum(first_checksum, std::as_bytes(std::span(head))), journal);
 }
 
 /// 0, or the error number.

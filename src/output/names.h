@@ -21,7 +21,10 @@ inline std::string body_path(const std::string& body, const std::string& part) {
 inline constexpr const char* library_prefix = "library "; ///< of the root attributes that name a library's version
 
 inline std::string to_string(const Outcome outcome) {
-  return outcome == Outcome::running ? "running" : outcome == Outcome::completed ? "completed" : "failed";
+  return outcome == Outcome::running     ? "running"
+         : outcome == Outcome::completed ? "completed"
+         : outcome == Outcome::failed    ? "failed"
+                                         : "interrupted";
 }
 
 } // namespace kerf::output

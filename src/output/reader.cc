@@ -50,6 +50,10 @@ std::optional<Failure> Reader::failure() const {
 
 std::string Reader::scene() const { return h5::read_text(contents_->root, "/scene"); }
 
+bool Reader::has_scene() const { return h5::exists(contents_->root, "/scene"); }
+
+std::vector<std::string> Reader::inputs() const { return h5::read_lines(contents_->root, "/inputs"); }
+
 std::vector<std::string> Reader::composition() const { return h5::read_lines(contents_->root, "/composition"); }
 
 Schema Reader::schema() const { return read_schema(contents_->root); }

@@ -114,7 +114,8 @@ struct Frame {
 enum class Outcome {
   running, ///< or killed
   completed,
-  failed
+  failed,
+  interrupted ///< by a signal, between two steps
 };
 
 /// Why and when a run ended early.

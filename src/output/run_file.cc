@@ -135,7 +135,13 @@ RunFile::RunFile(const std::filesystem::path& path)
   c.open_series();
   for (const auto& body : h5::children(c.root(), "/bodies"))
     c.bodies[body] = count_body(c.root(), body);
-  c.file.transaction([&] { h5::set_attribute(c.root(), "outcome", to_string(Outcome::running)); });
+  c.file.transaction([&] {
+    const bool again = std::ranges::count(h5::attribute_names(c.root()), "n_resumed") > 0;
+    h5::set_attribute(c.root(), "n_resumed", again ? h5::integer_attribute(c.root(), "n_resumed") + 1 : std::int64_t{1});
+    h5::set_attribute(c.root(), "outcome", to_string(Outcome::running));
+    if (h5::exists(c.root(), "/failure"))
+      h5::remove(c.root(), "/failure");
+  });
 }
 
 RunFile::RunFile(RunFile&&) noexcept = default;
@@ -144,6 +150,10 @@ RunFile::~RunFile() = default;
 
 void RunFile::write_scene(const std::string& text) {
   contents_->file.transaction([&] { h5::write_text(contents_->root(), "/scene", text); });
+}
+
+void RunFile::write_inputs(const std::vector<std::string>& lines) {
+  contents_->file.transaction([&] { h5::write_lines(contents_->root(), "/inputs", lines); });
 }
 
 void RunFile::write_composition(const std::vector<std::string>& lines) {
@@ -159,12 +169,24 @@ void RunFile::complete() {
   contents_->file.transaction([&] { h5::set_attribute(contents_->root(), "outcome", to_string(Outcome::completed)); });
 }
 
-void RunFile::fail(const Failure& failure) {
+std::vector<std::int64_t> RunFile::steps() const { return h5::read_vector<std::int64_t>(contents_->root(), "/step"); }
+
+std::vector<double> RunFile::observable(const std::string& name) const {
+  return h5::read_vector<double>(contents_->root(), "/observables/" + name);
+}
+
+const Schema& RunFile::schema() const { return contents_->schema; }
+
+void RunFile::fail(const Failure& failure) { end(failure, Outcome::failed); }
+
+void RunFile::interrupt(const Failure& failure) { end(failure, Outcome::interrupted); }
+
+void RunFile::end(const Failure& failure, const Outcome outcome) {
   contents_->file.transaction([&] {
     const auto text = h5::write_text(contents_->root(), "/failure", failure.text);
     h5::set_attribute(text, "step", failure.step);
     h5::set_attribute(text, "time", failure.time);
-    h5::set_attribute(contents_->root(), "outcome", to_string(Outcome::failed));
+    h5::set_attribute(contents_->root(), "outcome", to_string(outcome));
   });
 }
 

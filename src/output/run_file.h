@@ -2,8 +2,10 @@
 
 /// The one file of a run, in HDF5: what was run, the series over time, and the frames of every body.
 ///
-///     /                    attributes: version, git_commit, command_line, ..., outcome
-///     /scene               the whole text of the scene
+///     /                    attributes: version, git_commit, command_line, ..., outcome; n_resumed: how often it went
+///                          on after an early end
+///     /scene               the whole text of the scene, overrides in place, names of files absolute
+///     /inputs              the files that it reads, a line each: SHA-256, path
 ///     /composition         what was composed and what was left out, a line each
 ///     /time /step          one entry per output step
 ///     /timing/STAGE        seconds since the output step before
@@ -30,24 +32,34 @@ class RunFile {
  public:
   /// Creates the file, or empties it. Throws DataError when it cannot be written.
   RunFile(const std::filesystem::path& path, const RunInfo& info, const Schema& schema);
-  /// Opens the file of an earlier run, to go on behind its last output step. Throws DataError.
+  /// Opens the file of an earlier run, to go on behind its last output step; what it says of an early end goes. Throws
+  /// DataError.
   explicit RunFile(const std::filesystem::path& path);
   RunFile(RunFile&&) noexcept;
   RunFile& operator=(RunFile&&) noexcept;
   ~RunFile();
 
   void write_scene(const std::string& text);
+  void write_inputs(const std::vector<std::string>& lines);
   void write_composition(const std::vector<std::string>& lines);
 
   /// Appends one output step and makes it durable. Throws DataError when it does not fit the schema or the disk; after
   /// a full disk the file stays as it was and takes no more.
   void append(const StepRecord& record);
 
+  /// The steps that the file holds, and the values of an observable in each.
+  std::vector<std::int64_t> steps() const;
+  std::vector<double> observable(const std::string& name) const;
+  const Schema& schema() const;
+
   void complete();
   void fail(const Failure& failure);
+  /// The same for an end that a signal has asked for.
+  void interrupt(const Failure& failure);
 
  private:
   struct Contents;
+  void end(const Failure& failure, Outcome outcome);
   std::unique_ptr<Contents> contents_;
 };
 

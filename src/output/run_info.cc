@@ -38,13 +38,13 @@ RunInfo read_info(const h5::Object& root) {
 
 Outcome read_outcome(const h5::Object& root) {
   const auto text = h5::text_attribute(root, "outcome");
-  for (const auto outcome : {Outcome::running, Outcome::completed, Outcome::failed})
+  for (const auto outcome : {Outcome::running, Outcome::completed, Outcome::failed, Outcome::interrupted})
     if (text == to_string(outcome))
       return outcome;
   throw DataError({.file = root.file,
                    .path = "/outcome",
                    .value = text,
-                   .rule = "must be running, completed or failed",
+                   .rule = "must be running, completed, failed or interrupted",
                    .remedy = "Read a file that Kerf wrote"});
 }
 

@@ -1,5 +1,6 @@
 #include "output/stability_file.h"
 
+#include "output/checkpoint_file.h"
 #include "output/names.h"
 #include "output/run_info.h"
 #include "output/table_columns.h"
@@ -49,17 +50,20 @@ void for_each_column(const Action& action) {
 } // namespace
 
 void write_stability_file(const std::filesystem::path& path, const StabilityTable& table, const RunInfo& info) {
-  h5::WritableFile file(path, JournaledFile::Mode::create);
-  file.transaction([&] {
-    const h5::Object& root = file.root();
-    write_info(root, info);
-    h5::set_attribute(root, "title", table.title);
-    h5::set_attribute(root, "outcome", to_string(table.outcome));
-    h5::create_group(root, "/stability");
-    h5::write_text(root, "/stability/text", table.text);
-    h5::create_group(root, group);
-    for_each_column([&](const auto& column) { write_column(root, group, column, table.rows); });
-  });
+  {
+    h5::WritableFile file(name_beside(path), JournaledFile::Mode::create);
+    file.transaction([&] {
+      const h5::Object& root = file.root();
+      write_info(root, info);
+      h5::set_attribute(root, "title", table.title);
+      h5::set_attribute(root, "outcome", to_string(table.outcome));
+      h5::create_group(root, "/stability");
+      h5::write_text(root, "/stability/text", table.text);
+      h5::create_group(root, group);
+      for_each_column([&](const auto& column) { write_column(root, group, column, table.rows); });
+    });
+  }
+  take_name(path);
 }
 
 StabilityTable read_stability_file(const std::filesystem::path& path) {

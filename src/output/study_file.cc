@@ -1,5 +1,7 @@
 #include "output/study_file.h"
 
+#include "base/error.h"
+#include "output/checkpoint_file.h"
 #include "output/names.h"
 #include "output/run_info.h"
 #include "output/table_columns.h"
@@ -55,16 +57,19 @@ void write_rows(const h5::Object& root, const StudyTable& table) {
 } // namespace
 
 void write_study_file(const std::filesystem::path& path, const StudyTable& table, const RunInfo& info) {
-  h5::WritableFile file(path, JournaledFile::Mode::create);
-  file.transaction([&] {
-    const h5::Object& root = file.root();
-    write_info(root, info);
-    h5::set_attribute(root, "title", table.title);
-    h5::set_attribute(root, "outcome", to_string(table.outcome));
-    h5::create_group(root, "/study");
-    h5::write_text(root, "/study/text", table.text);
-    write_rows(root, table);
-  });
+  {
+    h5::WritableFile file(name_beside(path), JournaledFile::Mode::create);
+    file.transaction([&] {
+      const h5::Object& root = file.root();
+      write_info(root, info);
+      h5::set_attribute(root, "title", table.title);
+      h5::set_attribute(root, "outcome", to_string(table.outcome));
+      h5::create_group(root, "/study");
+      h5::write_text(root, "/study/text", table.text);
+      write_rows(root, table);
+    });
+  }
+  take_name(path);
 }
 
 StudyTable read_study_file(const std::filesystem::path& path) {

@@ -31,7 +31,7 @@ struct StudyTable {
   std::vector<StudyRow> rows;
 };
 
-/// Writes the file, or replaces it. Throws DataError when it cannot be written.
+/// Writes the file, or replaces it: beside the old one, which it then takes the place of. Throws DataError when it cannot be written.
 void write_study_file(const std::filesystem::path& path, const StudyTable& table, const RunInfo& info);
 
 /// Reads the table back. Throws DataError.

@@ -85,9 +85,11 @@ struct SurfaceFile::Contents {
   std::int64_t first_rest = 0, first_triangle = 0;
 
   void create();
-  void create_series(const std::string& path, const h5::Layout& layout, std::size_t chunk_rows) {
-    series.emplace(path, h5::create_series(file.root(), "/VTKHDF/" + path, layout, chunk_rows));
-  }
+  void open();
+  /// Calls take(path, layout, rows of a chunk) for each series of the file.
+  template <class Function>
+  void for_each_series(const Function& take) const;
+  std::int64_t last_of(const std::string& path) const;
   void append_count(const std::string& path, const std::int64_t value) {
     h5::append_rows(series.at(path), count_layout, &value, 1);
   }
@@ -96,46 +98,71 @@ struct SurfaceFile::Contents {
     row[polygons] = n_polygons;
     h5::append_rows(series.at(path), kinds_layout, row.data(), 1);
   }
-  void create_field(const Field& field);
   void append_topology(const SurfaceStep& step);
   void append_step(const SurfaceStep& step);
 };
+
+template <class Function>
+void SurfaceFile::Contents::for_each_series(const Function& take) const {
+  take("NumberOfPoints", count_layout, short_chunk);
+  take("Points", point_layout, long_chunk);
+  for (const std::string kind : cell_kinds) {
+    const auto chunk = kind == cell_kinds[polygons] ? long_chunk : short_chunk;
+    take(kind + "/NumberOfCells", count_layout, short_chunk);
+    take(kind + "/NumberOfConnectivityIds", count_layout, short_chunk);
+    take(kind + "/Offsets", count_layout, chunk);
+    take(kind + "/Connectivity", count_layout, chunk);
+  }
+  take("PointData/rest_position", point_layout, long_chunk);
+  take("CellData/label", h5::Layout{h5::Number::uint16, 1}, long_chunk);
+  take("Steps/Values", h5::Layout{h5::Number::float64, 1}, short_chunk);
+  for (const auto* name :
+       {"PartOffsets", "NumberOfParts", "PointOffsets", "PointDataOffsets/rest_position", "CellDataOffsets/label"})
+    take(std::string("Steps/") + name, count_layout, short_chunk);
+  for (const Field& field : fields) {
+    take("PointData/" + field.name, h5::Layout{h5::Number::float32, field.n_components}, long_chunk);
+    take("Steps/PointDataOffsets/" + field.name, count_layout, short_chunk);
+  }
+  take("Steps/CellOffsets", kinds_layout, short_chunk);
+  take("Steps/ConnectivityIdOffsets", kinds_layout, short_chunk);
+}
 
 void SurfaceFile::Contents::create() {
   const auto vtk = h5::create_group(file.root(), "/VTKHDF");
   h5::set_attribute(vtk, "Version", std::array<std::int64_t, 2>{2, 0});
   h5::set_attribute(vtk, "Type", std::string("PolyData"));
-  create_series("NumberOfPoints", count_layout, short_chunk);
-  create_series("Points", point_layout, long_chunk);
-  for (const std::string kind : cell_kinds) {
+  for (const auto* kind : cell_kinds)
     h5::create_group(vtk, kind);
-    const auto chunk = kind == cell_kinds[polygons] ? long_chunk : short_chunk;
-    create_series(kind + "/NumberOfCells", count_layout, short_chunk);
-    create_series(kind + "/NumberOfConnectivityIds", count_layout, short_chunk);
-    create_series(kind + "/Offsets", count_layout, chunk);
-    create_series(kind + "/Connectivity", count_layout, chunk);
-  }
   for (const auto* group : {"PointData", "CellData", "Steps/PointDataOffsets", "Steps/CellDataOffsets"})
     h5::create_group(vtk, group);
-  create_series("PointData/rest_position", point_layout, long_chunk);
-  create_series("CellData/label", {h5::Number::uint16, 1}, long_chunk);
-
   steps = h5::open_group(vtk, "Steps");
   h5::set_attribute(steps, "NSteps", n_steps);
-  create_series("Steps/Values", {h5::Number::float64, 1}, short_chunk);
-  for (const auto* name :
-       {"PartOffsets", "NumberOfParts", "PointOffsets", "PointDataOffsets/rest_position", "CellDataOffsets/label"})
-    create_series(std::string("Steps/") + name, count_layout, short_chunk);
+  for_each_series([&](const std::string& path, const h5::Layout& layout, const std::size_t chunk) {
+    series.emplace(path, h5::create_series(file.root(), "/VTKHDF/" + path, layout, chunk));
+  });
   for (const Field& field : fields)
-    create_field(field);
-  create_series("Steps/CellOffsets", kinds_layout, short_chunk);
-  create_series("Steps/ConnectivityIdOffsets", kinds_layout, short_chunk);
+    h5::set_attribute(series.at("PointData/" + field.name), "unit", field.unit);
 }
 
-void SurfaceFile::Contents::create_field(const Field& field) {
-  create_series("PointData/" + field.name, {h5::Number::float32, field.n_components}, long_chunk);
-  h5::set_attribute(series.at("PointData/" + field.name), "unit", field.unit);
-  create_series("Steps/PointDataOffsets/" + field.name, count_layout, short_chunk);
+void SurfaceFile::Contents::open() {
+  steps = h5::open_group(file.root(), "/VTKHDF/Steps");
+  for_each_series([&](const std::string& path, const h5::Layout&, std::size_t) {
+    series.emplace(path, h5::open_dataset(file.root(), "/VTKHDF/" + path));
+  });
+  n_steps = h5::integer_attribute(steps, "NSteps");
+  n_points = static_cast<std::int64_t>(h5::n_rows(series.at("Points")));
+  n_topologies = static_cast<std::int64_t>(h5::n_rows(series.at("NumberOfPoints")));
+  n_topology_points = last_of("NumberOfPoints");
+  n_triangles = last_of(std::string(cell_kinds[polygons]) + "/NumberOfCells");
+  first_rest = last_of("Steps/PointDataOffsets/rest_position");
+  first_triangle = last_of("Steps/CellDataOffsets/label");
+}
+
+/// 0 of a series without rows.
+std::int64_t SurfaceFile::Contents::last_of(const std::string& path) const {
+  std::vector<std::int64_t> values(h5::n_rows(series.at(path)));
+  h5::read_rows(series.at(path), count_layout, values.data());
+  return values.empty() ? 0 : values.back();
 }
 
 void SurfaceFile::Contents::append_topology(const SurfaceStep& step) {
@@ -195,6 +222,21 @@ SurfaceFile::SurfaceFile(const std::filesystem::path& path, const std::span<cons
   for (const Field& field : fields)
     contents_->fields.push_back({field.name, field.unit, field.n_components, {}});
   contents_->file.transaction([&] { contents_->create(); });
+}
+
+SurfaceFile::SurfaceFile(std::unique_ptr<Contents> contents) : contents_(std::move(contents)) {}
+
+SurfaceFile SurfaceFile::go_on(const std::filesystem::path& path, const std::span<const Field> fields) {
+  auto contents = std::unique_ptr<Contents>(new Contents{.file = {path, JournaledFile::Mode::modify}});
+  for (const Field& field : fields)
+    contents->fields.push_back({field.name, field.unit, field.n_components, {}});
+  contents->open();
+  return SurfaceFile(std::move(contents));
+}
+
+std::optional<double> SurfaceFile::last_time() const {
+  const auto times = h5::read_vector<double>(contents_->file.root(), "/VTKHDF/Steps/Values");
+  return times.empty() ? std::nullopt : std::optional(times.back());
 }
 
 SurfaceFile::SurfaceFile(SurfaceFile&&) noexcept = default;

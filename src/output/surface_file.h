@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
 
 namespace kerf::output {
@@ -35,6 +36,8 @@ class SurfaceFile {
   /// Creates the file, or empties it. `fields` are the names, units and components of what every step brings. Throws
   /// DataError when it cannot be written.
   explicit SurfaceFile(const std::filesystem::path& path, std::span<const Field> fields = {});
+  /// Opens the file of an earlier run that was made for the same fields, to go on behind its last step. Throws DataError.
+  static SurfaceFile go_on(const std::filesystem::path& path, std::span<const Field> fields = {});
   SurfaceFile(SurfaceFile&&) noexcept;
   SurfaceFile& operator=(SurfaceFile&&) noexcept;
   ~SurfaceFile();
@@ -42,8 +45,12 @@ class SurfaceFile {
   /// Appends one step and makes it durable. Throws DataError when sizes do not fit, or the disk is full.
   void append(const SurfaceStep& step);
 
+  /// Of the last step [s]; none before the first.
+  std::optional<double> last_time() const;
+
  private:
   struct Contents;
+  explicit SurfaceFile(std::unique_ptr<Contents> contents);
   std::unique_ptr<Contents> contents_;
 };
 

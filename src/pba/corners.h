@@ -40,6 +40,8 @@ struct CornerMap {
   Points corners;                           ///< rest positions of the corners [m]
   std::size_t n_blind = 0;                  ///< nodes that see no phyxel
   std::size_t n_orphans = 0;                ///< pieces that hold none
+
+  void archive(Archive& a) { a(start, phyxel, weight, source_start, source, rest, corners, n_blind, n_orphans); }
 };
 
 /// `copies`: the copy of each phyxel (copies_around()); `sights`: of each of pairs.pairs.

@@ -74,6 +74,14 @@ void PhyxelModel::update(const std::span<const Sight> sights) {
     worth);
 }
 
+void PhyxelModel::archive(Archive& a) {
+  a.name("phyxels");
+  a(mass_, weights_);
+  if (a.reads())
+    parallel_for(
+      phyxels_.size(), [&](const std::size_t i) { make(i); }, worth);
+}
+
 void PhyxelModel::carry(const std::span<const std::uint8_t> carried) {
   for (std::size_t i = 0; i < carried.size(); ++i)
     mass_[i] = carried[i] != 0 ? 0 : density_ * phyxels_.volume[i];

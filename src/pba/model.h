@@ -24,6 +24,7 @@
 /// Limits: nodal integration passes the patch test of equilibrium only where the phyxels lie on a lattice; Green's
 /// strain with Hooke's law softens in strong compression.
 
+#include "base/archive.h"
 #include "dynamics/model.h"
 #include "material/elastic.h"
 #include "pba/fit.h"
@@ -59,6 +60,9 @@ class PhyxelModel : public dynamics::ElasticModel {
   void update(std::span<const Sight> sights);
   /// Leaves the mass of these (1) to whoever carries them; their sights must be none.
   void carry(std::span<const std::uint8_t> carried);
+
+  /// Its sights and who is carried; into a model of the same phyxels and options. The linearisation is lost.
+  void archive(Archive& a);
 
   const Phyxels& phyxels() const { return phyxels_; }
   const Neighbours& neighbours() const { return neighbours_; }

@@ -2,6 +2,8 @@
 
 /// What a cut leaves of the bond between two points.
 
+#include "base/archive.h"
+
 namespace kerf::pba {
 
 /// The weight of a pair of points is factor * kernel(distance, support). Diffraction and transparency lengthen the
@@ -12,6 +14,7 @@ struct Sight {
   double factor = 1;   ///< in [0, 1] [1]
 
   bool operator==(const Sight&) const = default;
+  void archive(Archive& a) { a(distance, factor); }
 };
 
 } // namespace kerf::pba

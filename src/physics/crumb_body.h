@@ -17,6 +17,8 @@ struct CrumbBody {
   std::vector<std::uint32_t> corners;  ///< ascending
   std::vector<double> mass_of_corners; ///< integrals of their shape functions, times density [kg]
   Points rest_of_corners;              ///< [m]
+
+  void archive(Archive& a) { a(body, corners, mass_of_corners, rest_of_corners); }
 };
 
 /// By the material of its copies: mass, centre and inertia are exact. But a piece of hardly any volume counts as 1e-12

@@ -67,6 +67,11 @@ class Crumbs {
   Vec3 momentum(const dynamics::State& state) const;
   Vec3 angular_momentum(const dynamics::State& state, const Vec3& about) const;
 
+  void archive(Archive& a) {
+    a.name("crumbs");
+    a(crumbs_, crumb_of_, carried_, carried_mass_, reactions_, work_of_supports_);
+  }
+
   /// What supports did in the last step: force and torque about the origin of each, and their work [J].
   const std::vector<dynamics::Reaction>& reactions() const { return reactions_; }
   double work_of_supports() const { return work_of_supports_; }
@@ -76,6 +81,11 @@ class Crumbs {
     std::uint32_t name;
     std::vector<std::uint32_t> particles;
     Points rest_of_particles;
+
+    void archive(Archive& a) {
+      CrumbBody::archive(a);
+      a(name, particles, rest_of_particles);
+    }
   };
   /// A particle that a support holds.
   struct Hold {

@@ -51,6 +51,17 @@ class OnCorners : public Physics {
     make_stepper(body);
   }
 
+  /// Models are the same bits, however the body came to be what it is.
+  void archive(Archive& a, const CutBody& body) override {
+    a(crumbs_);
+    if (a.reads()) {
+      rest_ = grid::rest_positions(body.solid);
+      model_ = make_model_(body);
+      make_stepper(body);
+    }
+    a(*stepper_);
+  }
+
   const Points& corners(const dynamics::State& state) const override { return state.x; }
   Interpolation carry(const Interpolation& of_corners) const override { return of_corners; }
 

@@ -47,8 +47,10 @@ class Physics {
 
   /// Follows a cut of the body, and so does the state: new particles take what their parents have.
   virtual void follow_cut(const CutBody& body, const grid::CutChange& change, dynamics::State& state) = 0;
-  /// Does a step's share of what cuts have left to do.
-  virtual void catch_up(const CutBody&) {}
+  /// Does a step's share of what cuts have left to do. Says whether carry() is another one now.
+  virtual bool catch_up(const CutBody&) { return false; }
+  /// What it knows beside the state and the body; into one that was made of the same body before its first cut.
+  virtual void archive(Archive& a, const CutBody& body) = 0;
 
   /// Moves what depends on the particles to where they are.
   virtual void follow(const dynamics::State&) {}

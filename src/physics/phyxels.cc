@@ -208,18 +208,34 @@ void Phyxels::follow_cut(const CutBody& body, const grid::CutChange& change, dyn
   follow(state);
 }
 
-void Phyxels::catch_up(const CutBody& body) {
+bool Phyxels::catch_up(const CutBody& body) {
   if (!sights_)
-    return;
+    return false;
   const int budget = options_.visibility.budget;
   const auto progress =
     sights_->update(budget > 0 ? static_cast<std::size_t>(budget) : std::numeric_limits<std::size_t>::max());
   if (progress.changed.empty() && !is_stale_)
-    return;
+    return false;
   copy(sights_->sights(), 0, sights_of_phyxels_);
   copy(sights_->sights(), sights_of_phyxels_.size(), sights_of_nodes_);
   build_map(body);
   stepper_ = make_stepper_(model_, [this] { return phyxel_pieces_; });
+  return true;
+}
+
+void Phyxels::archive(Archive& a, const CutBody& body) {
+  bool looks = sights_.has_value();
+  a(looks);
+  if (looks && !sights_)
+    sights_.emplace(visibility::make_criterion(options_.visibility.choice));
+  if (looks)
+    a(*sights_);
+  a(model_, crumbs_, sights_of_phyxels_, sights_of_nodes_, map_, is_stale_, faces_, now_);
+  if (a.reads()) {
+    find_pieces(body);
+    stepper_ = make_stepper_(model_, [this] { return phyxel_pieces_; });
+  }
+  a(*stepper_);
 }
 
 void Phyxels::follow(const dynamics::State& state) {

@@ -56,7 +56,8 @@ class Phyxels : public Physics {
   const Crumbs& crumbs() const override { return crumbs_; }
   dynamics::StepReport step(dynamics::State& state, const dynamics::Loads& loads, double dt) override;
   void follow_cut(const CutBody& body, const grid::CutChange& change, dynamics::State& state) override;
-  void catch_up(const CutBody& body) override;
+  bool catch_up(const CutBody& body) override;
+  void archive(Archive& a, const CutBody& body) override;
   void follow(const dynamics::State& state) override;
   const Points& corners(const dynamics::State&) const override { return corners_; }
   /// Point by point the weights of (2.33), corrected to first order: so forces keep their torque where three phyxels

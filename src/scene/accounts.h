@@ -38,6 +38,11 @@ class Accounts {
   /// What a cut did to the energy [J].
   void add_work_of_cut(const double work) { work_of_cut_ += work; }
 
+  void archive(Archive& a) {
+    a.name("accounts");
+    a(start_energy_, work_of_cut_, kinetic_energy_of_crumbs_, reactions_);
+  }
+
   double start_energy() const { return start_energy_; }
   double work_of_cut() const { return work_of_cut_; }
   /// Of each support, in the order of the loads; torques about the origin.

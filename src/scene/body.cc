@@ -21,19 +21,6 @@ void find_supports(Body& body) {
   body.grips.clear();
 }
 
-void make_loads(Body& body) {
-  find_supports(body);
-  body.loads.acting.clear();
-  body.loads.carried = body.physics->crumbs().carried();
-  body.first_load = {0};
-  for (const LoadMaker& maker : body.load_makers) {
-    maker.make(body, body.loads.acting);
-    body.first_load.push_back(body.loads.acting.size());
-  }
-  for (Probe& probe : body.probes)
-    probe.copy = grid::copy_at(body.solid, probe.rest);
-}
-
 /// Takes a cut into placement, surface, physics and loads.
 void follow_cut(Body& body, grid::CutChange change, Timings& timings) {
   if (!change.any())
@@ -63,6 +50,38 @@ void cut_and_follow(Body& body, Timings& timings, const Cut& cut) {
 }
 
 } // namespace
+
+void make_loads(Body& body) {
+  find_supports(body);
+  body.loads.acting.clear();
+  body.loads.carried = body.physics->crumbs().carried();
+  body.first_load = {0};
+  for (const LoadMaker& maker : body.load_makers) {
+    maker.make(body, body.loads.acting);
+    body.first_load.push_back(body.loads.acting.size());
+  }
+  for (Probe& probe : body.probes)
+    probe.copy = grid::copy_at(body.solid, probe.rest);
+}
+
+void archive(Archive& a, Body& body) {
+  a.name(body.name);
+  a(body.solid, body.placed, body.surface, body.surface_index, body.n_recuts);
+  if (body.cutter)
+    a(*body.cutter);
+  body.physics->archive(a, seen(body));
+  a(body.state, body.report, body.n_divided);
+  if (body.initial)
+    a(body.initial->energy);
+  if (body.accounts)
+    a(*body.accounts);
+  if (body.interior)
+    a(body.interior->atlas);
+  if (a.reads()) {
+    make_loads(body);
+    follow(body);
+  }
+}
 
 void start(Body& body, const geometry::TriangleMesh& mesh, const PhysicsMaker& make_physics, Timings& timings) {
   {

@@ -104,6 +104,12 @@ inline const Points& corners(const Body& body) { return body.physics->corners(bo
 /// from `mesh`.
 void start(Body& body, const geometry::TriangleMesh& mesh, const PhysicsMaker& make_physics, Timings& timings);
 
+/// Makes supports and loads of what the body is now; those of forceps are made by hold().
+void make_loads(Body& body);
+
+/// All that steps and cuts have made of a body; into one that has just been composed.
+void archive(Archive& a, Body& body);
+
 /// Cuts the body with what the blades sweep between two times, as it stands now, and carries the state
 /// over as its physics does: new corners take position and velocity from the copy they came from.
 void recut(Body& body, std::span<const cut::Blade> blades, double t0, double t1, Timings& timings);

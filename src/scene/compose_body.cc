@@ -7,6 +7,7 @@
 #include "scene/compose_interior.h"
 #include "scene/compose_loads.h"
 #include "scene/compose_physics.h"
+#include "scene/support_report.h"
 #include "scene/initial_state.h"
 
 #include <cmath>
@@ -24,6 +25,17 @@ geometry::TriangleMesh read_body_mesh(const Section& section, const BodyParamete
 
 namespace {
 
+/// Of a slab that lies between two layers of nodes: the offset that puts one into its middle.
+std::string how_to_reach(const geometry::TriangleMesh& mesh, const double cube_edge) {
+  const Box box = geometry::bounding_box(mesh);
+  const Vec3 sides = (box.upper - box.lower) / cube_edge;
+  if (sides.minCoeff() >= 1)
+    return "";
+  const Vec3 offset = (sides / 2).cwiseMin(0.5);
+  return line(". It is thinner than a cube: a layer of nodes lies in its middle with 'set Lattice offset [1] = ", offset[0],
+              ", ", offset[1], ", ", offset[2], "'");
+}
+
 cut::Embedding embed_mesh(const Section& section, const BodyParameters& parameters,
                           const geometry::TriangleMesh& mesh) {
   constexpr double most_cells = 1e8;
@@ -38,7 +50,7 @@ cut::Embedding embed_mesh(const Section& section, const BodyParameters& paramete
     throw section.complaint(error.complaint().path, error.complaint().rule, error.complaint().remedy);
   } catch (const DataError&) {
     throw section.complaint("Cube edge [m]", "no grid node is inside the mesh, it is smaller than a cube",
-                            "Use smaller cubes, or check Mesh unit [m]");
+                            "Use smaller cubes, or check Mesh unit [m]" + how_to_reach(mesh, parameters.cube_edge));
   }
 }
 
@@ -119,6 +131,8 @@ Body compose_body(const Section& section, const GravityParameters* gravity, cons
                                    " surface triangles"));
   world.composition.push_back(line("body ", body.name, ": ", describe_physics(section, parameters, body), ", ",
                                    body.regions.size(), " supports, ", body.load_makers.size(), " loads"));
+  for (const std::string& said : describe_supports(body))
+    world.composition.push_back(said);
   if (body.physics->crumbs().any())
     world.composition.push_back(describe_crumbs(body));
   return body;

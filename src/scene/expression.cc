@@ -25,6 +25,19 @@ class SilentErrors {
   std::streambuf* buffer_;
 };
 
+/// Whether there is a '=' that is no part of a comparison.
+bool assigns(const std::string& text) {
+  for (auto at = text.find('='); at != std::string::npos; at = text.find('=', at + 1)) {
+    if (at + 1 < text.size() && text[at + 1] == '=') {
+      ++at;
+      continue;
+    }
+    if (at == 0 || std::string("<>!").find(text[at - 1]) == std::string::npos)
+      return true;
+  }
+  return false;
+}
+
 /// n expressions of some variables, the last of which is the time.
 class Expressions {
  public:
@@ -39,6 +52,8 @@ class Expressions {
     const std::string separated = n == 1 ? "" : ", separated by semicolons";
     if (std::count(text.begin(), text.end(), ';') != n - 1)
       throw section.complaint(key, "must be " + of + separated, remedy);
+    if (assigns(text))
+      throw section.complaint(key, "must be " + of + ", which assigns nothing: '=' compares as '=='", remedy);
     try {
       const SilentErrors silent;
       parser_->initialize("x,y,z,t", text, {{"pi", std::acos(-1.0)}}, true);

@@ -14,7 +14,7 @@
 namespace kerf::scene {
 
 void BodyParameters::describe(Parameters& p) {
-  p.text("Mesh", mesh, "Closed triangle mesh (OFF, OBJ, STL, PLY); a relative path starts at the scene file.");
+  p.file("Mesh", mesh, "Closed triangle mesh (OFF, OBJ, STL, PLY); a relative path starts at the scene file.");
   p.require_last();
   p.number("Mesh unit [m]", mesh_unit, positive, "Length of one unit of the mesh file.");
   p.number("Cube edge [m]", cube_edge, positive, "Edge h of the grid's cubes: the resolution of physics and cuts.");

@@ -24,7 +24,7 @@ void InteriorParameters::describe(Parameters& p) {
             "Put back what blending loses, by matching histograms of 7 x 7 pixels on the surface.");
   p.number("Relief [m]", relief, any_number,
            "Height of white above black, which bends the normals of revealed faces in images; 0: smooth.");
-  p.text("Skin image", skin_image,
+  p.file("Skin image", skin_image,
          "A picture of the whole skin, unrolled around an axis as on a map of the earth; empty: one colour.");
   p.vector("Skin axis [1]", skin_axis, "Through the middle of the body, to where the picture's first row lies.");
   p.integer("Match levels [1]", levels, {1, 8}, "Levels of the Gaussian stack in which features are matched.");
@@ -40,7 +40,7 @@ void InteriorParameters::describe(Parameters& p) {
 }
 
 void ExemplarParameters::describe(Parameters& p) {
-  p.text("Image", image, "Picture of a section (PNG, JPEG); a relative path starts at the scene file.");
+  p.file("Image", image, "Picture of a section (PNG, JPEG); a relative path starts at the scene file.");
   p.require_last();
   p.choice(
     "Background", background, {"alpha", "black", "none"},

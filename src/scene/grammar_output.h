@@ -12,6 +12,8 @@ namespace kerf::scene {
 struct OutputParameters {
   int frames_every = 10; ///< steps
   std::string fields = "none";
+  double checkpoint_interval = 60; ///< [s] of the clock
+  int checkpoint_every = 0;        ///< steps; 0: by the clock
   void describe(Parameters& p);
 };
 

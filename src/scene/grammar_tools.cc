@@ -104,7 +104,7 @@ void ShapeParameters::describe(Parameters& p) {
     require_of_a_shape();
   }
   if (is_any_of({"mesh"})) {
-    p.text("Mesh", mesh, "Mesh: open or closed triangles (OFF, OBJ, STL, PLY); what it crosses evenly stays whole.");
+    p.file("Mesh", mesh, "Mesh: open or closed triangles (OFF, OBJ, STL, PLY); what it crosses evenly stays whole.");
     require_of_a_shape();
     p.number("Mesh unit [m]", mesh_unit, positive, "Mesh: length of one unit of its file.");
   }

@@ -1,52 +1,42 @@
 #include "scene/recorder.h"
 
 #include "base/error.h"
+#include "base/parameters.h"
+#include "output/checkpoint_file.h"
+#include "output/reader.h"
 #include "scene/drawing.h"
 #include "scene/fields.h"
 
-#include <cerrno>
+#include <algorithm>
+#include <bit>
 #include <cstdio>
 #include <system_error>
 #include <utility>
-
-#include <unistd.h>
 
 namespace kerf::scene {
 
 namespace {
 
-[[noreturn]] void refuse_folder(const std::filesystem::path& folder, const std::error_code& error) {
-  throw DataError(Complaint{.file = folder.string(),
-                            .rule = "the results folder cannot be made: " + error.message(),
-                            .remedy = "Choose another folder with --output, or change its permissions"});
+const std::string run_name = "run.h5", frames_folder = "frames";
+
+std::string surface_name(const Body& body) { return "surface_" + body.name + ".vtkhdf"; }
+
+/// What a run of this world makes in its folder.
+std::vector<std::string> names_of(const World& world) {
+  const std::string checkpoint = checkpoint_file("").string();
+  std::vector<std::string> names = {run_name, checkpoint, output::name_beside(checkpoint).string()};
+  if (world.images)
+    names.push_back(frames_folder + "/*.png");
+  if (world.surface_file)
+    for (const Body& body : world.bodies)
+      names.push_back(surface_name(body));
+  return names;
 }
 
-/// Removes what an earlier run into the same folder has left of a kind.
-void remove_old(const std::filesystem::path& folder, const std::string& prefix, const std::string& extension) {
-  std::error_code ignored; // what cannot be removed is overwritten, or its writer says why not
-  for (const auto& entry : std::filesystem::directory_iterator(folder, ignored))
-    if (entry.path().extension() == extension && entry.path().filename().string().starts_with(prefix))
-      std::filesystem::remove(entry.path(), ignored);
-}
-
-/// The folder itself, or what it would have to be made in.
-std::filesystem::path nearest_existing(const std::filesystem::path& folder) {
+/// Whether a run's file is there and has begun: one that was killed while it was made has no scene.
+bool has_begun(const std::filesystem::path& file) {
   std::error_code error;
-  std::filesystem::path place = std::filesystem::absolute(folder);
-  while (!std::filesystem::exists(place, error) && place.has_relative_path())
-    place = place.parent_path();
-  return place;
-}
-
-/// Folder of the run, empty of an earlier one's surfaces and images.
-std::filesystem::path make_folder(const std::filesystem::path& folder, const World& world) {
-  std::error_code error;
-  std::filesystem::create_directories(world.images ? folder / "frames" : folder, error);
-  if (error)
-    refuse_folder(folder, error);
-  remove_old(folder, "surface_", ".vtkhdf");
-  remove_old(folder / "frames", "", ".png");
-  return folder;
+  return std::filesystem::file_size(file, error) > 0 && !error && output::Reader(file).has_scene();
 }
 
 output::Schema make_schema(const World& world) {
@@ -99,6 +89,34 @@ std::span<const Vec3> velocities(const Body& body) {
            : std::span<const Vec3>();
 }
 
+std::string joined(const std::vector<std::string>& lines) {
+  std::string text;
+  for (const std::string& line : lines)
+    text += line + "\n";
+  return text;
+}
+
+/// Of the clock; no more than some years.
+std::chrono::steady_clock::duration seconds_of(const double seconds) {
+  return std::chrono::duration_cast<std::chrono::steady_clock::duration>(
+    std::chrono::duration<double>(std::min(seconds, 1e8)));
+}
+
+/// Whether a run's file can be gone on with. Throws ParameterError where it is of another scene or other inputs.
+bool can_go_on(const std::filesystem::path& file, const Source& source) {
+  if (!has_begun(file))
+    return false;
+  const output::Reader reader(file);
+  const bool same_scene = reader.scene() == source.scene;
+  if (!same_scene || reader.inputs() != source.inputs)
+    throw ParameterError(Complaint{
+      .file = file.string(),
+      .rule = std::string("cannot be resumed: it is a run of ") +
+              (same_scene ? "other meshes or pictures" : "another scene"),
+      .remedy = "Give the scene, its --set and its files as they were, or start again with --force"});
+  return true;
+}
+
 bool is_due(const int step, const int every, const World& world) { return step % every == 0 || step == world.n_steps; }
 
 } // namespace
@@ -109,26 +127,107 @@ const std::vector<std::string>& stages() {
   return names;
 }
 
-void require_writable(const std::filesystem::path& folder) {
-  const std::filesystem::path place = nearest_existing(folder);
-  std::error_code error;
-  if (!std::filesystem::is_directory(place, error))
-    refuse_folder(folder, error ? error : std::make_error_code(std::errc::not_a_directory));
-  if (access(place.c_str(), W_OK | X_OK) != 0)
-    refuse_folder(folder, std::error_code(errno, std::generic_category()));
+std::filesystem::path checkpoint_file(const std::filesystem::path& folder) { return folder / "checkpoint.kerf"; }
+
+bool is_complete(const std::filesystem::path& folder) {
+  return has_begun(folder / run_name) && output::Reader(folder / run_name).outcome() == output::Outcome::completed;
 }
 
-Recorder::Recorder(const std::filesystem::path& folder, const World& world, const output::RunInfo& info,
-                   const std::string& scene_text)
-  : folder_(make_folder(folder, world)),
-    run_file_(folder / "run.h5", info, make_schema(world)),
-    bodies_(world.bodies.size()) {
-  run_file_.write_scene(scene_text);
-  run_file_.write_composition(world.composition);
+Recorder::Recorder(const std::filesystem::path& folder, const World& world, const Source& source,
+                   const output::Earlier earlier)
+  : folder_(folder, earlier, names_of(world)),
+    goes_on_(earlier == output::Earlier::resume && can_go_on(folder / run_name, source)),
+    run_file_(goes_on_ ? output::RunFile(folder / run_name)
+                       : output::RunFile(folder / run_name, source.info, make_schema(world))),
+    bodies_(world.bodies.size()),
+    program_(source.info.version + " " + source.info.git_commit),
+    inputs_(joined(source.inputs)) {
+  if (world.images)
+    std::filesystem::create_directories(folder / frames_folder);
+  if (goes_on_) {
+    if (const auto steps = run_file_.steps(); !steps.empty())
+      ends_ = steps.back();
+    for (const output::Observable& o : run_file_.schema().observables)
+      recorded_.push_back(run_file_.observable(o.name));
+  } else {
+    std::error_code ignored;
+    std::filesystem::remove(checkpoint_file(folder), ignored);
+    run_file_.write_inputs(source.inputs);
+    run_file_.write_composition(world.composition);
+    run_file_.write_scene(source.scene); // last: with it, the file has begun
+  }
   if (world.surface_file)
-    for (std::size_t b = 0; b < bodies_.size(); ++b)
-      bodies_[b].surface_file.emplace(folder_ / ("surface_" + world.bodies[b].name + ".vtkhdf"),
-                                      announced_of(world.bodies[b], world.fields));
+    open_surface_files(world);
+}
+
+void Recorder::open_surface_files(const World& world) {
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    const auto path = folder() / surface_name(world.bodies[b]);
+    const auto fields = announced_of(world.bodies[b], world.fields);
+    std::error_code error;
+    const bool is_there = goes_on_ && std::filesystem::file_size(path, error) > 0 && !error;
+    bodies_[b].surface_file = is_there ? output::SurfaceFile::go_on(path, fields) : output::SurfaceFile(path, fields);
+    bodies_[b].surface_ends = bodies_[b].surface_file->last_time();
+  }
+}
+
+int Recorder::resume(World& world) {
+  next_checkpoint_ = Clock::now() + seconds_of(world.output.checkpoint_interval);
+  const auto checkpoint = goes_on_ ? output::read_checkpoint(checkpoint_file(folder())) : std::nullopt;
+  if (!checkpoint)
+    return -1;
+  if (checkpoint->inputs != inputs_ || checkpoint->program != program_)
+    throw DataError(Complaint{.file = checkpoint_file(folder()).string(),
+                              .rule = "was written by " + checkpoint->program + ", and this is " + program_,
+                              .remedy = "Resume with the same program, or start again with --force"});
+  if (checkpoint->step > ends_)
+    throw DataError(Complaint{.file = (folder() / run_name).string(),
+                              .rule = "ends before its checkpoint, after step " + std::to_string(ends_),
+                              .remedy = "The disk has lost something of it: start again with --force"});
+  Archive state(checkpoint->state, checkpoint_file(folder()).string());
+  for (Body& body : world.bodies)
+    archive(state, body);
+  state(bodies_, world.watches);
+  return static_cast<int>(checkpoint->step);
+}
+
+void Recorder::keep(World& world, const int step, Timings& seconds) {
+  const int every = world.output.checkpoint_every;
+  const double interval = world.output.checkpoint_interval;
+  if (every > 0 ? step % every != 0 : interval == 0 || Clock::now() < next_checkpoint_)
+    return;
+  constexpr double most = 0.01; // of the time
+  const auto start = Clock::now();
+  {
+    const ScopedTimer timer(seconds, "output");
+    keep_now(world, step);
+  }
+  const std::chrono::duration<double> took = Clock::now() - start;
+  next_checkpoint_ = Clock::now() + seconds_of(std::max(interval, took.count() / most));
+}
+
+void Recorder::keep_now(World& world, const int step) {
+  Archive state;
+  for (Body& body : world.bodies)
+    archive(state, body);
+  state(bodies_, world.watches);
+  output::write_checkpoint(checkpoint_file(folder()), {program_, inputs_, step, state.bytes()});
+}
+
+void Recorder::complete() {
+  run_file_.complete();
+  std::error_code ignored; // one that stays is refused or replaced by whoever comes next
+  std::filesystem::remove(checkpoint_file(folder()), ignored);
+}
+
+void Recorder::compare(const int step, const std::span<const double> values) const {
+  const auto at = static_cast<std::size_t>(step); // every step has an entry, from 0 on
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if (std::bit_cast<std::uint64_t>(recorded_[i].at(at)) != std::bit_cast<std::uint64_t>(values[i]))
+      throw NumericalError("the resumed run is not the one that was recorded: in step " + std::to_string(step) + ", '" +
+                           run_file_.schema().observables[i].name + "' is " + to_text(values[i]) + " and was " +
+                           to_text(recorded_[i][at]) +
+                           ". Another machine or library computes other bits: start again with --force");
 }
 
 void Recorder::record(const World& world, const int step, Timings& seconds) {
@@ -175,7 +274,10 @@ void Recorder::append_step(const World& world, const int step, const Timings& se
       }
       record.bodies.push_back(body_step);
     }
-  run_file_.append(record);
+  if (step > ends_)
+    run_file_.append(record);
+  else
+    compare(step, values);
 }
 
 void Recorder::append_surfaces(const World& world, const int step) {
@@ -185,9 +287,11 @@ void Recorder::append_surfaces(const World& world, const int step) {
     auto fields = at_vertices(body.surface, bodies_[b].fields);
     if (body.interior)
       fields.push_back({"colour", "1", 3, vertex_colours(body.interior->atlas, body.surface, render::Look().skin)});
-    bodies_[b].surface_file->append({step * world.time_step, body.positions, body.surface.rest, body.surface.triangles,
-                                     body.surface.labels,
-                                     changed ? output::Topology::changed : output::Topology::unchanged, fields});
+    const double time = step * world.time_step;
+    if (!bodies_[b].surface_ends || time > *bodies_[b].surface_ends)
+      bodies_[b].surface_file->append({time, body.positions, body.surface.rest, body.surface.triangles,
+                                       body.surface.labels,
+                                       changed ? output::Topology::changed : output::Topology::unchanged, fields});
     bodies_[b].surface_written = body.n_recuts;
   }
 }
@@ -195,7 +299,7 @@ void Recorder::append_surfaces(const World& world, const int step) {
 void Recorder::write_image(const World& world, const int step) {
   std::array<char, 32> name;
   std::snprintf(name.data(), name.size(), "%06d.png", step);
-  render::write_png(world.images->renderer->draw(drawing(world, step)), (folder_ / "frames" / name.data()).string());
+  render::write_png(world.images->renderer->draw(drawing(world, step)), (folder() / frames_folder / name.data()).string());
 }
 
 } // namespace kerf::scene

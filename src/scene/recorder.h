@@ -1,32 +1,55 @@
 #pragma once
 
-/// Writes what a run makes into its folder: run.h5, the surfaces for ParaView, the images.
+/// Writes what a run makes into its folder: run.h5, the surfaces for ParaView, the images, checkpoints.
+///
+/// A resumed run starts from its last checkpoint, whose steps all files hold already; they may hold more. Until the run
+/// comes to what they do not hold, it writes nothing into them, but compares: so what they hold is what an undisturbed
+/// run would have written, bit by bit, or the run ends with an error.
 
+#include "base/archive.h"
+#include "output/results_folder.h"
 #include "output/run_file.h"
 #include "output/surface_file.h"
 #include "scene/world.h"
 
+#include <chrono>
 #include <filesystem>
 
 namespace kerf::scene {
 
-/// Throws DataError when a run's folder can neither be written nor made, as far as can be told without making it: for
-/// whoever would know before a scene is composed.
-void require_writable(const std::filesystem::path& folder);
+/// What a run's file tells of where it comes from.
+struct Source {
+  output::RunInfo info;
+  std::string scene;               ///< standalone_text()
+  std::vector<std::string> inputs; ///< hashes_of_inputs()
+};
 
 class Recorder {
  public:
-  /// Makes the folder and the files that the world asks for. Throws DataError when it cannot.
-  Recorder(const std::filesystem::path& folder, const World& world, const output::RunInfo& info,
-           const std::string& scene_text);
+  /// Makes the folder and the files that the world asks for, or opens those that are to be gone on with. Throws as
+  /// output::ResultsFolder, and ParameterError where they are of another scene or other inputs.
+  Recorder(const std::filesystem::path& folder, const World& world, const Source& source, output::Earlier earlier);
+
+  /// Brings a world that has just been composed to its last checkpoint. Returns that step; -1 without one.
+  int resume(World& world);
 
   /// Records step `step` of the world, with the seconds of its stages. What recording itself takes (images, output)
   /// stands in `seconds` afterwards, in place of those stages, and so counts with the next step. The last step is
   /// always recorded in full.
   void record(const World& world, int step, Timings& seconds);
 
-  void complete() { run_file_.complete(); }
+  /// Writes a checkpoint after step `step`, which has been recorded, if one is due; its seconds count as output. By the
+  /// clock, none is due before all of them together would take 1 % of the time.
+  void keep(World& world, int step, Timings& seconds);
+  /// Writes one in any case.
+  void keep_now(World& world, int step);
+
+  /// Then there is nothing to resume any more.
+  void complete();
   void fail(const std::string& text, int step, double time) { run_file_.fail({text, step, time}); }
+  void interrupt(const std::string& text, int step, double time) { run_file_.interrupt({text, step, time}); }
+
+  const std::filesystem::path& folder() const { return folder_.path(); }
 
  private:
   struct BodyFiles {
@@ -34,16 +57,34 @@ class Recorder {
     std::size_t n_samples_written = 0;              ///< of the atlas of what is inside
     std::optional<output::SurfaceFile> surface_file;
     std::vector<output::Field> fields; ///< of the corners, at the step that is recorded
+    std::optional<double> surface_ends; ///< what the surface file held when it was opened [s]
+
+    void archive(Archive& a) { a(complex_written, surface_written, n_samples_written); }
   };
+  using Clock = std::chrono::steady_clock;
+
+  void open_surface_files(const World& world);
+  void compare(int step, std::span<const double> values) const;
 
   void append_step(const World& world, int step, const Timings& seconds, bool with_frames);
   void append_surfaces(const World& world, int step);
   void write_image(const World& world, int step);
 
-  std::filesystem::path folder_;
+  output::ResultsFolder folder_;
+  bool goes_on_; ///< with files that are there
   output::RunFile run_file_;
   std::vector<BodyFiles> bodies_;
+  std::string program_, inputs_;
+  std::int64_t ends_ = -1;                    ///< the last step that run.h5 held when it was opened
+  std::vector<std::vector<double>> recorded_; ///< the series that it held
+  Clock::time_point next_checkpoint_;
 };
+
+/// The file of checkpoints in a run's folder.
+std::filesystem::path checkpoint_file(const std::filesystem::path& folder);
+
+/// Whether a folder holds a run that has come to its end: nothing of it can be resumed.
+bool is_complete(const std::filesystem::path& folder);
 
 /// The stages that a run's seconds are divided into.
 const std::vector<std::string>& stages();

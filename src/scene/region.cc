@@ -52,7 +52,7 @@ void RegionParameters::describe(Parameters& p) {
     require_of_a_region();
   }
   if (is("mesh")) {
-    p.text("Region mesh", mesh, "Mesh: closed triangles (OFF, OBJ, STL, PLY), rest configuration.");
+    p.file("Region mesh", mesh, "Mesh: closed triangles (OFF, OBJ, STL, PLY), rest configuration.");
     require_of_a_region();
     p.number("Region mesh unit [m]", mesh_unit, positive, "Mesh: length of one unit of its file.");
   }

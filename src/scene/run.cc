@@ -1,6 +1,7 @@
 #include "scene/run.h"
 
 #include "base/error.h"
+#include "base/interrupt.h"
 #include "dynamics/sound_steps.h"
 #include "scene/initial_state.h"
 #include "scene/soundness.h"
@@ -68,6 +69,16 @@ void cut(World& world, const int step, Timings& seconds) {
   }
 }
 
+/// Between two steps: after a signal, what has been computed is kept for --resume.
+void end_if_asked(World& world, Recorder& recorder, const int step) {
+  const int signal = wish_to_end();
+  if (signal == 0)
+    return;
+  recorder.keep_now(world, step);
+  throw Interrupted(signal, " after step " + std::to_string(step) + " of " + std::to_string(world.n_steps) +
+                              "; --resume goes on from there. Results so far are in " + recorder.folder().string());
+}
+
 } // namespace
 
 void advance(World& world, const int step, Timings& seconds) {
@@ -76,7 +87,8 @@ void advance(World& world, const int step, Timings& seconds) {
   for (Body& body : world.bodies) {
     {
       const ScopedTimer timer(seconds, "visibility");
-      body.physics->catch_up(seen(body));
+      if (body.physics->catch_up(seen(body)))
+        make_loads(body);
     }
     const ScopedTimer timer(seconds, "solve");
     hold(body, world.forceps, step, (step - 1) * dt);
@@ -108,16 +120,24 @@ Timings run(World& world, Recorder& recorder, Progress& progress) {
   Timings seconds = world.setup_seconds, total;
   int step = 0;
   try {
-    recorder.record(world, 0, seconds);
-    for (step = 1; step <= world.n_steps; ++step) {
-      advance(world, step, seconds);
+    step = recorder.resume(world);
+    if (step < 0)
+      recorder.record(world, step = 0, seconds);
+    while (step < world.n_steps) {
+      end_if_asked(world, recorder, step);
+      advance(world, ++step, seconds);
       for (const auto& [stage, s] : seconds)
         total[stage] += s;
       recorder.record(world, step, seconds);
+      recorder.keep(world, step, seconds);
       progress.show(step, step * world.time_step);
     }
     for (const auto& [stage, s] : seconds)
       total[stage] += s;
+  } catch (const Interrupted& wish) {
+    progress.finish();
+    recorder.interrupt(wish.what(), step, step * world.time_step);
+    throw;
   } catch (const std::exception& error) {
     progress.finish();
     recorder.fail(error.what(), step, step * world.time_step);

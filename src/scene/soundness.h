@@ -19,6 +19,8 @@ struct Watch {
   std::vector<std::uint32_t> piece_of_copy;
   std::vector<double> rest_volumes; ///< of each piece [m^3]
   bool is_sound = true; ///< what was found last
+
+  void archive(Archive& a) { a(is_sound); } // the rest is found again
 };
 
 /// After a step of dt [s] from `before` [m], before the surface follows. Velocities may ring where nothing damps them:

@@ -33,11 +33,12 @@ class Scanner {
  public:
   Scanner(const std::string& file, WrittenSection& root) : file_(file), open_{&root} { root.origin = {file, 0}; }
 
-  /// One line without comment and continuation.
-  void take(const std::string& line, const int number) {
+  /// One line without comment and continuation, and where it stands.
+  void take(const std::string& line, const Lines& lines) {
     if (line.empty())
       return;
-    const Origin at{file_, number};
+    lines_ = lines;
+    const Origin at{file_, lines.first};
     const std::string word = line.substr(0, line.find_first_of(" \t=#"));
     const std::string rest = trimmed(line.substr(word.size()));
     if (word == "subsection")
@@ -76,7 +77,7 @@ class Scanner {
       throw syntax_error(at, path(heading), "",
                          "the section is written twice, first in line " + std::to_string(first->origin.line),
                          "Put its keys together, or give it another name");
-    open_.back()->sections.push_back({heading, at, {}, {}});
+    open_.back()->sections.push_back({heading, at, lines_, {}, {}});
     open_.push_back(&open_.back()->sections.back());
   }
 
@@ -87,6 +88,7 @@ class Scanner {
     if (open_.size() == 1)
       throw syntax_error(at, "", "end", "there is no open subsection to end",
                          "Remove this line, or an 'end' before it");
+    open_.back()->lines.last = lines_.last;
     open_.pop_back();
   }
 
@@ -103,10 +105,11 @@ class Scanner {
       throw syntax_error(at, path(name), value,
                          "the key is set twice, first in line " + std::to_string(first->origin.line),
                          "Keep one of them");
-    open_.back()->keys.push_back({name, value, at});
+    open_.back()->keys.push_back({name, value, at, lines_});
   }
 
   std::string file_;
+  Lines lines_; // of what is taken
   std::vector<WrittenSection*> open_; // from the root to the innermost open section
 };
 
@@ -134,7 +137,7 @@ void scan(const std::string& text, const std::string& file, WrittenSection& root
                          "Remove the backslash at its end");
     logical += line.substr(0, comment);
     if (!goes_on)
-      scanner.take(trimmed(logical), first_number);
+      scanner.take(trimmed(logical), {first_number, number});
   }
   if (goes_on)
     throw syntax_error({file, number}, "", physical, "the last line cannot be continued", "Remove the backslash");
@@ -179,13 +182,13 @@ void apply(const std::string& override_text, WrittenSection& root) {
   for (std::size_t i = 0; i + 1 < names.size(); ++i) {
     auto* next = section->find_section(names[i]);
     if (!next)
-      next = &section->sections.emplace_back(WrittenSection{names[i], at, {}, {}});
+      next = &section->sections.emplace_back(WrittenSection{names[i], at, {}, {}, {}});
     section = next;
   }
   if (auto* key = section->find_key(names.back()))
-    *key = {names.back(), value, at};
+    *key = {names.back(), value, at, key->lines};
   else
-    section->keys.push_back({names.back(), value, at});
+    section->keys.push_back({names.back(), value, at, {}});
 }
 
 } // namespace
@@ -201,20 +204,29 @@ WrittenKey* WrittenSection::find_key(const std::string& wanted) {
 }
 
 SceneText scan_scene_text(const std::string& text, const std::string& file, const std::vector<std::string>& overrides) {
-  SceneText scene{file, text, {}};
-  scan(text, file, scene.root);
+  const std::string mark = "\xef\xbb\xbf"; // some editors write it before UTF-8; it says nothing
+  SceneText scene{file, text.starts_with(mark) ? text.substr(mark.size()) : text, {}};
+  scan(scene.text, file, scene.root);
   for (const auto& override_text : overrides)
     apply(override_text, scene.root);
   return scene;
 }
 
 SceneText read_scene_text(const std::string& path, const std::vector<std::string>& overrides) {
+  constexpr std::size_t most_bytes = 1 << 26;
   std::ifstream in(path, std::ios::binary);
-  std::ostringstream text;
-  if (!in || !(text << in.rdbuf()))
-    throw DataError(Complaint{path, 0, "", "", "the scene cannot be read",
+  std::string text(1 << 16, '\0');
+  std::size_t n = 0;
+  while (in.read(text.data() + n, static_cast<std::streamsize>(text.size() - n)) && n < most_bytes) {
+    n = text.size();
+    text.resize(2 * n);
+  }
+  n += n < most_bytes ? static_cast<std::size_t>(in.gcount()) : 0;
+  if (n == 0 || n >= most_bytes)
+    throw DataError(Complaint{path, 0, "", "", n == 0 ? "the scene cannot be read" : "the scene is longer than 64 MB",
                               "Give the path of a .prm file that exists and is not empty"});
-  return scan_scene_text(text.str(), path, overrides);
+  text.resize(n);
+  return scan_scene_text(text, path, overrides);
 }
 
 } // namespace kerf::scene

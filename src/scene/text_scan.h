@@ -20,15 +20,22 @@ struct Origin {
   int line = 0;
 };
 
+/// Lines of the text, from the first to the last; 0, 0 for what only the command line says.
+struct Lines {
+  int first = 0, last = 0;
+};
+
 struct WrittenKey {
   std::string name;
   std::string value; ///< may be empty
   Origin origin;
+  Lines lines = {}; ///< in the text, overridden or not
 };
 
 struct WrittenSection {
   std::string heading; ///< "Body liver"; empty at the root
   Origin origin;
+  Lines lines = {}; ///< from `subsection` to `end`
   std::vector<WrittenKey> keys;
   std::vector<WrittenSection> sections;
 

@@ -38,6 +38,9 @@ int edit_distance(const std::string& a, const std::string& b) {
 }
 
 std::optional<std::string> nearest(const std::string& word, const std::vector<std::string>& names) {
+  constexpr std::size_t longest = 200; // letters; nobody misspells more
+  if (word.size() > longest)
+    return std::nullopt;
   // A third of the letters may be wrong; of short words at most two, and never all of them.
   const std::string bare = without_unit(word);
   const int length = static_cast<int>(bare.size());

@@ -7,7 +7,7 @@ using scene::Occurrence;
 
 void StudyParameters::describe(Parameters& p) {
   p.text("Title", title, "What is asked, in a sentence.");
-  p.text("Scene", scene,
+  p.file("Scene", scene,
          "The scene that all rows run, relative to this file. Its images and surface files are left out.");
   p.require_last();
   p.text("Body", body, "The body that is asked. Empty: the first of the scene.");

@@ -1,7 +1,9 @@
 #include "study/measure.h"
 
+#include "base/interrupt.h"
 #include "output/reader.h"
 #include "scene/compose.h"
+#include "scene/inputs.h"
 #include "scene/run.h"
 #include "study/memory.h"
 
@@ -104,12 +106,11 @@ std::string in_one_line(std::string text) {
 }
 
 void run_world(scene::World& world, const std::filesystem::path& folder, const output::RunInfo& info,
-               const PlannedRow& planned) {
+               const PlannedRow& planned, const output::Earlier earlier) {
   world.output.frames_every = std::max(world.n_steps, 1);
-  std::string text = planned.scene.text;
-  for (const std::string& change : planned.overrides)
-    text += "# changed: " + change + "\n";
-  scene::Recorder recorder(folder, world, info, text);
+  const scene::Source source{info, scene::standalone_text(planned.scene, scene::grammar()),
+                             scene::hashes_of_inputs(planned.scene, scene::grammar())};
+  scene::Recorder recorder(folder, world, source, earlier);
   scene::Progress progress(world.n_steps, world.n_steps * world.time_step, scene::ProgressStyle::silent, stdout);
   scene::run(world, recorder, progress);
 }
@@ -143,7 +144,7 @@ double take(const std::vector<double>& series, const std::string& how, const dou
 }
 
 output::StudyRow measure(const Plan& plan, const PlannedRow& planned, const std::filesystem::path& folder,
-                         const output::RunInfo& info) {
+                         const output::RunInfo& info, const output::Earlier earlier) {
   output::StudyRow row;
   row.name = planned.name;
   row.family = planned.family;
@@ -162,13 +163,15 @@ output::StudyRow measure(const Plan& plan, const PlannedRow& planned, const std:
   const auto is_iterations = [](const scene::Observable& series) { return series.name == iterations; };
   if (std::none_of(body.observables.begin(), body.observables.end(), is_iterations))
     body.observables.push_back(*scene::find_observable(iterations));
-  scene::require_writable(folder);
+  output::require_claimable(folder, earlier);
   row.dt = world->time_step;
   row.outcome = "completed";
   const std::clock_t cpu_start = std::clock();
   try {
-    run_world(*world, folder, info, planned);
+    run_world(*world, folder, info, planned, earlier);
   } catch (const DataError&) {
+    throw;
+  } catch (const Interrupted&) {
     throw;
   } catch (const std::exception& error) {
     row.outcome = "failed: " + in_one_line(error.what());

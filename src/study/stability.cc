@@ -1,10 +1,11 @@
 #include "study/stability.h"
 
 #include "base/error.h"
+#include "base/interrupt.h"
 #include "material/elastic.h"
+#include "output/checkpoint_file.h"
 #include "scene/compose.h"
 #include "scene/run.h"
-#include "study/study.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,6 +16,7 @@ namespace kerf::study {
 
 namespace {
 
+constexpr char file_name[] = "stability.h5";
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
 /// What was seen of a run.
@@ -234,20 +236,46 @@ output::StabilityRow watch(const StabilityCase& one, const int n_steps) {
   return row;
 }
 
+namespace {
+
+/// The rows of an earlier run of the same study, to be taken as they are.
+std::vector<output::StabilityRow> earlier_rows(const StabilityPlan& plan, const std::filesystem::path& file) {
+  std::error_code error;
+  if (!std::filesystem::exists(file, error))
+    return {};
+  const output::StabilityTable table = output::read_stability_file(file);
+  if (table.text != plan.text || table.rows.size() > plan.cases.size())
+    throw ParameterError(Complaint{.file = file.string(),
+                                   .rule = "cannot be resumed: it is of another study",
+                                   .remedy = "Give the study as it was, or start again with --force"});
+  return table.rows;
+}
+
+} // namespace
+
 output::StabilityTable run_stability_study(const StabilityPlan& plan, const std::filesystem::path& folder,
-                                           const output::RunInfo& info,
+                                           const output::RunInfo& info, const output::Earlier earlier,
                                            const std::function<void(const output::StabilityRow&)>& done) {
   constexpr std::size_t every = 20; // rows between two times that the file is written
-  make_folder(folder);
+  const output::ResultsFolder claimed(folder, earlier, {file_name, output::name_beside(file_name).string()});
   output::StabilityTable table{plan.parameters.title, plan.text, {}, {}};
-  for (const StabilityCase& one : plan.cases) {
-    table.rows.push_back(watch(one, plan.parameters.n_steps));
+  const auto write = [&](const output::Outcome outcome) {
+    table.outcome = outcome;
+    output::write_stability_file(folder / file_name, table, info);
+  };
+  if (earlier == output::Earlier::resume)
+    table.rows = earlier_rows(plan, folder / file_name);
+  for (std::size_t r = table.rows.size(); r < plan.cases.size(); ++r) {
+    if (const int signal = wish_to_end(); signal != 0) {
+      write(output::Outcome::interrupted);
+      throw Interrupted(signal, " after row " + std::to_string(r) + " of " + std::to_string(plan.cases.size()));
+    }
+    table.rows.push_back(watch(plan.cases[r], plan.parameters.n_steps));
     if (table.rows.size() % every == 0)
-      output::write_stability_file(folder / "stability.h5", table, info);
+      write(output::Outcome::running);
     done(table.rows.back());
   }
-  table.outcome = output::Outcome::completed;
-  output::write_stability_file(folder / "stability.h5", table, info);
+  write(output::Outcome::completed);
   return table;
 }
 

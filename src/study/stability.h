@@ -13,6 +13,7 @@
 ///   damped out  less than 1e-3 of the energy is left; of equilibria this is what is asked, and they are stable
 ///   stable      none of these
 
+#include "output/results_folder.h"
 #include "output/stability_file.h"
 #include "study/stability_plan.h"
 
@@ -24,9 +25,10 @@ namespace kerf::study {
 /// One row. Nothing that a run may throw gets out.
 output::StabilityRow watch(const StabilityCase& one, int n_steps);
 
-/// Runs all rows; FOLDER/stability.h5 holds those so far; `done` is told each row.
+/// Runs all rows; FOLDER/stability.h5 holds those so far; `done` is told each row. Those that it holds are
+/// not run again where the study is resumed.
 output::StabilityTable run_stability_study(const StabilityPlan& plan, const std::filesystem::path& folder,
-                                           const output::RunInfo& info,
+                                           const output::RunInfo& info, output::Earlier earlier,
                                            const std::function<void(const output::StabilityRow&)>& done);
 
 /// How many rows of each variant had which outcome, by sweep, and the rows that did not end well with their reasons.

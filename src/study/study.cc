@@ -1,5 +1,7 @@
 #include "study/study.h"
 
+#include "base/interrupt.h"
+#include "output/checkpoint_file.h"
 #include "study/measure.h"
 
 #include <algorithm>
@@ -10,6 +12,8 @@
 namespace kerf::study {
 
 namespace {
+
+constexpr char study_name[] = "study.h5";
 
 std::string in_words(const StudyParameters& p) {
   return p.take + " of '" + p.answer + "'" + (p.minus.empty() ? "" : " minus '" + p.minus + "'");
@@ -22,16 +26,22 @@ std::string folder_name(std::string name) {
   return name;
 }
 
-} // namespace
-
-void make_folder(const std::filesystem::path& folder) {
+/// The rows of an earlier run of the same study, to be taken as they are.
+std::vector<output::StudyRow> earlier_rows(const Plan& plan, const std::filesystem::path& file) {
   std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error)
-    throw DataError(Complaint{.file = folder.string(),
-                              .rule = "the results folder cannot be made: " + error.message(),
-                              .remedy = "Choose another folder with --output, or change its permissions"});
+  if (!std::filesystem::exists(file, error))
+    return {};
+  const output::StudyTable table = output::read_study_file(file);
+  const auto is_planned = [&](const output::StudyRow& row, const PlannedRow& planned) { return row.name == planned.name; };
+  if (table.text != plan.text || table.rows.size() > plan.rows.size() ||
+      !std::equal(table.rows.begin(), table.rows.end(), plan.rows.begin(), is_planned))
+    throw ParameterError(Complaint{.file = file.string(),
+                                   .rule = "cannot be resumed: it is of another study",
+                                   .remedy = "Give the study as it was, or start again with --force"});
+  return table.rows;
 }
+
+} // namespace
 
 void tell_orders(std::vector<output::StudyRow>& rows) {
   std::map<std::string, const output::StudyRow*> before;
@@ -46,19 +56,33 @@ void tell_orders(std::vector<output::StudyRow>& rows) {
 }
 
 output::StudyTable run_study(const Plan& plan, const std::filesystem::path& folder, const output::RunInfo& info,
+                             const output::Earlier earlier,
                              const std::function<void(const output::StudyRow&)>& done) {
-  make_folder(folder);
+  const output::ResultsFolder claimed(folder, earlier, {study_name, output::name_beside(study_name).string()});
+  const auto write = [&](output::StudyTable& table, const output::Outcome outcome) {
+    table.outcome = outcome;
+    output::write_study_file(folder / study_name, table, info);
+  };
   output::StudyTable table{plan.parameters.title, plan.text, plan.parameters.unit, in_words(plan.parameters), {}, {}};
-  for (const PlannedRow& row : plan.rows) {
-    table.rows.push_back(measure(plan, row, folder / "rows" / folder_name(row.name), info));
+  if (earlier == output::Earlier::resume)
+    table.rows = earlier_rows(plan, folder / study_name);
+  for (const output::StudyRow& row : table.rows)
+    done(row);
+  for (std::size_t r = table.rows.size(); r < plan.rows.size(); ++r) {
+    const PlannedRow& row = plan.rows[r];
+    try {
+      table.rows.push_back(measure(plan, row, folder / "rows" / folder_name(row.name), info, earlier));
+    } catch (const Interrupted&) {
+      write(table, output::Outcome::interrupted);
+      throw;
+    }
     tell_orders(table.rows);
-    output::write_study_file(folder / "study.h5", table, info);
+    write(table, output::Outcome::running);
     done(table.rows.back());
   }
   const bool all_failed = std::none_of(table.rows.begin(), table.rows.end(),
                                        [](const output::StudyRow& row) { return row.outcome == "completed"; });
-  table.outcome = all_failed ? output::Outcome::failed : output::Outcome::completed;
-  output::write_study_file(folder / "study.h5", table, info);
+  write(table, all_failed ? output::Outcome::failed : output::Outcome::completed);
   if (all_failed)
     throw NumericalError("every row of the study has failed. The first, " + table.rows.front().name + ", " +
                          table.rows.front().outcome);

@@ -37,6 +37,8 @@ struct Placement {
 /// where their planes ask for them.
 struct PlacementCounts {
   std::size_t n_placed = 0, n_clamped = 0;
+
+  void archive(Archive& a) { a(n_placed, n_clamped); }
 };
 
 /// Places the vertices in all faces and cells that are newly cut, or whose skin is newly parted beside a cut; then all

@@ -32,6 +32,7 @@ struct Surface {
 
   /// Memory of all tables [B].
   std::size_t n_bytes() const;
+  void archive(Archive& a) { a(rest, triangles, labels, copies, weights); }
 };
 
 /// Which vertex is where: what an update needs to know of the surface beside the surface.
@@ -49,6 +50,10 @@ struct SurfaceIndex {
   std::unordered_map<std::uint64_t, std::uint32_t> first_of_wall;
 
   std::size_t n_bytes() const;
+  void archive(Archive& a) {
+    a(first_face_vertex, face_vertices, first_sheet_vertex, edge_vertices, first_triangle, centres, skin_centres);
+    a(first_of_wall);
+  }
 };
 
 Surface build_surface(const grid::Solid& solid);

@@ -7,6 +7,7 @@
 /// ever appended. A triangle is filled when it appears, and again only if its corners have moved in the rest
 /// configuration or its label has changed.
 
+#include "base/archive.h"
 #include "texture/paint.h"
 #include "texture/skin.h"
 
@@ -40,6 +41,8 @@ class Atlas {
 
   /// Fills what is new. Returns the number of triangles filled. The cost beside them: one look at each triangle.
   std::size_t fill(const SurfaceView& surface, const Paint& paint);
+
+  void archive(Archive& a) { a(first_, parts_, colours_, slopes_, filled_, labels_); }
 
   /// Triangles whose samples are farther apart than asked for.
   std::size_t n_coarse() const;

@@ -14,6 +14,8 @@ namespace kerf::visibility {
 struct Work {
   PairId pair;
   std::vector<std::uint32_t> faces; ///< in the order in which they came
+
+  void archive(Archive& a) { a(pair, faces); }
 };
 
 using Sights = Table<PairId, pba::Sight>;
@@ -35,6 +37,9 @@ class Criterion {
   /// threads.
   virtual void look(const CutFaces& cut, const Table<PairId, Pair>& pairs, std::span<const Work> works,
                     Sights& sights) = 0;
+
+  /// What it remembers of pairs beside their sights.
+  virtual void archive(Archive&) {}
 };
 
 /// What a scene says about weights.

@@ -34,6 +34,15 @@ void CutFaces::add(const std::span<const Face> faces) {
   index(begin, end);
 }
 
+void CutFaces::archive(Archive& a) {
+  a(faces_);
+  if (!a.reads())
+    return;
+  ranges_.clear();
+  if (!faces_.empty())
+    index(0, static_cast<std::uint32_t>(faces_.size()));
+}
+
 void CutFaces::index(const std::uint32_t begin, const std::uint32_t end) {
   std::vector<Box> boxes;
   boxes.reserve(end - begin);

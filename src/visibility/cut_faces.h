@@ -17,6 +17,7 @@ class CutFaces {
   /// Throws NumericalError if a coordinate is not finite.
   void add(std::span<const Face> faces);
 
+  void archive(Archive& a);
   const std::vector<Face>& all() const { return faces_; }
 
   /// Calls f(index) for each face whose box overlaps `box`, in no order that means anything.

@@ -22,6 +22,8 @@ class ExtendedVisibility : public Criterion {
   void look(const CutFaces& cut, const Table<PairId, Pair>& pairs, std::span<const Work> works,
             Sights& sights) override;
 
+  void archive(Archive& a) override { a(masks_); }
+
   /// The occluded texels of a pair: `resolution` words.
   std::span<const std::uint32_t> mask(PairId pair) const;
   const MaskShape& shape() const { return shape_; }

@@ -40,6 +40,13 @@ class PairSights {
   const Table<PairId, Pair>& pairs() const { return pairs_; }
   const CutFaces& cut() const { return cut_; }
   std::size_t n_waiting() const { return queue_.size(); }
+  /// Into one with a criterion of the same kind.
+  void archive(Archive& a) {
+    a.name("sights");
+    a(*criterion_, pairs_, sights_, cut_, queue_, n_taken_, place_);
+    if (a.reads())
+      reaches_.reset();
+  }
 
  private:
   void wait_for(PairId pair, std::span<const std::uint32_t> faces);

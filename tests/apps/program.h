@@ -73,10 +73,10 @@ class Program : public testing::Test {
 
   void write(const std::string& name, const std::string& text) const { std::ofstream(folder / name) << text; }
 
-  /// Runs a scene into the folder "out".
+  /// Runs a scene into the folder "out", in place of what an earlier run has left there.
   Result run(const std::string& scene, Words more = {}, const std::string& before = ":") const {
     write("scene.prm", scene);
-    const Words start = {"run", "scene.prm", "--output", "out"};
+    const Words start = {"run", "scene.prm", "--output", "out", "--force"};
     more.insert(more.begin(), start.begin(), start.end());
     return kerf(more, before);
   }

@@ -27,10 +27,11 @@ TEST_F(ProgramTest, RefusesArgumentsThatMeanNothing) {
   write("scene.prm", cube_scene());
   expect_error(kerf({"run"}), 1, {"a scene file must be given", "params/liver.prm"});
   expect_error(kerf({"run", "scene.prm", "--bogus"}), 1,
-               {"'--bogus'", "is no option", "--set, --output and --threads"});
+               {"'--bogus'", "is no option", "--set, --output, --threads, --force, --resume, and --jobs of run"});
   expect_error(kerf({"check", "scene.prm", "--output", "out"}), 1, {"'--output'", "takes no such option"});
   expect_error(kerf({"run", "scene.prm", "--output"}), 1, {"--output", "needs a value"});
-  expect_error(kerf({"run", "scene.prm", "other.prm"}), 1, {"'other.prm'", "only one scene"});
+  expect_error(kerf({"check", "scene.prm", "other.prm"}), 1, {"'other.prm'", "only one scene"});
+  expect_error(kerf({"run", "scene.prm", "folder/scene.prm"}), 1, {"'folder/scene.prm'", "as another scene does"});
   expect_error(kerf({"params", "scene.prm"}), 1, {"'scene.prm'", "no arguments"});
   for (const std::string n : {"0", "-1", "2.5", "two", "100000", ""})
     expect_error(kerf({"run", "scene.prm", "--threads", n}), 1, {"--threads", n, "whole number from 1 to 1024"});
@@ -82,13 +83,15 @@ TEST_F(ProgramTest, StoresWhatItRanAndComposed) {
   const Result result = run(scene, {"--threads", "1", "--set", "Time/End time [s]=0.02"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
   const output::Reader reader(folder / "out/run.h5");
-  EXPECT_EQ(reader.scene(), scene + "# --set \"Time/End time [s]=0.02\"\n");
+  EXPECT_EQ(reader.scene(), replaced(scene, "set End time [s]  = 0.05", "set End time [s] = 0.02 # --set"));
+  ASSERT_EQ(reader.inputs().size(), 1u);
+  EXPECT_TRUE(std::regex_match(reader.inputs()[0], std::regex("[0-9a-f]{64}  /.*/cube\\.off"))) << reader.inputs()[0];
   EXPECT_EQ(reader.outcome(), output::Outcome::completed);
   EXPECT_EQ(reader.n_steps(), 3u);
   for (const std::string& line : reader.composition())
     EXPECT_NE(result.out.find(line + "\n"), std::string::npos) << line;
   const output::RunInfo info = reader.info();
-  EXPECT_EQ(info.command_line, "kerf run scene.prm --output out --threads 1 --set \"Time/End time [s]=0.02\"");
+  EXPECT_EQ(info.command_line, "kerf run scene.prm --output out --force --threads 1 --set \"Time/End time [s]=0.02\"");
   EXPECT_EQ(info.n_threads, 1);
   EXPECT_TRUE(std::regex_match(info.version, std::regex(R"(\d+\.\d+\.\d+)"))) << info.version;
   EXPECT_TRUE(std::regex_match(info.started, std::regex(R"(\d{4}-\d\d-\d\dT\d\d:\d\d:\d\dZ)"))) << info.started;

@@ -29,7 +29,7 @@ class StudyProgram : public Program {
                          "subsection Gravity\nend\n"
                          "subsection Observables\n  set Names = momentum z\nend\n");
     write("study.prm", text);
-    Words words = {"study", "study.prm", "--output", "out"};
+    Words words = {"study", "study.prm", "--output", "out", "--force"};
     words.insert(words.end(), more.begin(), more.end());
     return kerf(words);
   }

@@ -125,7 +125,7 @@ TEST(ReadMesh, RefusesWhatItCannotRead) {
   EXPECT_NE(complaint([] { read_mesh("no/such/file.off", 1); }).find("does not exist"), std::string::npos);
   expect_refused("mesh.txt", "OFF\n", ".off, .obj, .stl or .ply");
   expect_refused("garbage.off", "this is not a mesh\n", "cannot be read");
-  expect_refused("cut.off", off(unit_box()).substr(0, 60), "read");
+  expect_refused("cut.off", off(unit_box()).substr(0, 60), "do not fit into the file's 60 bytes");
   expect_refused("empty.off", "OFF\n0 0 0\n", "empty");
   expect_refused("points.off", "OFF\n3 0 0\n0 0 0\n1 0 0\n0 1 0\n", "empty");
   expect_refused("index.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 7\n", "cannot be read");

@@ -44,7 +44,8 @@ TEST(InitialState, AThrownBodyFliesAsItShould) {
       ASSERT_LT((body.state.x[i] - rest[i] - Vec3(0.1, 0.2, 0.3)).norm(), 1e-15) << backend;
     const output::TemporaryFolder folder;
     run_silently(world, folder / "out");
-    EXPECT_LT((centre(body) - start - Vec3(0.05, -0.1, 0.15 - 9.81 * 1e-4 * 15)).norm(), 1e-9) << backend;
+    EXPECT_LT((centre(body) - start - Vec3(0.05, -0.1, 0.15 - 9.81 * 1e-4 * 15)).norm(), backend == "pba" ? 1e-6 : 1e-9)
+      << backend; // phyxels stretch a little as they start: their sums of weights are not exact
   }
 }
 
@@ -54,7 +55,7 @@ TEST(InitialState, AVelocityFieldSpinsABody) {
   Body& body = world.bodies[0];
   const double mass = value(body, "mass");
   const double momentum = dynamics::angular_momentum(body.physics->model(), body.state, Vec3::Zero())[2];
-  EXPECT_NEAR(momentum / (3 * mass * 0.2 * 0.2 / 6), 1, 0.1); // lumped: of order h^2 more
+  EXPECT_NEAR(momentum / (3 * mass * 0.2 * 0.2 / 6), 1 + 2 * std::pow(0.05 / 0.2, 2), 1e-9); // masses are lumped
 }
 
 /// What is held stays, and a turned body starts turned.

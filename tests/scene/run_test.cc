@@ -82,7 +82,8 @@ TEST(Run, AFramesComplexAndSurfaceBelongToItsCorners) {
 
 TEST(Run, ClearsImagesOfAnEarlierRun) {
   const output::TemporaryFolder folder;
-  std::filesystem::create_directories(folder / "out/frames");
+  World earlier = world_of(cube_scene() + all_outputs());
+  run_silently(earlier, folder / "out");
   std::ofstream(folder / "out/frames/000077.png") << "old";
   std::ofstream(folder / "out/frames/notes.txt") << "mine";
   World world = world_of(cube_scene() + all_outputs());
@@ -189,16 +190,16 @@ TEST(Run, NeedsAFolderThatCanBeMade) {
   std::ofstream(folder / "file") << "no folder";
   World world = world_of(cube_scene());
   EXPECT_THROW(run_silently(world, folder / "file/out"), DataError);
-  EXPECT_THROW(require_writable(folder / "file/out"), DataError);
-  EXPECT_THROW(require_writable(folder / "file"), DataError);
+  EXPECT_THROW(output::require_claimable(folder / "file/out", output::Earlier::refuse), DataError);
+  EXPECT_THROW(output::require_claimable(folder / "file", output::Earlier::refuse), DataError);
   std::filesystem::create_directory(folder / "locked");
   std::filesystem::permissions(folder / "locked", std::filesystem::perms::owner_read);
   if (geteuid() != 0) { // root may write everywhere
-    EXPECT_THROW(require_writable(folder / "locked/out"), DataError);
+    EXPECT_THROW(output::require_claimable(folder / "locked/out", output::Earlier::refuse), DataError);
   }
   std::filesystem::permissions(folder / "locked", std::filesystem::perms::owner_all);
-  EXPECT_NO_THROW(require_writable(folder / "a/b/c"));
-  EXPECT_NO_THROW(require_writable(folder / "."));
+  EXPECT_NO_THROW(output::require_claimable(folder / "a/b/c", output::Earlier::refuse));
+  EXPECT_NO_THROW(output::require_claimable(folder / ".", output::Earlier::refuse));
   EXPECT_FALSE(std::filesystem::exists(folder / "a")) << "asking makes nothing";
 }
 

@@ -19,7 +19,7 @@ inline World world_of(const std::string& text, const Overrides& overrides = {}) 
 
 /// Runs a world into a folder; returns the seconds of its stages.
 inline Timings run_silently(World& world, const std::filesystem::path& folder) {
-  Recorder recorder(folder, world, output::sample_info(), "the scene");
+  Recorder recorder(folder, world, {output::sample_info(), "the scene", {}}, output::Earlier::replace);
   Progress progress(world.n_steps, world.n_steps * world.time_step, ProgressStyle::silent, stdout);
   return run(world, recorder, progress);
 }

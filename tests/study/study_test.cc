@@ -97,7 +97,7 @@ TEST(Study, WritesWhatItReturns) {
   const output::Reader run(study / "out/rows/one+a-1/run.h5");
   EXPECT_EQ(run.outcome(), output::Outcome::completed);
   EXPECT_EQ(run.observable("cube momentum z").back(), a.value);
-  EXPECT_NE(run.scene().find("# changed: Time/End time [s]=0.02"), std::string::npos);
+  EXPECT_NE(run.scene().find("set End time [s] = 0.02 # --set"), std::string::npos);
   const output::Reader file(study / "out/study.h5");
   EXPECT_EQ(file.attribute("/study/rows/value", "unit"), "kg m/s");
   EXPECT_EQ(file.attribute("/study/rows/stepping_time", "unit"), "s");

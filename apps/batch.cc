@@ -1,0 +1,170 @@
+#include "batch.h"
+
+#include "base/interrupt.h"
+#include "base/parallel.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <map>
+#include <set>
+#include <thread>
+#include <utility>
+
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace kerf::apps {
+
+namespace {
+
+struct Job {
+  std::string scene;
+  std::filesystem::path output;
+  std::FILE* said = nullptr; ///< what it writes, out of the way
+};
+
+/// One folder each, below --output or where a run alone would write.
+std::vector<Job> jobs_of(const SceneArguments& arguments) {
+  std::vector<Job> jobs;
+  std::set<std::filesystem::path> folders;
+  for (const std::string& scene : arguments.scenes) {
+    jobs.push_back({scene, default_output(scene, arguments.output)});
+    if (!folders.insert(jobs.back().output).second)
+      throw ParameterError(Complaint{.value = scene,
+                                     .rule = "would write into " + jobs.back().output.string() + " as another scene does",
+                                     .remedy = "Give the files different names, or run them apart"});
+  }
+  return jobs;
+}
+
+std::vector<std::string> command_of(const Job& job, const SceneArguments& arguments, const int n_threads) {
+  std::vector<std::string> words = {"kerf", "run", job.scene, "--output", job.output.string(), "--threads",
+                                    std::to_string(n_threads)};
+  for (const std::string& change : arguments.overrides) {
+    words.emplace_back("--set");
+    words.push_back(change);
+  }
+  if (arguments.earlier != output::Earlier::refuse)
+    words.emplace_back(arguments.earlier == output::Earlier::replace ? "--force" : "--resume");
+  return words;
+}
+
+/// Starts this program again, with all it says going into job.said. It ends when we do, however we end.
+pid_t start(Job& job, const std::vector<std::string>& words) {
+  std::vector<char*> pointers;
+  for (const std::string& word : words)
+    pointers.push_back(const_cast<char*>(word.c_str()));
+  pointers.push_back(nullptr);
+  job.said = std::tmpfile();
+  const int said = job.said ? fileno(job.said) : STDERR_FILENO;
+  const pid_t id = fork();
+  if (id == 0) {
+    prctl(PR_SET_PDEATHSIG, SIGTERM);
+    dup2(said, STDOUT_FILENO);
+    dup2(said, STDERR_FILENO);
+    execv("/proc/self/exe", pointers.data());
+    std::_Exit(127);
+  }
+  if (id < 0)
+    throw DataError("no process can be started for " + job.scene);
+  return id;
+}
+
+/// The last line that a job has written.
+std::string last_line(const Job& job) {
+  std::string last, line;
+  if (job.said)
+    std::rewind(job.said);
+  for (int c = 0; job.said && (c = std::fgetc(job.said)) != EOF;) {
+    if (c == '\n') {
+      last = line;
+      line.clear();
+    } else {
+      line += static_cast<char>(c);
+    }
+  }
+  return line.empty() ? last : line;
+}
+
+/// How a process ended, as a shell would say it.
+int exit_code_of(const int status) { return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status); }
+
+std::string verdict(const Job& job, const int code) {
+  return job.scene + ": " + (code == 0 ? "completed, " : "exit code " + std::to_string(code) + ": ") + last_line(job);
+}
+
+class Batch {
+ public:
+  Batch(const SceneArguments& arguments, std::vector<Job> jobs)
+    : arguments_(arguments),
+      jobs_(std::move(jobs)),
+      n_threads_(arguments.n_threads > 0 ? arguments.n_threads : std::max(1, n_threads() / arguments.n_jobs)) {}
+
+  int run() {
+    while (!running_.empty() || (next_ < jobs_.size() && wish_to_end() == 0)) {
+      while (next_ < jobs_.size() && running_.size() < static_cast<std::size_t>(arguments_.n_jobs) && wish_to_end() == 0)
+        begin();
+      if (wish_to_end() != 0)
+        pass_on();
+      if (!take_one_that_ended())
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+    for (; next_ < jobs_.size(); ++next_)
+      failed_.push_back(jobs_[next_].scene + ": not begun");
+    if (!failed_.empty())
+      std::fprintf(stderr, "kerf: %zu of %zu scenes have failed:\n", failed_.size(), jobs_.size());
+    for (const std::string& line : failed_)
+      std::fprintf(stderr, "  %s\n", line.c_str());
+    return wish_to_end() != 0 ? 128 + wish_to_end() : worst_;
+  }
+
+ private:
+  void begin() {
+    Job& job = jobs_[next_++];
+    running_[start(job, command_of(job, arguments_, n_threads_))] = &job;
+  }
+
+  void pass_on() {
+    if (!std::exchange(passed_on_, true))
+      for (const auto& [id, job] : running_)
+        ::kill(id, wish_to_end());
+  }
+
+  bool take_one_that_ended() {
+    for (const auto& [id, job] : running_) {
+      int status = 0;
+      if (waitpid(id, &status, WNOHANG) != id)
+        continue;
+      const int code = exit_code_of(status);
+      const std::string line = verdict(*job, code);
+      std::printf("%s\n", line.c_str());
+      std::fflush(stdout);
+      if (code != 0)
+        failed_.push_back(line);
+      worst_ = std::max(worst_, code);
+      if (job->said)
+        std::fclose(job->said);
+      running_.erase(id);
+      return true;
+    }
+    return false;
+  }
+
+  const SceneArguments& arguments_;
+  std::vector<Job> jobs_;
+  int n_threads_, worst_ = 0;
+  std::size_t next_ = 0;
+  std::map<pid_t, Job*> running_;
+  std::vector<std::string> failed_;
+  bool passed_on_ = false;
+};
+
+} // namespace
+
+int run_batch(const SceneArguments& arguments) { return Batch(arguments, jobs_of(arguments)).run(); }
+
+} // namespace kerf::apps

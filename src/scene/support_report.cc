@@ -1,0 +1,95 @@
+#include "scene/support_report.h"
+
+#include "base/union_find.h"
+#include "scene/composing.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+namespace kerf::scene {
+
+namespace {
+
+std::string place(const Vec3& p) { return line("(", p[0], ", ", p[1], ", ", p[2], ")"); }
+
+/// Held corners hang together where a copy has them both. Phyxels are not asked.
+std::size_t n_pieces(const Body& body, const std::vector<std::uint32_t>& held) {
+  std::vector<std::uint8_t> is_held(body.physics->rest().size(), 0);
+  for (const auto i : held)
+    is_held[i] = 1;
+  UnionFind sets(is_held.size());
+  for (const grid::Copy& copy : body.solid.complex.copies) {
+    std::uint32_t first = grid::CornerId::no_value;
+    for (const grid::CornerId corner : copy.corners)
+      if (is_held[corner.value] != 0) {
+        first = first == grid::CornerId::no_value ? corner.value : first;
+        sets.unite(first, corner.value);
+      }
+  }
+  std::set<std::uint32_t> roots;
+  for (const auto i : held)
+    roots.insert(sets.root(i));
+  return roots.size();
+}
+
+std::string describe(const Body& body, const std::string& name, const std::vector<std::uint32_t>& held) {
+  const bool of_corners = body.physics->particles_are_corners();
+  const std::string what = of_corners ? " corners" : " phyxels", start = line("body ", body.name, ": support ", name);
+  if (held.empty())
+    return start + " holds no" + what;
+  Vec3 lower = Vec3::Constant(1e300), upper = -lower;
+  for (const auto i : held) {
+    lower = lower.cwiseMin(body.physics->rest()[i]);
+    upper = upper.cwiseMax(body.physics->rest()[i]);
+  }
+  const std::size_t n = of_corners ? n_pieces(body, held) : 0;
+  return line(start, " holds ", held.size(), what, " from ", place(lower), " to ", place(upper), " m") +
+         (n > 0 ? line(", in ", n, n == 1 ? " piece" : " pieces") : "");
+}
+
+/// Which faces of a box lie on a layer of nodes of the body.
+std::vector<std::string> faces_on_layers(const Body& body, const Box& box) {
+  constexpr double near = 1e-6;
+  const grid::Lattice& lattice = body.solid.grid.lattice();
+  const Points& rest = body.physics->rest();
+  std::vector<std::string> faces;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto [least, most] =
+      std::minmax_element(rest.begin(), rest.end(), [&](const Vec3& a, const Vec3& b) { return a[axis] < b[axis]; });
+    for (const double at : {box.lower[axis], box.upper[axis]}) {
+      const double layers = (at - lattice.origin[axis]) / lattice.h;
+      const bool is_in_body = at > (*least)[axis] - near * lattice.h && at < (*most)[axis] + near * lattice.h;
+      if (is_in_body && std::abs(layers - std::round(layers)) < near)
+        faces.push_back(line(std::string(1, "xyz"[axis]), " = ", at, " m"));
+    }
+  }
+  return faces;
+}
+
+} // namespace
+
+std::vector<std::string> describe_supports(const Body& body) {
+  std::vector<std::string> lines, warnings;
+  std::vector<std::uint8_t> held(body.physics->rest().size(), 0);
+  for (std::size_t s = 0; s < body.regions.size(); ++s) {
+    const SupportRegion& region = body.regions[s];
+    const auto& corners = body.loads.supports[s].corners;
+    lines.push_back(describe(body, region.name, corners));
+    for (const auto i : corners)
+      held[i] = 1;
+    const Box* const box = std::get_if<Box>(&region.region);
+    if (box && body.physics->particles_are_corners())
+      for (const std::string& face : faces_on_layers(body, *box))
+        warnings.push_back(line("warning: body ", body.name, ": the face ", face, " of support ", region.name,
+                                " lies on a layer of nodes, and round-off of the mesh decides whether it holds them. Move it by "
+                                "a part of a cube"));
+  }
+  if (!body.physics->particles_are_corners() && std::all_of(held.begin(), held.end(), [](const auto h) { return h != 0; }))
+    warnings.push_back(line("warning: body ", body.name, ": its supports hold all of its ", held.size(),
+                            " phyxels, so nothing of it moves. Use more phyxels, or smaller regions"));
+  lines.insert(lines.end(), warnings.begin(), warnings.end());
+  return lines;
+}
+
+} // namespace kerf::scene

@@ -1,0 +1,18 @@
+#pragma once
+
+/// What supports hold, said before a run begins: a support that holds too much, nothing, or by chance is the commonest reason
+/// for a wrong answer, and the run does not show it.
+
+#include "scene/body.h"
+
+#include <string>
+#include <vector>
+
+namespace kerf::scene {
+
+/// A line for each support that holds corners or phyxels: how many, from where to where, and in how many pieces they hang
+/// together; then warnings. Of a box whose face lies within 1e-6 h of a layer of nodes: round-off of the mesh decides
+/// which side these are on. Of supports that together hold every phyxel.
+std::vector<std::string> describe_supports(const Body& body);
+
+} // namespace kerf::scene

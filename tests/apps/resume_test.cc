@@ -1,0 +1,262 @@
+// Runs that end early, by signals at any moment, and go on: to the bits of one that nobody disturbed. Folders in use.
+
+#include "tests/apps/program.h"
+#include "output/h5_array.h"
+#include "output/reader.h"
+#include "output/study_file.h"
+
+#include <chrono>
+#include <csignal>
+#include <random>
+#include <thread>
+
+namespace kerf::apps {
+namespace {
+
+/// A cube on a foot; a knife comes through while forceps hold it and draw, and all that a run can write is written.
+std::string busy_scene(const std::string& backend) {
+  return "subsection Time\n  set Time step [s] = 0.01\n  set End time [s] = 0.3\nend\n"
+         "subsection Body cube\n  set Mesh = " +
+         mesh_path("cube.off") + "\n  set Cube edge [m] = 0.03\n  set Backend = " + backend +
+         "\n  subsection Material\n    set Density [kg/m^3] = 1000\n    set Young's modulus [Pa] = 1.5e4\n"
+         "    set Poisson's ratio [1] = 0.3\n  end\n" +
+         (backend == "pba" ? "  subsection Visibility\n    set Budget [1] = 40\n  end\n" : "") +
+         "  subsection Support foot\n    set Lower [m] = -1, -1, -1\n    set Upper [m] = 1, 1, -0.05\n  end\nend\n"
+         "subsection Blade knife\n  set Edge [m] = 0, -0.2, 0; 0, 0.2, 0\n  set Spine [m] = 0, 0, 0.03\n"
+         "  set Times [s] = 0, 0.3\n  set Positions [m] = 0.003, 0, 0.13; 0.013, 0, -0.13\nend\n"
+         "subsection Forceps grip\n  set Region = sphere\n  set Centre [m] = 0.09, 0, 0.09\n  set Radius [m] = 0.05\n"
+         "  set Grip time [s] = 0.05\n  set Jaws [m] = 0.02, 0, 0\n  set Handle [m] = 0, 0, 0.1\n"
+         "  set Times [s] = 0.05, 0.3\n"
+         "  set Positions [m] = 0.09, 0, 0.09; 0.14, 0, 0.1\nend\n"
+         "subsection Observables\n  set Names = kinetic energy, elastic energy, gravity energy, mass, momentum x, pieces, "
+         "cut edges, waiting cuts, work of the cut, missing energy, energy gained, "
+         "stable step, waiting pairs, reactions, tool forces, solver iterations, volume\nend\n"
+         "subsection Gravity\nend\nsubsection Output\n  set Frames every [1] = 3\n  set Checkpoint every [1] = 4\nend\n"
+         "subsection Surface file\nend\n"
+         "subsection Images\n  set Every [1] = 5\n  set Width [1] = 64\n  set Height [1] = 48\n"
+         "  set Eye [m] = 0.3, -0.6, 0.3\n  set Target [m] = 0, 0, 0\nend\n";
+}
+
+class Resume : public Program {
+ protected:
+  /// Starts `kerf arguments...`, sends it the signal after so many milliseconds, and says how it ended.
+  int disturbed(const Words& arguments, const int signal, const int milliseconds) const {
+    Words words = {KERF_PROGRAM};
+    words.insert(words.end(), arguments.begin(), arguments.end());
+    std::vector<char*> pointers;
+    for (std::string& word : words)
+      pointers.push_back(word.data());
+    pointers.push_back(nullptr);
+    const pid_t id = fork();
+    if (id == 0) {
+      if (chdir((folder / "").c_str()) == 0 && std::freopen("stdout", "w", stdout) && std::freopen("stderr", "w", stderr))
+        execv(pointers[0], pointers.data());
+      _exit(127);
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
+    ::kill(id, signal);
+    int status = 0;
+    waitpid(id, &status, 0);
+    return status;
+  }
+
+  void expect_same_runs(const std::string& one, const std::string& other) const {
+    const output::Reader a(folder / one / "run.h5"), b(folder / other / "run.h5");
+    EXPECT_EQ(b.outcome(), output::Outcome::completed);
+    EXPECT_FALSE(b.failure());
+    EXPECT_EQ(a.steps(), b.steps());
+    for (const output::Observable& o : a.schema().observables)
+      EXPECT_EQ(a.observable(o.name), b.observable(o.name)) << o.name;
+    ASSERT_EQ(a.n_frames("cube"), b.n_frames("cube"));
+    ASSERT_EQ(a.n_complexes("cube"), b.n_complexes("cube"));
+    for (std::size_t i = 0; i < a.n_frames("cube"); ++i) {
+      EXPECT_EQ(a.frame("cube", i).positions, b.frame("cube", i).positions) << i;
+      EXPECT_EQ(a.frame("cube", i).velocities, b.frame("cube", i).velocities) << i;
+      EXPECT_EQ(a.frame("cube", i).complex, b.frame("cube", i).complex) << i;
+    }
+    for (std::size_t i = 0; i < a.n_surfaces("cube"); ++i)
+      EXPECT_EQ(a.surface("cube", i).triangles, b.surface("cube", i).triangles) << i;
+    expect_same_files(one, other);
+  }
+
+  /// Images byte by byte; of the surface file the bytes of its series.
+  void expect_same_files(const std::string& one, const std::string& other) const {
+    for (const char* name : {"frames/000000.png", "frames/000010.png", "frames/000025.png", "frames/000030.png"})
+      EXPECT_EQ(read_text(folder / one / name), read_text(folder / other / name)) << name;
+    const auto a = output::h5::open_read_only(folder / one / "surface_cube.vtkhdf"),
+               b = output::h5::open_read_only(folder / other / "surface_cube.vtkhdf");
+    const auto compare = [&]<class T>(const std::string& name, const T) {
+      const auto values = output::h5::read_vector<T>(a, "/VTKHDF/" + name);
+      EXPECT_FALSE(values.empty()) << name;
+      EXPECT_EQ(values, output::h5::read_vector<T>(b, "/VTKHDF/" + name)) << name;
+    };
+    for (const char* name : {"NumberOfPoints", "Polygons/NumberOfCells", "Polygons/Connectivity", "Polygons/Offsets",
+                             "Steps/PartOffsets", "Steps/PointOffsets", "Steps/PointDataOffsets/rest_position",
+                             "Steps/CellDataOffsets/label", "Steps/CellOffsets"})
+      compare(name, std::int64_t{});
+    for (const char* name : {"Points", "PointData/rest_position"})
+      compare(name, float{});
+    compare("CellData/label", std::uint16_t{});
+    compare("Steps/Values", double{});
+    EXPECT_FALSE(std::filesystem::exists(folder / other / "checkpoint.kerf"));
+  }
+
+  /// Runs the scene into "whole"; disturbs the same run into "out" so many times, and lets it end.
+  void expect_resumable(const std::string& scene, const int signal, const int n_times, const unsigned seed) const {
+    write("scene.prm", scene);
+    const auto start = std::chrono::steady_clock::now();
+    ASSERT_EQ(kerf({"run", "scene.prm", "--output", "whole"}).exit_code, 0) << read_text(folder / "stderr");
+    const auto took = std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::steady_clock::now() - start);
+    std::mt19937 random(seed);
+    std::uniform_int_distribution<int> moment(20, std::max(40, static_cast<int>(took.count() * 3 / 4)));
+    const Words resumed = {"run", "scene.prm", "--output", "out", "--resume"};
+    int n_ended = 0;
+    for (int i = 0; i < n_times; ++i) {
+      const int status = disturbed(resumed, signal, moment(random));
+      n_ended += WIFSIGNALED(status) || WEXITSTATUS(status) == 128 + signal ? 1 : 0;
+      const bool has_begun =
+        std::filesystem::exists(folder / "out/run.h5") && std::filesystem::file_size(folder / "out/run.h5") > 0;
+      if (has_begun) { // then it can be read, at any moment
+        EXPECT_NO_THROW(output::Reader(folder / "out/run.h5").outcome());
+      }
+    }
+    EXPECT_GT(n_ended, 0);
+    const Result last = kerf(resumed);
+    ASSERT_EQ(last.exit_code, 0) << last.err;
+    expect_same_runs("whole", "out");
+  }
+};
+
+TEST_F(Resume, GivesTheBitsOfAnUndisturbedRun) {
+  unsigned seed = 1;
+  for (const std::string backend : {"fem", "pba", "lattice", "mass-spring"}) {
+    SCOPED_TRACE(backend);
+    expect_resumable(busy_scene(backend), SIGKILL, 4, seed++);
+    for (const char* name : {"whole", "out"})
+      std::filesystem::remove_all(folder / name);
+  }
+}
+
+/// Integrators that remember: the step before, an acceleration, a length of substeps, the longest step checked.
+TEST_F(Resume, KeepsWhatIntegratorsRemember) {
+  unsigned seed = 11;
+  for (const std::string more : {"BDF2", "generalised alpha", "Newmark", "implicit Euler", "velocity Verlet"}) {
+    SCOPED_TRACE(more);
+    std::string scene = replaced(busy_scene("fem"), "set Backend = fem", "set Integrator = " + more);
+    const auto blade = scene.find("subsection Blade"); // without it, to steps of second order
+    scene.erase(blade, scene.find("subsection Observables") - blade);
+    scene = replaced(replaced(scene, "tool forces, ", ""), "cut edges, waiting cuts, work of the cut, ", "");
+    if (more == "velocity Verlet") // a step that its stiffness bears
+      scene = replaced(replaced(scene, "Time step [s] = 0.01", "Time step [s] = 0.0005"), "End time [s] = 0.3",
+                       "End time [s] = 0.015");
+    else if (more == "BDF2" || more == "implicit Euler")
+      scene = replaced(scene, "  subsection Material",
+                       "  subsection Adaptive step\n    set Error tolerance [m/s] = 0.1\n  end\n  subsection Material");
+    expect_resumable(scene, SIGKILL, 2, seed++);
+    for (const char* name : {"whole", "out"})
+      std::filesystem::remove_all(folder / name);
+  }
+}
+
+TEST_F(Resume, SignalsEndAStepCleanly) {
+  write("scene.prm", busy_scene("fem"));
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    std::filesystem::remove_all(folder / "out");
+    const int status =
+      disturbed({"run", "scene.prm", "--output", "out", "--set", "Time/End time [s]=30"}, signal, 1500);
+    ASSERT_TRUE(WIFEXITED(status));
+    EXPECT_EQ(WEXITSTATUS(status), 128 + signal);
+    const std::string said = read_text(folder / "stderr");
+    EXPECT_TRUE(said.starts_with("kerf: interrupted by SIG")) << said;
+    EXPECT_NE(said.find("--resume goes on from there"), std::string::npos) << said;
+    const output::Reader reader(folder / "out/run.h5");
+    EXPECT_EQ(reader.outcome(), output::Outcome::interrupted);
+    ASSERT_TRUE(reader.failure());
+    EXPECT_EQ(reader.failure()->step, reader.steps().back());
+    EXPECT_TRUE(std::filesystem::exists(folder / "out/checkpoint.kerf"));
+  }
+}
+
+TEST_F(Resume, ASecondRunLeavesTheFirstWhole) {
+  write("scene.prm", replaced(busy_scene("fem"), "End time [s] = 0.3", "End time [s] = 3"));
+  const Words words = {"run", "scene.prm", "--output", "out"};
+  std::thread first([&] { EXPECT_EQ(WEXITSTATUS(disturbed(words, 0, 0)), 0); });
+  while (!std::filesystem::exists(folder / "out/frames/000000.png"))
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  const std::string second = "cd '" + (folder / "").string() + "' && '" KERF_PROGRAM "' run scene.prm --output out ";
+  for (const std::string option : {"", "--force", "--resume"})
+    EXPECT_EQ(WEXITSTATUS(std::system((second + option + " >second 2>&1").c_str())), 2);
+  EXPECT_NE(read_text(folder / "second").find("is in use: process "), std::string::npos) << read_text(folder / "second");
+  first.join();
+  ASSERT_EQ(kerf({"run", "scene.prm", "--output", "whole"}).exit_code, 0);
+  expect_same_runs("whole", "out");
+  expect_error(kerf(words), 1, {"out", "holds the results of an earlier run", "--force", "--resume"});
+  const Result again = kerf({"run", "scene.prm", "--output", "out", "--resume"});
+  EXPECT_EQ(again.exit_code, 0);
+  EXPECT_NE(again.out.find("nothing is left to resume"), std::string::npos) << again.out;
+}
+
+TEST_F(Resume, RefusesAnotherScene) {
+  write("scene.prm", busy_scene("fem"));
+  disturbed({"run", "scene.prm", "--output", "out"}, SIGTERM, 700);
+  expect_error(kerf({"run", "scene.prm", "--output", "out", "--resume", "--set", "Time/End time [s]=1"}), 1,
+               {"run.h5", "cannot be resumed", "another scene", "--force"});
+  EXPECT_EQ(output::Reader(folder / "out/run.h5").outcome(), output::Outcome::interrupted);
+  std::string bytes = read_text(folder / "out/checkpoint.kerf");
+  ASSERT_GT(bytes.size(), 1000u);
+  bytes[bytes.size() / 2] ^= 1;
+  write("out/checkpoint.kerf", bytes);
+  expect_error(kerf({"run", "scene.prm", "--output", "out", "--resume"}), 2, {"checkpoint.kerf", "is damaged", "--force"});
+}
+
+/// Ten moments; rows that were finished are not run again, the one under way goes on.
+TEST_F(Resume, StudiesGoOnToo) {
+  std::string scene = busy_scene("fem");
+  for (const std::string kind : {"subsection Images", "subsection Surface file"})
+    scene.erase(scene.find(kind), scene.find("end\n", scene.find(kind)) + 4 - scene.find(kind));
+  write("scene.prm", scene);
+  write("study.prm", "subsection Study\n  set Title = t\n  set Scene = scene.prm\n  set Answer = elastic energy\n"
+                     "  set Unit = J\nend\nsubsection Variant one\nend\n"
+                     "subsection Variant two\n  set Set = Body cube/Material/Poisson's ratio [1]=0.2\nend\n"
+                     "subsection Variant three\n  set Set = Body cube/Element=enhanced\nend\n");
+  const auto start = std::chrono::steady_clock::now();
+  ASSERT_EQ(kerf({"study", "study.prm", "--output", "whole"}).exit_code, 0) << read_text(folder / "stderr");
+  const auto took = std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::steady_clock::now() - start);
+  std::mt19937 random(5);
+  const Words resumed = {"study", "study.prm", "--output", "out", "--resume"};
+  for (int i = 0; i < 10; ++i) {
+    const int signal = i % 2 == 0 ? SIGKILL : SIGTERM;
+    const int status = disturbed(resumed, signal, 50 + static_cast<int>(random() % (took.count() / 3 + 1)));
+    EXPECT_TRUE(WIFSIGNALED(status) || WEXITSTATUS(status) == 128 + signal || WEXITSTATUS(status) == 0)
+      << read_text(folder / "stderr");
+  }
+  const Result last = kerf(resumed);
+  ASSERT_EQ(last.exit_code, 0) << last.err;
+  const auto a = output::read_study_file(folder / "whole/study.h5"), b = output::read_study_file(folder / "out/study.h5");
+  EXPECT_EQ(b.outcome, output::Outcome::completed);
+  ASSERT_EQ(a.rows.size(), b.rows.size());
+  for (std::size_t i = 0; i < a.rows.size(); ++i) {
+    EXPECT_EQ(a.rows[i].name, b.rows[i].name);
+    EXPECT_EQ(a.rows[i].value, b.rows[i].value);
+    EXPECT_EQ(a.rows[i].n_steps, b.rows[i].n_steps);
+    EXPECT_EQ(b.rows[i].outcome, "completed");
+  }
+}
+
+/// /scene is a scene by itself: from anywhere, with what --set has changed, the same bits.
+TEST_F(Resume, TheStoredSceneReproducesTheRun) {
+  std::filesystem::create_directories(folder / "scenes");
+  std::filesystem::copy_file(mesh_path("cube.off"), folder / "scenes/cube.off");
+  write("scenes/scene.prm", replaced(busy_scene("fem"), mesh_path("cube.off"), "cube.off"));
+  const Result result = kerf({"run", "scenes/scene.prm", "--output", "whole", "--set", "Time/End time [s]=0.3", "--set",
+                              "Body cube/Material/Poisson's ratio [1]=0.2", "--set", "Body cube/Damping/Mass damping [1/s]=3",
+                              "--set", "Body cube/Element=enhanced"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  write("stored.prm", output::Reader(folder / "whole/run.h5").scene());
+  ASSERT_EQ(kerf({"run", "stored.prm", "--output", "out"}).exit_code, 0) << read_text(folder / "stderr");
+  expect_same_runs("whole", "out");
+  EXPECT_EQ(output::Reader(folder / "out/run.h5").scene(), output::Reader(folder / "whole/run.h5").scene());
+}
+
+} // namespace
+} // namespace kerf::apps
