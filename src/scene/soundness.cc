@@ -149,7 +149,8 @@ void require_sound_motion(const Body& body, const Points& before, const double d
   for (std::size_t i = 0; i < body.state.x.size(); ++i) {
     if (!body.state.x[i].allFinite() || !body.state.v[i].allFinite())
       throw NumericalError("the motion has diverged: " + particle_at(body, i) + ", has no finite place any more");
-    if (const double own = ((body.state.x[i] - before[i]) / dt - mean).norm(); !held[i] && own > speed) {
+    const double own = std::min((body.state.v[i] - mean).norm(), ((body.state.x[i] - before[i]) / dt - mean).norm());
+    if (!held[i] && own > speed) {
       speed = own;
       fastest = i;
     }

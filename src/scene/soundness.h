@@ -23,8 +23,8 @@ struct Watch {
   void archive(Archive& a) { a(is_sound); } // the rest is found again
 };
 
-/// After a step of dt [s] from `before` [m], before the surface follows. Velocities may ring where nothing damps them:
-/// what counts is the way. Throws NumericalError that names the particle and its place.
+/// After a step of dt [s] from `before` [m], before the surface follows. Velocities may ring where nothing damps them, and statics
+/// go far without any: the less of a velocity and of the way over dt counts. Throws NumericalError that names the particle and its place.
 void require_sound_motion(const Body& body, const Points& before, double dt);
 /// After the surface followed. Pieces below a cube's volume are left out. Throws NumericalError that names the piece,
 /// its worst copy and its place.

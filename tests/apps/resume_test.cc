@@ -7,6 +7,7 @@
 
 #include <chrono>
 #include <csignal>
+#include <functional>
 #include <random>
 #include <thread>
 
@@ -41,6 +42,10 @@ class Resume : public Program {
  protected:
   /// Starts `kerf arguments...`, sends it the signal after so many milliseconds, and says how it ended.
   int disturbed(const Words& arguments, const int signal, const int milliseconds) const {
+    return disturbed(arguments, signal, [&] { std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds)); });
+  }
+  /// The same, once something has happened.
+  int disturbed(const Words& arguments, const int signal, const std::function<void()>& wait) const {
     Words words = {KERF_PROGRAM};
     words.insert(words.end(), arguments.begin(), arguments.end());
     std::vector<char*> pointers;
@@ -53,7 +58,7 @@ class Resume : public Program {
         execv(pointers[0], pointers.data());
       _exit(127);
     }
-    std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
+    wait();
     ::kill(id, signal);
     int status = 0;
     waitpid(id, &status, 0);
@@ -197,8 +202,11 @@ TEST_F(Resume, ASecondRunLeavesTheFirstWhole) {
 }
 
 TEST_F(Resume, RefusesAnotherScene) {
-  write("scene.prm", busy_scene("fem"));
-  disturbed({"run", "scene.prm", "--output", "out"}, SIGTERM, 700);
+  write("scene.prm", replaced(busy_scene("fem"), "End time [s] = 0.3", "End time [s] = 30"));
+  disturbed({"run", "scene.prm", "--output", "out"}, SIGTERM, [&] {
+    while (!std::filesystem::exists(folder / "out/frames/000000.png"))
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  });
   expect_error(kerf({"run", "scene.prm", "--output", "out", "--resume", "--set", "Time/End time [s]=1"}), 1,
                {"run.h5", "cannot be resumed", "another scene", "--force"});
   EXPECT_EQ(output::Reader(folder / "out/run.h5").outcome(), output::Outcome::interrupted);

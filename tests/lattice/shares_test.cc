@@ -1,8 +1,6 @@
 /// What corners carry, against the integrals that the elements take and against the octants themselves.
 
 #include "lattice/shares.h"
-
-#include "cut/at_skin.h"
 #include "fem/hexahedra.h"
 #include "tests/lattice/bodies.h"
 #include "tests/support/placed.h"
@@ -104,29 +102,6 @@ TEST(Shares, EveryCornerAndEveryNodeHasSome) {
   }
   EXPECT_EQ(corners.size(), body.complex.n_corners());
   EXPECT_EQ(nodes.size(), 36u);
-}
-
-/// A blade that cuts in the skin's own plane leaves rinds without volume, and corners that only they know.
-TEST(Shares, RindsWithoutVolumeHaveSomeToo) {
-  auto body = support::block({4, 3, 3});
-  std::vector<grid::EdgeId> edges;
-  for (const auto& cut : support::plane_cuts(body, {Vec3::UnitZ(), 3.5}))
-    if (body.grid.position(body.grid.ends(cut.edge)[0])[0] < 2.5) {
-      body.cuts.add(body.grid, cut);
-      edges.push_back(cut.edge);
-    }
-  cut::part_skin(body, edges);
-  body = support::with_copies(std::move(body));
-  std::size_t n_rinds = 0;
-  for (const grid::Copy& copy : body.complex.copies)
-    n_rinds += copy.nodes == 0 ? 1 : 0;
-  ASSERT_GT(n_rinds, 0u);
-  std::set<grid::CornerId> corners;
-  for (const Share& share : material_shares(body, 1000)) {
-    EXPECT_GT(share.mass, 0);
-    corners.insert(share.corner);
-  }
-  EXPECT_EQ(corners.size(), body.complex.n_corners());
 }
 
 } // namespace
