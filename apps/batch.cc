@@ -34,16 +34,17 @@ std::vector<Job> jobs_of(const SceneArguments& arguments) {
   for (const std::string& scene : arguments.scenes) {
     jobs.push_back({scene, default_output(scene, arguments.output)});
     if (!folders.insert(jobs.back().output).second)
-      throw ParameterError(Complaint{.value = scene,
-                                     .rule = "would write into " + jobs.back().output.string() + " as another scene does",
-                                     .remedy = "Give the files different names, or run them apart"});
+      throw ParameterError(
+        Complaint{.value = scene,
+                  .rule = "would write into " + jobs.back().output.string() + " as another scene does",
+                  .remedy = "Give the files different names, or run them apart"});
   }
   return jobs;
 }
 
 std::vector<std::string> command_of(const Job& job, const SceneArguments& arguments, const int n_threads) {
-  std::vector<std::string> words = {"kerf", "run", job.scene, "--output", job.output.string(), "--threads",
-                                    std::to_string(n_threads)};
+  std::vector<std::string> words = {
+    "kerf", "run", job.scene, "--output", job.output.string(), "--threads", std::to_string(n_threads)};
   for (const std::string& change : arguments.overrides) {
     words.emplace_back("--set");
     words.push_back(change);
@@ -106,7 +107,8 @@ class Batch {
 
   int run() {
     while (!running_.empty() || (next_ < jobs_.size() && wish_to_end() == 0)) {
-      while (next_ < jobs_.size() && running_.size() < static_cast<std::size_t>(arguments_.n_jobs) && wish_to_end() == 0)
+      while (next_ < jobs_.size() && running_.size() < static_cast<std::size_t>(arguments_.n_jobs) &&
+             wish_to_end() == 0)
         begin();
       if (wish_to_end() != 0)
         pass_on();

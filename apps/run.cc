@@ -27,8 +27,10 @@ void print_body(const scene::Body& body, const scene::Watch& watch) {
   if (body.initial && !watch.is_sound)
     std::printf("  it has not come back from its initial state: parts of it are still crushed or inside out\n");
   if (body.n_divided > 0)
-    std::printf("  %d steps taken again, in substeps or by implicit Euler: whole ones failed or gained energy that nothing gave\n",
-                body.n_divided);
+    std::printf(
+      "  %d steps taken again, in substeps or by implicit Euler: whole ones failed or gained energy that nothing "
+      "gave\n",
+      body.n_divided);
   if (const std::size_t n = body.interior ? body.interior->atlas.n_coarse() : 0; n > 0)
     std::printf("  %zu triangles have colours farther apart than asked for, %d to a side: use a smaller cube edge\n", n,
                 texture::Atlas::max_parts);

@@ -49,9 +49,10 @@ SceneArguments parse_scene_arguments(const Arguments& arguments, const Scenes sc
     else if (argument == "--force" || argument == "--resume")
       parsed.earlier = argument == "--force" ? output::Earlier::replace : output::Earlier::resume;
     else if (argument.starts_with("-"))
-      throw ParameterError(Complaint{.value = argument,
-                                     .rule = "is no option",
-                                     .remedy = "The options are --set, --output, --threads, --force, --resume, and --jobs of run"});
+      throw ParameterError(
+        Complaint{.value = argument,
+                  .rule = "is no option",
+                  .remedy = "The options are --set, --output, --threads, --force, --resume, and --jobs of run"});
     else
       add_scene(argument, scenes, parsed);
   }

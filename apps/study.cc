@@ -22,8 +22,7 @@ void run_stability(const scene::SceneText& text, const SceneArguments& parsed, c
     std::fflush(stdout);
   };
   const output::StabilityTable table = study::run_stability_study(plan, parsed.output, info, parsed.earlier, say);
-  std::printf("\n%s\n\n%s\nresults in %s\n", table.title.c_str(), study::aligned(table).c_str(),
-              parsed.output.c_str());
+  std::printf("\n%s\n\n%s\nresults in %s\n", table.title.c_str(), study::aligned(table).c_str(), parsed.output.c_str());
 }
 
 } // namespace
@@ -44,7 +43,8 @@ int study(const Arguments& arguments) {
     std::printf("row %zu of %zu: %s: %s\n", ++n, plan.rows.size(), row.name.c_str(), row.outcome.c_str());
     std::fflush(stdout);
   };
-  const output::StudyTable table = study::run_study(plan, parsed.output, run_info("study", arguments), parsed.earlier, say);
+  const output::StudyTable table =
+    study::run_study(plan, parsed.output, run_info("study", arguments), parsed.earlier, say);
   std::printf("\n%s\nvalue: %s\n\n%s\nresults in %s\n", table.title.c_str(), table.answer.c_str(),
               study::aligned(table).c_str(), parsed.output.c_str());
   return 0;

@@ -66,12 +66,14 @@ class Archive {
   template <class T, std::size_t n>
   struct IsBits<std::array<T, n>> : IsBits<T> {};
   template <class T, int rows, int columns>
-  struct IsBits<Eigen::Matrix<T, rows, columns>> : std::bool_constant<rows != Eigen::Dynamic && columns != Eigen::Dynamic> {};
+  struct IsBits<Eigen::Matrix<T, rows, columns>>
+    : std::bool_constant<rows != Eigen::Dynamic && columns != Eigen::Dynamic> {};
 
   [[noreturn]] void refuse(const std::string& what) const {
-    throw DataError(Complaint{.file = source_,
-                              .rule = "cannot be read back: " + what,
-                              .remedy = "It is of another version of the program, or damaged: start again with --force"});
+    throw DataError(
+      Complaint{.file = source_,
+                .rule = "cannot be read back: " + what,
+                .remedy = "It is of another version of the program, or damaged: start again with --force"});
   }
 
   void raw(void* const value, const std::size_t n) {
@@ -106,8 +108,7 @@ class Archive {
   }
 
   template <class T, std::size_t n>
-    requires(!IsBits<T>::value)
-  void transfer(std::array<T, n>& values) {
+  requires(!IsBits<T>::value) void transfer(std::array<T, n>& values) {
     for (T& value : values)
       transfer(value);
   }

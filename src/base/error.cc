@@ -12,7 +12,8 @@ std::string echoed(const std::string& text, const std::size_t most = 400) {
   std::string line = text.size() <= most ? text
                                          : text.substr(0, most - end) + "..." + text.substr(text.size() - end) + " (" +
                                              std::to_string(text.size()) + " characters)";
-  std::replace_if(line.begin(), line.end(), [](const unsigned char c) { return c < ' ' || c == 0x7f; }, ' ');
+  std::replace_if(
+    line.begin(), line.end(), [](const unsigned char c) { return c < ' ' || c == 0x7f; }, ' ');
   return line;
 }
 

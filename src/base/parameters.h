@@ -39,7 +39,7 @@ struct Parameter {
   std::string rule;     ///< what must hold, for people
   std::string text;     ///< what it does
   bool required = false;
-  bool is_file = false; ///< names a file that is read
+  bool is_file = false;           ///< names a file that is read
   std::vector<std::string> words; ///< what a choice may be; empty for other keys
   /// Returns what is wrong with the value, or an empty string; does not touch the field.
   std::function<std::string(const std::string& value)> check;

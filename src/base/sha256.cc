@@ -55,7 +55,8 @@ class Hash {
   void take_block(const std::byte* const block) {
     std::array<std::uint32_t, 64> w;
     for (int t = 0; t < 16; ++t)
-      w[t] = std::to_integer<std::uint32_t>(block[4 * t]) << 24 | std::to_integer<std::uint32_t>(block[4 * t + 1]) << 16 |
+      w[t] = std::to_integer<std::uint32_t>(block[4 * t]) << 24 |
+             std::to_integer<std::uint32_t>(block[4 * t + 1]) << 16 |
              std::to_integer<std::uint32_t>(block[4 * t + 2]) << 8 | std::to_integer<std::uint32_t>(block[4 * t + 3]);
     for (int t = 16; t < 64; ++t)
       w[t] = (std::rotr(w[t - 2], 17) ^ std::rotr(w[t - 2], 19) ^ w[t - 2] >> 10) + w[t - 7] +
@@ -64,8 +65,7 @@ class Hash {
     for (int t = 0; t < 64; ++t) {
       const std::uint32_t t1 =
         h + (std::rotr(e, 6) ^ std::rotr(e, 11) ^ std::rotr(e, 25)) + ((e & f) ^ (~e & g)) + constants[t] + w[t];
-      const std::uint32_t t2 =
-        (std::rotr(a, 2) ^ std::rotr(a, 13) ^ std::rotr(a, 22)) + ((a & b) ^ (a & c) ^ (b & c));
+      const std::uint32_t t2 = (std::rotr(a, 2) ^ std::rotr(a, 13) ^ std::rotr(a, 22)) + ((a & b) ^ (a & c) ^ (b & c));
       h = g, g = f, f = e, e = d + t1, d = c, c = b, b = a, a = t1 + t2;
     }
     const std::array<std::uint32_t, 8> added = {a, b, c, d, e, f, g, h};
@@ -93,7 +93,8 @@ std::string sha256_of_file(const std::filesystem::path& path) {
   while (in.read(piece.data(), static_cast<std::streamsize>(piece.size())))
     hash.take(std::as_bytes(std::span(piece)));
   if (!in.eof())
-    throw DataError(Complaint{.file = path.string(), .rule = "cannot be read", .remedy = "Name a file that you may read"});
+    throw DataError(
+      Complaint{.file = path.string(), .rule = "cannot be read", .remedy = "Name a file that you may read"});
   const auto rest = std::as_bytes(std::span(piece)).first(static_cast<std::size_t>(in.gcount()));
   hash.take(rest);
   return hash.finish(rest.subspan(rest.size() / block_size * block_size));

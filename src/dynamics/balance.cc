@@ -329,8 +329,8 @@ void BalanceSolver::apply(const Problem& problem, const std::span<const double> 
   parallel_for(
     force_.size(),
     [&](const std::size_t i) {
-      Vec3 Ap = problem.mass_factor * problem.mass[i] * at(p, i) +
-                problem.stiffness_factor * at(std::span<const double>(y), i);
+      Vec3 Ap =
+        problem.mass_factor * problem.mass[i] * at(p, i) + problem.stiffness_factor * at(std::span<const double>(y), i);
       if (!tangent_.empty())
         Ap += at(std::span<const double>(load_product_), i);
       if (!problem.constraints.is_free(i))

@@ -171,7 +171,7 @@ class BalanceSolver {
   Points residual_, correction_;
   LoadTangent tangent_;
   std::vector<Mat3> stiffness_blocks_, blocks_; // diagonals of K and of A
-  std::vector<Mat3> scaling_; // L^-1 from the free directions' basis, a row of zeros for each that is held
+  std::vector<Mat3> scaling_;        // L^-1 from the free directions' basis, a row of zeros for each that is held
   std::vector<Mat3> inverse_blocks_; // S^T S
   std::vector<Mat3> load_bounds_;    // see LoadTangent::add_bound
   std::vector<double> load_product_;

@@ -109,8 +109,7 @@ BatchedElements<T> batched(const Batching& batching, const double h, const mater
 template <class T>
 void add_product(const Batching& batching, const BatchedElements<T>& elements, const Row<T>* const p, Row<T>* const y) {
   const auto product = element_kernels<T>().product;
-  batching.for_each_in_order(
-    [&](const std::size_t i) { product(elements.cube, elements.batch(batching, i), p, y); });
+  batching.for_each_in_order([&](const std::size_t i) { product(elements.cube, elements.batch(batching, i), p, y); });
 }
 
 template <class T>

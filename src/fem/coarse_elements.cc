@@ -23,8 +23,8 @@ void add_mean_part(const double volume, const GradientsOfModes& g, const materia
   const double lambda = volume * material.lambda(), mu = volume * material.mu();
   for (int m = 0; m < 4; ++m)
     for (int n = 0; n < 4; ++n)
-      K.block<3, 3>(3 * m, 3 * n) += lambda * g[m] * g[n].transpose() + mu * g[n] * g[m].transpose() +
-                                     mu * g[m].dot(g[n]) * Mat3::Identity();
+      K.block<3, 3>(3 * m, 3 * n) +=
+        lambda * g[m] * g[n].transpose() + mu * g[n] * g[m].transpose() + mu * g[m].dot(g[n]) * Mat3::Identity();
 }
 
 /// T^T K T for the parts T of the coarse hourglass modes in those of the child.
@@ -59,8 +59,8 @@ GradientsOfModes gradients_in(const Child& child, const double h) {
     for (int k = 0; k < 3; ++k)
       g[m][k] = part_of_mode(hourglass_modes[m], linear_modes[k], child.octant) / (4 * h);
     for (int n = 0; n < 4; ++n)
-      g[m] += part_of_mode(hourglass_modes[m], hourglass_modes[n], child.octant) *
-              Eigen::Map<const Vec3>(own.data() + 3 * n);
+      g[m] +=
+        part_of_mode(hourglass_modes[m], hourglass_modes[n], child.octant) * Eigen::Map<const Vec3>(own.data() + 3 * n);
   }
   return g;
 }

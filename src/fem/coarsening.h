@@ -35,9 +35,9 @@ Weights transposed(const Weights& weights, std::size_t n_columns);
 
 struct Coarsening {
   CellsOfLevel coarse;
-  std::vector<std::uint32_t> parent;   ///< the coarse copy of each fine one; `unused` of those that are not used
-  std::vector<std::uint8_t> octant;    ///< in which part of it: bits of the axes
-  Weights prolongation, restriction;   ///< trilinear: a row for each fine corner; its transpose
+  std::vector<std::uint32_t> parent; ///< the coarse copy of each fine one; `unused` of those that are not used
+  std::vector<std::uint8_t> octant;  ///< in which part of it: bits of the axes
+  Weights prolongation, restriction; ///< trilinear: a row for each fine corner; its transpose
 };
 Coarsening coarsened(const CellsOfLevel& fine);
 

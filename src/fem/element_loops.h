@@ -49,7 +49,8 @@ struct ElementLoops {
     for (int g = 0; g < W / 4; ++g) {
       const Four r0 = row(p, corners[4 * g]), r1 = row(p, corners[4 * g + 1]), r2 = row(p, corners[4 * g + 2]),
                  r3 = row(p, corners[4 * g + 3]);
-      const Four low01 = __builtin_shufflevector(r0, r1, 0, 4, 1, 5), low23 = __builtin_shufflevector(r2, r3, 0, 4, 1, 5);
+      const Four low01 = __builtin_shufflevector(r0, r1, 0, 4, 1, 5),
+                 low23 = __builtin_shufflevector(r2, r3, 0, 4, 1, 5);
       const Four high01 = __builtin_shufflevector(r0, r1, 2, 6, 3, 7),
                  high23 = __builtin_shufflevector(r2, r3, 2, 6, 3, 7);
       part[0][g] = __builtin_shufflevector(low01, low23, 0, 1, 4, 5);
@@ -204,7 +205,8 @@ struct ElementLoops {
   template <bool is_partial>
   [[gnu::always_inline]] static void hooke(const CubeConstants<T>& cube, const Batch<T>& batch, const int lane,
                                            const V (&G)[9], V (&P)[9]) {
-    const V v = volume<is_partial>(cube, batch, lane), mu = cube.mu * v, pressure = cube.lambda * v * (G[0] + G[4] + G[8]);
+    const V v = volume<is_partial>(cube, batch, lane), mu = cube.mu * v,
+            pressure = cube.lambda * v * (G[0] + G[4] + G[8]);
 #pragma GCC unroll 3
     for (int j = 0; j < 3; ++j)
 #pragma GCC unroll 3
@@ -241,8 +243,8 @@ struct ElementLoops {
       for (int q = 0; q <= p; ++q) {
         if (!is_partial && !is_coupled(p, q))
           continue;
-        const V K = is_partial ? load(batch.partial->hourglass[pair_index(p, q)] + lane)
-                               : cube.hourglass[pair_index(p, q)] - V{};
+        const V K =
+          is_partial ? load(batch.partial->hourglass[pair_index(p, q)] + lane) : cube.hourglass[pair_index(p, q)] - V{};
         const int m = hourglass_modes[p / 3], n = hourglass_modes[q / 3];
         f[m][p % 3] += K * c[n][q % 3];
         if (p != q)
@@ -323,7 +325,8 @@ struct ElementLoops {
     for (int k = 0; k < 4; ++k)
       for (int l = 0; l < 4; ++l)
         for (int ij = 0; ij < 6; ++ij) {
-          const int p = 3 * k + block_row[ij], q = 3 * l + block_column[ij], pair = p > q ? pair_index(p, q) : pair_index(q, p);
+          const int p = 3 * k + block_row[ij], q = 3 * l + block_column[ij],
+                    pair = p > q ? pair_index(p, q) : pair_index(q, p);
           D[hourglass_modes[k] ^ hourglass_modes[l]][ij] +=
             is_partial ? load(batch.partial->hourglass[pair] + lane) : cube.hourglass[pair] - V{};
         }
@@ -387,7 +390,8 @@ struct ElementLoops {
       add(D[a][3], D[a][4], D[a][5], batch.corners[a] + lane, blocks + 1, 2);
     }
   }
-  [[gnu::always_inline]] static void diagonal(const CubeConstants<T>& cube, const Batch<T>& batch, Row<T>* const blocks) {
+  [[gnu::always_inline]] static void diagonal(const CubeConstants<T>& cube, const Batch<T>& batch,
+                                              Row<T>* const blocks) {
     for (int lane = 0; lane < int(n_lanes); lane += W)
       if (batch.partial)
         diagonal_of<true>(cube, batch, lane, blocks);

@@ -10,7 +10,6 @@ namespace kerf::fem {
 template <class T, int W>
 struct ForceLoops : ElementLoops<T, W> {
   using Loops = ElementLoops<T, W>;
-  using typename Loops::V;
   using Loops::add_modes;
   using Loops::load;
   using Loops::load_nine;
@@ -18,6 +17,7 @@ struct ForceLoops : ElementLoops<T, W> {
   using Loops::store;
   using Loops::turn;
   using Loops::turn_back;
+  using typename Loops::V;
 
   // --- Rotations ---------------------------------------------------------------------------------------------------
 
@@ -80,7 +80,8 @@ struct ForceLoops : ElementLoops<T, W> {
                                                   const Row<T>* const x, Turns& turns) {
     unsigned unknown = 0;
     for (int lane = 0; lane < int(n_lanes); lane += W)
-      unknown |= batch.partial ? turn_of<true>(cube, batch, lane, x, turns) : turn_of<false>(cube, batch, lane, x, turns);
+      unknown |=
+        batch.partial ? turn_of<true>(cube, batch, lane, x, turns) : turn_of<false>(cube, batch, lane, x, turns);
     return unknown;
   }
 

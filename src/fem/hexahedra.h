@@ -120,7 +120,7 @@ class Hexahedra : public dynamics::ElasticModel, public dynamics::StiffnessMatri
   BatchedElements<double> batched_; // rotations and tangents at the linearisation point
   GhostPenalty ghost_penalty_;
   std::vector<double> mass_;
-  std::vector<Index3> places_; // of the copies' cells
+  std::vector<Index3> places_;           // of the copies' cells
   std::unique_ptr<Multigrid> multigrid_; // none until it is asked for
   mutable Scratch<Row<double>> scratch_;
 };

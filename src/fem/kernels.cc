@@ -8,88 +8,99 @@ namespace {
 
 // --- wide: AVX-512 ---
 
-[[gnu::target("arch=x86-64-v4")]] void product_wide(const CubeConstants<double>& cube, const Batch<double>& batch, const Row<double>* const p,
-  Row<double>* const y) {
+[[gnu::target("arch=x86-64-v4")]] void product_wide(const CubeConstants<double>& cube, const Batch<double>& batch,
+                                                    const Row<double>* const p, Row<double>* const y) {
   ElementLoops<double, 8>::product(cube, batch, p, y);
 }
-[[gnu::target("arch=x86-64-v4")]] void diagonal_wide(const CubeConstants<double>& cube, const Batch<double>& batch, Row<double>* const blocks) {
+[[gnu::target("arch=x86-64-v4")]] void diagonal_wide(const CubeConstants<double>& cube, const Batch<double>& batch,
+                                                     Row<double>* const blocks) {
   ElementLoops<double, 8>::diagonal(cube, batch, blocks);
 }
-[[gnu::target("arch=x86-64-v4")]] void product_wide(const CubeConstants<float>& cube, const Batch<float>& batch, const Row<float>* const p,
-  Row<float>* const y) {
+[[gnu::target("arch=x86-64-v4")]] void product_wide(const CubeConstants<float>& cube, const Batch<float>& batch,
+                                                    const Row<float>* const p, Row<float>* const y) {
   ElementLoops<float, 16>::product(cube, batch, p, y);
 }
-[[gnu::target("arch=x86-64-v4")]] void diagonal_wide(const CubeConstants<float>& cube, const Batch<float>& batch, Row<float>* const blocks) {
+[[gnu::target("arch=x86-64-v4")]] void diagonal_wide(const CubeConstants<float>& cube, const Batch<float>& batch,
+                                                     Row<float>* const blocks) {
   ElementLoops<float, 16>::diagonal(cube, batch, blocks);
 }
-[[gnu::target("arch=x86-64-v4")]] unsigned turn_wide(const CubeConstants<double>& cube, const Batch<double>& batch, const Row<double>* const x,
-  Turns& turns) {
+[[gnu::target("arch=x86-64-v4")]] unsigned turn_wide(const CubeConstants<double>& cube, const Batch<double>& batch,
+                                                     const Row<double>* const x, Turns& turns) {
   return ForceLoops<double, 8>::turn_all(cube, batch, x, turns);
 }
-[[gnu::target("arch=x86-64-v4")]] void force_wide(const CubeConstants<double>& cube, const Batch<double>& batch, const Turns& turns, const MeanPart mean,
-  const double (*const P)[n_lanes], const double spins, const Row<double>* const x, Row<double>* const forces) {
+[[gnu::target("arch=x86-64-v4")]] void force_wide(const CubeConstants<double>& cube, const Batch<double>& batch,
+                                                  const Turns& turns, const MeanPart mean,
+                                                  const double (*const P)[n_lanes], const double spins,
+                                                  const Row<double>* const x, Row<double>* const forces) {
   ForceLoops<double, 8>::force(cube, batch, turns, mean, P, spins, x, forces);
 }
-[[gnu::target("arch=x86-64-v4")]] void energy_wide(const CubeConstants<double>& cube, const Batch<double>& batch, const Turns& turns, const MeanPart mean,
-  const Row<double>* const x, double* const energies) {
+[[gnu::target("arch=x86-64-v4")]] void energy_wide(const CubeConstants<double>& cube, const Batch<double>& batch,
+                                                   const Turns& turns, const MeanPart mean, const Row<double>* const x,
+                                                   double* const energies) {
   ForceLoops<double, 8>::energy(cube, batch, turns, mean, x, energies);
 }
 
 // --- middle: AVX2 ---
 
-[[gnu::target("arch=x86-64-v3")]] void product_middle(const CubeConstants<double>& cube, const Batch<double>& batch, const Row<double>* const p,
-  Row<double>* const y) {
+[[gnu::target("arch=x86-64-v3")]] void product_middle(const CubeConstants<double>& cube, const Batch<double>& batch,
+                                                      const Row<double>* const p, Row<double>* const y) {
   ElementLoops<double, 4>::product(cube, batch, p, y);
 }
-[[gnu::target("arch=x86-64-v3")]] void diagonal_middle(const CubeConstants<double>& cube, const Batch<double>& batch, Row<double>* const blocks) {
+[[gnu::target("arch=x86-64-v3")]] void diagonal_middle(const CubeConstants<double>& cube, const Batch<double>& batch,
+                                                       Row<double>* const blocks) {
   ElementLoops<double, 4>::diagonal(cube, batch, blocks);
 }
-[[gnu::target("arch=x86-64-v3")]] void product_middle(const CubeConstants<float>& cube, const Batch<float>& batch, const Row<float>* const p,
-  Row<float>* const y) {
+[[gnu::target("arch=x86-64-v3")]] void product_middle(const CubeConstants<float>& cube, const Batch<float>& batch,
+                                                      const Row<float>* const p, Row<float>* const y) {
   ElementLoops<float, 8>::product(cube, batch, p, y);
 }
-[[gnu::target("arch=x86-64-v3")]] void diagonal_middle(const CubeConstants<float>& cube, const Batch<float>& batch, Row<float>* const blocks) {
+[[gnu::target("arch=x86-64-v3")]] void diagonal_middle(const CubeConstants<float>& cube, const Batch<float>& batch,
+                                                       Row<float>* const blocks) {
   ElementLoops<float, 8>::diagonal(cube, batch, blocks);
 }
-[[gnu::target("arch=x86-64-v3")]] unsigned turn_middle(const CubeConstants<double>& cube, const Batch<double>& batch, const Row<double>* const x,
-  Turns& turns) {
+[[gnu::target("arch=x86-64-v3")]] unsigned turn_middle(const CubeConstants<double>& cube, const Batch<double>& batch,
+                                                       const Row<double>* const x, Turns& turns) {
   return ForceLoops<double, 4>::turn_all(cube, batch, x, turns);
 }
-[[gnu::target("arch=x86-64-v3")]] void force_middle(const CubeConstants<double>& cube, const Batch<double>& batch, const Turns& turns, const MeanPart mean,
-  const double (*const P)[n_lanes], const double spins, const Row<double>* const x, Row<double>* const forces) {
+[[gnu::target("arch=x86-64-v3")]] void force_middle(const CubeConstants<double>& cube, const Batch<double>& batch,
+                                                    const Turns& turns, const MeanPart mean,
+                                                    const double (*const P)[n_lanes], const double spins,
+                                                    const Row<double>* const x, Row<double>* const forces) {
   ForceLoops<double, 4>::force(cube, batch, turns, mean, P, spins, x, forces);
 }
-[[gnu::target("arch=x86-64-v3")]] void energy_middle(const CubeConstants<double>& cube, const Batch<double>& batch, const Turns& turns, const MeanPart mean,
-  const Row<double>* const x, double* const energies) {
+[[gnu::target("arch=x86-64-v3")]] void energy_middle(const CubeConstants<double>& cube, const Batch<double>& batch,
+                                                     const Turns& turns, const MeanPart mean,
+                                                     const Row<double>* const x, double* const energies) {
   ForceLoops<double, 4>::energy(cube, batch, turns, mean, x, energies);
 }
 
 // --- narrow: any x86-64 ---
 
 void product_narrow(const CubeConstants<double>& cube, const Batch<double>& batch, const Row<double>* const p,
-  Row<double>* const y) {
+                    Row<double>* const y) {
   ElementLoops<double, 4>::product(cube, batch, p, y);
 }
 void diagonal_narrow(const CubeConstants<double>& cube, const Batch<double>& batch, Row<double>* const blocks) {
   ElementLoops<double, 4>::diagonal(cube, batch, blocks);
 }
 void product_narrow(const CubeConstants<float>& cube, const Batch<float>& batch, const Row<float>* const p,
-  Row<float>* const y) {
+                    Row<float>* const y) {
   ElementLoops<float, 4>::product(cube, batch, p, y);
 }
 void diagonal_narrow(const CubeConstants<float>& cube, const Batch<float>& batch, Row<float>* const blocks) {
   ElementLoops<float, 4>::diagonal(cube, batch, blocks);
 }
 unsigned turn_narrow(const CubeConstants<double>& cube, const Batch<double>& batch, const Row<double>* const x,
-  Turns& turns) {
+                     Turns& turns) {
   return ForceLoops<double, 4>::turn_all(cube, batch, x, turns);
 }
-void force_narrow(const CubeConstants<double>& cube, const Batch<double>& batch, const Turns& turns, const MeanPart mean,
-  const double (*const P)[n_lanes], const double spins, const Row<double>* const x, Row<double>* const forces) {
+void force_narrow(const CubeConstants<double>& cube, const Batch<double>& batch, const Turns& turns,
+                  const MeanPart mean, const double (*const P)[n_lanes], const double spins, const Row<double>* const x,
+                  Row<double>* const forces) {
   ForceLoops<double, 4>::force(cube, batch, turns, mean, P, spins, x, forces);
 }
-void energy_narrow(const CubeConstants<double>& cube, const Batch<double>& batch, const Turns& turns, const MeanPart mean,
-  const Row<double>* const x, double* const energies) {
+void energy_narrow(const CubeConstants<double>& cube, const Batch<double>& batch, const Turns& turns,
+                   const MeanPart mean, const Row<double>* const x, double* const energies) {
   ForceLoops<double, 4>::energy(cube, batch, turns, mean, x, energies);
 }
 

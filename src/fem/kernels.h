@@ -43,9 +43,9 @@ struct alignas(64) PartialCubes {
 /// What all elements of a body share.
 template <class T>
 struct CubeConstants {
-  T h, lambda, mu;                  ///< [m], [Pa]
-  T volume;                         ///< of a full cube [m^3]
-  T hourglass[n_hourglass_pairs];   ///< of a full cube
+  T h, lambda, mu;                ///< [m], [Pa]
+  T volume;                       ///< of a full cube [m^3]
+  T hourglass[n_hourglass_pairs]; ///< of a full cube
 };
 
 template <class T>

@@ -65,8 +65,8 @@ std::vector<GhostLine> lines_of(const std::span<const GhostFace> faces) {
   std::vector<GhostLine> lines;
   for (const GhostFace& f : faces)
     for (int i = 0; i < 4; ++i)
-      lines.push_back({f.lower.value, f.upper.value, f.axis, grid::cube::face_vertices[2 * f.axis + 1][i], f.a[i], f.b[i],
-                       f.c[i], f.stiffness});
+      lines.push_back({f.lower.value, f.upper.value, f.axis, grid::cube::face_vertices[2 * f.axis + 1][i], f.a[i],
+                       f.b[i], f.c[i], f.stiffness});
   return lines;
 }
 

@@ -23,15 +23,17 @@ constexpr std::size_t few = 48;     // corners that are factorised as they are
 /// What a level is made of.
 struct Elements {
   Element full;
-  std::vector<Kind> kind;          // of each copy
+  std::vector<Kind> kind;           // of each copy
   std::vector<std::uint32_t> which; // of `made`, for partial copies
   std::vector<Element> made;
 
-  const Element& operator[](const std::size_t copy) const { return kind[copy] == Kind::full ? full : made[which[copy]]; }
+  const Element& operator[](const std::size_t copy) const {
+    return kind[copy] == Kind::full ? full : made[which[copy]];
+  }
 };
 
-void fill(Level& level, const std::function<const Element&(std::uint32_t)>& element, const Element& full, const double h,
-          const material::Elastic& material) {
+void fill(Level& level, const std::function<const Element&(std::uint32_t)>& element, const Element& full,
+          const double h, const material::Elastic& material) {
   level.bound = full.bound;
   level.volume.assign(level.cells.n_copies(), 0);
   level.elements = batched<float>(level.batching, h, material, full, element);
@@ -109,7 +111,8 @@ void multiply(const Weights& weights, const std::vector<Row<float>>& from, std::
 }
 
 /// Blocks at coarse corners, of the sum of the fine ones.
-std::vector<Spring> restricted(const std::vector<Spring>& fine, const Weights& prolongation, const std::size_t n_coarse) {
+std::vector<Spring> restricted(const std::vector<Spring>& fine, const Weights& prolongation,
+                               const std::size_t n_coarse) {
   std::vector<std::uint32_t> place(n_coarse, CellsOfLevel::unused);
   std::vector<Spring> coarse;
   for (const Spring& spring : fine)

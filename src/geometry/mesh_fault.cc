@@ -112,7 +112,9 @@ std::optional<Promise> stl_header(const std::string& path) {
   return Promise{3 * n, n, 84 + 50 * n, false};
 }
 
-std::string in_line(const int number, const std::string& what) { return "line " + std::to_string(number) + ": " + what; }
+std::string in_line(const int number, const std::string& what) {
+  return "line " + std::to_string(number) + ": " + what;
+}
 
 /// `n` numbers from word `first` on.
 std::optional<std::string> fault_of_numbers(const Lines& lines, const std::size_t first, const std::size_t n) {
@@ -121,8 +123,8 @@ std::optional<std::string> fault_of_numbers(const Lines& lines, const std::size_
     if (!is_finite_number(words[i]))
       return in_line(lines.number(), "'" + words[i].substr(0, 40) + "' is no finite number");
   if (words.size() < first + n)
-    return in_line(lines.number(), std::to_string(words.size() - first) + " numbers stand where there must be " +
-                                     std::to_string(n));
+    return in_line(lines.number(),
+                   std::to_string(words.size() - first) + " numbers stand where there must be " + std::to_string(n));
   return std::nullopt;
 }
 
@@ -177,13 +179,13 @@ void require_room_for_header(const std::string& path) {
   const auto promise = header_of(path, lines);
   const auto n_bytes = double(std::filesystem::file_size(path));
   if (promise && !(promise->least_bytes <= n_bytes + 2)) // the last line need not end
-    throw DataError(Complaint{
-      .file = path,
-      .line = promise->is_text ? lines.number() : 0,
-      .rule = "the header promises " + std::to_string(std::int64_t(std::min(promise->n_vertices, 1e18))) +
-              " vertices and " + std::to_string(std::int64_t(std::min(promise->n_faces, 1e18))) +
-              " faces, which do not fit into the file's " + std::to_string(std::int64_t(n_bytes)) + " bytes",
-      .remedy = "The file is damaged or not whole: export it again"});
+    throw DataError(
+      Complaint{.file = path,
+                .line = promise->is_text ? lines.number() : 0,
+                .rule = "the header promises " + std::to_string(std::int64_t(std::min(promise->n_vertices, 1e18))) +
+                        " vertices and " + std::to_string(std::int64_t(std::min(promise->n_faces, 1e18))) +
+                        " faces, which do not fit into the file's " + std::to_string(std::int64_t(n_bytes)) + " bytes",
+                .remedy = "The file is damaged or not whole: export it again"});
 }
 
 std::optional<std::string> find_fault(const std::string& path) {

@@ -38,7 +38,8 @@ std::string extension(const std::string& path) {
 void require_file(const std::string& path) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error))
-    refuse(path, std::filesystem::exists(path, error) ? "is not a file that holds a mesh" : "the mesh file does not exist",
+    refuse(path,
+           std::filesystem::exists(path, error) ? "is not a file that holds a mesh" : "the mesh file does not exist",
            "Check the path");
   const std::array<std::string, 4> known = {".off", ".obj", ".stl", ".ply"};
   if (std::find(known.begin(), known.end(), extension(path)) == known.end())

@@ -23,7 +23,7 @@ class Reader {
   Outcome outcome() const;
   std::optional<Failure> failure() const;
   std::string scene() const;
-  bool has_scene() const; ///< none: the run was killed before its first step
+  bool has_scene() const;                  ///< none: the run was killed before its first step
   std::vector<std::string> inputs() const; ///< SHA-256 and path of each file that the scene reads
   std::vector<std::string> composition() const;
   Schema schema() const;

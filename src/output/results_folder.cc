@@ -55,7 +55,8 @@ bool is_numbered(const fs::path& file) {
 std::vector<fs::path> files_of(const fs::path& folder, const std::string& name) {
   std::error_code ignored;
   if (name != frames)
-    return fs::exists(fs::symlink_status(folder / name, ignored)) ? std::vector{folder / name} : std::vector<fs::path>{};
+    return fs::exists(fs::symlink_status(folder / name, ignored)) ? std::vector{folder / name}
+                                                                  : std::vector<fs::path>{};
   std::vector<fs::path> found;
   for (const auto& entry : fs::directory_iterator(folder / fs::path(frames).parent_path(), ignored))
     if (is_numbered(entry.path()))

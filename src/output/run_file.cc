@@ -137,7 +137,8 @@ RunFile::RunFile(const std::filesystem::path& path)
     c.bodies[body] = count_body(c.root(), body);
   c.file.transaction([&] {
     const bool again = std::ranges::count(h5::attribute_names(c.root()), "n_resumed") > 0;
-    h5::set_attribute(c.root(), "n_resumed", again ? h5::integer_attribute(c.root(), "n_resumed") + 1 : std::int64_t{1});
+    h5::set_attribute(c.root(), "n_resumed",
+                      again ? h5::integer_attribute(c.root(), "n_resumed") + 1 : std::int64_t{1});
     h5::set_attribute(c.root(), "outcome", to_string(Outcome::running));
     if (h5::exists(c.root(), "/failure"))
       h5::remove(c.root(), "/failure");

@@ -30,7 +30,7 @@ struct SupportRegion {
 
 /// Displacement from rest [m] and velocity [m/s] of the rest position X [m]; the time is 0.
 struct InitialState {
-  std::function<Vec3(const Vec3& X, double time)> displacement, velocity;
+  std::function<Vec3(const Vec3&X, double time)> displacement, velocity;
   double energy = 0; ///< kinetic and elastic, once the body is put there [J]
 };
 
@@ -67,8 +67,8 @@ struct Body {
   Points positions = {};                    ///< of the surface's vertices, now [m]
 
   std::unique_ptr<physics::Physics> physics = nullptr;
-  double density = 0;         ///< of its material [kg/m^3]
-  dynamics::State state = {}; ///< of the particles of its physics
+  double density = 0;                       ///< of its material [kg/m^3]
+  dynamics::State state = {};               ///< of the particles of its physics
   std::optional<InitialState> initial = {}; ///< empty: at rest
   dynamics::Loads loads = {};
   dynamics::StepReport report = {}; ///< of the last step

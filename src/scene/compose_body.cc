@@ -7,8 +7,8 @@
 #include "scene/compose_interior.h"
 #include "scene/compose_loads.h"
 #include "scene/compose_physics.h"
-#include "scene/support_report.h"
 #include "scene/initial_state.h"
+#include "scene/support_report.h"
 
 #include <cmath>
 
@@ -32,8 +32,8 @@ std::string how_to_reach(const geometry::TriangleMesh& mesh, const double cube_e
   if (sides.minCoeff() >= 1)
     return "";
   const Vec3 offset = (sides / 2).cwiseMin(0.5);
-  return line(". It is thinner than a cube: a layer of nodes lies in its middle with 'set Lattice offset [1] = ", offset[0],
-              ", ", offset[1], ", ", offset[2], "'");
+  return line(". It is thinner than a cube: a layer of nodes lies in its middle with 'set Lattice offset [1] = ",
+              offset[0], ", ", offset[1], ", ", offset[2], "'");
 }
 
 cut::Embedding embed_mesh(const Section& section, const BodyParameters& parameters,

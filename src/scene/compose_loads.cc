@@ -295,7 +295,8 @@ void require_static_answer(const Section& section, const Body& body) {
   const auto parameters = read_if_written<QuasiStaticSceneParameters>(section, "Quasi-static");
   if (parameters.free_modes == "allow")
     return;
-  const auto pieces = body.physics->particles_are_corners() ? physics::corner_pieces(body.solid.complex) : std::vector<std::uint32_t>();
+  const auto pieces =
+    body.physics->particles_are_corners() ? physics::corner_pieces(body.solid.complex) : std::vector<std::uint32_t>();
   try {
     dynamics::require_supported(dynamics::free_rigid_modes(body.physics->model(), body.loads, 0, body.state.x, pieces));
   } catch (const ParameterError& error) {

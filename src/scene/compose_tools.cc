@@ -40,8 +40,10 @@ Points read_edge(const Section& section, const std::string& key, const Points& p
 
 /// The key of a section that a complaint of cut/ is about.
 std::string key_of(const Complaint& complaint) {
-  static const std::map<std::string, std::string> keys = {
-    {"Key frames", "Times [s]"}, {"Rotations", "Rotations [degrees]"}, {"Angles", "Openings [degrees]"}, {"Angle times", "Opening times [s]"}};
+  static const std::map<std::string, std::string> keys = {{"Key frames", "Times [s]"},
+                                                          {"Rotations", "Rotations [degrees]"},
+                                                          {"Angles", "Openings [degrees]"},
+                                                          {"Angle times", "Opening times [s]"}};
   const std::string name = complaint.path.substr(complaint.path.find('/') + 1);
   const auto key = keys.find(name);
   return key == keys.end() ? name : key->second;

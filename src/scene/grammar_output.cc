@@ -18,9 +18,10 @@ void OutputParameters::describe(Parameters& p) {
          "Fields over the body, separated by commas, for each corner in the frames of run.h5 and each vertex in the "
          "surface file: " +
            field_names() + ". All but displacement are of the backend fem. Or none.");
-  p.number("Checkpoint interval [s]", checkpoint_interval, non_negative,
-           "Time on the clock between two checkpoints, from which --resume goes on after a kill; longer where they would "
-           "take more than 1 % of the time. 0: only when a signal ends the run.");
+  p.number(
+    "Checkpoint interval [s]", checkpoint_interval, non_negative,
+    "Time on the clock between two checkpoints, from which --resume goes on after a kill; longer where they would "
+    "take more than 1 % of the time. 0: only when a signal ends the run.");
   p.integer("Checkpoint every [1]", checkpoint_every, {0, 1e9},
             "Steps between two checkpoints, whatever the clock says. 0: by the clock.");
 }

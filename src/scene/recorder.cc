@@ -111,8 +111,8 @@ bool can_go_on(const std::filesystem::path& file, const Source& source) {
   if (!same_scene || reader.inputs() != source.inputs)
     throw ParameterError(Complaint{
       .file = file.string(),
-      .rule = std::string("cannot be resumed: it is a run of ") +
-              (same_scene ? "other meshes or pictures" : "another scene"),
+      .rule =
+        std::string("cannot be resumed: it is a run of ") + (same_scene ? "other meshes or pictures" : "another scene"),
       .remedy = "Give the scene, its --set and its files as they were, or start again with --force"});
   return true;
 }
@@ -299,7 +299,8 @@ void Recorder::append_surfaces(const World& world, const int step) {
 void Recorder::write_image(const World& world, const int step) {
   std::array<char, 32> name;
   std::snprintf(name.data(), name.size(), "%06d.png", step);
-  render::write_png(world.images->renderer->draw(drawing(world, step)), (folder() / frames_folder / name.data()).string());
+  render::write_png(world.images->renderer->draw(drawing(world, step)),
+                    (folder() / frames_folder / name.data()).string());
 }
 
 } // namespace kerf::scene

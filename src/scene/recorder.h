@@ -56,7 +56,7 @@ class Recorder {
     int complex_written = -1, surface_written = -1; ///< Body::n_recuts of what the files hold last
     std::size_t n_samples_written = 0;              ///< of the atlas of what is inside
     std::optional<output::SurfaceFile> surface_file;
-    std::vector<output::Field> fields; ///< of the corners, at the step that is recorded
+    std::vector<output::Field> fields;  ///< of the corners, at the step that is recorded
     std::optional<double> surface_ends; ///< what the surface file held when it was opened [s]
 
     void archive(Archive& a) { a(complex_written, surface_written, n_samples_written); }

@@ -18,7 +18,7 @@ struct Watch {
   int n_recuts = -1;
   std::vector<std::uint32_t> piece_of_copy;
   std::vector<double> rest_volumes; ///< of each piece [m^3]
-  bool is_sound = true; ///< what was found last
+  bool is_sound = true;             ///< what was found last
 
   void archive(Archive& a) { a(is_sound); } // the rest is found again
 };

@@ -81,11 +81,13 @@ std::vector<std::string> describe_supports(const Body& body) {
     const Box* const box = std::get_if<Box>(&region.region);
     if (box && body.physics->particles_are_corners())
       for (const std::string& face : faces_on_layers(body, *box))
-        warnings.push_back(line("warning: body ", body.name, ": the face ", face, " of support ", region.name,
-                                " lies on a layer of nodes, and round-off of the mesh decides whether it holds them. Move it by "
-                                "a part of a cube"));
+        warnings.push_back(
+          line("warning: body ", body.name, ": the face ", face, " of support ", region.name,
+               " lies on a layer of nodes, and round-off of the mesh decides whether it holds them. Move it by "
+               "a part of a cube"));
   }
-  if (!body.physics->particles_are_corners() && std::all_of(held.begin(), held.end(), [](const auto h) { return h != 0; }))
+  if (!body.physics->particles_are_corners() &&
+      std::all_of(held.begin(), held.end(), [](const auto h) { return h != 0; }))
     warnings.push_back(line("warning: body ", body.name, ": its supports hold all of its ", held.size(),
                             " phyxels, so nothing of it moves. Use more phyxels, or smaller regions"));
   lines.insert(lines.end(), warnings.begin(), warnings.end());

@@ -109,7 +109,7 @@ class Scanner {
   }
 
   std::string file_;
-  Lines lines_; // of what is taken
+  Lines lines_;                       // of what is taken
   std::vector<WrittenSection*> open_; // from the root to the innermost open section
 };
 

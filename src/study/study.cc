@@ -32,7 +32,9 @@ std::vector<output::StudyRow> earlier_rows(const Plan& plan, const std::filesyst
   if (!std::filesystem::exists(file, error))
     return {};
   const output::StudyTable table = output::read_study_file(file);
-  const auto is_planned = [&](const output::StudyRow& row, const PlannedRow& planned) { return row.name == planned.name; };
+  const auto is_planned = [&](const output::StudyRow& row, const PlannedRow& planned) {
+    return row.name == planned.name;
+  };
   if (table.text != plan.text || table.rows.size() > plan.rows.size() ||
       !std::equal(table.rows.begin(), table.rows.end(), plan.rows.begin(), is_planned))
     throw ParameterError(Complaint{.file = file.string(),
@@ -56,8 +58,7 @@ void tell_orders(std::vector<output::StudyRow>& rows) {
 }
 
 output::StudyTable run_study(const Plan& plan, const std::filesystem::path& folder, const output::RunInfo& info,
-                             const output::Earlier earlier,
-                             const std::function<void(const output::StudyRow&)>& done) {
+                             const output::Earlier earlier, const std::function<void(const output::StudyRow&)>& done) {
   const output::ResultsFolder claimed(folder, earlier, {study_name, output::name_beside(study_name).string()});
   const auto write = [&](output::StudyTable& table, const output::Outcome outcome) {
     table.outcome = outcome;

@@ -16,8 +16,7 @@ namespace kerf::study {
 /// are, and the next one goes on where it was kept. Throws as output::ResultsFolder, make_plan() and measure(), and
 /// NumericalError, with the table written, when all rows have failed.
 output::StudyTable run_study(const Plan& plan, const std::filesystem::path& folder, const output::RunInfo& info,
-                             output::Earlier earlier,
-                             const std::function<void(const output::StudyRow&)>& done);
+                             output::Earlier earlier, const std::function<void(const output::StudyRow&)>& done);
 
 /// Fills the orders: log |e_1 / e_2| / log(h_1 / h_2) in each row of a family but its first, for the rows of the family
 /// that have errors, in the order in which they stand; unknown (NaN) where h is the same.

@@ -1,7 +1,7 @@
 // Several scenes at a time: one that fails leaves the others.
 
-#include "tests/apps/program.h"
 #include "output/reader.h"
+#include "tests/apps/program.h"
 
 namespace kerf::apps {
 namespace {
@@ -12,8 +12,9 @@ TEST_F(Batch, OneThatFailsLeavesTheOthers) {
   Words words = {"run"};
   for (int i = 0; i < 20; ++i) {
     const std::string name = "scene_" + std::to_string(i) + ".prm";
-    write(name, i == 13 ? replaced(cube_scene(), "Young's modulus", "Young modulus")
-                        : i == 17 ? replaced(cube_scene(), "cube.off", "nothing.off") : cube_scene() + falling_blade());
+    write(name, i == 13   ? replaced(cube_scene(), "Young's modulus", "Young modulus")
+                : i == 17 ? replaced(cube_scene(), "cube.off", "nothing.off")
+                          : cube_scene() + falling_blade());
     words.push_back(name);
   }
   words.insert(words.end(), {"--jobs", "2", "--output", "all", "--set", "Time/End time [s]=0.03"});

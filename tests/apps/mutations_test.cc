@@ -25,15 +25,22 @@ class Vandal {
   int below(const std::size_t n) { return static_cast<int>(random_() % std::max<std::size_t>(1, n)); }
 
   std::string damaged_once(std::string text) {
-    static const Words words = {"nan", "-1", "1e309", "inf", "subsection", "end\n", "set ", "=", ";", "#", "\\", "\xff\xfe",
-                                std::string(1, '\0'), "999999999999", "0", "\xef\xbb\xbf", "x=3", "-nan", "\n", "3 0 0 0\n"};
+    static const Words words = {
+      "nan", "-1",   "1e309", "inf",      "subsection",         "end\n",        "set ", "=",
+      ";",   "#",    "\\",    "\xff\xfe", std::string(1, '\0'), "999999999999", "0",    "\xef\xbb\xbf",
+      "x=3", "-nan", "\n",    "3 0 0 0\n"};
     const auto at = static_cast<std::size_t>(below(text.size() + 1)), n = static_cast<std::size_t>(1 + below(40));
     switch (below(7)) {
-      case 0: return text.substr(0, at);
-      case 1: return text.erase(std::min(at, text.size()), n);
-      case 2: return text.insert(at, text.substr(std::min(at, text.size()), n));
-      case 3: return text.insert(at, words[static_cast<std::size_t>(below(words.size()))]);
-      case 4: return text.insert(at, std::string(1000000, 'k'));
+      case 0:
+        return text.substr(0, at);
+      case 1:
+        return text.erase(std::min(at, text.size()), n);
+      case 2:
+        return text.insert(at, text.substr(std::min(at, text.size()), n));
+      case 3:
+        return text.insert(at, words[static_cast<std::size_t>(below(words.size()))]);
+      case 4:
+        return text.insert(at, std::string(1000000, 'k'));
       default:
         for (std::size_t i = at; i < std::min(at + n / 8 + 1, text.size()); ++i)
           text[i] = static_cast<char>(random_());
@@ -73,9 +80,10 @@ class Mutations : public Program, public testing::WithParamInterface<int> {
 };
 
 TEST_P(Mutations, EndInAKnownWay) {
-  const std::string study = "subsection Study\n  set Title = a title\n  set Scene = scene.prm\n"
-                            "  set Answer = kinetic energy\n  set Unit = J\nend\n"
-                            "subsection Variant one\n  set Set = Time/End time [s]=0.02\nend\n";
+  const std::string study =
+    "subsection Study\n  set Title = a title\n  set Scene = scene.prm\n"
+    "  set Answer = kinetic energy\n  set Unit = J\nend\n"
+    "subsection Variant one\n  set Set = Time/End time [s]=0.02\nend\n";
   write("whole.prm", replaced(small_scene(), "= 0.05\nend", "= 6\nend") +
                        "subsection Observables\n  set Names = kinetic energy\nend\n");
   leave_unfinished("whole.prm", "whole");

@@ -129,8 +129,8 @@ TEST_F(ProgramTest, TellsHowAComputationFailed) {
     "subsection Gravity\nend\nsubsection Output\n  set Frames every [1] = 1\nend\n";
   const Result result = run(scene, {"--set", "Time/Time step [s]=0.5", "--set", "Time/End time [s]=500"});
   expect_error(result, 3,
-               {"body cube, step ", ", time ", " s: the step gained ", " J that no load and no support gave", "It shows most at particle ",
-                "Use a smaller time step"});
+               {"body cube, step ", ", time ", " s: the step gained ", " J that no load and no support gave",
+                "It shows most at particle ", "Use a smaller time step"});
 
   const output::Reader reader(folder / "out/run.h5");
   EXPECT_EQ(reader.outcome(), output::Outcome::failed);

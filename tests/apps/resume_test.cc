@@ -1,9 +1,9 @@
 // Runs that end early, by signals at any moment, and go on: to the bits of one that nobody disturbed. Folders in use.
 
-#include "tests/apps/program.h"
 #include "output/h5_array.h"
 #include "output/reader.h"
 #include "output/study_file.h"
+#include "tests/apps/program.h"
 
 #include <chrono>
 #include <csignal>
@@ -29,7 +29,8 @@ std::string busy_scene(const std::string& backend) {
          "  set Grip time [s] = 0.05\n  set Jaws [m] = 0.02, 0, 0\n  set Handle [m] = 0, 0, 0.1\n"
          "  set Times [s] = 0.05, 0.3\n"
          "  set Positions [m] = 0.09, 0, 0.09; 0.14, 0, 0.1\nend\n"
-         "subsection Observables\n  set Names = kinetic energy, elastic energy, gravity energy, mass, momentum x, pieces, "
+         "subsection Observables\n  set Names = kinetic energy, elastic energy, gravity energy, mass, momentum x, "
+         "pieces, "
          "cut edges, waiting cuts, work of the cut, missing energy, energy gained, "
          "stable step, waiting pairs, reactions, tool forces, solver iterations, volume\nend\n"
          "subsection Gravity\nend\nsubsection Output\n  set Frames every [1] = 3\n  set Checkpoint every [1] = 4\nend\n"
@@ -54,7 +55,8 @@ class Resume : public Program {
     pointers.push_back(nullptr);
     const pid_t id = fork();
     if (id == 0) {
-      if (chdir((folder / "").c_str()) == 0 && std::freopen("stdout", "w", stdout) && std::freopen("stderr", "w", stderr))
+      if (chdir((folder / "").c_str()) == 0 && std::freopen("stdout", "w", stdout) &&
+          std::freopen("stderr", "w", stderr))
         execv(pointers[0], pointers.data());
       _exit(127);
     }
@@ -191,7 +193,8 @@ TEST_F(Resume, ASecondRunLeavesTheFirstWhole) {
   const std::string second = "cd '" + (folder / "").string() + "' && '" KERF_PROGRAM "' run scene.prm --output out ";
   for (const std::string option : {"", "--force", "--resume"})
     EXPECT_EQ(WEXITSTATUS(std::system((second + option + " >second 2>&1").c_str())), 2);
-  EXPECT_NE(read_text(folder / "second").find("is in use: process "), std::string::npos) << read_text(folder / "second");
+  EXPECT_NE(read_text(folder / "second").find("is in use: process "), std::string::npos)
+    << read_text(folder / "second");
   first.join();
   ASSERT_EQ(kerf({"run", "scene.prm", "--output", "whole"}).exit_code, 0);
   expect_same_runs("whole", "out");
@@ -214,7 +217,8 @@ TEST_F(Resume, RefusesAnotherScene) {
   ASSERT_GT(bytes.size(), 1000u);
   bytes[bytes.size() / 2] ^= 1;
   write("out/checkpoint.kerf", bytes);
-  expect_error(kerf({"run", "scene.prm", "--output", "out", "--resume"}), 2, {"checkpoint.kerf", "is damaged", "--force"});
+  expect_error(kerf({"run", "scene.prm", "--output", "out", "--resume"}), 2,
+               {"checkpoint.kerf", "is damaged", "--force"});
 }
 
 /// Ten moments; rows that were finished are not run again, the one under way goes on.
@@ -223,10 +227,11 @@ TEST_F(Resume, StudiesGoOnToo) {
   for (const std::string kind : {"subsection Images", "subsection Surface file"})
     scene.erase(scene.find(kind), scene.find("end\n", scene.find(kind)) + 4 - scene.find(kind));
   write("scene.prm", scene);
-  write("study.prm", "subsection Study\n  set Title = t\n  set Scene = scene.prm\n  set Answer = elastic energy\n"
-                     "  set Unit = J\nend\nsubsection Variant one\nend\n"
-                     "subsection Variant two\n  set Set = Body cube/Material/Poisson's ratio [1]=0.2\nend\n"
-                     "subsection Variant three\n  set Set = Body cube/Element=enhanced\nend\n");
+  write("study.prm",
+        "subsection Study\n  set Title = t\n  set Scene = scene.prm\n  set Answer = elastic energy\n"
+        "  set Unit = J\nend\nsubsection Variant one\nend\n"
+        "subsection Variant two\n  set Set = Body cube/Material/Poisson's ratio [1]=0.2\nend\n"
+        "subsection Variant three\n  set Set = Body cube/Element=enhanced\nend\n");
   const auto start = std::chrono::steady_clock::now();
   ASSERT_EQ(kerf({"study", "study.prm", "--output", "whole"}).exit_code, 0) << read_text(folder / "stderr");
   const auto took = std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::steady_clock::now() - start);
@@ -240,7 +245,8 @@ TEST_F(Resume, StudiesGoOnToo) {
   }
   const Result last = kerf(resumed);
   ASSERT_EQ(last.exit_code, 0) << last.err;
-  const auto a = output::read_study_file(folder / "whole/study.h5"), b = output::read_study_file(folder / "out/study.h5");
+  const auto a = output::read_study_file(folder / "whole/study.h5"),
+             b = output::read_study_file(folder / "out/study.h5");
   EXPECT_EQ(b.outcome, output::Outcome::completed);
   ASSERT_EQ(a.rows.size(), b.rows.size());
   for (std::size_t i = 0; i < a.rows.size(); ++i) {
@@ -257,8 +263,8 @@ TEST_F(Resume, TheStoredSceneReproducesTheRun) {
   std::filesystem::copy_file(mesh_path("cube.off"), folder / "scenes/cube.off");
   write("scenes/scene.prm", replaced(busy_scene("fem"), mesh_path("cube.off"), "cube.off"));
   const Result result = kerf({"run", "scenes/scene.prm", "--output", "whole", "--set", "Time/End time [s]=0.3", "--set",
-                              "Body cube/Material/Poisson's ratio [1]=0.2", "--set", "Body cube/Damping/Mass damping [1/s]=3",
-                              "--set", "Body cube/Element=enhanced"});
+                              "Body cube/Material/Poisson's ratio [1]=0.2", "--set",
+                              "Body cube/Damping/Mass damping [1/s]=3", "--set", "Body cube/Element=enhanced"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
   write("stored.prm", output::Reader(folder / "whole/run.h5").scene());
   ASSERT_EQ(kerf({"run", "stored.prm", "--output", "out"}).exit_code, 0) << read_text(folder / "stderr");

@@ -1,7 +1,7 @@
 // Small things that users trip over: what editors write, what is too long to be echoed, devices for files.
 
-#include "tests/apps/program.h"
 #include "output/reader.h"
+#include "tests/apps/program.h"
 
 namespace kerf::apps {
 namespace {
@@ -14,8 +14,9 @@ TEST_F(SmallRefusals, AByteOrderMarkSaysNothing) {
 
 TEST_F(SmallRefusals, LongValuesAreNotEchoed) {
   const std::string million(1000000, 'k');
-  for (const std::string& scene : {replaced(cube_scene(), "= 1e4", "= " + million), replaced(cube_scene(), "Density", million),
-                                   replaced(cube_scene(), "Material", million), million}) {
+  for (const std::string& scene :
+       {replaced(cube_scene(), "= 1e4", "= " + million), replaced(cube_scene(), "Density", million),
+        replaced(cube_scene(), "Material", million), million}) {
     const Result result = run(scene);
     EXPECT_EQ(result.exit_code, 1);
     EXPECT_LT(result.err.size(), 2000u);
@@ -37,8 +38,9 @@ TEST_F(SmallRefusals, AMeshThatPromisesTooMuchTakesNoMemory) {
 }
 
 TEST_F(SmallRefusals, ExpressionsAssignNothing) {
-  const std::string support = "  subsection Support top\n    set Lower [m] = -1, -1, 0.05\n    set Upper [m] = 1, 1, 1\n"
-                              "    set Displacement [m] = 0; 0; ";
+  const std::string support =
+    "  subsection Support top\n    set Lower [m] = -1, -1, 0.05\n    set Upper [m] = 1, 1, 1\n"
+    "    set Displacement [m] = 0; 0; ";
   const auto with = [&](const std::string& expression) {
     return replaced(cube_scene(), "  subsection Material", support + expression + "\n  end\n  subsection Material");
   };
@@ -98,7 +100,8 @@ TEST_F(SmallRefusals, ASlabThinnerThanACubeIsToldTheKey) {
   ASSERT_NE(at, std::string::npos) << refused.err;
   const auto begin = at + key.size();
   const std::string offset = refused.err.substr(begin, refused.err.find('\'', begin) - begin);
-  EXPECT_EQ(run(scene, {"--set", "Body cube/Lattice offset [1]=" + offset}).exit_code, 0) << read_text(folder / "stderr");
+  EXPECT_EQ(run(scene, {"--set", "Body cube/Lattice offset [1]=" + offset}).exit_code, 0)
+    << read_text(folder / "stderr");
 }
 
 } // namespace

@@ -75,8 +75,10 @@ void run(const int n, const double nu, const int n_slits) {
   double tip = 0;
   for (std::size_t c = 0; c < rest.size(); ++c)
     tip = std::min(tip, state.x[c][2] - rest[c][2]);
-  std::printf("%8zu elements (%zu partial), %zu corners, nu %g: built %.4f s, first step %.4f s, median step %.5f s, lowest %.8f\n  iterations",
-              model.n_elements(), model.n_partial(), rest.size(), nu, built, first, seconds[n_steps / 2], tip);
+  std::printf(
+    "%8zu elements (%zu partial), %zu corners, nu %g: built %.4f s, first step %.4f s, median step %.5f s, lowest "
+    "%.8f\n  iterations",
+    model.n_elements(), model.n_partial(), rest.size(), nu, built, first, seconds[n_steps / 2], tip);
   for (const int i : iterations)
     std::printf(" %d", i);
   std::printf("\n");

@@ -129,8 +129,8 @@ TEST(Multigrid, IsSymmetricAndPositiveForAnyCut) {
     const double near = n % 3 == 0 ? 1e-9 : 0.1;
     Body body = make_block({5, 5, 4}, 0.1, draw, {near, 1 - near});
     cut_at_random(body, 0.03 * n, draw, {near, 1 - near});
-    Hexahedra model(body, {.material = rubber(n % 2 == 0 ? 0.3 : 0.49),
-                           .strain = n % 4 == 0 ? Strain::enhanced : Strain::trilinear});
+    Hexahedra model(
+      body, {.material = rubber(n % 2 == 0 ? 0.3 : 0.49), .strain = n % 4 == 0 ? Strain::enhanced : Strain::trilinear});
     const Mat3 held = n % 2 == 0 ? Mat3(Mat3::Identity()) : Mat3(Vec3(1, 2, 3) * Vec3(1, 2, 3).transpose() / 14);
     const dynamics::Loads loads = holding(
       body, [](const Vec3& X) { return X[2] < 0.15 || (X - Vec3(0.5, 0, 0.4)).norm() < 0.15; }, held);

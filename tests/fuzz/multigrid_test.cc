@@ -137,8 +137,8 @@ TEST(Fuzz, MultigridIsSymmetricAndPositive) {
                 .failure,
               std::nullopt)
       << "case " << seed;
-  std::cout << n_judged << " bodies: " << double(sum) / n_judged << " iterations, at most " << most
-            << "; block Jacobi " << double(sum_of_jacobi) / n_judged << '\n';
+  std::cout << n_judged << " bodies: " << double(sum) / n_judged << " iterations, at most " << most << "; block Jacobi "
+            << double(sum_of_jacobi) / n_judged << '\n';
   EXPECT_GT(n_judged, 20);
   EXPECT_LT(3 * sum, sum_of_jacobi);
 }

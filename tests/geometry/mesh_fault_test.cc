@@ -16,8 +16,9 @@ namespace kerf::geometry {
 namespace {
 
 const std::string off = "OFF # a comment\n4 4 0\n\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n";
-const std::string ply = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
-                        "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+const std::string ply =
+  "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+  "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
 
 std::string error_of(const std::string& name, const std::string& text) {
   const auto path = std::filesystem::temp_directory_path() / ("kerf_fault_" + std::to_string(getpid()) + "_" + name);

@@ -17,7 +17,8 @@ double error_of(const std::string& study, const std::string& row) {
     make_plan(scene::read_scene_text(std::string(KERF_SOURCE_DIR) + "/params/studies/" + study + ".prm", {}));
   for (const PlannedRow& planned : plan.rows)
     if (planned.name == row) {
-      const output::StudyRow found = measure(plan, planned, folder / "out", output::sample_info(), output::Earlier::replace);
+      const output::StudyRow found =
+        measure(plan, planned, folder / "out", output::sample_info(), output::Earlier::replace);
       EXPECT_EQ(found.outcome, "completed") << row;
       return found.error;
     }

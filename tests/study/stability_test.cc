@@ -119,7 +119,8 @@ TEST(Stability, TheLargestStepIsTheOnePredicted) {
 TEST(Stability, TheTableIsReadBackAsItWasWritten) {
   const BlockStudy study;
   const StabilityPlan plan = study.plan(BlockStudy::head(3) + variants + changes + BlockStudy::sweep("a", "soft"));
-  const auto written = run_stability_study(plan, study / "out", output::sample_info(), output::Earlier::replace, [](const auto&) {});
+  const auto written =
+    run_stability_study(plan, study / "out", output::sample_info(), output::Earlier::replace, [](const auto&) {});
   const auto read = output::read_stability_file(study / "out/stability.h5");
   ASSERT_EQ(read.rows.size(), 4u);
   EXPECT_EQ(read.outcome, output::Outcome::completed);

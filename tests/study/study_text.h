@@ -41,7 +41,8 @@ class CubeStudy {
     return make_plan(scene::scan_scene_text(text, (folder_ / "study.prm").string()));
   }
   output::StudyTable run(const std::string& text) const {
-    return run_study(plan(text), folder_ / "out", output::sample_info(), output::Earlier::replace, [](const output::StudyRow&) {});
+    return run_study(plan(text), folder_ / "out", output::sample_info(), output::Earlier::replace,
+                     [](const output::StudyRow&) {});
   }
   std::filesystem::path operator/(const std::string& name) const { return folder_ / name; }
 

@@ -132,8 +132,9 @@ Sparse mass_matrix(const Built& built, const double density, const MassMatrix ki
   const fem::Hexahedra& model = *built.model;
   if (kind == MassMatrix::consistent)
     return fem::assemble(model.incidence(), [&](const std::size_t copy) {
-      const auto mass = fem::consistent_mass(
-        fem::material_moments(built.body, built.body.complex.copies[grid::CopyId(copy)]), density * std::pow(model.h(), 3));
+      const auto mass =
+        fem::consistent_mass(fem::material_moments(built.body, built.body.complex.copies[grid::CopyId(copy)]),
+                             density * std::pow(model.h(), 3));
       fem::Matrix24 M = fem::Matrix24::Zero();
       for (int a = 0; a < 8; ++a)
         for (int b = 0; b < 8; ++b)
@@ -212,9 +213,9 @@ BeamResult frequency(const Vibration kind, const double slenderness, const int n
   for (std::size_t c = 0; c < rest.size(); ++c)
     shape.segment<3>(3 * c) = wave.shape(kind, rest[c]);
   const double expected = wave.squared_frequency(kind);
-  const double found =
-    lowest_eigenvalue(built.model->stiffness_matrix(rest, dynamics::Tangent::exact), mass_matrix(built, options_of(model, 1, wave.nu).material.density, mass),
-                      free_components(rest, slenderness), shape, expected);
+  const double found = lowest_eigenvalue(built.model->stiffness_matrix(rest, dynamics::Tangent::exact),
+                                         mass_matrix(built, options_of(model, 1, wave.nu).material.density, mass),
+                                         free_components(rest, slenderness), shape, expected);
   return result_of(built, timer, std::sqrt(found / expected));
 }
 
