@@ -14,7 +14,6 @@
 #include <limits>
 
 namespace kerf::dynamics {
-
 namespace {
 
 constexpr std::size_t worth = 4096;      // corners from which on a second thread pays
@@ -48,7 +47,6 @@ Points without_mean(const std::span<const double> mass, const Points& values) {
   }
   return moved(values, -1, Points(values.size(), sum / all));
 }
-
 } // namespace
 
 /// What stays the same during a solution.
@@ -376,27 +374,25 @@ int BalanceSolver::correct_by_cg(const Problem& problem, const Points& guess, co
   for (std::size_t i = 0; i < n && !guess.empty(); ++i)
     correction_[i] = problem.constraints.freedom(i).project * guess[i];
   const double of_own = 0.5 * options_.step_tolerance; // the step's own error is half the way from the guess
-  constexpr double of_rest = 1e-3;                     // of what a correction may leave where others follow
-  const double left = options_.n_mixed > 0 ? of_rest * scaled_residual() : 0;
+  const double left = options_.n_mixed > 0 ? 1e-3 * scaled_residual() : 0; // where other corrections follow
   const CgStop stop{.residual = std::max({options_.cg_tolerance * scale, left, scaled_round_off()}),
                     .error = of_own * way_,
                     .of_way = guess.empty() ? 0 : of_own};
   const Product A = [&](const auto p, const auto y) { apply(problem, p, y); },
                 J = [&](const auto r, const auto z) { apply_inverse_blocks(r, z); };
-  const auto solve = [&](const CgEquation& equation, const int most) {
-    return conjugate_gradients(equation, flat(residual_), stop, most, flat(correction_));
+  const auto solve = [&](const CgEquation& equation, const CgReport& before, const int most) {
+    CgReport report = conjugate_gradients(equation, flat(residual_), stop, most, flat(correction_));
+    report.n_iterations += before.n_iterations;
+    report.way = std::hypot(report.way, before.way);
+    return report;
   };
   constexpr int patience = 100; // with what the model offers, where the blocks alone may get on as well
   CgReport report;
   if (Preconditioner* const own = preconditioner(problem))
-    report = solve({A, [own](const auto r, const auto z) { own->apply(r, z); }, J},
+    report = solve({A, [own](const auto r, const auto z) { own->apply(r, z); }, J}, {},
                    std::min(patience, options_.max_cg_iterations));
-  if (!report.converged && !report.indefinite && report.n_iterations < options_.max_cg_iterations) {
-    const CgReport before = report;
-    report = solve({A, J, {}}, options_.max_cg_iterations - before.n_iterations);
-    report.n_iterations += before.n_iterations;
-    report.way = std::hypot(report.way, before.way);
-  }
+  if (!report.converged && !report.indefinite && report.n_iterations < options_.max_cg_iterations)
+    report = solve({A, J, {}}, report, options_.max_cg_iterations - report.n_iterations);
   if (!report.converged && !report.indefinite)
     throw NumericalError("conjugate gradients left a relative residual of " + to_text(report.residual / scale) +
                          " after " + std::to_string(report.n_iterations) + " iterations. Use " +
