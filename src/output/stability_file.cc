@@ -15,36 +15,30 @@ constexpr const char* group = "/stability/rows";
 template <class Action>
 void for_each_column(const Action& action) {
   using Row = StabilityRow;
-  const auto text = [&](const char* name, std::string Row::*field, const char* description) {
-    action(Column<Row, std::string>{name, field, "1", description});
-  };
-  const auto number = [&](const char* name, double Row::*field, const char* unit, const char* description) {
-    action(Column<Row, double>{name, field, unit, description});
-  };
-  const auto count = [&](const char* name, std::int64_t Row::*field, const char* description) {
-    action(Column<Row, std::int64_t>{name, field, "1", description});
-  };
-  text("sweep", &Row::sweep, "which of the study's");
-  text("variant", &Row::variant, "the way to run the scene");
-  text("cases", &Row::cases, "of the changes that the sweep combines");
-  text("changes", &Row::changes, "what was changed of the scene, separated by ' | '");
-  text("backend", &Row::backend, "the physics of the body");
-  text("integrator", &Row::integrator, "how its time advances");
-  number("dt", &Row::dt, "s", "time step");
-  text("outcome", &Row::outcome, "stable, damped out, drifted, not back, refused, stopped, or failed");
-  text("reason", &Row::reason, "why it was refused or stopped, or in what it failed");
-  number("start_energy", &Row::start_energy, "J", "kinetic and elastic, after what cuts at time 0");
-  number("largest_energy", &Row::largest_energy, "1", "of all steps, over that at the start");
-  number("last_energy", &Row::last_energy, "1", "over that at the start");
-  number("momentum", &Row::momentum, "1", "its change, over that of all mass at the speed of the start's energy");
-  number("volume", &Row::volume, "1", "at the end, over that at rest");
-  count("steps", &Row::n_steps, "that were finished");
-  count("iterations", &Row::n_iterations, "of the linear solver in all steps");
-  count("divided", &Row::n_divided, "steps that were taken again in substeps");
-  number("cpu_time", &Row::cpu_seconds, "s", "of all threads in all steps");
-  number("predicted_step", &Row::predicted_step, "s", "the integrator's stable step at the start; NaN: not asked");
-  number("largest_step", &Row::largest_step, "s",
-         "the longest one with which the energy at most doubles, by bisection; NaN: not asked");
+  const Columns<Row, Action> columns{action};
+  columns.text("sweep", &Row::sweep, "which of the study's");
+  columns.text("variant", &Row::variant, "the way to run the scene");
+  columns.text("cases", &Row::cases, "of the changes that the sweep combines");
+  columns.text("changes", &Row::changes, "what was changed of the scene, separated by ' | '");
+  columns.text("backend", &Row::backend, "the physics of the body");
+  columns.text("integrator", &Row::integrator, "how its time advances");
+  columns.number("dt", &Row::dt, "s", "time step");
+  columns.text("outcome", &Row::outcome, "stable, damped out, drifted, not back, refused, stopped, or failed");
+  columns.text("reason", &Row::reason, "why it was refused or stopped, or in what it failed");
+  columns.number("start_energy", &Row::start_energy, "J", "kinetic and elastic, after what cuts at time 0");
+  columns.number("largest_energy", &Row::largest_energy, "1", "of all steps, over that at the start");
+  columns.number("last_energy", &Row::last_energy, "1", "over that at the start");
+  columns.number("momentum", &Row::momentum, "1",
+                 "its change, over that of all mass at the speed of the start's energy");
+  columns.number("volume", &Row::volume, "1", "at the end, over that at rest");
+  columns.count("steps", &Row::n_steps, "that were finished");
+  columns.count("iterations", &Row::n_iterations, "of the linear solver in all steps");
+  columns.count("divided", &Row::n_divided, "steps that were taken again in substeps");
+  columns.number("cpu_time", &Row::cpu_seconds, "s", "of all threads in all steps");
+  columns.number("predicted_step", &Row::predicted_step, "s",
+                 "the integrator's stable step at the start; NaN: not asked");
+  columns.number("largest_step", &Row::largest_step, "s",
+                 "the longest one with which the energy at most doubles, by bisection; NaN: not asked");
 }
 
 } // namespace

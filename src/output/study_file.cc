@@ -14,39 +14,32 @@ constexpr const char* group = "/study/rows";
 /// Calls action(column) for every column, whatever its type; `unit` of the answer.
 template <class Action>
 void for_each_column(const std::string& unit, const Action& action) {
-  const auto text = [&](const char* name, std::string StudyRow::*field, const char* description) {
-    action(Column<StudyRow, std::string>{name, field, "1", description});
-  };
-  const auto number = [&](const char* name, double StudyRow::*field, const std::string& its_unit,
-                          const char* description) {
-    action(Column<StudyRow, double>{name, field, its_unit, description});
-  };
-  const auto count = [&](const char* name, std::int64_t StudyRow::*field, const char* description) {
-    action(Column<StudyRow, std::int64_t>{name, field, "1", description});
-  };
-  text("name", &StudyRow::name, "variant and cases of the row");
-  text("family", &StudyRow::family, "the same in rows between which orders of convergence are told");
-  text("changes", &StudyRow::changes, "what was changed of the scene, separated by ' | '");
-  text("backend", &StudyRow::backend, "the physics of the body that is asked");
-  text("integrator", &StudyRow::integrator, "how its time advances");
-  number("h", &StudyRow::h, "m", "edge of the grid's cubes");
-  number("dt", &StudyRow::dt, "s", "time step");
-  count("dof", &StudyRow::n_dof, "coordinates of the particles of all bodies at the end, held ones included");
-  count("steps", &StudyRow::n_steps, "time steps that were finished");
-  count("iterations", &StudyRow::n_iterations, "of the linear solver in all steps of the body that is asked");
-  number("value", &StudyRow::value, unit, "the answer");
-  number("reference", &StudyRow::reference, unit, "what the answer should be");
-  text("reference_source", &StudyRow::reference_source, "where the reference comes from");
-  number("error", &StudyRow::error, "1", "value over reference less one");
-  number("order", &StudyRow::order, "1",
-         "order of convergence in h, from the errors of this row and of the row of its family before it");
-  number("setup_time", &StudyRow::setup_seconds, "s", "wall-clock time of composing");
-  number("stepping_time", &StudyRow::stepping_seconds, "s", "wall-clock time of all steps, without writing files");
-  number("cpu_time", &StudyRow::cpu_seconds, "s",
-         "of all threads in all steps, writing the series included: hardly depends on what else the machine does");
-  number("peak_memory", &StudyRow::peak_memory, "byte",
-         "most memory in RAM during the row, beyond what the process had before it");
-  text("outcome", &StudyRow::outcome, "completed, or failed: why");
+  const Columns<StudyRow, Action> columns{action};
+  columns.text("name", &StudyRow::name, "variant and cases of the row");
+  columns.text("family", &StudyRow::family, "the same in rows between which orders of convergence are told");
+  columns.text("changes", &StudyRow::changes, "what was changed of the scene, separated by ' | '");
+  columns.text("backend", &StudyRow::backend, "the physics of the body that is asked");
+  columns.text("integrator", &StudyRow::integrator, "how its time advances");
+  columns.number("h", &StudyRow::h, "m", "edge of the grid's cubes");
+  columns.number("dt", &StudyRow::dt, "s", "time step");
+  columns.count("dof", &StudyRow::n_dof, "coordinates of the particles of all bodies at the end, held ones included");
+  columns.count("steps", &StudyRow::n_steps, "time steps that were finished");
+  columns.count("iterations", &StudyRow::n_iterations, "of the linear solver in all steps of the body that is asked");
+  columns.number("value", &StudyRow::value, unit, "the answer");
+  columns.number("reference", &StudyRow::reference, unit, "what the answer should be");
+  columns.text("reference_source", &StudyRow::reference_source, "where the reference comes from");
+  columns.number("error", &StudyRow::error, "1", "value over reference less one");
+  columns.number("order", &StudyRow::order, "1",
+                 "order of convergence in h, from the errors of this row and of the row of its family before it");
+  columns.number("setup_time", &StudyRow::setup_seconds, "s", "wall-clock time of composing");
+  columns.number("stepping_time", &StudyRow::stepping_seconds, "s",
+                 "wall-clock time of all steps, without writing files");
+  columns.number(
+    "cpu_time", &StudyRow::cpu_seconds, "s",
+    "of all threads in all steps, writing the series included: hardly depends on what else the machine does");
+  columns.number("peak_memory", &StudyRow::peak_memory, "byte",
+                 "most memory in RAM during the row, beyond what the process had before it");
+  columns.text("outcome", &StudyRow::outcome, "completed, or failed: why");
 }
 
 void write_rows(const h5::Object& root, const StudyTable& table) {

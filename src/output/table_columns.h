@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "output/h5_array.h"
 
+#include <cstdint>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -18,6 +19,22 @@ struct Column {
   const char* name;
   T Row::*field;
   std::string unit, description;
+};
+
+/// Calls the action with each column that it is told.
+template <class Row, class Action>
+struct Columns {
+  const Action& action;
+
+  void text(const char* name, std::string Row::*field, const char* description) const {
+    action(Column<Row, std::string>{name, field, "1", description});
+  }
+  void number(const char* name, double Row::*field, const std::string& unit, const char* description) const {
+    action(Column<Row, double>{name, field, unit, description});
+  }
+  void count(const char* name, std::int64_t Row::*field, const char* description) const {
+    action(Column<Row, std::int64_t>{name, field, "1", description});
+  }
 };
 
 inline std::string column_path(const std::string& group, const char* column) { return group + "/" + column; }

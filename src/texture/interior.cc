@@ -98,10 +98,11 @@ void Interior::build_cell(const int number, const std::vector<Exemplar>& exempla
   CellData& data = cells_[number];
   const std::size_t n = cell.faces.size();
   if (n > max_sources)
-    throw ParameterError(Complaint{.path = "Components",
-                                   .value = std::to_string(n) + " faces of one cell",
-                                   .rule = "at most " + std::to_string(max_sources) + " are allowed",
-                                   .remedy = "Use fewer exemplars, or set Components to together"});
+    throw ParameterError(
+      Complaint{.path = "Components",
+                .value = std::to_string(n) + " faces of one cell",
+                .rule = "at most " + std::to_string(max_sources) + " are allowed",
+                .remedy = "Use fewer exemplars; where sections have several components, together they are one face"});
   for (const Face& face : cell.faces) {
     data.pixels.push_back(face.pixels);
     data.sources.emplace_back(face, cell, exemplars[face.exemplar], charts_[face.exemplar], body);

@@ -102,12 +102,18 @@ class Program : public testing::Test {
 
   output::TemporaryFolder folder;
 
- private:
-  static int wait_for(Words& words) {
+  /// As exec takes them; good as long as the words are.
+  static std::vector<char*> pointers_to(Words& words) {
     std::vector<char*> pointers;
     for (std::string& word : words)
       pointers.push_back(word.data());
     pointers.push_back(nullptr);
+    return pointers;
+  }
+
+ private:
+  static int wait_for(Words& words) {
+    const std::vector<char*> pointers = pointers_to(words);
     const pid_t id = fork();
     if (id == 0) {
       execv(pointers[0], pointers.data());

@@ -49,10 +49,7 @@ class Resume : public Program {
   int disturbed(const Words& arguments, const int signal, const std::function<void()>& wait) const {
     Words words = {KERF_PROGRAM};
     words.insert(words.end(), arguments.begin(), arguments.end());
-    std::vector<char*> pointers;
-    for (std::string& word : words)
-      pointers.push_back(word.data());
-    pointers.push_back(nullptr);
+    const std::vector<char*> pointers = pointers_to(words);
     const pid_t id = fork();
     if (id == 0) {
       if (chdir((folder / "").c_str()) == 0 && std::freopen("stdout", "w", stdout) &&
