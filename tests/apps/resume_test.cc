@@ -7,7 +7,6 @@
 
 #include <chrono>
 #include <csignal>
-#include <functional>
 #include <random>
 #include <thread>
 
@@ -41,12 +40,8 @@ std::string busy_scene(const std::string& backend) {
 
 class Resume : public Program {
  protected:
-  /// Starts `kerf arguments...`, sends it the signal after so many milliseconds, and says how it ended.
-  int disturbed(const Words& arguments, const int signal, const int milliseconds) const {
-    return disturbed(arguments, signal, [&] { std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds)); });
-  }
-  /// The same, once something has happened.
-  int disturbed(const Words& arguments, const int signal, const std::function<void()>& wait) const {
+  /// Starts `kerf arguments...` beside this process.
+  pid_t start(const Words& arguments) const {
     Words words = {KERF_PROGRAM};
     words.insert(words.end(), arguments.begin(), arguments.end());
     const std::vector<char*> pointers = pointers_to(words);
@@ -57,11 +52,34 @@ class Resume : public Program {
         execv(pointers[0], pointers.data());
       _exit(127);
     }
-    wait();
-    ::kill(id, signal);
+    return id;
+  }
+
+  static int status_of(const pid_t id) {
     int status = 0;
     waitpid(id, &status, 0);
     return status;
+  }
+
+  /// Waits until a run into "out" that draws has drawn its first picture.
+  void wait_for_first_frame() const {
+    while (!std::filesystem::exists(folder / "out/frames/000000.png"))
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+
+  /// Starts it, sends it the signal after so many milliseconds, and says how it ended.
+  int disturbed(const Words& arguments, const int signal, const int milliseconds) const {
+    const pid_t id = start(arguments);
+    std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
+    ::kill(id, signal);
+    return status_of(id);
+  }
+  /// The same after the first picture.
+  int disturbed(const Words& arguments, const int signal) const {
+    const pid_t id = start(arguments);
+    wait_for_first_frame();
+    ::kill(id, signal);
+    return status_of(id);
   }
 
   void expect_same_runs(const std::string& one, const std::string& other) const {
@@ -116,7 +134,7 @@ class Resume : public Program {
     const Words resumed = {"run", "scene.prm", "--output", "out", "--resume"};
     int n_ended = 0;
     for (int i = 0; i < n_times; ++i) {
-      const int status = disturbed(resumed, signal, moment(random));
+      const int status = i == 0 ? disturbed(resumed, signal) : disturbed(resumed, signal, moment(random));
       n_ended += WIFSIGNALED(status) || WEXITSTATUS(status) == 128 + signal ? 1 : 0;
       const bool has_begun =
         std::filesystem::exists(folder / "out/run.h5") && std::filesystem::file_size(folder / "out/run.h5") > 0;
@@ -166,8 +184,7 @@ TEST_F(Resume, SignalsEndAStepCleanly) {
   write("scene.prm", busy_scene("fem"));
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     std::filesystem::remove_all(folder / "out");
-    const int status =
-      disturbed({"run", "scene.prm", "--output", "out", "--set", "Time/End time [s]=30"}, signal, 1500);
+    const int status = disturbed({"run", "scene.prm", "--output", "out", "--set", "Time/End time [s]=30"}, signal);
     ASSERT_TRUE(WIFEXITED(status));
     EXPECT_EQ(WEXITSTATUS(status), 128 + signal);
     const std::string said = read_text(folder / "stderr");
@@ -182,17 +199,18 @@ TEST_F(Resume, SignalsEndAStepCleanly) {
 }
 
 TEST_F(Resume, ASecondRunLeavesTheFirstWhole) {
-  write("scene.prm", replaced(busy_scene("fem"), "End time [s] = 0.3", "End time [s] = 3"));
+  write("scene.prm", busy_scene("fem"));
   const Words words = {"run", "scene.prm", "--output", "out"};
-  std::thread first([&] { EXPECT_EQ(WEXITSTATUS(disturbed(words, 0, 0)), 0); });
-  while (!std::filesystem::exists(folder / "out/frames/000000.png"))
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  const pid_t first = start(words);
+  wait_for_first_frame();
+  ::kill(first, SIGSTOP); // it shall not come to its end before the others have tried
   const std::string second = "cd '" + (folder / "").string() + "' && '" KERF_PROGRAM "' run scene.prm --output out ";
   for (const std::string option : {"", "--force", "--resume"})
     EXPECT_EQ(WEXITSTATUS(std::system((second + option + " >second 2>&1").c_str())), 2);
   EXPECT_NE(read_text(folder / "second").find("is in use: process "), std::string::npos)
     << read_text(folder / "second");
-  first.join();
+  ::kill(first, SIGCONT);
+  EXPECT_EQ(WEXITSTATUS(status_of(first)), 0);
   ASSERT_EQ(kerf({"run", "scene.prm", "--output", "whole"}).exit_code, 0);
   expect_same_runs("whole", "out");
   expect_error(kerf(words), 1, {"out", "holds the results of an earlier run", "--force", "--resume"});
@@ -203,10 +221,7 @@ TEST_F(Resume, ASecondRunLeavesTheFirstWhole) {
 
 TEST_F(Resume, RefusesAnotherScene) {
   write("scene.prm", replaced(busy_scene("fem"), "End time [s] = 0.3", "End time [s] = 30"));
-  disturbed({"run", "scene.prm", "--output", "out"}, SIGTERM, [&] {
-    while (!std::filesystem::exists(folder / "out/frames/000000.png"))
-      std::this_thread::sleep_for(std::chrono::milliseconds(5));
-  });
+  disturbed({"run", "scene.prm", "--output", "out"}, SIGTERM);
   expect_error(kerf({"run", "scene.prm", "--output", "out", "--resume", "--set", "Time/End time [s]=1"}), 1,
                {"run.h5", "cannot be resumed", "another scene", "--force"});
   EXPECT_EQ(output::Reader(folder / "out/run.h5").outcome(), output::Outcome::interrupted);
