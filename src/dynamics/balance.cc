@@ -380,19 +380,11 @@ int BalanceSolver::correct_by_cg(const Problem& problem, const Points& guess, co
                     .of_way = guess.empty() ? 0 : of_own};
   const Product A = [&](const auto p, const auto y) { apply(problem, p, y); },
                 J = [&](const auto r, const auto z) { apply_inverse_blocks(r, z); };
-  const auto solve = [&](const CgEquation& equation, const CgReport& before, const int most) {
-    CgReport report = conjugate_gradients(equation, flat(residual_), stop, most, flat(correction_));
-    report.n_iterations += before.n_iterations;
-    report.way = std::hypot(report.way, before.way);
-    return report;
-  };
-  constexpr int patience = 100; // with what the model offers, where the blocks alone may get on as well
-  CgReport report;
-  if (Preconditioner* const own = preconditioner(problem))
-    report = solve({A, [own](const auto r, const auto z) { own->apply(r, z); }, J}, {},
-                   std::min(patience, options_.max_cg_iterations));
-  if (!report.converged && !report.indefinite && report.n_iterations < options_.max_cg_iterations)
-    report = solve({A, J, {}}, report, options_.max_cg_iterations - report.n_iterations);
+  Preconditioner* const own = options_.equation == Equation::regular ? preconditioner(problem) : nullptr;
+  const CgEquation equation =
+    own ? CgEquation{A, [own](const auto r, const auto z) { own->apply(r, z); }, J} : CgEquation{A, J, {}};
+  const CgReport report =
+    patient_conjugate_gradients(equation, flat(residual_), stop, options_.max_cg_iterations, flat(correction_));
   if (!report.converged && !report.indefinite)
     throw NumericalError("conjugate gradients left a relative residual of " + to_text(report.residual / scale) +
                          " after " + std::to_string(report.n_iterations) + " iterations. Use " +

@@ -63,6 +63,10 @@ enum class Trust {
   tested ///< test it where it leads; if it does not bear that, go on with a line search, from the start or from there
 };
 
+/// A singular equation leaves motions that nothing resists, of bodies that are free in statics. The blocks add none of them;
+/// a model's preconditioner makes them of round-off, and a rotation by much lets no step along the correction pass.
+enum class Equation { regular, singular };
+
 struct NewtonOptions {
   int max_iterations = 1;
   /// Forces out of balance over the forces that balance, in the scaled Euclidean norm, at which iteration ends [1].
@@ -78,6 +82,7 @@ struct NewtonOptions {
   /// Error that conjugate gradients may leave over the step's own, in the energy norm of A [1]. 0: `cg_tolerance` alone.
   double step_tolerance = 0;
   Trust trust = Trust::blind;
+  Equation equation = Equation::regular;
   int n_mixed = 0; ///< corrections before that are mixed into one, see mixing.h; asks for a line search
 };
 

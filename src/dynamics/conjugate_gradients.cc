@@ -125,4 +125,18 @@ CgReport conjugate_gradients(const CgEquation& equation, const std::span<const d
   return report;
 }
 
+CgReport patient_conjugate_gradients(const CgEquation& equation, const std::span<const double> b, const CgStop& stop,
+                                     const int max_iterations, const std::span<double> x) {
+  constexpr int patience = 100;
+  if (!equation.J)
+    return conjugate_gradients(equation, b, stop, max_iterations, x);
+  const CgReport first = conjugate_gradients(equation, b, stop, std::min(patience, max_iterations), x);
+  if (first.converged || first.indefinite || first.n_iterations >= max_iterations)
+    return first;
+  CgReport report = conjugate_gradients({equation.A, equation.J, {}}, b, stop, max_iterations - first.n_iterations, x);
+  report.n_iterations += first.n_iterations;
+  report.way = std::hypot(report.way, first.way);
+  return report;
+}
+
 } // namespace kerf::dynamics

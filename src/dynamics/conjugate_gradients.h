@@ -49,4 +49,9 @@ struct CgEquation {
 CgReport conjugate_gradients(const CgEquation& equation, std::span<const double> b, const CgStop& stop,
                              int max_iterations, std::span<double> x);
 
+/// The same, but for an equation with J of its own by B for at most 100 iterations, and from there by J: where B gets on
+/// badly, the blocks alone may do as well, at a fraction of its cost.
+CgReport patient_conjugate_gradients(const CgEquation& equation, std::span<const double> b, const CgStop& stop,
+                                     int max_iterations, std::span<double> x);
+
 } // namespace kerf::dynamics

@@ -54,6 +54,12 @@ QuasiStaticOptions QuasiStaticParameters::options() const {
   return o;
 }
 
+NewtonOptions QuasiStatic::newton(const QuasiStaticOptions& options) {
+  NewtonOptions newton = options.newton;
+  newton.equation = options.free_modes == FreeModes::allow ? Equation::singular : Equation::regular;
+  return newton;
+}
+
 Points QuasiStatic::out_of_balance(const Loads& loads, const double time, const Points& x) {
   Points forces;
   model_.force(x, forces);

@@ -44,7 +44,7 @@ class QuasiStatic : public Stepper {
  public:
   /// The model must outlive the stepper.
   QuasiStatic(ElasticModel& model, const QuasiStaticOptions& options)
-    : model_(model), options_(options), solver_(model, options.newton) {}
+    : model_(model), options_(options), solver_(model, newton(options)) {}
 
   MotionKind motion() const override { return MotionKind::quasi_static; }
   /// Counts load steps as substeps. Throws ParameterError for free rigid motions, NumericalError when the smallest load
@@ -52,6 +52,7 @@ class QuasiStatic : public Stepper {
   StepReport step(State& state, const Loads& loads, double dt) override;
 
  private:
+  static NewtonOptions newton(const QuasiStaticOptions& options);
   Points out_of_balance(const Loads& loads, double time, const Points& x);
 
   ElasticModel& model_;
