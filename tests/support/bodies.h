@@ -4,6 +4,7 @@
 
 #include "grid/solid.h"
 
+#include <bit>
 #include <cmath>
 #include <random>
 #include <vector>
@@ -146,6 +147,26 @@ inline std::vector<grid::EdgeCut> plane_cuts(const Body& body, const Plane& plan
       continue;
     if (const double t = a / (a - b); is_inner(body, e) || is_below_skin(body, e, t))
       cuts.push_back({e, t, plane.normal, label});
+  }
+  return cuts;
+}
+
+/// The segments of the skin that a plane crosses.
+inline std::vector<grid::SkinCut> plane_skin_cuts(const Body& body, const Plane& plane, const grid::CutLabel label = 1) {
+  std::vector<grid::SkinCut> cuts;
+  for (const auto c : ids<grid::CellId>(body.grid.n_cells())) {
+    if (!is_skin_cell(body.grid, c))
+      continue;
+    const grid::Skeleton& skeleton = grid::skeleton_of(grid::material_of(body.grid, c));
+    for (grid::Segments left = skeleton.segments & ~grid::skeleton::lines; left != 0; left &= left - 1) {
+      const int segment = std::countr_zero(left);
+      const grid::SkinSegment of_skin = grid::skin_segment(body.grid, c, segment);
+      const auto& ends = skeleton.segment[segment].ends;
+      const double a = plane.height(grid::item_point(body, c, ends[0])), b = plane.height(grid::item_point(body, c, ends[1]));
+      const bool is_own = !of_skin.face.valid() || !body.grid.cells(of_skin.face)[0].valid() || body.grid.cells(of_skin.face)[0] == c;
+      if (is_own && !body.cuts.is_cut(of_skin) && (a < 0) != (b < 0))
+        cuts.push_back({of_skin, a / (a - b), plane.normal, label});
+    }
   }
   return cuts;
 }

@@ -43,13 +43,17 @@ inline surface::PlacementCounts cut(Body& body, const std::span<const grid::Edge
   return surface::place(body, {});
 }
 
-/// All that a surface without an end inside the body cuts.
-inline surface::PlacementCounts cut_through(Body& body, const std::span<const grid::EdgeCut> cuts) {
+/// All that a plane cuts.
+inline cut::SweepCuts cuts_of_plane(const Body& body, const Plane& plane, const grid::CutLabel label = 1) {
+  return {plane_cuts(body, plane, label), plane_skin_cuts(body, plane, label), 0};
+}
+
+/// Cuts that are known.
+inline surface::PlacementCounts cut_through(Body& body, const cut::SweepCuts& cuts) {
   body.complex = grid::build_complex(body);
-  const Points x = grid::rest_positions(body);
   cut::Cutter cutter(9);
-  cutter.begin(body, x);
-  return surface::place(body, cutter.cut(body, cuts, cut::Front::none, x), {});
+  cutter.begin(body, grid::rest_positions(body));
+  return surface::place(body, cutter.cut(body, cuts), {});
 }
 
 using grid::volume;

@@ -109,7 +109,7 @@ struct PlaneStudy {
 void study_plane(PlaneStudy& study, Body body, const Plane& plane) {
   const double exact = support::volume_below(box, plane), whole = (box.upper - box.lower).prod();
   const std::size_t unresolved = n_unresolved(body, plane);
-  support::cut_through(body, support::plane_cuts(body, plane));
+  support::cut_through(body, support::cuts_of_plane(body, plane));
   const double error = std::abs(cut_volume_below(body, plane) - exact);
   study.worst_total = std::max(study.worst_total, std::abs(total_volume(body) / whole - 1));
   ++study.n_planes;
@@ -155,7 +155,7 @@ double mean_error(const double h, const int n_planes) {
     const Vec3 normal = support::random_direction(random);
     const Vec3 through = 0.5 * (box.lower + box.upper) + 0.05 * support::random_vector(random);
     const Plane plane{normal, normal.dot(through)};
-    support::cut_through(body, support::plane_cuts(body, plane));
+    support::cut_through(body, support::cuts_of_plane(body, plane));
     sum += std::abs(support::volume_below(body, plane) - support::volume_below(box, plane));
   }
   return sum / n_planes / (box.upper - box.lower).prod();
