@@ -1,5 +1,9 @@
 #include "cut/cutter.h"
 
+#include "cut/tips.h"
+
+#include <algorithm>
+
 namespace kerf::cut {
 
 using grid::CutChange;
@@ -79,6 +83,8 @@ CutChange Cutter::cut(Solid& solid, const SweepCuts& cuts) {
     segments.push_back(cut.segment);
     passed_[cut.label - 1].remove(cells_of(solid.grid, cut.segment));
   }
+  std::sort(segments.begin(), segments.end());
+  counts_.n_tips += leave_tips_whole(solid, segments);
   if (edges.empty() && segments.empty())
     return {};
   CutChange change = grid::update_complex(solid, std::move(edges), std::move(segments));

@@ -46,15 +46,29 @@ std::uint32_t Cuts::index(const SkinSegment& segment) const {
   return i == none ? none : cells_[i][SkinOfCell::spokes + segment.place];
 }
 
+std::uint32_t& Cuts::entry(const SkinSegment& segment) {
+  return segment.face.valid() ? face(segment.face)[SkinOfFace::halves + segment.place]
+                              : cell(segment.cell)[SkinOfCell::spokes + segment.place];
+}
+
 void Cuts::add(SkinCut cut) {
-  const SkinSegment& at = cut.segment;
-  std::uint32_t& index =
-    at.face.valid() ? face(at.face)[SkinOfFace::halves + at.place] : cell(at.cell)[SkinOfCell::spokes + at.place];
+  std::uint32_t& index = entry(cut.segment);
   if (index != none)
     throw std::logic_error("a segment of the skin is cut once");
   cut.t = std::clamp(cut.t, min_edge_parameter, 1 - min_edge_parameter);
   index = static_cast<std::uint32_t>(skin_cuts_.size());
   skin_cuts_.push_back(cut);
+}
+
+void Cuts::take_back(const std::span<const SkinSegment> segments) {
+  std::size_t n = n_settled_of_skin_;
+  for (std::size_t i = n; i < skin_cuts_.size(); ++i) {
+    const bool is_taken = std::ranges::binary_search(segments, skin_cuts_[i].segment);
+    entry(skin_cuts_[i].segment) = is_taken ? none : static_cast<std::uint32_t>(n);
+    if (!is_taken)
+      skin_cuts_[n++] = skin_cuts_[i];
+  }
+  skin_cuts_.resize(n);
 }
 
 const Vec3* Cuts::inner_point(const FaceId f, const int arc) const {

@@ -103,6 +103,8 @@ class Cuts {
   std::span<const SkinCut> skin_cuts() const { return skin_cuts_; }
   /// Cuts a segment of the skin that is not cut yet; t is clamped.
   void add(SkinCut cut);
+  /// Takes back cuts of segments that are not settled yet; ascending.
+  void take_back(std::span<const SkinSegment> segments);
 
   /// What has been cut since settle() was called last: its vertices are yet to be placed.
   bool is_new(EdgeId e) const { return edge_cut_[e] != none && edge_cut_[e] >= n_settled_; }
@@ -158,6 +160,7 @@ class Cuts {
   void set(std::uint32_t& index, const Vec3& p);
   FaceEntries& face(FaceId f);
   CellEntries& cell(CellId c);
+  std::uint32_t& entry(const SkinSegment& segment);
 
   SparseIndex<EdgeId> edge_cut_, outer_cut_; // the second only of edges that are cut twice
   SparseIndex<FaceId> face_point_;

@@ -78,7 +78,7 @@ class LocalSkeleton {
 
   Vec3 centre() const {
     const Vec3* const p = solid_.cuts.inner_point(cell_);
-    return local(p ? *p : cell_point(solid_, cell_));
+    return p ? local(*p) : mean_cut(blades_);
   }
 
  private:
@@ -104,12 +104,23 @@ class LocalSkeleton {
     return i < skeleton::first_middle ? in_face((i - skeleton::first_on_arc) / 2, p) : p;
   }
 
+  /// Where no vertex has been placed: between its cuts, if there are some.
   Vec3 middle_of(const int side) const {
     const Skeleton::Side& of = skeleton_.side[side];
+    Segments border = 0;
     Vec3 sum = Vec3::Zero();
-    for (int i = 0; i < of.n; ++i)
+    for (int i = 0; i < of.n; ++i) {
+      border |= Segments(1) << of.segments[i];
       sum += items_[of.items[i]];
-    return sum / of.n;
+    }
+    return (border & blades_) != 0 ? mean_cut(border & blades_) : Vec3(sum / of.n);
+  }
+
+  Vec3 mean_cut(const Segments cuts) const {
+    Vec3 sum = Vec3::Zero();
+    for (Segments left = cuts; left != 0; left &= left - 1)
+      sum += cut(std::countr_zero(left));
+    return sum / std::popcount(cuts);
   }
 
   const Solid& solid_;
