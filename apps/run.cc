@@ -74,7 +74,7 @@ void print_cutting(const scene::World& world) {
   if (n_double + n_waiting > 0)
     std::printf("  %zu edges crossed twice by one cut and left whole, %zu cuts still waiting\n", n_double, n_waiting);
   if (n_tips > 0)
-    std::printf("  %zu tips of the skin left whole: no other edge holds what was cut off there\n", n_tips);
+    std::printf("  %zu segments of the skin left whole: no material lies behind them\n", n_tips);
   if (n_crumbs > 0)
     std::printf("  %zu crumbs, pieces that the grid cannot deform: they moved as rigid bodies\n", n_crumbs);
   if (n_passed > 0)
