@@ -82,7 +82,7 @@ struct CutChange {
   std::vector<SkinSegment> segments; ///< of the skin, that are cut now
   std::vector<CellId> cells;         ///< around them; ascending
   std::size_t n_copies_before = 0, n_corners_before = 0;
-  std::vector<CopyId> copies;    ///< new, or divided, or with other rinds or corners than before; ascending
+  std::vector<CopyId> copies;    ///< new, or divided, or with other items or corners than before; ascending
   std::vector<CopyId> reshaped;  ///< these, and all whose material has another shape: those in the cells; ascending
   std::vector<CornerId> parents; ///< of the corners n_corners_before, ... in their order: where they came from
 

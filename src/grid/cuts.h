@@ -4,9 +4,9 @@
 /// Everything here is in the rest configuration.
 ///
 /// An edge inside the body is cut once. An edge of the skin is cut by the skin, and may be cut once more, between its
-/// material node and the skin: what lies between the two cuts is its rind. It holds no node, and yet it is
-/// material: without it what a blade cuts between the last node and the skin would be lost. The skin's own segments are
-/// cut once, like edges inside: so where a cut meets the skin is found, and not inferred from edges.
+/// material node and the skin: what lies between the two cuts holds no node, and yet it is material. The skin's own
+/// segments (skeleton.h) are cut once, like edges inside: so where a cut meets the skin is found, and not inferred from
+/// edges.
 
 #include "grid/grid.h"
 #include "grid/skeleton.h"

@@ -1,7 +1,7 @@
 #pragma once
 
-/// A cell's material as a polyhedron: what blades find of it, and what they leave of it (the thesis asks for cut edges
-/// of the grid alone, §2.3.3, and so cannot know what a blade does to the skin between them).
+/// A cell's material as a polyhedron: what blades find of it, and what they leave of it. The thesis asks for cut edges
+/// of the grid alone (§2.3.3), and so cannot know what a blade does to the skin between them.
 ///
 /// Its vertices are the material nodes and, where the skin passes through the cell, those of the skin: one on each edge
 /// of the skin, one for each arc of the skin in a face (skin_arcs.h), one in the middle of each closed row of arcs. Its

@@ -4,7 +4,7 @@
 ///
 /// The problem: the force k m (g - x) lets a corner swing about its goal with the frequency sqrt(k) whatever its mass m.
 /// What starts that, a cut that moves its goal, has as much energy as m allows: next to none in a corner that only a sliver
-/// or a rind knows, opposite to the material. So such corners swing by cubes and at any speed, for ever, in silence.
+/// or a piece of skin knows, opposite to the material. So such corners swing by cubes and at any speed, for ever, in silence.
 ///
 /// The method: a *rider* is a corner with less than m_ref = 1/128 of a cube's mass, half of what the outer corners of a box
 /// have along its edges where its skin lies midway; its *carrier* is the nearest copy of the piece (fewest steps between

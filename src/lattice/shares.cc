@@ -13,7 +13,7 @@ namespace kerf::lattice {
 
 namespace {
 
-/// Of a cube: a rind without volume has corners too, and they are to move with its node.
+/// Of a cube: a piece of skin without volume has corners too, and they are to move with its node.
 constexpr double least_share = 1e-12;
 
 /// Integral over a tetrahedron of a product of three functions that are linear in it and not negative at its vertices,

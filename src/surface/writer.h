@@ -96,7 +96,7 @@ class Writer {
     for (std::size_t i = index_.first_triangle.size(); i < cuts.size(); ++i) {
       index_.first_triangle.push_back(static_cast<std::uint32_t>(n));
       if (solid_.cuts.is_cut_twice(cuts[i].edge) && solid_.cuts.index(cuts[i].edge) == i)
-        n += 2 * triangles_per_end; // one side is that of the rind
+        n += 2 * triangles_per_end; // the other side belongs to the skin
       else
         for (const NodeId end : solid_.grid.ends(cuts[i].edge))
           n += solid_.grid.is_material(end) ? triangles_per_end : 0;

@@ -144,7 +144,7 @@ TEST(Moments, MakeElementsThatNeverGainEnergy) {
     }
     const auto complex = grid::build_complex(body);
     for (const grid::Copy& copy : complex.copies) {
-      if (grid::lines_under_skin(body, copy) == 0)
+      if (copy.skin == 0)
         continue;
       ++n_under_skin;
       const Moments m = material_moments(body, copy);
