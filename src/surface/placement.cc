@@ -3,6 +3,7 @@
 #include "grid/cube.h"
 #include "grid/touched.h"
 #include "surface/below_skin.h"
+#include "surface/fold.h"
 #include "surface/view.h"
 
 #include <Eigen/Geometry>
@@ -200,7 +201,10 @@ class Placer {
     const double part =
       part_before_line(from, p, at(skeleton::on_line(of_skin.lines[0])), at(skeleton::on_arc(face, arc)),
                        at(skeleton::on_line(of_skin.lines[1])), cube::face_axis(face));
-    solid_.cuts.set_inner_point(f, arc, hold_below_skin(from, p, part));
+    const Vec3 q = hold_below_skin(from, p, part);
+    const bool folds = is_folded(solid_, view, side, q);
+    is_held_ |= folds;
+    solid_.cuts.set_inner_point(f, arc, folds ? at(skeleton::on_arc(face, arc)) : q);
     count_held();
   }
 
@@ -253,6 +257,10 @@ class Placer {
                            grid::item_point(solid_, c, side.items[2])}));
     });
     solid_.cuts.set_inner_point(c, hold_below_skin(from, p, part));
+    if (is_folded(solid_, view)) {
+      is_held_ = true;
+      solid_.cuts.set_inner_point(c, grid::cell_point(solid_, c));
+    }
     count_held();
   }
 

@@ -23,7 +23,7 @@ void expect_as_made_anew(const Make& make, const typename Corners::IntegratorMak
   Corners physics(block.seen(), make, integrator);
   dynamics::State state = state_at_rest(physics);
   for (int batch = 0; batch < 6; ++batch) {
-    block.cut(support::random_cuts(random, block.body, 0.12), physics, state);
+    block.cut(support::with_skin(block.body, support::random_cuts(random, block.body, 0.12)), physics, state);
     const auto anew = make(block.seen());
     const std::size_t n = block.body.complex.n_corners();
     ASSERT_EQ(physics.rest(), grid::rest_positions(block.body));

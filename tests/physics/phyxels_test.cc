@@ -85,7 +85,7 @@ TEST(Phyxels, CarryForcesWithTheirSumAfterAnyCuts) {
   Phyxels physics(block.seen(), options(), verlet);
   dynamics::State state = state_at_rest(physics);
   for (int batch = 0; batch < 5; ++batch) {
-    block.cut(support::random_cuts(random, block.body, 0.15), physics, state);
+    block.cut(support::with_skin(block.body, support::random_cuts(random, block.body, 0.15)), physics, state);
     const auto carried = physics.carry(block.surface.weights);
     for (std::size_t i = 0; i < carried.n_points(); ++i) {
       double weight = 0;
@@ -105,7 +105,7 @@ TEST(Phyxels, PiecesThatStayWholeKeepABond) {
   Phyxels physics(block.seen(), options(), verlet);
   dynamics::State state = state_at_rest(physics);
   for (int batch = 0; batch < 5; ++batch)
-    block.cut(support::random_cuts(random, block.body, 0.15), physics, state);
+    block.cut(support::with_skin(block.body, support::random_cuts(random, block.body, 0.15)), physics, state);
   const auto copies = grid::copies_around(block.body, physics.rest());
   const auto pieces = pba::phyxel_pieces(block.body.complex, copies);
   const pba::PhyxelModel& model = physics.model();

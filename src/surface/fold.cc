@@ -1,0 +1,74 @@
+#include "surface/fold.h"
+
+#include "grid/material.h"
+#include "grid/shape.h"
+
+#include <Eigen/Geometry>
+
+namespace kerf::surface {
+
+namespace cube = grid::cube;
+namespace skeleton = grid::skeleton;
+
+namespace {
+
+constexpr double negligible = 1e-13; // of h^2, h^3
+
+/// Adds the integrals of the shape functions over a tetrahedron, by a rule that is exact for them.
+void add(std::array<double, 8>& integrals, const grid::Tetrahedron& t) {
+  const double volume = grid::volume(t);
+  if (volume == 0)
+    return;
+  const Vec3 centre = 0.25 * (t[0] + t[1] + t[2] + t[3]);
+  const auto add_at = [&](const Vec3& p, const double weight) {
+    for (int v = 0; v < cube::n_vertices; ++v)
+      integrals[v] += weight * volume * grid::shape(v, p);
+  };
+  add_at(centre, -0.8);
+  for (const Vec3& p : t)
+    add_at(centre + (p - centre) / 3, 0.45);
+}
+
+/// Does the cell's vertex see all of its skin from below? Then nothing is folded.
+bool sees_skin(const grid::Solid& solid, const View& view) {
+  const Vec3 p = *solid.cuts.inner_point(view.cell);
+  bool result = true;
+  for_each_bit(view.now.skeleton().sides >> skeleton::first_triangle, [&](const int triangle) {
+    const auto& items = view.now.skeleton().side[skeleton::first_triangle + triangle].items;
+    const Vec3 a = grid::item_point(solid, view.cell, items[0]) - p, b = grid::item_point(solid, view.cell, items[1]) - p,
+               c = grid::item_point(solid, view.cell, items[2]) - p;
+    result = result && a.dot(b.cross(c)) >= 0;
+  });
+  return result;
+}
+
+} // namespace
+
+bool is_folded(const grid::Solid& solid, const View& view) {
+  if (sees_skin(solid, view))
+    return false;
+  for (const grid::Part& part : parts_of(view.now)) {
+    std::array<double, 8> integrals{};
+    for (const auto& [t, vertex] : grid::pieces_of(solid, view.cell, part.items()))
+      add(integrals, t);
+    for (const double integral : integrals)
+      if (integral < -negligible)
+        return true;
+  }
+  return false;
+}
+
+bool is_folded(const grid::Solid& solid, const View& view, const int side, const Vec3& p) {
+  const auto& [n, items, segments] = view.now.skeleton().side[side];
+  const int axis = cube::face_axis(side / 2);
+  const double outward = side / 2 % 2 == 1 ? 1 : -1, least = -negligible * (view.upper - view.lower).squaredNorm();
+  for (int i = 0; i < n; ++i) {
+    const Vec3 a = grid::item_point(solid, view.cell, items[i]) - p,
+               b = grid::item_point(solid, view.cell, items[(i + 1) % n]) - p;
+    if (outward * a.cross(b)[axis] < least)
+      return true;
+  }
+  return false;
+}
+
+} // namespace kerf::surface

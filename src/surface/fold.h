@@ -1,0 +1,16 @@
+#pragma once
+
+/// Whether cuts are folded over the skin: then a part of a cell would have negative material (grid/material.h). With the
+/// skin's own vertices in place of the cuts' none has.
+
+#include "surface/view.h"
+
+namespace kerf::surface {
+
+/// In a cell whose cuts' vertices are placed: has a part of it negative mass at one of its corners?
+bool is_folded(const grid::Solid& solid, const View& view);
+
+/// Does a vertex at p not see all of a side of the cell's skeleton that lies in a face?
+bool is_folded(const grid::Solid& solid, const View& view, int side, const Vec3& p);
+
+} // namespace kerf::surface
