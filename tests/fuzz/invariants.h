@@ -19,12 +19,12 @@ class Violation : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Copies are the parts of their cells; each material node has one real corner; pieces are what uncut edges and the
-/// skin join of nodes and rinds; corners are the slots that gluing joins, no more and no fewer.
-void require_sound_complex(const grid::Solid& solid, const FaceArcs& arcs);
+/// Copies are the parts of their cells; each material node has one real corner; pieces are what uncut segments join;
+/// corners are the slots that gluing joins, no more and no fewer.
+void require_sound_complex(const grid::Solid& solid, const Items& items);
 
 /// Every corner has one parent, whatever copy is asked, an instance of the same node; real corners have real ones. A
-/// copy comes from that which had its nodes, its rinds, or the nodes under rinds that are new.
+/// copy comes from that which had its items, or the nodes under points of the skin that are new.
 void require_sound_parents(const grid::CellComplex& before, const grid::CellComplex& after,
                            const Table<grid::CornerId, grid::CornerId>& parents);
 

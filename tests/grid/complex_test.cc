@@ -285,9 +285,13 @@ TEST(Complex, OfAnUncutBodyIsItsGrid) {
 }
 
 TEST(Complex, HasTwoCopiesAtTheFaceOfAFront) {
-  // Four nodes in a ring, its lower x edge cut: the cell through the ring holds one component, the one below it two.
+  // Four nodes in a ring, its lower x edge cut, and the skin around that: the cell through the ring holds one component,
+  // the one below it two.
   Body body = support::block({2, 1, 2});
   body.cuts.add(body.grid, {*body.grid.find_edge({1, 1, 1}, 0), 0.5, Vec3::UnitX(), 1});
+  for (const SkinCut& cut : support::plane_skin_cuts(body, {Vec3::UnitX(), 1.5}))
+    if (const auto& [f, c, place] = cut.segment; (f.valid() ? centre(body.grid, f) : centre(body.grid, c))[2] < 1.25)
+      body.cuts.add(cut);
   const CellComplex complex = build_complex(body);
   const CellId below = *body.grid.find_cell({1, 1, 0}), above = *body.grid.find_cell({1, 1, 1});
   EXPECT_TRUE(complex.copies[complex.first_copy[below]].next.valid());
@@ -311,7 +315,8 @@ TEST(Complex, AgreesWithItsDefinitionOnRandomCutSets) {
     if (nodes.empty())
       nodes = {{1, 1, 1}};
     const Body body = support::make_body({}, nodes, support::midway);
-    const Plan plan{support::random_cuts(random, body, uniform(random, 0.02, 0.98))};
+    const double inner = uniform(random, 0.02, 0.98);
+    const Plan plan = histories::random_plan(random, body, inner, 0, i % 4 == 0 ? 0 : inner);
     tally.add(body, check(random, body, plan));
     ASSERT_FALSE(HasFatalFailure()) << "random set " << i;
     n_cut_sets += plan.cuts.empty() ? 0 : 1;
@@ -323,7 +328,7 @@ TEST(Complex, AgreesWithItsDefinitionOnRandomCutSets) {
 TEST(Complex, AgreesWithItsDefinitionOnCutsOfTheSkin) {
   Random random(6);
   Tally tally;
-  for (int i = 0; i < 400; ++i) {
+  for (int i = 0; i < 1000; ++i) {
     const Index3 n = {1 + i % 4, 1 + i / 4 % 3, 1 + i / 12 % 3};
     auto nodes = i % 4 == 0 ? support::block_nodes(n) : support::some_nodes(random, n, uniform(random, 0.1, 1));
     if (nodes.empty())
@@ -416,11 +421,11 @@ TEST(Complex, GivesSkinThatIsCutOffCopiesOfItsOwn) {
     const auto edges = body.grid.edges(around[cell]);
     return SkinSegment::spoke(around[cell], static_cast<int>(std::ranges::find(edges, edge) - edges.begin()));
   };
-  // The cells around the edge: 0 below in y and z, 1 above in y, 2 above in z, 3 above in both.
+  // The cells around the edge: 0 above it in y and z, 1 below in y, 2 below in z, 3 below in both.
   expect({edge}, {}, 8, 27, 1); // the skin still holds all
-  expect({}, {half(0, 3), half(0, 5), spoke(0)}, 9, 27 + 2, 1); // alone in the first cell: two on that cell's own edge
-  expect({}, {half(1, 5), spoke(1)}, 10, 27 + 6, 1); // in two cells side by side: six on their far side
-  expect({}, {half(2, 3), spoke(2), spoke(3)}, 12, 27 + 18, 2); // on its own in four cells
+  expect({}, {half(0, 2), half(0, 4), spoke(0)}, 9, 27 + 2, 1); // alone in the first cell: two on that cell's own edge
+  expect({}, {half(1, 4), spoke(1)}, 10, 27 + 6, 1); // in two cells side by side: six on their far side
+  expect({}, {half(2, 2), spoke(2), spoke(3)}, 12, 27 + 18, 2); // on its own in four cells
 }
 
 /// Each item its own copy: nothing is glued but by what it is.

@@ -80,7 +80,7 @@ TEST(Cuts, MayBeTwoOnAnEdgeOfTheSkin) {
   }
 }
 
-TEST(Cuts, OfTheSkinLieAboveTheSecondOne) {
+TEST(Cuts, OfTheSkinLieNowhereBelowTheSecondOne) {
   Random random(9);
   auto nodes = support::some_nodes(random, {3, 3, 3}, 0.5);
   nodes.push_back({2, 2, 2});
@@ -95,7 +95,7 @@ TEST(Cuts, OfTheSkinLieAboveTheSecondOne) {
                            1 - min_edge_parameter, 1.0, 2.0}) {
       Cuts cuts = body.cuts;
       const double clamped = std::clamp(t, min_edge_parameter, 1 - min_edge_parameter), skin = cuts.find(e)->t;
-      const bool is_below = body.grid.is_material(body.grid.ends(e)[0]) ? clamped < skin : clamped > skin;
+      const bool is_below = body.grid.is_material(body.grid.ends(e)[0]) ? clamped <= skin : clamped >= skin;
       if (is_below) {
         cuts.add(body.grid, {e, t, Vec3::UnitX(), 1});
         EXPECT_EQ(cuts.find(e)->t, clamped);

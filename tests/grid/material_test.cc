@@ -175,7 +175,7 @@ TEST(Material, OfTheCopiesOfACellIsThatOfTheCell) {
   }
   RecordProperty("worst", std::to_string(worst));
   EXPECT_GT(n_cells, 5000u);
-  EXPECT_GT(n_parts, 5 * n_cells);
+  EXPECT_GT(n_parts, 4 * n_cells);
 }
 
 /// Each piece belongs to a vertex that has material, and reaches from an item of the part.

@@ -43,7 +43,7 @@ CellCuts random_cell(Random& random, const unsigned material, const Probabilitie
   return cell;
 }
 
-/// Each set of material vertices, so many times; one time in four nothing of some kind is cut.
+/// Each set of material vertices, so many times; often none of some kind is cut, or all.
 template <class Check>
 void for_random_cells(const unsigned seed, const int n_each, const Check& check) {
   Random random(seed);
@@ -51,7 +51,7 @@ void for_random_cells(const unsigned seed, const int n_each, const Check& check)
     for (int i = 0; i < n_each; ++i) {
       Probabilities probabilities;
       for (double& p : probabilities)
-        p = random() % 4 == 0 ? 0 : uniform(random, 0, 1);
+        p = random() % 4 == 0 ? 0 : random() % 4 == 0 ? 1 : uniform(random, 0, 1);
       check(random_cell(random, material, probabilities));
       ASSERT_FALSE(testing::Test::HasFatalFailure()) << "material " << material << ", " << i;
     }
@@ -108,7 +108,7 @@ TEST(SkinArcs, AreThoseOfAWalkRoundTheFace) {
 TEST(Parts, OfACellAreThoseOfAFlood) {
   int most = 0;
   std::size_t n_without_nodes = 0, n_held_by_skin = 0, n_unsaid = 0;
-  for_random_cells(1, 100, [&](const CellCuts& cell) {
+  for_random_cells(1, 80, [&](const CellCuts& cell) {
     const slow::Material material = slow::material_of(cell);
     const Parts parts = parts_of(cell), whole = whole_parts_of(cell);
     ASSERT_EQ(as_sets(cell.material, parts), slow::said_parts(material, {1, 1, 1}));
@@ -123,7 +123,7 @@ TEST(Parts, OfACellAreThoseOfAFlood) {
     });
   });
   EXPECT_GE(most, 25);
-  EXPECT_GT(n_without_nodes, 10000u);
+  EXPECT_GT(n_without_nodes, 8000u);
   EXPECT_GT(n_held_by_skin, 1000u) << "nodes that only the skin holds together";
   EXPECT_GT(n_unsaid, 100u) << "skins that no blade has cut";
 }
@@ -257,7 +257,7 @@ TEST(Parts, AreThoseOfAllWhoShareThem) {
       ASSERT_FALSE(HasFatalFailure()) << "random body " << i;
     }
   }
-  EXPECT_GT(glued.n_pairs, 50000u);
+  EXPECT_GT(glued.n_pairs, 25000u);
   EXPECT_GT(glued.n_glued, 5000u);
   EXPECT_GT(glued.n_by_skin, 1000u);
 }
