@@ -34,6 +34,12 @@ void require_sound_cut(const std::string& what, const double t, const Vec3& norm
                     std::to_string(normal.norm()));
 }
 
+/// Does a cut of an edge of the skin lie between the node and the skin?
+bool is_up_to_skin(const support::Body& body, const grid::EdgeCut& cut) {
+  const double skin = body.cuts.find_outer(cut.edge)->t;
+  return body.grid.is_material(body.grid.ends(cut.edge)[0]) ? cut.t <= skin : cut.t >= skin;
+}
+
 /// What a sweep finds must be what its header promises.
 void require_sound_cuts(const Subject& subject, const cut::SweepCuts& found) {
   for (std::size_t i = 0; i < found.cuts.size(); ++i) {
@@ -42,7 +48,7 @@ void require_sound_cuts(const Subject& subject, const cut::SweepCuts& found) {
       throw Violation("cuts are not ordered by edge");
     const support::Body& body = subject.specimen.body; // its skin is that of the subject
     if (!subject.solid.cuts.can_be_cut(body.grid, cut.edge) ||
-        (!support::is_inner(body, cut.edge) && !support::is_below_skin(body, cut.edge, cut.t)))
+        (!support::is_inner(body, cut.edge) && !is_up_to_skin(body, cut)))
       throw Violation("an edge is cut again, or outside of the material");
     require_sound_cut("edge " + std::to_string(cut.edge.value), cut.t, cut.normal);
   }
