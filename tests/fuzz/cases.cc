@@ -68,10 +68,10 @@ grid::Segments crossed_in(const grid::Grid& grid, const grid::CellId c, const cu
   grid::Segments crossed = 0;
   for (grid::Segments left = grid::skeleton_of(grid::material_of(grid, c)).segments; left != 0; left &= left - 1) {
     const int s = std::countr_zero(left);
-    const bool is_crossed = s < grid::skeleton::first_half
-                              ? std::ranges::binary_search(found.cuts, grid.edges(c)[s], {}, &grid::EdgeCut::edge)
-                              : std::ranges::binary_search(found.of_skin, grid::skin_segment(grid, c, s), {},
-                                                           &grid::SkinCut::segment);
+    const bool is_crossed =
+      s < grid::skeleton::first_half
+        ? std::ranges::binary_search(found.cuts, grid.edges(c)[s], {}, &grid::EdgeCut::edge)
+        : std::ranges::binary_search(found.of_skin, grid::skin_segment(grid, c, s), {}, &grid::SkinCut::segment);
     crossed |= grid::Segments(is_crossed) << s;
   }
   return crossed;

@@ -22,6 +22,9 @@ using grid::NodeId;
 namespace {
 
 constexpr double tolerance = 1e-12; // of the body's volume, and of h^3 for masses
+/// Where the skin is so hollow that a cell's vertex does not see it from within, tetrahedra of skin that is cut off are
+/// counted negative (grid/material.h). So far is known what that may come to at a corner of a copy [h^3].
+constexpr double hollow = 0.1;
 
 using Labels = std::vector<std::uint32_t>;
 using Links = std::vector<std::array<std::uint32_t, 2>>;
@@ -345,10 +348,10 @@ CellVolumes require_sound_volumes(const grid::Solid& solid, const CellId cell, T
                                [&](const grid::Tetrahedron& t, int) { add_mass(t, mass); });
     const double least = *std::min_element(mass.begin(), mass.end());
     tally.least_mass = std::min(tally.least_mass, least);
-    constexpr double hollow = 0.01; // where the skin is hollow, a rim on it lies a little deep (surface/fold.h)
     if (!(least > -hollow))
       complain("a copy of cell " + std::to_string(cell.value) + " has the mass " + number(least) + " h^3 at a corner");
     volumes.of_copies.push_back(std::accumulate(mass.begin(), mass.end(), 0.0));
+    tally.least_fill = std::min(tally.least_fill, volumes.of_copies.back());
   }
   return volumes;
 }
@@ -365,6 +368,7 @@ void require_kept_volumes(const Subject& subject, Tally& tally) {
   }
   const auto by_triangles = surface::piece_volumes(subject.surface, complex);
   for (std::size_t p = 0; p < by_tetrahedra.size(); ++p) {
+    tally.least_piece = std::min(tally.least_piece, by_tetrahedra[p] / cube);
     const double difference = std::abs(by_tetrahedra[p] - by_triangles[p]) / subject.volume;
     tally.worst_disagreement = std::max(tally.worst_disagreement, difference);
     if (!(difference < tolerance))

@@ -38,8 +38,8 @@ void require_closed(const surface::Surface& surface);
 /// Rows of W sum to 1 and take rest positions to rest positions.
 void require_sound_weights(const grid::Solid& solid, const surface::Surface& surface);
 
-/// Volumes in a cell. The octants of all its vertices have positive tetrahedra; below a curved skin a tetrahedron may
-/// be turned over, but no copy has less than no mass at any of its corners.
+/// Volumes in a cell. The octants of all its vertices have positive tetrahedra; below a hollow
+/// skin a tetrahedron may be turned over, and a copy have a negative mass at a corner, no further than is known.
 CellVolumes require_sound_volumes(const grid::Solid& solid, grid::CellId cell, Tally& tally);
 
 /// The tetrahedra of each piece enclose what its triangles enclose, and the pieces together the volume of the uncut

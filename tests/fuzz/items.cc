@@ -92,7 +92,7 @@ bool is_cut(const grid::Solid& solid, const ItemSegment& segment) {
     return solid.cuts.is_cut(segment.of_skin);
   const auto& [lower, upper] = solid.grid.ends(segment.edge);
   return solid.grid.is_material(lower) == solid.grid.is_material(upper) ? solid.cuts.is_cut(segment.edge)
-                                                                       : solid.cuts.is_cut_twice(segment.edge);
+                                                                        : solid.cuts.is_cut_twice(segment.edge);
 }
 
 bool is_cut_at_skin(const grid::Solid& solid, const Items& items, const CellId cell) {

@@ -36,6 +36,8 @@ struct Tally {
   double worst_mass = 0;         ///< difference of a corner's mass and that of its heirs, in h^3 [1]
   double worst_cell = 0;         ///< change of the material in one cell, in h^3 [1]
   double least_mass = 1;         ///< of a copy at one of its corners, in h^3 [1]
+  double least_fill = 1;         ///< of a copy [1]
+  double least_piece = 1;        ///< volume, in h^3 [1]
 };
 
 /// Parts of h^3 in a cell [1].

@@ -396,8 +396,7 @@ cut::SweepCuts meet(Subject& subject, const Sweep& sweep, const grid::CutLabel l
   else
     subject.boxes.fit(subject.cutter.stands_at(), subject.x);
   const auto found = meet(subject, sweep, label, &subject.boxes), all = meet(subject, sweep, label, nullptr);
-  if (found.n_double_crossings != all.n_double_crossings ||
-      !std::ranges::equal(found.cuts, all.cuts, is_same) ||
+  if (found.n_double_crossings != all.n_double_crossings || !std::ranges::equal(found.cuts, all.cuts, is_same) ||
       !std::ranges::equal(found.of_skin, all.of_skin, is_same_of_skin))
     throw Violation("among the boxes " + std::to_string(found.cuts.size()) + " edges and " +
                     std::to_string(found.of_skin.size()) + " segments of the skin are cut and " +

@@ -132,8 +132,8 @@ void expect_pieces_of_material(const Body& body, const CellComplex& complex) {
   std::map<slow::Item, std::set<std::uint32_t>> pieces_at;
   for (const auto c : ids<CopyId>(complex.n_copies())) {
     const CellId cell = complex.copies[c].cell;
-    for (const auto& item : slow::named(material_of(body.grid, cell), complex.copies[c].part(),
-                                        slow::lattice_cell(body.grid, cell)))
+    for (const auto& item :
+         slow::named(material_of(body.grid, cell), complex.copies[c].part(), slow::lattice_cell(body.grid, cell)))
       pieces_at[item].insert(all.piece[c]);
   }
   std::set<std::uint32_t> seen;
@@ -379,8 +379,8 @@ TEST(Complex, FallsApartAtAPlane) {
     });
     const Vec3 normal = support::random_direction(random);
     const support::Plane plane{normal, normal.dot(Vec3(2, 2, 2) + 0.5 * support::random_vector(random))};
-    const Body body = support::with_copies(histories::applied(
-      {support::plane_cuts(blank, plane), support::plane_skin_cuts(blank, plane)}, blank));
+    const Body body = support::with_copies(
+      histories::applied({support::plane_cuts(blank, plane), support::plane_skin_cuts(blank, plane)}, blank));
     const Pieces all = pieces(body.complex);
     std::map<std::uint32_t, bool> is_above;
     for (const auto c : ids<CopyId>(body.complex.n_copies())) {
@@ -422,9 +422,9 @@ TEST(Complex, GivesSkinThatIsCutOffCopiesOfItsOwn) {
     return SkinSegment::spoke(around[cell], static_cast<int>(std::ranges::find(edges, edge) - edges.begin()));
   };
   // The cells around the edge: 0 above it in y and z, 1 below in y, 2 below in z, 3 below in both.
-  expect({edge}, {}, 8, 27, 1); // the skin still holds all
+  expect({edge}, {}, 8, 27, 1);                                 // the skin still holds all
   expect({}, {half(0, 2), half(0, 4), spoke(0)}, 9, 27 + 2, 1); // alone in the first cell: two on that cell's own edge
-  expect({}, {half(1, 4), spoke(1)}, 10, 27 + 6, 1); // in two cells side by side: six on their far side
+  expect({}, {half(1, 4), spoke(1)}, 10, 27 + 6, 1);            // in two cells side by side: six on their far side
   expect({}, {half(2, 2), spoke(2), spoke(3)}, 12, 27 + 18, 2); // on its own in four cells
 }
 
@@ -476,8 +476,8 @@ TEST(Complex, RefusesExactlyTheCutsThatJoin) {
     auto nodes = support::some_nodes(random, {2, 2, 2}, uniform(random, 0.3, 1));
     nodes.push_back({1, 1, 1});
     const Body blank = support::make_body({}, nodes, support::midway);
-    const Plan plan = histories::random_plan(random, blank, uniform(random, 0, 1), uniform(random, 0.2, 1),
-                                             uniform(random, 0.05, 1));
+    const Plan plan =
+      histories::random_plan(random, blank, uniform(random, 0, 1), uniform(random, 0.2, 1), uniform(random, 0.05, 1));
     if (plan.of_skin.empty())
       continue;
     const Body before = support::with_copies(histories::applied(plan, blank));

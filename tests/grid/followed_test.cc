@@ -91,10 +91,10 @@ TEST(Followed, AreTheNodesOfTheNearestCopies) {
     auto nodes = support::some_nodes(random, {4, 3, 2}, uniform(random, 0.3, 1.2));
     nodes.push_back({1, 1, 1});
     const Body blank = support::make_body({}, nodes, support::midway);
-    const Body body = histories::applied(
-      histories::random_plan(random, blank, uniform(random, 0, 0.5), uniform(random, 0.2, 1),
-                            random() % 2 ? uniform(random, 0, 0.3) : uniform(random, 0, 1)),
-      blank);
+    const Body body =
+      histories::applied(histories::random_plan(random, blank, uniform(random, 0, 0.5), uniform(random, 0.2, 1),
+                                                random() % 2 ? uniform(random, 0, 0.3) : uniform(random, 0, 1)),
+                         blank);
     expect_nearest(support::with_copies(body), tally);
     ASSERT_FALSE(HasFatalFailure()) << "random body " << i;
   }

@@ -136,8 +136,9 @@ void place_anywhere(Random& random, Body& body, const double probability) {
     for (int triangle = 0; triangle < skeleton::n_sides - skeleton::first_triangle; ++triangle)
       if (const Skeleton::Side& side = skeleton.side[skeleton::first_triangle + triangle]; side.n == 3 && is_placed()) {
         const Vec3 p = item_point(body, c, side.items[0]), q = item_point(body, c, side.items[1]);
-        body.cuts.set_inner_point(c, triangle, p + uniform(random, -0.5, 1) * (q - p) +
-                                                 uniform(random, -0.5, 1) * (item_point(body, c, side.items[2]) - p));
+        body.cuts.set_inner_point(
+          c, triangle,
+          p + uniform(random, -0.5, 1) * (q - p) + uniform(random, -0.5, 1) * (item_point(body, c, side.items[2]) - p));
       }
     if (is_placed())
       body.cuts.set_inner_point(c, centre(body.grid, c) + h * (support::random_offset(random) - Vec3::Constant(0.5)));

@@ -113,7 +113,8 @@ TEST(Skeleton, NumbersByPlace) {
     for (int k = 0; k < s.n_loops; ++k) {
       bool is_node_of_row = false;
       for (int line = 0; line < cube::n_lines; ++line)
-        is_node_of_row |= has(s.items, on_line(line)) && s.loop[line] == k && s.vertex[on_line(line)] == s.vertex[middle(k)];
+        is_node_of_row |=
+          has(s.items, on_line(line)) && s.loop[line] == k && s.vertex[on_line(line)] == s.vertex[middle(k)];
       ASSERT_TRUE(is_node_of_row);
     }
   }
@@ -167,8 +168,8 @@ TEST(Skeleton, BoundsBalls) {
     std::map<Items, int> characteristic; // V - E + F by the items that segments join
     const auto parts = slow::parts(uncut(material), slow::closure({1, 1, 1}));
     const auto part_of = [&](const int item) -> int& {
-      const auto part = std::ranges::find_if(
-        parts, [&](const Items& items) { return items.contains(slow::named(material, item)); });
+      const auto part =
+        std::ranges::find_if(parts, [&](const Items& items) { return items.contains(slow::named(material, item)); });
       return characteristic[*part];
     };
     for (int i = 0; i < skeleton::n_items; ++i)
