@@ -193,8 +193,8 @@ class Placer {
       make_site_of_blades(view, of, in_face(face), {1, n_parts(view.old_blades), n_parts(view.now.blades)});
     const Vec3 middle = middle_of(view, side);
     const Vec3* const before = solid_.cuts.inner_point(f, arc);
-    const Vec3 from = mean_point_of(view, of);
-    const Vec3 p = place_in(site, cube::face_axis(face), before ? *before : middle, 0.5 * (from + middle));
+    const Vec3 mean = mean_point_of(view, of), from = site.locked.empty() ? mean : *before;
+    const Vec3 p = place_in(site, cube::face_axis(face), before ? *before : middle, 0.5 * (mean + middle));
     const grid::SkinArc& of_skin = grid::skin_arcs(face, view.now.material).arcs[arc];
     const auto at = [&](const int item) { return grid::item_point(solid_, view.cell, item); };
     const double part =
@@ -204,17 +204,30 @@ class Placer {
     count_held();
   }
 
-  /// On the skin itself: halfway between two cuts of its sides, and so on the rim; once there, it stays.
+  /// On the skin itself: halfway between two cuts of its sides, and so on the rim. A cut of the third side meets it
+  /// there, where the rim crosses that cut's plane.
   void place_triangle(const View& view, const int triangle) {
     const Skeleton::Side& side = view.now.skeleton().side[skeleton::first_triangle + triangle];
     const grid::Segments of = border(side), now = view.now.blades & of, old = view.old_blades & of;
-    if (now == old || std::popcount(old) > 1)
+    if (now == old)
       return;
-    const Vec3 from = mean_point_of(view, of);
-    const bool ends_here = std::popcount(now) == 1;
-    solid_.cuts.set_inner_point(view.cell, triangle,
-                                ends_here ? 0.5 * (from + middle_of(view, skeleton::first_triangle + triangle)) : from);
+    Vec3 p = mean_point_of(view, of);
+    if (std::popcount(now) == 1)
+      p = 0.5 * (p + middle_of(view, skeleton::first_triangle + triangle));
+    else if (std::popcount(old) == 2)
+      p = on_rim(view, old, now & ~old);
+    solid_.cuts.set_inner_point(view.cell, triangle, p);
     ++counts_.n_placed;
+  }
+
+  /// On the rim between two cuts, nearest to the plane of a third one.
+  Vec3 on_rim(const View& view, const grid::Segments two, const grid::Segments third) const {
+    const auto at = [&](const grid::Segments segments) { return cut_plane(solid_, view, std::countr_zero(segments)).plane; };
+    const Vec3 p = at(two).point, q = at(two & (two - 1)).point;
+    const Plane plane = at(third);
+    const double a = plane.normal.dot(p - plane.point), b = plane.normal.dot(q - plane.point);
+    constexpr double inside = 1e-3; // of the rim's length
+    return p + (a == b ? 0.5 : std::clamp(a / (a - b), inside, 1 - inside)) * (q - p);
   }
 
   /// In a cell with skin.
@@ -228,7 +241,8 @@ class Placer {
     const Site site = make_site_of_blades(view, ~grid::Segments(0), Directions(),
                                           {n_parts(0), n_parts(view.old_blades), n_parts(view.now.blades)});
     const Vec3* const before = solid_.cuts.inner_point(c);
-    const Vec3 from = mean_point_of(view, ~grid::Segments(0)), middle = 0.5 * (from + mean_node(view));
+    const Vec3 mean = mean_point_of(view, ~grid::Segments(0)), middle = 0.5 * (mean + mean_node(view)),
+               from = site.locked.empty() ? mean : *before;
     const Vec3 p = place_in(site, no_axis, before ? *before : middle, middle);
     double part = 1;
     for_each_bit(view.now.skeleton().sides >> skeleton::first_triangle, [&](const int triangle) {

@@ -140,7 +140,7 @@ TEST(Moments, MakeElementsThatNeverGainEnergy) {
     for (grid::CutLabel label = 1; label <= 3; ++label) {
       const Vec3 normal = support::random_direction(random);
       const Vec3 through = Vec3::Constant(0.5) + 0.2 * support::random_vector(random);
-      support::cut_through(body, support::plane_cuts(body, {normal, normal.dot(through)}, label));
+      support::cut_through(body, support::cuts_of_plane(body, {normal, normal.dot(through)}, label));
     }
     const auto complex = grid::build_complex(body);
     for (const grid::Copy& copy : complex.copies) {

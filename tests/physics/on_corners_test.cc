@@ -81,7 +81,7 @@ TEST(OnCorners, NewCornersInheritAllThatTheirParentsHave) {
                    {"of all", random_points(2, random)}};
   state.numbers = {{"time step [s]", 0.1}};
   const dynamics::State before = state;
-  const auto change = block.cut(support::plane_cuts(block.body, {Vec3::UnitX(), 0.27}), physics, state);
+  const auto change = block.cut(support::cuts_of_plane(block.body, {Vec3::UnitX(), 0.27}), physics, state);
   ASSERT_GT(change.parents.size(), 10u);
   ASSERT_EQ(state.x.size(), block.body.complex.n_corners());
   for (std::size_t i = 0; i < state.x.size(); ++i) {
@@ -119,7 +119,7 @@ TEST(OnCorners, PiecesAreAskedForAsTheyAreNow) {
     });
   EXPECT_EQ(n_pieces, 1u);
   dynamics::State state = state_at_rest(physics);
-  block.cut(support::plane_cuts(block.body, {Vec3::UnitX(), 0.27}), physics, state);
+  block.cut(support::cuts_of_plane(block.body, {Vec3::UnitX(), 0.27}), physics, state);
   EXPECT_EQ(n_pieces, 2u);
   EXPECT_EQ(n_asked, 2u);
 }

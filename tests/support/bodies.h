@@ -171,4 +171,33 @@ inline std::vector<grid::SkinCut> plane_skin_cuts(const Body& body, const Plane&
   return cuts;
 }
 
+/// Does a segment of a cell's skin join points above nodes that cut edges part: in the face of a half, in the cell?
+inline bool is_above_cut(const Body& body, const grid::CellId c, const grid::Skeleton& skeleton, const int segment) {
+  const auto& ends = skeleton.segment[segment].ends;
+  const int a = skeleton.vertex[ends[0]], b = skeleton.vertex[ends[1]];
+  const unsigned cut = body.cuts.configuration(body.grid, c);
+  const unsigned within =
+    segment < grid::skeleton::first_spoke ? grid::cube::face_mask((segment - grid::skeleton::first_half) / 4) : 0xffu;
+  return (grid::cube::reachable(a, cut, within) >> b & 1) == 0;
+}
+
+/// The segments of the skin that are to be cut too, so that it does not hold together what cut edges part.
+inline std::vector<grid::SkinCut> skin_cuts_above(const Body& body, const grid::CutLabel label = 1) {
+  std::vector<grid::SkinCut> cuts;
+  for (const auto c : ids<grid::CellId>(body.grid.n_cells())) {
+    if (!is_skin_cell(body.grid, c))
+      continue;
+    const grid::Skeleton& skeleton = grid::skeleton_of(grid::material_of(body.grid, c));
+    for (grid::Segments left = skeleton.segments & ~grid::skeleton::lines; left != 0; left &= left - 1) {
+      const int segment = std::countr_zero(left);
+      const grid::SkinSegment of_skin = grid::skin_segment(body.grid, c, segment);
+      const bool is_own = !of_skin.face.valid() || body.grid.cells(of_skin.face)[1] == c ||
+                          !body.grid.cells(of_skin.face)[1].valid();
+      if (is_own && !body.cuts.is_cut(of_skin) && is_above_cut(body, c, skeleton, segment))
+        cuts.push_back({of_skin, 0.5, Vec3::UnitX(), label});
+    }
+  }
+  return cuts;
+}
+
 } // namespace kerf::support

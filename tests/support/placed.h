@@ -36,10 +36,20 @@ inline Body embedded(const geometry::TriangleMesh& mesh, const double h, const V
   return body;
 }
 
-/// All these edges in one step.
-inline surface::PlacementCounts cut(Body& body, const std::span<const grid::EdgeCut> cuts) {
+/// All these edges, and the skin above them.
+inline cut::SweepCuts with_skin(Body body, const std::span<const grid::EdgeCut> cuts) {
   for (const auto& cut : cuts)
     body.cuts.add(body.grid, cut);
+  return {{cuts.begin(), cuts.end()}, skin_cuts_above(body, cuts.empty() ? 1 : cuts.front().label), 0};
+}
+
+/// The same in one step.
+inline surface::PlacementCounts cut(Body& body, const std::span<const grid::EdgeCut> cuts) {
+  const auto [edges, of_skin, n] = with_skin(body, cuts);
+  for (const auto& cut : edges)
+    body.cuts.add(body.grid, cut);
+  for (const auto& cut : of_skin)
+    body.cuts.add(cut);
   return surface::place(body, {});
 }
 
