@@ -5,6 +5,9 @@
 
 #include <Eigen/Geometry>
 
+#include <algorithm>
+#include <numeric>
+
 namespace kerf::surface {
 
 namespace cube = grid::cube;
@@ -12,7 +15,7 @@ namespace skeleton = grid::skeleton;
 
 namespace {
 
-constexpr double negligible = 1e-13; // of h^2, h^3
+constexpr double negligible = 1e-13, little = 0.02; // of h^2, h^3
 
 /// Adds the integrals of the shape functions over a tetrahedron, by a rule that is exact for them.
 void add(std::array<double, 8>& integrals, const grid::Tetrahedron& t) {
@@ -51,9 +54,10 @@ bool is_folded(const grid::Solid& solid, const View& view) {
     std::array<double, 8> integrals{};
     for (const auto& [t, vertex] : grid::pieces_of(solid, view.cell, part.items()))
       add(integrals, t);
-    for (const double integral : integrals)
-      if (integral < -negligible)
-        return true;
+    const double least = *std::min_element(integrals.begin(), integrals.end());
+    const double volume = std::accumulate(integrals.begin(), integrals.end(), 0.0);
+    if (part.nodes != 0 ? least < -negligible : volume < -little)
+      return true;
   }
   return false;
 }

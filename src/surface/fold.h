@@ -1,13 +1,16 @@
 #pragma once
 
 /// Whether cuts are folded over the skin: then a part of a cell would have negative material (grid/material.h). With the
-/// skin's own vertices in place of the cuts' none has.
+/// skin's own vertices in place of the cuts' none has. A part that holds no node may have a little: where the skin is
+/// hollow, a plane that cuts off one of its points has material behind it, and what that part lacks others have too much,
+/// so that what lies on either side is right.
 
 #include "surface/view.h"
 
 namespace kerf::surface {
 
-/// In a cell whose cuts' vertices are placed: has a part of it negative mass at one of its corners?
+/// In a cell whose cuts' vertices are placed: has a part of it negative mass at one of its corners, or without a node
+/// less than -.02 cubes?
 bool is_folded(const grid::Solid& solid, const View& view);
 
 /// Does a vertex at p not see all of a side of the cell's skeleton that lies in a face?
