@@ -71,6 +71,20 @@ Cell with_a_face(Cell cell, const std::vector<Chart>& charts) {
   return cell;
 }
 
+/// Before warps are sought, which takes long.
+void require_few_faces(const std::vector<Cell>& cells, const Components components) {
+  std::size_t most = 0;
+  for (const Cell& cell : cells)
+    most = std::max(most, cell.faces.size());
+  if (most > max_sources)
+    throw ParameterError(Complaint{
+      .path = components == Components::each ? "Components" : "Exemplar",
+      .rule = std::to_string(most) + " faces bound one cell, at most " + std::to_string(max_sources) + " are allowed",
+      .remedy = components == Components::each ? "Set Components to together: then a section is one face"
+                                               : "Leave exemplars out until at most " + std::to_string(max_sources) +
+                                                   " of them bound a common cell"});
+}
+
 } // namespace
 
 Interior::Interior(const std::vector<Exemplar>& exemplars, const geometry::TriangleMesh& body,
@@ -86,6 +100,7 @@ Interior::Interior(const std::vector<Exemplar>& exemplars, const geometry::Trian
     pixel_ += charts_.back().plane.pixel() / static_cast<double>(exemplars.size());
   }
   partition_.emplace(exemplars, charts_, options.components);
+  require_few_faces(partition_->cells(), options.components);
   check_pins(options.warps.pins, partition_->cells(), exemplars, charts_);
   cells_.resize(partition_->cells().size());
   maps_.warps.resize(cells_.size());
@@ -97,12 +112,6 @@ void Interior::build_cell(const int number, const std::vector<Exemplar>& exempla
   const Cell cell = with_a_face(partition_->cells()[number], charts_);
   CellData& data = cells_[number];
   const std::size_t n = cell.faces.size();
-  if (n > max_sources)
-    throw ParameterError(
-      Complaint{.path = "Components",
-                .value = std::to_string(n) + " faces of one cell",
-                .rule = "at most " + std::to_string(max_sources) + " are allowed",
-                .remedy = "Use fewer exemplars; where sections have several components, together they are one face"});
   for (const Face& face : cell.faces) {
     data.pixels.push_back(face.pixels);
     data.sources.emplace_back(face, cell, exemplars[face.exemplar], charts_[face.exemplar], body);
@@ -140,7 +149,8 @@ void Interior::find_sources(const CellData& cell, const Vec3& p, const Blending&
 /// (3.14) for all sources at once: each table says where its source point goes on every face.
 void Interior::morph(const CellData& cell, const Found& found, std::array<Vec2, max_sources>& q) const {
   const int n = static_cast<int>(cell.sources.size());
-  std::array<float, 2 * max_sources> sum = {};
+  std::array<float, 2 * max_sources> sum;
+  std::fill_n(sum.begin(), 2 * n, 0.0f);
   for (int j = 0; j < n; ++j) {
     const auto share = static_cast<float>(found.shares[j]);
     look_up(cell.tables[j], found.pixels[j],
@@ -197,8 +207,9 @@ Blend Interior::blend(const Vec3& p, const Blending& how, const int number) cons
   const CellData& cell = cells_[blend.cell];
   Found found;
   find_sources(cell, p, how, found);
-  std::array<Vec2, max_sources> q = found.pixels;
   blend.n = static_cast<int>(cell.sources.size());
+  std::array<Vec2, max_sources> q;
+  std::copy_n(found.pixels.begin(), blend.n, q.begin());
   if (how.morph == Morph::first_order || how.morph == Morph::exact_inverse)
     morph(cell, found, q);
   if (how.morph == Morph::exact_inverse)
