@@ -90,15 +90,15 @@ template <class Value>
 Value sample_cubic(const Raster<Value>& raster, const float x, const float y) {
   const Footing f = footing(raster.width, raster.height, x, y);
   const auto across = cubic_shares(f.right), down = cubic_shares(f.down);
-  std::array<int, 4> columns;
-  for (int k = 0; k < 4; ++k)
-    columns[k] = std::clamp(f.column + k - 1, 0, raster.width - 1);
+  // At the border the nearest pixels count for those that lack.
+  const Value* const middle = &raster.values[raster.index(f.column, f.row)];
+  const int left = f.column > 0 ? -1 : 0, right = f.column + 2 < raster.width ? 2 : 1;
   const auto row = [&](const int k) {
-    const Value* const p = &raster.values[raster.index(0, std::clamp(f.row + k - 1, 0, raster.height - 1))];
-    return Value(across[0] * p[columns[0]] + across[1] * p[columns[1]] + across[2] * p[columns[2]] +
-                 across[3] * p[columns[3]]);
+    const Value* const p = middle + k * raster.width;
+    return Value(across[0] * p[left] + across[1] * p[0] + across[2] * p[1] + across[3] * p[right]);
   };
-  return down[0] * row(0) + down[1] * row(1) + down[2] * row(2) + down[3] * row(3);
+  return down[0] * row(f.row > 0 ? -1 : 0) + down[1] * row(0) + down[2] * row(1) +
+         down[3] * row(f.row + 2 < raster.height ? 2 : 1);
 }
 
 /// The same for one value a pixel, four at a time.

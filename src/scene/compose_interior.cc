@@ -117,8 +117,7 @@ ParameterError placed_inside(const Section& interior, const ParameterError& erro
 double surface_area(const geometry::TriangleMesh& mesh) {
   double area = 0;
   for (const Triangle& t : mesh.triangles)
-    area +=
-      0.5 * (mesh.vertices[t[1]] - mesh.vertices[t[0]]).cross(mesh.vertices[t[2]] - mesh.vertices[t[0]]).norm();
+    area += 0.5 * (mesh.vertices[t[1]] - mesh.vertices[t[0]]).cross(mesh.vertices[t[2]] - mesh.vertices[t[0]]).norm();
   return area;
 }
 
@@ -215,11 +214,11 @@ void require_affordable_colours(const Section& section, const geometry::Triangle
   const double finest = std::max(cube_edge / texture::Atlas::max_parts, p.resolution * std::sqrt(bytes / most));
   if (p.resolution >= finest)
     return;
-  throw section.complaint("Resolution [m]",
-                          line("a cut across the body would take ", rounded_up(bytes / most),
-                               " GiB of colours; 1 GiB, and ", texture::Atlas::max_parts,
-                               " of them along the edge of a cube, are allowed"),
-                          line("Write at least ", rounded_up(finest), ", or smaller cubes"));
+  throw section.complaint(
+    "Resolution [m]",
+    line("a cut across the body would take ", rounded_up(bytes / most), " GiB of colours; 1 GiB, and ",
+         texture::Atlas::max_parts, " of them along the edge of a cube, are allowed"),
+    line("Write at least ", rounded_up(finest), ", or smaller cubes"));
 }
 
 LookedInto compose_inside(const SceneText& text, const std::string& name) {

@@ -13,16 +13,16 @@ namespace kerf::texture {
 
 namespace {
 
-/// The map of the table at a point [pixels], to all faces at once: 2 n floats.
+/// The map of the table at a point [pixels], to all faces at once.
 template <class Use>
 void look_up(const WarpTable& table, const Vec2& p, const Use& use) {
   const image::Footing f =
     image::footing(table.n_columns, table.n_rows, (static_cast<float>(p[0]) - table.left) * table.columns_by_pixel,
                    (static_cast<float>(p[1]) - table.top) * table.rows_by_pixel);
   const float* const a = table.node(f.column, f.row);
-  const float* const b = a + 2 * table.n_faces;
-  const float* const c = a + 2 * table.n_faces * table.n_columns;
-  const float* const d = c + 2 * table.n_faces;
+  const float* const b = a + table.n_numbers;
+  const float* const c = a + table.n_numbers * table.n_columns;
+  const float* const d = c + table.n_numbers;
   use(a, b, c, d, f.right, f.down);
 }
 
@@ -136,28 +136,36 @@ void Interior::find_sources(const CellData& cell, const Vec3& p, const Blending&
   for (std::size_t i = 0; i < n; ++i) {
     const Source& source = cell.sources[i];
     const SectionPlane& plane = charts_[source.exemplar()].plane;
-    const Vec2 local = source.find(p);
-    found.points[i] = plane.point(local);
-    found.pixels[i] = plane.to_pixels(local);
-    distances[i] = (found.points[i] - p).norm();
+    const Source::Point point = source.find(p);
+    found.locals[i] = point.local;
+    found.pixels[i] = plane.to_pixels(point.local);
+    distances[i] = point.distance;
   }
   shepard(std::span(distances).first(n), how.power, found.shares);
   if (how.weights == Weights::mean_value && !cell.triangles.empty())
-    enclose(p, std::span(found.points).first(n), cell.triangles, found.shares);
+    enclose(cell, p, found);
+}
+
+/// Shepard's shares become mean value coordinates where source points enclose the point.
+void Interior::enclose(const CellData& cell, const Vec3& p, Found& found) const {
+  std::array<Vec3, max_sources> points;
+  for (std::size_t i = 0; i < cell.sources.size(); ++i)
+    points[i] = charts_[cell.sources[i].exemplar()].plane.point(found.locals[i]);
+  texture::enclose(p, std::span(points).first(cell.sources.size()), cell.triangles, found.shares);
 }
 
 /// (3.14) for all sources at once: each table says where its source point goes on every face.
 void Interior::morph(const CellData& cell, const Found& found, std::array<Vec2, max_sources>& q) const {
   const int n = static_cast<int>(cell.sources.size());
   std::array<float, 2 * max_sources> sum;
-  std::fill_n(sum.begin(), 2 * n, 0.0f);
+  std::fill_n(sum.begin(), cell.tables.front().n_numbers, 0.0f);
   for (int j = 0; j < n; ++j) {
     const auto share = static_cast<float>(found.shares[j]);
     look_up(cell.tables[j], found.pixels[j],
             [&](const float* a, const float* b, const float* c, const float* d, const float u, const float v) {
               const float wa = share * (1 - u) * (1 - v), wb = share * u * (1 - v);
               const float wc = share * (1 - u) * v, wd = share * u * v;
-              for (int k = 0; k < 2 * n; ++k)
+              for (int k = 0; k < cell.tables[j].n_numbers; ++k)
                 sum[k] += wa * a[k] + wb * b[k] + wc * c[k] + wd * d[k];
             });
   }

@@ -103,20 +103,19 @@ TEST_P(Ways, GiveTheSameBitsInAnyOrderAndWithAnyNumberOfThreads) {
     ASSERT_TRUE((found[0][i] == found[1][i]).all()) << i;
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Ways,
-                         testing::Values(Way{"normal", [] { return swept({}); }},
-                                         Way{"middles", [] { return swept({Sweep::Path::middles}); }},
-                                         Way{"arc",
-                                             [] {
-                                               return swept({Sweep::Path::arc, Vec3::Zero()}, 1);
-                                             }},
-                                         Way{"axis", [] { return about_axis(); }},
-                                         Way{"axis_on_pixels", [] { return about_axis(71); }}, Way{"partial", [] { return partial(Fit::none); }},
-                                         Way{"rigid", [] { return partial(Fit::rigid); }},
-                                         Way{"harmonic", [] { return partial(Fit::harmonic); }},
-                                         Way{"each", [] { return legs(Components::each); }},
-                                         Way{"together", [] { return legs(Components::together); }}),
-                         [](const auto& info) { return std::string(info.param.name); });
+INSTANTIATE_TEST_SUITE_P(
+  All, Ways,
+  testing::Values(Way{"normal", [] { return swept({}); }}, Way{"middles", [] { return swept({Sweep::Path::middles}); }},
+                  Way{"arc",
+                      [] {
+                        return swept({Sweep::Path::arc, Vec3::Zero()}, 1);
+                      }},
+                  Way{"axis", [] { return about_axis(); }}, Way{"axis_on_pixels", [] { return about_axis(71); }},
+                  Way{"partial", [] { return partial(Fit::none); }}, Way{"rigid", [] { return partial(Fit::rigid); }},
+                  Way{"harmonic", [] { return partial(Fit::harmonic); }},
+                  Way{"each", [] { return legs(Components::each); }},
+                  Way{"together", [] { return legs(Components::together); }}),
+  [](const auto& info) { return std::string(info.param.name); });
 
 TEST(Sweeps, AboutAnAxisFindWhatIsRoundAboutIt) {
   for (const int n : {70, 71}) {
