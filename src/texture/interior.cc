@@ -237,7 +237,7 @@ Blend Interior::blend(const Vec3& p, const Blending& how, const int number) cons
 Eigen::Array4f Interior::colour(const Blend& blend) const {
   Eigen::Array4f sum = Eigen::Array4f::Zero();
   for (int i = 0; i < blend.n; ++i)
-    sum += blend.weights[i] * image::sample_cubic(charts_[blend.exemplars[i]].colours, blend.x[i], blend.y[i]);
+    sum += blend.weights[i] * image::sample_spline(charts_[blend.exemplars[i]].spline, blend.x[i], blend.y[i]);
   return sum.max(0.0f).min(1.0f);
 }
 
