@@ -93,6 +93,9 @@ Body compose_body(const Section& section, const GravityParameters* gravity, cons
                   World& world) {
   const auto parameters = section.read<BodyParameters>();
   const geometry::TriangleMesh mesh = read_body_mesh(section, parameters);
+  const Section* const interior = section.find("Interior");
+  if (interior)
+    require_affordable_colours(*interior, mesh, parameters.cube_edge);
   cut::Embedding embedding = [&] {
     const ScopedTimer timer(world.setup_seconds, "cut");
     return embed_mesh(section, parameters, mesh);
@@ -117,7 +120,7 @@ Body compose_body(const Section& section, const GravityParameters* gravity, cons
     body.initial = compose_initial_state(*initial);
     put_in_initial_state(body);
   }
-  if (const Section* interior = section.find("Interior")) {
+  if (interior) {
     {
       const ScopedTimer timer(world.setup_seconds, "colour");
       body.interior = compose_interior(*interior, body.name, mesh, world.composition);
