@@ -29,7 +29,10 @@ void BladeParameters::describe(Parameters& p) {
   p.points("Edge [m]", edge, "The cutting edge, in the blade's frame.");
   p.require_last();
   describe_edge_form(p, edge_form);
-  p.vector("Spine [m]", spine, "From the cutting edge to the back of the blade, in its frame; only drawn.");
+  p.vector("Spine [m]", spine,
+           "From the cutting edge to the back of the blade, in its frame; only drawn. Zero: against the blade's first "
+           "motion, a "
+           "fifth of the edge long.");
 }
 
 void ScissorsParameters::describe(Parameters& p) {
@@ -42,9 +45,9 @@ void ScissorsParameters::describe(Parameters& p) {
   p.require_last();
   describe_edge_form(p, edge_form);
   p.points("Second edge [m]", second_edge, "The second blade's edge when closed. Empty: the same as the first's.");
-  p.vector(
-    "Spine [m]", spine,
-    "From the first edge to the back of its blade when closed; the second has it the other way round. Only drawn.");
+  p.vector("Spine [m]", spine,
+           "From the first edge to the back of its blade when closed; the second has it the other way round. Only "
+           "drawn. Zero: to the side that it opens to, a tenth of the edge long.");
   p.number("Handle [m]", handle, non_negative, "Length of the handles beyond the pivot; only drawn.");
   p.numbers("Opening times [s]", opening_times, any_number, "Times at which the opening is given, increasing.");
   p.require_last();
@@ -64,9 +67,12 @@ void ForcepsParameters::describe(Parameters& p) {
   p.number("Release time [s]", release_time, non_negative,
            "Free again, with its velocity, before the first step that begins then or later.");
   p.vector("Jaws [m]", jaws,
-           "From the middle between the jaws to one of them while they hold, tool frame; only drawn.");
+           "From the middle between the jaws to one of them while they hold, tool frame; only drawn. Zero: as far "
+           "apart as what they "
+           "hold.");
   p.vector("Handle [m]", handle,
-           "From the middle between the jaws to the joint of the arms; only drawn. Zero: not drawn.");
+           "From the middle between the jaws to the joint of the arms; only drawn. Zero: away from the body, four "
+           "times the size of what they hold.");
 }
 
 void CutSurfaceParameters::describe(Parameters& p) {

@@ -253,11 +253,12 @@ const Observable* find_observable(const std::string& name) {
 
 const std::vector<ObservableGroup>& observable_groups() {
   static const std::vector<ObservableGroup> all = {
-    {"reactions", "force of each support on the body [N]", reactions},
-    {"tool forces", "force of each forceps on the body [N]", tool_forces},
-    {"load forces", "force of each load and floor on the body [N]", load_forces},
-    {"probes", "displacement of each probe [m]", probes},
-    {"probe strains", "Green's strain at each probe [1]", probe_strains},
+    {"reactions", "N", "force of each support on the body, x, y, z", reactions},
+    {"tool forces", "N", "force of each forceps on the body, x, y, z", tool_forces},
+    {"load forces", "N", "force of each load, each floor and each support that holds at the skin, x, y, z",
+     load_forces},
+    {"probes", "m", "displacement of each probe, x, y, z", probes},
+    {"probe strains", "1", "Green's strain at each probe, six components", probe_strains},
   };
   return all;
 }

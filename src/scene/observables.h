@@ -18,7 +18,8 @@ const Observable* find_observable(const std::string& name);
 /// A name that stands for several series: one for each support, tool, load or probe that a scene has, and component.
 struct ObservableGroup {
   std::string name; ///< "reactions"
-  std::string text;
+  std::string unit;
+  std::string text; ///< what each series is
   std::vector<Observable> (*of)(const Body& body, const std::vector<std::string>& forceps);
 };
 const std::vector<ObservableGroup>& observable_groups();
