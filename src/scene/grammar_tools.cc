@@ -77,7 +77,7 @@ void ForcepsParameters::describe(Parameters& p) {
 
 void CutSurfaceParameters::describe(Parameters& p) {
   p.number("Time [s]", time, non_negative, "When it cuts: before the first step that begins then or later.");
-  p.choice("Shape", shape, {"plane", "sphere", "cylinder", "disc", "mesh"},
+  p.choice("Shape", shape, {"plane", "sphere", "cylinder", "disc", "rectangle", "mesh"},
            "What cuts, in the world frame, every body as it stands at that time. Of the keys below, those of the shape "
            "must be set, and no others.");
   p.require_last();
@@ -91,12 +91,18 @@ void ShapeParameters::describe(Parameters& p) {
     if (!shape.empty())
       p.require_last();
   };
-  if (is_any_of({"plane", "sphere", "cylinder", "disc"})) {
-    p.vector("Point [m]", point, "Plane: a point of it. Sphere, cylinder, disc: the centre.");
+  if (is_any_of({"plane", "sphere", "cylinder", "disc", "rectangle"})) {
+    p.vector("Point [m]", point, "Plane: a point of it. Sphere, cylinder, disc, rectangle: the centre.");
     require_of_a_shape();
   }
   if (is_any_of({"plane", "disc"})) {
     p.vector("Normal [1]", normal, "Plane, disc: the normal, of any length.");
+    require_of_a_shape();
+  }
+  if (is_any_of({"rectangle"})) {
+    p.vector("First side [m]", first_side, "Rectangle: direction and length of one side.");
+    require_of_a_shape();
+    p.vector("Second side [m]", second_side, "Rectangle: the same of the other, at right angles.");
     require_of_a_shape();
   }
   if (is_any_of({"cylinder"})) {
