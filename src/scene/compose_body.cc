@@ -116,8 +116,9 @@ std::string describe_physics(const Section& section, const BodyParameters& param
   if (parameters.backend == "mass-spring")
     return line("masses and springs, ", parameters.integrator,
                 "; left out: Element, Integration, Law, Poisson's ratio (it is 1/4)");
+  const std::string mass = parameters.mass == "consistent" ? "consistent mass, " : "";
   return line(material.law, " ", parameters.element, " hexahedra, integration over ", parameters.integration, ", ",
-              parameters.integrator);
+              mass, parameters.integrator);
 }
 
 /// Which parts of the mesh the grid takes for pieces of their own, too thin to be deformed.
@@ -156,6 +157,7 @@ Body compose_body(const Section& section, const GravityParameters* gravity, cons
   body.loads.mass_damping = damping.mass;
   body.loads.stiffness_damping = damping.stiffness;
   compose_loads(section, floors, body);
+  body.fronts = compose_crack_fronts(section, parameters.cube_edge, parameters.backend);
   if (const std::size_t n_cuts = world.blades.size() + world.cut_surfaces.size(); n_cuts > 0)
     body.cutter = std::make_unique<cut::Cutter>(n_cuts);
   start(body, mesh, physics_maker(section, parameters, world.time_step), world.setup_seconds);

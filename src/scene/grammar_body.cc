@@ -6,6 +6,7 @@
 #include "dynamics/loads.h"
 #include "dynamics/surface_load.h"
 #include "material/elastic.h"
+#include "scene/crack.h"
 #include "scene/grammar_interior.h"
 #include "scene/grammar_physics.h"
 #include "scene/initial_state.h"
@@ -70,6 +71,10 @@ void BodyParameters::describe(Parameters& p) {
            "Backend fem: strain inside a cell: that of the trilinear displacement, too stiff in bending and near a "
            "Poisson's ratio of "
            "0.5, or enhanced by 12 modes of the cell's own, which cure both.");
+  p.choice(
+    "Mass", mass, {"lumped", "consistent"},
+    "Backend fem: a mass for each corner, or the mass matrix of the shape functions, whose frequencies are nearer to "
+    "those of the body in bending; for implicit integrators only.");
   p.choice("Integrator", integrator, integrator_names(),
            "How time advances; lattice shape matching is an integrator by itself.");
 }
@@ -145,6 +150,7 @@ std::vector<SectionKind> body_kinds() {
      "A point whose motion is reported; see the observables probes and probe strains.",
      keys_of<ProbeParameters>(),
      {}}};
+  inside.push_back(crack_front_kind());
   const auto physics = physics_kinds();
   inside.insert(inside.begin() + 2, physics.begin(), physics.end());
   inside.push_back(interior_kind());

@@ -30,6 +30,7 @@ struct BodyParameters {
   std::string backend = "fem";
   std::string integration = "octants";
   std::string element = "trilinear";
+  std::string mass = "lumped";
   std::string integrator = "implicit Euler";
   void describe(Parameters& p);
 };
