@@ -46,8 +46,10 @@ SectionKind crack_front_kind() {
   return {
     "Crack front",
     Occurrence::named,
-    "The front of a crack, as it lies at rest; see the observables energy release rates and stress intensities. To be "
-    "trusted in statics, from some ten cubes along the crack.",
+    "The front of a crack, as it lies at rest; see the observables energy release rates and stress intensities. For "
+    "statics. The front of a cut is up to a cube behind where it was cut: the stress intensity is 14 % low with 8 "
+    "cubes "
+    "along a crack from the side, 7 % with 16.",
     keys_of<CrackFormParameters, CrackFrontParameters>(),
     {}};
 }
