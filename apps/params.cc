@@ -13,7 +13,9 @@ int params(const Arguments& arguments) {
   const bool of_studies = arguments == Arguments{"study"};
   if (!arguments.empty() && !of_studies)
     throw ParameterError(Complaint{.value = arguments[0], .rule = "params takes no arguments but 'study'"});
-  std::printf("%s", scene::print_parameters(of_studies ? study::grammar() : scene::grammar()).c_str());
+  const std::string page = of_studies ? scene::print_parameters(study::grammar())
+                                      : scene::print_parameters(scene::grammar()) + "\n" + scene::print_observables();
+  std::printf("%s", page.c_str());
   return 0;
 }
 

@@ -60,6 +60,16 @@ void check_shape(const Disc& disc) {
   require_length(disc.radius, "Radius [m]");
 }
 
+void check_shape(const Rectangle& rectangle) {
+  constexpr double right = 1e-6; // cosine
+  const Vec3 &a = rectangle.first_side, &b = rectangle.second_side;
+  require_place(rectangle.centre);
+  require_length(a.stableNorm(), "First side [m]");
+  require_length(b.stableNorm(), "Second side [m]");
+  if (!(std::abs(a.stableNormalized().dot(b.stableNormalized())) < right))
+    refuse("Second side [m]", "must be at right angles to First side [m]");
+}
+
 void check_shape(const geometry::TriangleMesh& mesh) {
   if (mesh.triangles.empty())
     refuse("Mesh", "must have a triangle");
@@ -124,6 +134,22 @@ Verdict meet(const Disc& disc, const Segment& segment) {
   return verdict.n_crossings > 0 && from_centre.squaredNorm() < disc.radius * disc.radius ? verdict : Verdict();
 }
 
+Vec3 normal_of(const Rectangle& rectangle) {
+  return rectangle.first_side.stableNormalized().cross(rectangle.second_side.stableNormalized()).normalized();
+}
+
+Verdict meet(const Rectangle& rectangle, const Segment& segment) {
+  const Verdict verdict = meet(Plane{rectangle.centre, normal_of(rectangle)}, segment);
+  const auto& [p, q] = segment;
+  const Vec3 from_centre = p + verdict.t * (q - p) - rectangle.centre;
+  const auto lies_between = [&](const Vec3& side) {
+    return std::abs(from_centre.dot(side.stableNormalized())) < 0.5 * side.stableNorm();
+  };
+  const bool is_met =
+    verdict.n_crossings > 0 && lies_between(rectangle.first_side) && lies_between(rectangle.second_side);
+  return is_met ? verdict : Verdict();
+}
+
 Verdict meet(const Sphere& sphere, const Segment& segment) {
   const Vec3 p = segment[0] - sphere.centre, q = segment[1] - sphere.centre;
   const double r = sphere.radius;
@@ -158,6 +184,13 @@ bool near(const Plane& plane, const Box& box) { return may_meet(plane.point, pla
 bool near(const Disc& disc, const Box& box) {
   const Vec3 reach = Vec3::Constant(disc.radius * (1 + 1e-9) + 1e-9 * disc.centre.cwiseAbs().sum());
   return geometry::overlap({disc.centre - reach, disc.centre + reach}, box) && may_meet(disc.centre, disc.normal, box);
+}
+
+bool near(const Rectangle& rectangle, const Box& box) {
+  const Vec3 half = 0.5 * (rectangle.first_side.cwiseAbs() + rectangle.second_side.cwiseAbs());
+  const Vec3 reach = half + Vec3::Constant(1e-9 * (half.sum() + rectangle.centre.cwiseAbs().sum()));
+  return geometry::overlap({rectangle.centre - reach, rectangle.centre + reach}, box) &&
+         may_meet(rectangle.centre, normal_of(rectangle), box);
 }
 
 bool near(const Sphere& sphere, const Box& box) {

@@ -1,12 +1,12 @@
 #pragma once
 
 /// A cut by a surface that is known at once, instead of swept step by step (thesis §2.4.3 limits sweeps to two edges of
-/// a cell a step; what is known at once needs no such limit): a plane, a sphere, a closed cylinder, a disc, a mesh.
+/// a cell a step; what is known at once needs no such limit): a plane, a sphere, a closed cylinder, a disc, a rectangle, a mesh.
 ///
 /// Method: a signed function of position alone is sampled at the ends of each current edge: f < 0 is below a plane or
 /// inside a body, and 0 counts as positive. Plane, sphere and cylinder cut an edge when its ends have different signs:
 /// what they cut is the border of a set of nodes, so it has no hole, whatever the rounding. A disc cuts an edge that
-/// its plane cuts at less than the radius from its centre. Where along the edge follows in closed form. A mesh, open
+/// its plane cuts at less than the radius from its centre, a rectangle one that its plane cuts between its sides. Where along the edge follows in closed form. A mesh, open
 /// or closed, cuts like a sweep (recut.h): edges that an odd number of its triangles cross, by exact predicates. So
 /// where a mesh runs through itself, or lies on itself twice, the edges that it crosses evenly stay whole.
 ///
@@ -46,7 +46,13 @@ struct Disc {
   double radius = 0;           ///< [m]
 };
 
-using Shape = std::variant<Plane, Sphere, Cylinder, Disc, geometry::TriangleMesh>;
+/// Two sides at right angles.
+struct Rectangle {
+  Vec3 centre = Vec3::Zero();                                   ///< [m]
+  Vec3 first_side = Vec3::UnitX(), second_side = Vec3::UnitY(); ///< direction and length [m]
+};
+
+using Shape = std::variant<Plane, Sphere, Cylinder, Disc, Rectangle, geometry::TriangleMesh>;
 
 struct CutSurface {
   std::string name;
@@ -55,7 +61,7 @@ struct CutSurface {
 };
 
 /// Throws ParameterError, with the key at fault as path: a radius or height that is not > 0, a direction that is not a
-/// unit vector, numbers that are not finite, a mesh without triangles.
+/// unit vector, sides of no length or not at right angles, numbers that are not finite, a mesh without triangles.
 void check(const CutSurface& surface);
 
 /// The edges that the surface cuts when the corners are at `x` [m, world frame, one a corner]; check() must accept the

@@ -6,6 +6,7 @@
 #include "dynamics/conjugate_gradients.h"
 #include "dynamics/direct.h"
 #include "dynamics/forces.h"
+#include "dynamics/points.h"
 #include "dynamics/state.h"
 
 #include <Eigen/Geometry>
@@ -19,34 +20,6 @@ namespace {
 constexpr std::size_t worth = 4096;      // corners from which on a second thread pays
 constexpr int most_where_not_taken = 30; // Newton iterations
 
-Eigen::Map<const Vec3> at(const std::span<const double> values, const std::size_t i) {
-  return Eigen::Map<const Vec3>(values.data() + 3 * i);
-}
-Eigen::Map<Vec3> at(const std::span<double> values, const std::size_t i) {
-  return Eigen::Map<Vec3>(values.data() + 3 * i);
-}
-
-double norm(const Points& values) { return std::sqrt(dot(flat(values), flat(values))); }
-
-double product(const Points& a, const Points& b) { return dot(flat(a), flat(b)); }
-
-Points moved(const Points& x, const double length, const Points& d) {
-  Points end(x.size());
-  for (std::size_t i = 0; i < x.size(); ++i)
-    end[i] = x[i] + length * d[i];
-  return end;
-}
-
-/// Values a corner, less their mean by mass.
-Points without_mean(const std::span<const double> mass, const Points& values) {
-  Vec3 sum = Vec3::Zero();
-  double all = 0;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    sum += mass[i] * values[i];
-    all += mass[i];
-  }
-  return moved(values, -1, Points(values.size(), sum / all));
-}
 } // namespace
 
 /// What stays the same during a solution.
@@ -55,6 +28,7 @@ struct BalanceSolver::Problem {
   const Constraints& constraints;
   const Balance& balance;
   std::span<const double> mass;
+  const MassCoupling* coupling;         ///< null where the mass is lumped
   double mass_factor, stiffness_factor; ///< of M and K in A
 
   Vec3 offset(const std::size_t i) const { return balance.offset.empty() ? Vec3(Vec3::Zero()) : balance.offset[i]; }
@@ -74,6 +48,7 @@ NewtonReport BalanceSolver::solve(const Loads& loads, const Constraints& constra
                         constraints,
                         balance,
                         model_.lumped_mass(),
+                        model_.mass_coupling(),
                         balance.mass_factor + loads.mass_damping * omega,
                         1 + loads.stiffness_damping * omega};
   x = balance.start;
@@ -165,6 +140,8 @@ double BalanceSolver::own_loss(const Problem& problem, const Points& x) const {
   double twice = product(d, Kd);
   for (std::size_t i = 0; i < x.size(); ++i)
     twice += problem.mass[i] * (dt * acceleration_[i]).squaredNorm();
+  if (problem.coupling)
+    twice += dt * dt * product(acceleration_, coupled(model_, acceleration_));
   return 0.5 * twice;
 }
 
@@ -200,14 +177,14 @@ bool BalanceSolver::turns_little(const Problem& problem, const Points& x) const 
     before[i] = b.velocity[i] - dt * b.acceleration[i];
   const Points r = without_mean(problem.mass, x), v = without_mean(problem.mass, velocity_),
                v_0 = without_mean(problem.mass, before);
+  const Points p_0 = momenta(model_, v_0);
   Vec3 turned = Vec3::Zero(), spin = Vec3::Zero();
   double energy = 0, inertia = 0; // twice the kinetic energy
   for (std::size_t i = 0; i < x.size(); ++i) {
-    const double m = problem.mass[i];
-    turned += dt * (m * v[i].cross(v_0[i]) - r[i].cross(residual_[i]));
-    spin += m * r[i].cross(v_0[i]);
-    energy += m * v_0[i].squaredNorm();
-    inertia += m * r[i].squaredNorm();
+    turned += dt * (v[i].cross(p_0[i]) - r[i].cross(residual_[i]));
+    spin += r[i].cross(p_0[i]);
+    energy += v_0[i].dot(p_0[i]);
+    inertia += problem.mass[i] * r[i].squaredNorm();
   }
   constexpr double own = 1.1, unseen = 1e-4; // of what the method does; of all that the energy could be
   return turned.norm() * spin.norm() <=
@@ -261,10 +238,15 @@ void BalanceSolver::factorise(const Problem& problem) {
     worth);
 }
 
+Points BalanceSolver::resisted(const Problem& problem) const {
+  return problem.coupling ? moved(acceleration_, problem.loads.mass_damping, velocity_) : Points();
+}
+
 double BalanceSolver::assemble_residual(const Problem& problem) {
-  const auto& [loads, constraints, balance, mass, mass_factor, stiffness_factor] = problem;
+  const auto& [loads, constraints, balance, mass, coupling, mass_factor, stiffness_factor] = problem;
   const std::size_t n = force_.size();
   residual_.resize(n);
+  const Points more = coupled(model_, resisted(problem));
   const double square_of_scale = sum_of(n, [&](const std::size_t begin, const std::size_t end) {
     double sum = 0;
     for (std::size_t i = begin; i < end; ++i) {
@@ -272,6 +254,8 @@ double BalanceSolver::assemble_residual(const Problem& problem) {
                  resistance = mass[i] * (acceleration_[i] + loads.mass_damping * velocity_[i]) +
                               loads.stiffness_damping * damping_[i];
       residual_[i] = force_[i] + weight + load_force_[i] + problem.offset(i) - resistance;
+      if (coupling)
+        residual_[i] -= more[i];
       if (!constraints.is_free(i))
         residual_[i] = constraints.freedom(i).project * residual_[i];
       const Mat3& S = scaling_[i];
@@ -320,6 +304,10 @@ double BalanceSolver::scaled_round_off() const {
 
 void BalanceSolver::apply(const Problem& problem, const std::span<const double> p, const std::span<double> y) {
   model_.apply_stiffness(p, y);
+  if (problem.coupling) {
+    mass_product_.assign(p.size(), 0);
+    problem.coupling->add_product(p, mass_product_);
+  }
   if (!tangent_.empty()) {
     load_product_.assign(p.size(), 0);
     tangent_.add_product(p, load_product_);
@@ -329,6 +317,8 @@ void BalanceSolver::apply(const Problem& problem, const std::span<const double> 
     [&](const std::size_t i) {
       Vec3 Ap =
         problem.mass_factor * problem.mass[i] * at(p, i) + problem.stiffness_factor * at(std::span<const double>(y), i);
+      if (problem.coupling)
+        Ap += problem.mass_factor * at(std::span<const double>(mass_product_), i);
       if (!tangent_.empty())
         Ap += at(std::span<const double>(load_product_), i);
       if (!problem.constraints.is_free(i))
@@ -402,6 +392,8 @@ void BalanceSolver::correct_directly(const Problem& problem, const Tangent kind)
   for (std::size_t i = 0; i < x.size(); ++i)
     for (int k = 0; k < 3; ++k)
       entries.emplace_back(3 * i + k, 3 * i + k, problem.mass_factor * problem.mass[i]);
+  if (problem.coupling)
+    problem.coupling->add_entries(problem.mass_factor, entries);
   load_tangent(problem.loads, kind, {b.time, x, velocity_}, b.velocity_factor).add_entries(entries);
   Eigen::SparseMatrix<double> A(3 * x.size(), 3 * x.size());
   A.setFromTriplets(entries.begin(), entries.end());
@@ -461,6 +453,11 @@ BalanceSolver::Change BalanceSolver::change(const Problem& problem, const Points
                     loads.stiffness_damping * damping_[i] - problem.offset(i));
     quadratic += 0.5 * problem.mass_factor * problem.mass[i] * d.squaredNorm() +
                  0.5 * loads.stiffness_damping * b.velocity_factor * d.dot(damped[i]);
+  }
+  if (problem.coupling) {
+    const Points more = coupled(model_, correction_);
+    linear += product(resisted(problem), more);
+    quadratic += 0.5 * problem.mass_factor * product(correction_, more);
   }
   const auto [at_x, at_trial] = without_potential(problem, x, trial, length);
   for (const auto& load : loads.acting)

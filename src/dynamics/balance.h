@@ -10,7 +10,7 @@
 ///
 /// Newton's method from x_0. A correction solves A d = r with A = (kappa + alpha omega) M + (1 + beta omega) K +
 /// loads, by conjugate gradients or by a factorisation, among the directions that supports leave free. Residuals are
-/// measured by the inverses of A's diagonal 3 x 3 blocks, L^-T L^-1 with their Cholesky factors L: each corner counts in
+/// measured by the inverses of A's diagonal 3 x 3 blocks, with the lumped masses, which bound any M from above, L^-T L^-1 with their Cholesky factors L: each corner counts in
 /// its own measure, one of hardly any mass like every other. The same are the preconditioner, or what the model offers
 /// in their place (preconditioner.h), as long as that comes to an end within 100 iterations.
 ///
@@ -128,6 +128,8 @@ class BalanceSolver {
   /// Forces, velocities and accelerations at x; the linearisation stays.
   void move_to(const Problem& problem, const Points& x);
   void factorise(const Problem& problem);
+  /// a + alpha v, which M resists; nothing where the mass is lumped.
+  Points resisted(const Problem& problem) const;
   /// Returns the scale of what balances, in the scaled norm.
   double assemble_residual(const Problem& problem);
   double balanced_forces(const Problem& problem) const;
@@ -179,7 +181,7 @@ class BalanceSolver {
   std::vector<Mat3> scaling_;        // L^-1 from the free directions' basis, a row of zeros for each that is held
   std::vector<Mat3> inverse_blocks_; // S^T S
   std::vector<Mat3> load_bounds_;    // see LoadTangent::add_bound
-  std::vector<double> load_product_;
+  std::vector<double> load_product_, mass_product_;
   double most_work_ = 0; // of what is out of balance, in the step at hand [J]
   double way_ = 0;       // from the guess to the first iterate, in the energy norm; 0: unknown
 };

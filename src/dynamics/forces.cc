@@ -50,7 +50,27 @@ void total_force(ForceModel& model, const Loads& loads, const Moment& moment, co
   const double alpha = mass_damping == MassDamping::included ? loads.mass_damping : 0;
   parallel_for(
     forces.size(), [&](const std::size_t i) { forces[i] += mass[i] * (loads.gravity - alpha * moment.v[i]); }, worth);
+  if (const Points more = coupled(model, moment.v); alpha > 0)
+    for (std::size_t i = 0; i < more.size(); ++i)
+      forces[i] -= alpha * more[i];
   add_load_forces(loads, moment, forces);
+}
+
+Points coupled(const ForceModel& model, const Points& v) {
+  const MassCoupling* const coupling = model.mass_coupling();
+  Points product(coupling ? v.size() : 0, Vec3::Zero());
+  if (coupling)
+    coupling->add_product(flat(v), flat(product));
+  return product;
+}
+
+Points momenta(const ForceModel& model, const Points& v) {
+  const auto mass = model.lumped_mass();
+  Points sum = coupled(model, v);
+  sum.resize(v.size(), Vec3::Zero());
+  for (std::size_t i = 0; i < v.size(); ++i)
+    sum[i] += mass[i] * v[i];
+  return sum;
 }
 
 double kinetic_energy(const ForceModel& model, const Points& v) {
@@ -58,6 +78,9 @@ double kinetic_energy(const ForceModel& model, const Points& v) {
   double sum = 0;
   for (std::size_t i = 0; i < v.size(); ++i)
     sum += 0.5 * mass[i] * v[i].squaredNorm();
+  const Points more = coupled(model, v);
+  for (std::size_t i = 0; i < more.size(); ++i)
+    sum += 0.5 * v[i].dot(more[i]);
   return sum;
 }
 

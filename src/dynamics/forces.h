@@ -26,7 +26,11 @@ inline Vec3 per_mass(const Vec3& value, const double mass) {
   return mass > 0 ? Vec3(value / mass) : Vec3(Vec3::Zero());
 }
 
-/// Kinetic energy, of the lumped mass [J].
+/// (M - diag m) v; nothing where the mass is lumped.
+Points coupled(const ForceModel& model, const Points& v);
+/// M v, by corner [kg m/s]; of accelerations, the forces of inertia [N].
+Points momenta(const ForceModel& model, const Points& v);
+/// Kinetic energy [J].
 double kinetic_energy(const ForceModel& model, const Points& v);
 /// -sum of m g.x [J].
 double gravity_energy(const ForceModel& model, const Loads& loads, const Points& x);

@@ -1,9 +1,12 @@
 #include "dynamics/generalised_alpha.h"
 
 #include "base/error.h"
+#include "dynamics/conjugate_gradients.h"
 #include "dynamics/forces.h"
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 namespace kerf::dynamics {
 
@@ -16,6 +19,25 @@ constexpr double part_of_step = 1e-2; // for velocities of supports, by central 
 void require(const bool holds, const std::string& path, const double value, const std::string& rule) {
   if (!holds)
     throw ParameterError(Complaint{.path = path, .value = to_text(value), .rule = rule, .remedy = ""});
+}
+
+/// M a = f among the free directions, from an `a` that is near; B: what to divide by where M is lumped.
+void solve_for_acceleration(const ForceModel& model, const Constraints& constraints, const Product& B, Points& f,
+                            Points& a) {
+  constexpr int most = 200;
+  constexpr double part = 1e-12; // of the forces
+  constraints.project(f);
+  const Product M = [&](const auto p, const auto y) {
+    Points v(p.size() / 3);
+    std::copy(p.begin(), p.end(), flat(v).begin());
+    Points product = momenta(model, v);
+    constraints.project(product);
+    std::copy(flat(product).begin(), flat(product).end(), y.begin());
+  };
+  Points scaled(f.size());
+  B(flat(std::as_const(f)), flat(scaled));
+  const double size = std::sqrt(dot(flat(std::as_const(f)), flat(std::as_const(scaled))));
+  conjugate_gradients({M, B}, flat(std::as_const(f)), {.residual = part * size}, most, flat(a));
 }
 
 } // namespace
@@ -42,9 +64,15 @@ Points GeneralisedAlpha::first_acceleration(const State& state, const Loads& loa
   total_force(model_, loads, {state.time, state.x, v}, MassDamping::included, a);
   const auto mass = model_.lumped_mass();
   const double least = massless * *std::max_element(mass.begin(), mass.end());
-  for (std::size_t i = 0; i < a.size(); ++i)
-    a[i] = mass[i] > least ? Vec3(a[i] / mass[i]) : Vec3(Vec3::Zero());
+  const auto by_lumped = [&](const std::span<const double> f, const std::span<double> result) {
+    for (std::size_t i = 0; i < f.size(); ++i)
+      result[i] = mass[i / 3] > least ? f[i] / mass[i / 3] : 0;
+  };
+  Points forces = a;
+  by_lumped(flat(std::as_const(forces)), flat(a));
   constraints.project(a);
+  if (model_.mass_coupling())
+    solve_for_acceleration(model_, constraints, by_lumped, forces, a);
   return a;
 }
 

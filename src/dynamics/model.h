@@ -11,6 +11,17 @@
 
 namespace kerf::dynamics {
 
+/// What a mass matrix M has beside its lumped masses m: M - diag(m), symmetric, with rows that sum to zero.
+class MassCoupling {
+ public:
+  virtual ~MassCoupling() = default;
+
+  /// y += (M - diag(m)) p.
+  virtual void add_product(std::span<const double> p, std::span<double> y) const = 0;
+  /// The same times `factor`, as entries of a matrix of 3 n x 3 n.
+  virtual void add_entries(double factor, std::vector<Eigen::Triplet<double>>& entries) const = 0;
+};
+
 /// Enough for explicit integrators.
 class ForceModel {
  public:
@@ -18,6 +29,8 @@ class ForceModel {
 
   /// Mass of each corner [kg].
   virtual std::span<const double> lumped_mass() const = 0;
+  /// Null where the mass is lumped. Explicit integrators do not ask.
+  virtual const MassCoupling* mass_coupling() const { return nullptr; }
   /// Elastic energy [J] at current positions x [m].
   virtual double energy(const Points& x) const = 0;
   /// forces = -dE/dx [N].

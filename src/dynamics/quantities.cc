@@ -12,9 +12,9 @@ namespace {
 Points missing_force(ForceModel& model, const Loads& loads, const State& state, const Points& acceleration) {
   Points missing;
   total_force(model, loads, {state.time, state.x, state.v}, MassDamping::included, missing);
-  const auto mass = model.lumped_mass();
+  const Points inertia = momenta(model, acceleration);
   for (std::size_t i = 0; i < missing.size(); ++i)
-    missing[i] = mass[i] * acceleration[i] - missing[i];
+    missing[i] = inertia[i] - missing[i];
   return missing;
 }
 
@@ -120,10 +120,10 @@ Vec3 momentum(const ForceModel& model, const State& state) {
 }
 
 Vec3 angular_momentum(const ForceModel& model, const State& state, const Vec3& about) {
-  const auto mass = model.lumped_mass();
+  const Points p = momenta(model, state.v);
   Vec3 sum = Vec3::Zero();
-  for (std::size_t i = 0; i < mass.size(); ++i)
-    sum += mass[i] * (state.x[i] - about).cross(state.v[i]);
+  for (std::size_t i = 0; i < p.size(); ++i)
+    sum += (state.x[i] - about).cross(p[i]);
   return sum;
 }
 

@@ -60,13 +60,17 @@ double work_of_supports(const ForceModel& model, const Loads& loads, const Const
   add_load_forces(loads, {at.time, at.x, at.v}, forces);
   const auto mass = model.lumped_mass();
   const double dt = after.time - before.time;
+  Points change(after.v.size());
+  for (std::size_t i = 0; i < change.size(); ++i)
+    change[i] = after.v[i] - before.v[i];
+  change = momenta(model, change);
   double sum = 0;
   for (const auto& held : constraints.held()) {
     const auto i = held.corner;
     const Vec3 moved = after.x[i] - before.x[i];
     sum -= (forces[i] + mass[i] * loads.gravity).dot(moved - constraints.freedom(i).project * moved);
     const Vec3 v = 0.5 * (after.v[i] + before.v[i]); // the kinetic energy's growth, see Accounts of a scene
-    sum += mass[i] * (after.v[i] - before.v[i]).dot(v - constraints.freedom(i).project * v);
+    sum += change[i].dot(v - constraints.freedom(i).project * v);
     sum += dt * loads.mass_damping * mass[i] * after.v[i].squaredNorm();
   }
   return sum;

@@ -43,6 +43,7 @@ inline const Points* remembered(const State& state, const std::string& name) {
 inline void forget_forces(State& state) {
   for (const char* const name : {"acceleration", "change of velocity"})
     state.history.erase(name);
+  state.numbers.erase("settled corners [1]");
 }
 
 /// Of what integrators remember beside x and v, nothing: the next step starts anew.

@@ -30,8 +30,8 @@ void ElementTable::update(const grid::Solid& solid, const std::span<const grid::
     }
   }
   parallel_for(partial.size(), [&](const std::size_t i) {
-    const grid::Copy& copy = solid.complex.copies[partial[i]];
-    elements_[element_of_[partial[i].value]] = make(material_moments(solid, copy));
+    elements_[element_of_[partial[i].value]] =
+      make_element(moments(solid, partial[i]), h_, options_.material, options_.element);
   });
 }
 
@@ -40,13 +40,14 @@ bool ElementTable::is_partial(const grid::Solid& solid, const grid::Copy& copy) 
          solid.cuts.configuration(solid.grid, copy.cell) != 0;
 }
 
-Element ElementTable::make(const Moments& moments) const {
+Moments ElementTable::moments(const grid::Solid& solid, const grid::CopyId copy) const {
+  const Moments own = material_moments(solid, solid.complex.copies[copy]);
   if (options_.boundary == Boundary::octants)
-    return make_element(moments, h_, options_.material, options_.element);
+    return own;
   Moments part = full_cube_moments();
   for (double& m : part)
-    m *= moments[0];
-  return make_element(part, h_, options_.material, options_.element);
+    m *= own[0];
+  return part;
 }
 
 std::uint32_t ElementTable::unused() {

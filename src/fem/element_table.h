@@ -35,12 +35,14 @@ class ElementTable {
   /// How many copies have an element of their own.
   std::size_t n_partial() const { return elements_.size() - 1 - free_.size(); }
 
+  /// Of a copy's material, as it counts (Boundary).
+  Moments moments(const grid::Solid& solid, grid::CopyId copy) const;
+
   bool is_full(const std::size_t copy) const { return element_of_[copy] == 0; }
   const Element& full() const { return elements_[0]; }
 
  private:
   bool is_partial(const grid::Solid& solid, const grid::Copy& copy) const;
-  Element make(const Moments& moments) const;
   /// The index of an element that nothing uses.
   std::uint32_t unused();
 

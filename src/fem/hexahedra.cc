@@ -68,6 +68,8 @@ Hexahedra::Hexahedra(const grid::Solid& solid, const HexahedraOptions& options)
     elements_(solid, table_options(options)),
     incidence_(solid),
     ghost_penalty_(options.ghost_penalty, options.material, h_) {
+  if (options.mass == MassMatrix::consistent)
+    consistent_mass_ = std::make_unique<ConsistentMass>(elements_, incidence_, options.material.density, h_);
   std::vector<std::uint32_t> corners(solid.complex.n_corners());
   std::iota(corners.begin(), corners.end(), 0);
   std::vector<grid::CopyId> copies;
@@ -89,6 +91,8 @@ void Hexahedra::follow(const grid::Solid& solid, const std::span<const grid::Cop
   sum_mass(corners);
   ghost_penalty_.update( // to which a crumb's copies are as good as full
     solid, changed, [this](const std::size_t copy) { return incidence_.is_used(copy) ? fill(copy) : 1; }, mass_);
+  if (consistent_mass_)
+    consistent_mass_->update(solid, changed, mass_, lumped_mass());
 }
 
 void Hexahedra::batch(const grid::Solid& solid) {

@@ -24,6 +24,7 @@
 
 #include "dynamics/model.h"
 #include "fem/batches.h"
+#include "fem/consistent_mass.h"
 #include "fem/element_table.h"
 #include "fem/ghost_penalty.h"
 #include "fem/incidence.h"
@@ -41,11 +42,18 @@ enum class Inertia {
            ///< integrators need
 };
 
+/// The mass matrix that integrators get.
+enum class MassMatrix {
+  lumped,    ///< diagonal
+  consistent ///< that of the shape functions (consistent_mass.h), for implicit integrators
+};
+
 struct HexahedraOptions {
   material::Elastic material; ///< and its law
   Boundary boundary = Boundary::octants;
   Strain strain = Strain::trilinear;
   Inertia inertia = Inertia::lumped;
+  MassMatrix mass = MassMatrix::lumped;
   GhostPenaltyOptions ghost_penalty = {};
 };
 
@@ -60,6 +68,7 @@ class Hexahedra : public dynamics::ElasticModel, public dynamics::StiffnessMatri
   std::span<const double> lumped_mass() const override {
     return inertia_ == Inertia::lumped ? mass_ : ghost_penalty_.extended_mass();
   }
+  const dynamics::MassCoupling* mass_coupling() const override { return consistent_mass_.get(); }
   double energy(const Points& x) const override;
   void force(const Points& x, Points& forces) const override;
   void linearise(const Points& x) override;
@@ -77,6 +86,7 @@ class Hexahedra : public dynamics::ElasticModel, public dynamics::StiffnessMatri
   std::size_t n_partial() const { return elements_.n_partial(); }
 
   const material::AnyLaw& law() const { return law_; }
+  const material::Elastic& material() const { return material_; }
   const Element& element(const std::size_t copy) const { return elements_[copy]; }
   const Incidence& incidence() const { return incidence_; }
   const GhostPenalty& ghost_penalty() const { return ghost_penalty_; }
@@ -120,8 +130,9 @@ class Hexahedra : public dynamics::ElasticModel, public dynamics::StiffnessMatri
   BatchedElements<double> batched_; // rotations and tangents at the linearisation point
   GhostPenalty ghost_penalty_;
   std::vector<double> mass_;
-  std::vector<Index3> places_;           // of the copies' cells
-  std::unique_ptr<Multigrid> multigrid_; // none until it is asked for
+  std::unique_ptr<ConsistentMass> consistent_mass_; // none where mass is lumped
+  std::vector<Index3> places_;                      // of the copies' cells
+  std::unique_ptr<Multigrid> multigrid_;            // none until it is asked for
   mutable Scratch<Row<double>> scratch_;
 };
 

@@ -23,6 +23,7 @@ struct Promise {
   double n_vertices = 0, n_faces = 0;
   double least_bytes = 0; ///< that this takes
   bool is_text = true;
+  int stray_property = 0; ///< the line of a property of nothing, which some readers do not survive; 0: none
 };
 
 /// The lines of a text that say something.
@@ -87,10 +88,14 @@ std::optional<Promise> ply_header(Lines& lines) {
   if (!lines.next() || lines.words()[0] != "ply")
     return std::nullopt;
   Promise promise;
+  bool has_element = false;
   while (lines.next() && lines.words()[0] != "end_header") {
     const Words& words = lines.words();
     if (words[0] == "format" && words.size() > 1)
       promise.is_text = words[1] == "ascii";
+    has_element = has_element || words[0] == "element";
+    if (words[0] == "property" && !has_element && promise.stray_property == 0)
+      promise.stray_property = lines.number();
     if (words[0] == "element" && words.size() > 2)
       (words[1] == "vertex" ? promise.n_vertices : promise.n_faces) += std::max(0.0, number_of(words[2]));
   }
@@ -178,6 +183,11 @@ void require_room_for_header(const std::string& path) {
   Lines lines(path);
   const auto promise = header_of(path, lines);
   const auto n_bytes = double(std::filesystem::file_size(path));
+  if (promise && promise->stray_property > 0)
+    throw DataError(Complaint{.file = path,
+                              .line = promise->stray_property,
+                              .rule = "a property stands before any element in the header",
+                              .remedy = "The file is damaged: export it again"});
   if (promise && !(promise->least_bytes <= n_bytes + 2)) // the last line need not end
     throw DataError(
       Complaint{.file = path,

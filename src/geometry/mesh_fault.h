@@ -7,7 +7,7 @@
 
 namespace kerf::geometry {
 
-/// Throws DataError where the header promises more vertices and faces than fit into the length of the file: whoever makes
+/// Throws DataError where the header is one that a reader does not survive, or promises more vertices and faces than fit into the length of the file: whoever makes
 /// room for them would take any amount of memory.
 void require_room_for_header(const std::string& path);
 

@@ -77,40 +77,27 @@ Value sample(const Raster<Value>& raster, const float x, const float y) {
   return top + f.down * (bottom - top);
 }
 
-/// Shares of four neighbours at a place in [0, 1] between the middle ones: Catmull and Rom, A class of local interpolating
-/// splines, 1974.
-inline std::array<float, 4> cubic_shares(const float t) {
-  return {t * (-0.5f + t * (1 - 0.5f * t)), 1 + t * t * (1.5f * t - 2.5f), t * (0.5f + t * (2 - 1.5f * t)),
-          t * t * (0.5f * t - 0.5f)};
+/// Shares of four neighbours at a place in [0, 1] between the middle ones: those of a cubic B-spline.
+inline std::array<float, 4> spline_shares(const float t) {
+  const float u = 1 - t;
+  return {u * u * u / 6, (4 + t * t * (3 * t - 6)) / 6, (4 + u * u * (3 * u - 6)) / 6, t * t * t / 6};
 }
 
-/// The bicubic value at a point [pixels]: a pixel has its own, and what is finest fades less between pixels than by
-/// sample(). It may leave the range of the pixels.
+/// The value at a point [pixels] of the cubic spline with these coefficients (spline.h). It may leave the range of the
+/// pixels.
 template <class Value>
-Value sample_cubic(const Raster<Value>& raster, const float x, const float y) {
-  const Footing f = footing(raster.width, raster.height, x, y);
-  const auto across = cubic_shares(f.right), down = cubic_shares(f.down);
-  std::array<int, 4> columns;
-  for (int k = 0; k < 4; ++k)
-    columns[k] = std::clamp(f.column + k - 1, 0, raster.width - 1);
+Value sample_spline(const Raster<Value>& coefficients, const float x, const float y) {
+  const Footing f = footing(coefficients.width, coefficients.height, x, y);
+  const auto across = spline_shares(f.right), down = spline_shares(f.down);
+  // Mirrored at the border.
+  const Value* const middle = &coefficients.values[coefficients.index(f.column, f.row)];
+  const int left = f.column > 0 ? -1 : 1, right = f.column + 2 < coefficients.width ? 2 : 0;
   const auto row = [&](const int k) {
-    const Value* const p = &raster.values[raster.index(0, std::clamp(f.row + k - 1, 0, raster.height - 1))];
-    return Value(across[0] * p[columns[0]] + across[1] * p[columns[1]] + across[2] * p[columns[2]] +
-                 across[3] * p[columns[3]]);
+    const Value* const p = middle + k * coefficients.width;
+    return Value(across[0] * p[left] + across[1] * p[0] + across[2] * p[1] + across[3] * p[right]);
   };
-  return down[0] * row(0) + down[1] * row(1) + down[2] * row(2) + down[3] * row(3);
-}
-
-/// The same for one value a pixel, four at a time.
-inline float sample_cubic(const Grey& grey, const float x, const float y) {
-  const Footing f = footing(grey.width, grey.height, x, y);
-  if (f.column < 1 || f.row < 1 || f.column > grey.width - 3 || f.row > grey.height - 3)
-    return sample_cubic<float>(grey, x, y);
-  const auto across = cubic_shares(f.right), down = cubic_shares(f.down);
-  const float* const first = &grey.values[grey.index(f.column - 1, f.row - 1)];
-  const auto row = [&](const int k) { return Eigen::Map<const Eigen::Array4f>(first + k * grey.width); };
-  const Eigen::Array4f sum = down[0] * row(0) + down[1] * row(1) + down[2] * row(2) + down[3] * row(3);
-  return (sum * Eigen::Map<const Eigen::Array4f>(across.data())).sum();
+  return down[0] * row(f.row > 0 ? -1 : 1) + down[1] * row(0) + down[2] * row(1) +
+         down[3] * row(f.row + 2 < coefficients.height ? 2 : 0);
 }
 
 /// How bright a colour looks: Rec. 709 weights, on the values as they are.

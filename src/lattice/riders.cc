@@ -1,5 +1,7 @@
 #include "lattice/riders.h"
 
+#include "grid/crumbs.h"
+
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
@@ -12,7 +14,7 @@ namespace {
 
 using grid::CopyId;
 
-constexpr double light = 1.0 / 128, heavy = 1.0 / 32; // masses of corners, over a cube's
+constexpr double light = grid::well_filled, heavy = light / 8; // masses of corners, over a cube's
 constexpr std::uint32_t none = CopyId::no_value;
 
 /// For each copy its carrier, itself where it can carry; `none` where the piece has no such copy.
@@ -108,6 +110,34 @@ Riders::Riders(const grid::CellComplex& complex, const std::span<const double> m
   }
 }
 
+void Riders::settle(const Points& goals, const std::span<const double> mass, Points& x, Points& v) const {
+  for (const Carrier& carrier : carriers_)
+    settle(carrier, goals, mass, x, v);
+}
+
+void Riders::settle(const Carrier& carrier, const Points& goals, const std::span<const double> mass, Points& x,
+                    Points& v) const {
+  const auto corners = carrier.own_corners();
+  if (rigid_motion(corners, x, v, mass).mobility == 0)
+    return;
+  Vec3 moment = Vec3::Zero(), angular = Vec3::Zero(); // that would be gained
+  for (const Rider& rider : riders_of(carrier)) {
+    const auto i = rider.corner;
+    const Vec3 way = rider.need * (goals[i] - x[i]);
+    x[i] += way;
+    moment += mass[i] * way;
+    angular += mass[i] * way.cross(v[i]);
+  }
+  const Rigid body = rigid_motion(corners, x, v, mass);
+  const Vec3 back = -moment / body.mass;
+  angular += body.mass * back.cross(body.velocity);
+  const Vec3 turned = body.inverse_inertia * angular;
+  for (const auto c : corners) {
+    v[c] -= turned.cross(x[c] - body.centre);
+    x[c] += back;
+  }
+}
+
 void Riders::damp(const Points& x, const std::span<const double> mass, const double alpha, Points& v) const {
   const double kappa = 2 * std::sqrt(alpha) - alpha;
   for (const Carrier& carrier : carriers_)
@@ -116,18 +146,21 @@ void Riders::damp(const Points& x, const std::span<const double> mass, const dou
 
 void Riders::damp(const Carrier& carrier, const Points& x, const std::span<const double> mass, const double kappa,
                   Points& v) const {
-  const std::span<const std::uint32_t> corners(carrier.corners.data(), carrier.n_corners);
-  const std::span<const Rider> riders(riders_.data() + carrier.first, carrier.last - carrier.first);
+  const auto corners = carrier.own_corners();
+  const auto riders = riders_of(carrier);
   const Rigid body = rigid_motion(corners, x, v, mass);
   if (body.mobility == 0)
     return;
-  double sigma = 0;
+  const auto weight = [&](const std::uint32_t i) {
+    return std::sqrt(mass[i] * (1 / body.mass + (x[i] - body.centre).squaredNorm() * body.mobility));
+  };
+  double sum = 0;
   for (const Rider& rider : riders)
-    sigma += mass[rider.corner] * (1 / body.mass + (x[rider.corner] - body.centre).squaredNorm() * body.mobility);
+    sum += weight(rider.corner);
   Vec3 impulse = Vec3::Zero(), angular = Vec3::Zero(); // on the carrier
   for (const Rider& rider : riders) {
     const auto i = rider.corner;
-    const Vec3 change = rider.need * kappa / (1 + sigma) * (v[i] - body.velocity_at(x[i]));
+    const Vec3 change = rider.need * kappa / (1 + weight(i) * sum) * (v[i] - body.velocity_at(x[i]));
     v[i] -= change;
     impulse += mass[i] * change;
     angular += mass[i] * (x[i] - body.centre).cross(change);

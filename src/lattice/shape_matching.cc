@@ -2,7 +2,6 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "dynamics/constraints.h"
 #include "dynamics/forces.h"
 
 #include <cmath>
@@ -63,24 +62,35 @@ ShapeMatching::ShapeMatching(const Matching& model, const double region_damping)
   check({.region_damping = region_damping});
 }
 
-void ShapeMatching::add_loads(const dynamics::State& state, const dynamics::Loads& loads, const double dt, Points& v) {
+void ShapeMatching::settle(const dynamics::Loads& loads, const dynamics::Constraints& constraints, Points& x,
+                           Points& v) {
+  model_.goals(x, goals_);
+  for (std::size_t c = 0; c < x.size(); ++c)
+    if (dynamics::is_carried(loads, c))
+      goals_[c] = x[c];
+  for (const auto& held : constraints.held())
+    goals_[held.corner] = x[held.corner];
+  model_.riders().settle(goals_, model_.lumped_mass(), x, v);
+}
+
+void ShapeMatching::add_loads(const dynamics::Moment& now, const dynamics::Loads& loads, const double dt, Points& v) {
   if (loads.acting.empty())
     return;
   Points accelerations(v.size(), Vec3::Zero()); // forces, at first
-  dynamics::add_load_forces(loads, {state.time, state.x, state.v}, accelerations);
+  dynamics::add_load_forces(loads, now, accelerations);
   const auto mass = model_.lumped_mass();
   for (std::size_t c = 0; c < v.size(); ++c)
     accelerations[c] = dynamics::per_mass(accelerations[c], mass[c]);
-  model_.rigid_velocities(state.x, accelerations, rigid_);
+  model_.rigid_velocities(now.x, accelerations, rigid_);
   for (std::size_t c = 0; c < v.size(); ++c)
     v[c] += dt * rigid_[c];
 }
 
-void ShapeMatching::damp(const dynamics::State& state, const dynamics::Loads& loads, const double dt, Points& v) {
+void ShapeMatching::damp(const Points& x, const dynamics::Loads& loads, const double dt, Points& v) {
   const double rate = region_damping_ + loads.stiffness_damping * model_.stiffness();
   if (rate == 0)
     return;
-  model_.rigid_velocities(state.x, v, rigid_);
+  model_.rigid_velocities(x, v, rigid_);
   const double kappa = rate * dt / (1 + rate * dt);
   parallel_for(
     v.size(), [&](const std::size_t c) { v[c] += kappa * (rigid_[c] - v[c]); }, worth_corners);
@@ -91,15 +101,18 @@ dynamics::StepReport ShapeMatching::step(dynamics::State& state, const dynamics:
   require_allowed(alpha, dt);
   const dynamics::Constraints constraints(loads, state.x.size());
   Points x = state.x, v = state.v;
-  model_.goals(state.x, goals_);
-  model_.riders().damp(state.x, model_.lumped_mass(), alpha, v);
+  const auto n_settled = state.numbers.find(settled_corners);
+  if (n_settled == state.numbers.end() || n_settled->second != static_cast<double>(x.size()))
+    settle(loads, constraints, x, v);
+  model_.goals(x, goals_);
+  model_.riders().damp(x, model_.lumped_mass(), alpha, v);
   parallel_for(
     x.size(), [&](const std::size_t c) { v[c] += alpha / dt * (goals_[c] - x[c]) + dt * loads.gravity; },
     worth_corners);
-  add_loads(state, loads, dt, v);
+  add_loads({state.time, x, state.v}, loads, dt, v);
   parallel_for(
     x.size(), [&](const std::size_t c) { v[c] /= 1 + dt * loads.mass_damping; }, worth_corners);
-  damp(state, loads, dt, v);
+  damp(x, loads, dt, v);
   parallel_for(
     x.size(), [&](const std::size_t c) { x[c] += dt * v[c]; }, worth_corners);
   constraints.place(state.time + dt, x);
@@ -109,6 +122,7 @@ dynamics::StepReport ShapeMatching::step(dynamics::State& state, const dynamics:
   state.x.swap(x);
   state.v.swap(v);
   state.time += dt;
+  state.numbers[settled_corners] = static_cast<double>(state.x.size());
   return {};
 }
 

@@ -3,7 +3,8 @@
 /// Lattice shape matching as a stepper (Rivers and James 2007; thesis §5.1). With the goals g of Matching, in a step
 /// dt:
 ///
-///     v of corners of hardly any mass damped against what carries them (riders.h),
+///     after a cut: corners of hardly any mass put to their goals (riders.h),
+///     their v damped against what carries them,
 ///     v += alpha (g - x) / dt + dt gravity,    alpha = k dt^2,
 ///     v += kappa (u - v)                       u: the regions' mean rigid velocities (their region damping),
 ///     x += dt v.
@@ -23,6 +24,7 @@
 /// those that are stiff themselves bound dt.
 
 #include "base/parameters.h"
+#include "dynamics/constraints.h"
 #include "dynamics/stepper.h"
 #include "lattice/matching.h"
 
@@ -42,6 +44,9 @@ void check(const ShapeMatchingParameters& parameters);
 /// k = alpha / dt^2 [1/s^2] and so on, after a check.
 MatchingOptions matching_options(const ShapeMatchingParameters& parameters, double density, double dt);
 
+/// In State::numbers: how many corners there were when riders were put to their goals last.
+inline constexpr const char* settled_corners = "settled corners [1]";
+
 class ShapeMatching : public dynamics::Stepper {
  public:
   /// The model must outlive the stepper. Region damping in [1/s].
@@ -51,8 +56,9 @@ class ShapeMatching : public dynamics::Stepper {
   dynamics::StepReport step(dynamics::State& state, const dynamics::Loads& loads, double dt) override;
 
  private:
-  void add_loads(const dynamics::State& state, const dynamics::Loads& loads, double dt, Points& v);
-  void damp(const dynamics::State& state, const dynamics::Loads& loads, double dt, Points& v);
+  void settle(const dynamics::Loads& loads, const dynamics::Constraints& constraints, Points& x, Points& v);
+  void add_loads(const dynamics::Moment& now, const dynamics::Loads& loads, double dt, Points& v);
+  void damp(const Points& x, const dynamics::Loads& loads, double dt, Points& v);
 
   const Matching& model_;
   double region_damping_;

@@ -258,32 +258,36 @@ std::vector<std::vector<Crumbs::Hold>> Crumbs::holds(const dynamics::Loads& load
 
 void Crumbs::obey(const dynamics::Loads& loads, const std::span<const Hold> holds, const double time, const double dt,
                   const RigidBody& body, RigidMotion& motion) const {
-  constexpr int n_places = 4; // rotations are not linear
-  const auto place_at = [&](const Hold& hold, const double t) {
+  constexpr int n_places = 4;       // rotations are not linear
+  constexpr double nothing = 1e-15; // of a turn, or of the way from the origin
+  Points places, velocities;        // that supports want, the latter in the mean of the step
+  for (const Hold& hold : holds) {
     const dynamics::Support& support = loads.supports[hold.support];
-    return support.places(t)(support.rest[hold.index]);
-  };
+    places.push_back(support.places(time)(support.rest[hold.index]));
+    velocities.push_back((places.back() - support.places(time - dt)(support.rest[hold.index])) / dt);
+  }
   const auto least_change = [&](const auto& missing) {
     Matrix6 S = Matrix6::Zero();
     Vector6 rhs = Vector6::Zero();
-    for (const Hold& hold : holds) {
-      const Vec3 x = dynamics::place(body, motion, hold.rest);
+    for (std::size_t i = 0; i < holds.size(); ++i) {
+      const Vec3 x = dynamics::place(body, motion, holds[i].rest);
       const Matrix36 G = modes_at(x - motion.x);
-      const Mat3& H = loads.supports[hold.support].held;
+      const Mat3& H = loads.supports[holds[i].support].held;
       S += G.transpose() * H * G;
-      rhs += G.transpose() * (H * missing(hold, x));
+      rhs += G.transpose() * (H * missing(i, x));
     }
     return least_solution(S, rhs, inertia_of_modes(body, motion));
   };
   for (int i = 0; i < n_places; ++i) {
-    const Vector6 d = least_change([&](const Hold& hold, const Vec3& x) { return Vec3(place_at(hold, time) - x); });
+    const Vector6 d = least_change([&](const std::size_t i, const Vec3& x) { return Vec3(places[i] - x); });
     motion.x += d.head<3>();
     motion.R = dynamics::turned(motion.R, d.tail<3>());
+    if (d.head<3>().norm() <= nothing * motion.x.norm() && d.tail<3>().norm() <= nothing)
+      break;
   }
   const Vec3 omega = dynamics::angular_velocity(body, motion);
-  const Vector6 d = least_change([&](const Hold& hold, const Vec3& x) {
-    return Vec3((place_at(hold, time) - place_at(hold, time - dt)) / dt - dynamics::velocity(motion, omega, x));
-  });
+  const Vector6 d = least_change(
+    [&](const std::size_t i, const Vec3& x) { return Vec3(velocities[i] - dynamics::velocity(motion, omega, x)); });
   motion.v += d.head<3>();
   motion.spin += inertia_now(body, motion) * d.tail<3>();
 }

@@ -10,12 +10,12 @@ namespace {
 /// What supports spend on the kinetic energy of what they hold, exactly [W].
 double power_of_inertia(const dynamics::ForceModel& model, const dynamics::Loads& loads, const dynamics::State& before,
                         const dynamics::State& after, const Points& acceleration) {
-  const auto mass = model.lumped_mass();
+  const Points inertia = dynamics::momenta(model, acceleration);
   const dynamics::Constraints constraints(loads, after.x.size());
   double sum = 0;
   for (const auto& held : constraints.held()) {
     const Vec3 v = 0.5 * (before.v[held.corner] + after.v[held.corner]);
-    sum += mass[held.corner] * acceleration[held.corner].dot(v - constraints.freedom(held.corner).project * v);
+    sum += inertia[held.corner].dot(v - constraints.freedom(held.corner).project * v);
   }
   return sum;
 }

@@ -7,6 +7,7 @@
 #include "geometry/triangle_mesh.h"
 #include "physics/physics.h"
 #include "scene/accounts.h"
+#include "scene/crack.h"
 #include "scene/interior.h"
 #include "scene/region.h"
 #include "surface/placement.h"
@@ -79,6 +80,7 @@ struct Body {
   std::vector<std::string> grips = {}; ///< the forceps that hold it now; their supports come after those of its regions
 
   std::vector<Probe> probes = {};
+  std::vector<NamedFront> fronts = {};
   std::vector<Observable> observables = {};
   std::unique_ptr<Accounts> accounts = nullptr; ///< null when no observable needs them
 

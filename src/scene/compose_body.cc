@@ -1,6 +1,7 @@
 #include "scene/compose_body.h"
 
 #include "cut/embed.h"
+#include "geometry/shapes.h"
 #include "geometry/solid.h"
 #include "material/elastic.h"
 #include "physics/phyxels.h"
@@ -10,17 +11,62 @@
 #include "scene/initial_state.h"
 #include "scene/support_report.h"
 
+#include <Eigen/Geometry>
+
 #include <cmath>
+#include <numbers>
 
 namespace kerf::scene {
 
-geometry::TriangleMesh read_body_mesh(const Section& section, const BodyParameters& parameters) {
-  const std::string path = resolved(parameters.mesh, section);
+namespace {
+
+BodyShapeParameters read_shape(const Section& section, const std::string& name) {
+  BodyShapeParameters shape, every_shape;
+  shape.shape = name;
+  Parameters mine, all;
+  shape.describe(mine);
+  every_shape.describe(all);
+  require_keys_of_choice(section, "the shape '" + name + "'", mine, all);
+  section.read(shape);
+  return shape;
+}
+
+geometry::TriangleMesh read_solid(const Section& section, const BodyShapeParameters& shape) {
+  const std::string path = resolved(shape.mesh, section);
   try {
-    return geometry::require_solid(geometry::read_mesh(path, parameters.mesh_unit), path);
+    return geometry::require_solid(geometry::read_mesh(path, shape.mesh_unit), path);
   } catch (const DataError& error) {
     throw DataError(section.complaint("Mesh", clause(error.what()), "").complaint());
   }
+}
+
+Mat3 turned_by(const Vec3& rotation) {
+  const double angle = rotation.norm();
+  return angle == 0 ? Mat3(Mat3::Identity())
+                    : Eigen::AngleAxisd(angle * std::numbers::pi / 180, rotation / angle).toRotationMatrix();
+}
+
+} // namespace
+
+geometry::TriangleMesh read_body_mesh(const Section& section, const BodyParameters& parameters) {
+  const BodyShapeParameters shape = read_shape(section, parameters.shape);
+  const double edge = 0.5 * parameters.cube_edge;
+  if (shape.shape == "ball")
+    return geometry::ball_mesh(shape.centre, shape.radius, edge);
+  if (shape.shape == "cylinder") {
+    if (shape.axis.isZero(0))
+      throw section.complaint("Axis [1]", "must not be zero", "Write the direction from end face to end face");
+    const auto turn = Eigen::Quaterniond::FromTwoVectors(Vec3::UnitZ(), shape.axis.stableNormalized());
+    return geometry::placed(geometry::cylinder_mesh(shape.radius, shape.height, edge), turn.toRotationMatrix(),
+                            shape.centre);
+  }
+  if (shape.shape == "box") {
+    if (!(shape.sides.minCoeff() > 0))
+      throw section.complaint("Sides [m]", "must all be > 0", "Write the lengths of the three sides");
+    return geometry::placed(geometry::box_mesh(-0.5 * shape.sides, 0.5 * shape.sides), turned_by(shape.rotation),
+                            shape.centre);
+  }
+  return read_solid(section, shape);
 }
 
 namespace {
@@ -70,8 +116,9 @@ std::string describe_physics(const Section& section, const BodyParameters& param
   if (parameters.backend == "mass-spring")
     return line("masses and springs, ", parameters.integrator,
                 "; left out: Element, Integration, Law, Poisson's ratio (it is 1/4)");
+  const std::string mass = parameters.mass == "consistent" ? "consistent mass, " : "";
   return line(material.law, " ", parameters.element, " hexahedra, integration over ", parameters.integration, ", ",
-              parameters.integrator);
+              mass, parameters.integrator);
 }
 
 /// Which parts of the mesh the grid takes for pieces of their own, too thin to be deformed.
@@ -93,6 +140,9 @@ Body compose_body(const Section& section, const GravityParameters* gravity, cons
                   World& world) {
   const auto parameters = section.read<BodyParameters>();
   const geometry::TriangleMesh mesh = read_body_mesh(section, parameters);
+  const Section* const interior = section.find("Interior");
+  if (interior)
+    require_affordable_colours(*interior, mesh, parameters.cube_edge);
   cut::Embedding embedding = [&] {
     const ScopedTimer timer(world.setup_seconds, "cut");
     return embed_mesh(section, parameters, mesh);
@@ -110,6 +160,7 @@ Body compose_body(const Section& section, const GravityParameters* gravity, cons
   body.loads.mass_damping = damping.mass;
   body.loads.stiffness_damping = damping.stiffness;
   compose_loads(section, floors, body);
+  body.fronts = compose_crack_fronts(section, parameters.cube_edge, parameters.backend);
   if (const std::size_t n_cuts = world.blades.size() + world.cut_surfaces.size(); n_cuts > 0)
     body.cutter = std::make_unique<cut::Cutter>(n_cuts);
   start(body, mesh, physics_maker(section, parameters, world.time_step), world.setup_seconds);
@@ -117,7 +168,7 @@ Body compose_body(const Section& section, const GravityParameters* gravity, cons
     body.initial = compose_initial_state(*initial);
     put_in_initial_state(body);
   }
-  if (const Section* interior = section.find("Interior")) {
+  if (interior) {
     {
       const ScopedTimer timer(world.setup_seconds, "colour");
       body.interior = compose_interior(*interior, body.name, mesh, world.composition);

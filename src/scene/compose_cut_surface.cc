@@ -22,6 +22,8 @@ cut::Shape make_shape(const ShapeParameters& p, const Section& section) {
     return cut::Cylinder{p.point, p.axis.stableNormalized(), p.radius, p.height};
   if (p.shape == "disc")
     return cut::Disc{p.point, p.normal.stableNormalized(), p.radius};
+  if (p.shape == "rectangle")
+    return cut::Rectangle{p.point, p.first_side, p.second_side};
   try {
     return geometry::read_mesh(resolved(p.mesh, section), p.mesh_unit);
   } catch (const DataError& error) {

@@ -9,6 +9,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <iomanip>
+#include <sstream>
 
 namespace kerf::scene {
 
@@ -111,6 +114,21 @@ ParameterError placed_inside(const Section& interior, const ParameterError& erro
   return placed(of_all ? interior : section_of(interior, error.complaint().value), key, error);
 }
 
+double surface_area(const geometry::TriangleMesh& mesh) {
+  double area = 0;
+  for (const Triangle& t : mesh.triangles)
+    area += 0.5 * (mesh.vertices[t[1]] - mesh.vertices[t[0]]).cross(mesh.vertices[t[2]] - mesh.vertices[t[0]]).norm();
+  return area;
+}
+
+/// To two digits.
+std::string rounded_up(const double value) {
+  const double unit = std::pow(10.0, std::floor(std::log10(value)) - 1);
+  std::ostringstream text;
+  text << std::setprecision(2) << std::ceil(value / unit - 1e-9) * unit;
+  return to_text(std::stod(text.str()));
+}
+
 texture::Skin read_skin(const Section& section, const InteriorParameters& p, const geometry::TriangleMesh& mesh) {
   if (!(p.skin_axis.norm() > 0))
     throw section.complaint("Skin axis [1]", "must have a length", "Give the direction of the picture's first row");
@@ -184,6 +202,23 @@ std::unique_ptr<BodyInterior> compose_interior(const Section& section, const std
   } catch (const ParameterError& error) {
     throw error.complaint().file.empty() ? placed_inside(section, error) : error;
   }
+}
+
+void require_affordable_colours(const Section& section, const geometry::TriangleMesh& mesh, const double cube_edge) {
+  constexpr double most = 1 << 30; // bytes
+  const auto p = section.read<InteriorParameters>();
+  const Box box = geometry::bounding_box(mesh);
+  const Vec3 sides = box.upper - box.lower;
+  const double area = 2 * sides.prod() / sides.minCoeff() + (p.skin_image.empty() ? 0 : surface_area(mesh));
+  const double bytes = texture::n_samples_of(area, p.resolution) * texture::Atlas::bytes_a_sample(p.relief);
+  const double finest = std::max(cube_edge / texture::Atlas::max_parts, p.resolution * std::sqrt(bytes / most));
+  if (p.resolution >= finest)
+    return;
+  throw section.complaint(
+    "Resolution [m]",
+    line("a cut across the body would take ", rounded_up(bytes / most), " GiB of colours; 1 GiB, and ",
+         texture::Atlas::max_parts, " of them along the edge of a cube, are allowed"),
+    line("Write at least ", rounded_up(finest), ", or smaller cubes"));
 }
 
 LookedInto compose_inside(const SceneText& text, const std::string& name) {

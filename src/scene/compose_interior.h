@@ -25,6 +25,11 @@ std::unique_ptr<BodyInterior> compose_interior(const Section& section, const std
                                                const geometry::TriangleMesh& mesh,
                                                std::vector<std::string>& composition);
 
+/// Throws ParameterError at the key "Resolution [m]" if colours would lie closer than triangles can carry them whose
+/// longest side is about `cube_edge` [m], or the skin (where a picture colours it) and one cut straight across the body
+/// would take more than a gibibyte of them.
+void require_affordable_colours(const Section& section, const geometry::TriangleMesh& mesh, double cube_edge);
+
 /// A body that is only looked into.
 struct LookedInto {
   geometry::TriangleMesh mesh;

@@ -75,13 +75,17 @@ void compose_output(const Section& section, World& world) {
 void compose_observables(const Section& section, World& world) {
   const auto names = words_of(section.read<ObservableParameters>().names);
   require_known(section, names);
-  std::vector<std::string> forceps;
+  ToolNames tools;
   for (const Forceps& one : world.forceps)
-    forceps.push_back(one.name);
+    tools.forceps.push_back(one.name);
+  for (const cut::Blade& blade : world.blades)
+    tools.cuts.push_back(blade.name);
+  for (const auto& [surface, step] : world.cut_surfaces)
+    tools.cuts.push_back(surface.name);
   for (const std::string& name : names) {
     std::size_t n = 0;
     for (Body& body : world.bodies) {
-      for (Observable& series : observables_named(name, body, forceps)) {
+      for (Observable& series : observables_named(name, body, tools)) {
         body.observables.push_back(std::move(series));
         ++n;
       }
@@ -92,7 +96,7 @@ void compose_observables(const Section& section, World& world) {
     }
     if (n == 0)
       throw section.complaint("Names", "'" + name + "' has nothing to report: the scene has none of what it is about",
-                              "Remove it, or add the support, forceps, load or probe");
+                              "Remove it, or add the support, forceps, cut, load, probe or crack front");
   }
 }
 

@@ -6,6 +6,8 @@
 #include "scene/compose_integrator.h"
 #include "scene/grammar_physics.h"
 
+#include <algorithm>
+
 namespace kerf::scene {
 
 namespace {
@@ -20,11 +22,18 @@ fem::Boundary boundary_named(const std::string& name) {
 
 PhysicsMaker make_elements(const Section& section, const BodyParameters& parameters) {
   const Integrator integrator = compose_integrator(section, parameters.integrator);
+  const auto& implicit = implicit_integrator_names();
+  if (parameters.mass == "consistent" &&
+      std::find(implicit.begin(), implicit.end(), parameters.integrator) == implicit.end())
+    throw section.complaint("Mass",
+                            "'consistent' is for implicit integrators, and this body has " + parameters.integrator,
+                            "Write 'set Mass = lumped', or take another integrator");
   const fem::HexahedraOptions options{
     .material = read_if_written<material::Elastic>(section, "Material"),
     .boundary = boundary_named(parameters.integration),
     .strain = parameters.element == "enhanced" ? fem::Strain::enhanced : fem::Strain::trilinear,
-    .inertia = integrator.inertia};
+    .inertia = integrator.inertia,
+    .mass = parameters.mass == "consistent" ? fem::MassMatrix::consistent : fem::MassMatrix::lumped};
   return [=](const CutBody& body) {
     return std::make_unique<physics::Elements>(
       body, [=](const CutBody& b) { return std::make_unique<fem::Hexahedra>(b.solid, options); }, integrator.make);
@@ -109,6 +118,9 @@ PhysicsMaker make_lattice(const Section& section, const BodyParameters& paramete
 } // namespace
 
 PhysicsMaker physics_maker(const Section& section, const BodyParameters& parameters, const double time_step) {
+  if (parameters.mass != "lumped" && parameters.backend != "fem")
+    throw section.complaint("Mass", "the backend '" + parameters.backend + "' has a mass for each particle",
+                            "Write 'set Mass = lumped', or take the backend fem");
   if (parameters.backend == "pba")
     return make_phyxels(section, parameters);
   if (parameters.backend == "lattice")

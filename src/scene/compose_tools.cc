@@ -4,6 +4,7 @@
 #include "cut/scissors.h"
 #include "geometry/box_tree.h"
 #include "scene/held.h"
+#include "scene/tool_shapes.h"
 
 #include <algorithm>
 #include <limits>
@@ -123,6 +124,8 @@ void compose_blade(const Section& section, World& world) {
   } catch (const ParameterError& error) {
     throw placed(section, key_of(error.complaint()), error);
   }
+  if (blade.spine.isZero(0))
+    blade.spine = usual_spine(blade);
   world.blades.push_back(std::move(blade));
   world.composition.push_back("blade " + section.name());
 }
@@ -130,14 +133,16 @@ void compose_blade(const Section& section, World& world) {
 void compose_scissors(const Section& section, World& world) {
   const auto parameters = section.read<ScissorsParameters>();
   const Points& second = parameters.second_edge.empty() ? parameters.edge : parameters.second_edge;
-  const cut::Scissors scissors{.name = section.name(),
-                               .pivot = parameters.pivot,
-                               .axis = parameters.axis.stableNormalized(),
-                               .edges = {read_edge(section, "Edge [m]", parameters.edge, parameters.edge_form),
-                                         read_edge(section, "Second edge [m]", second, parameters.edge_form)},
-                               .spines = {parameters.spine, Vec3(-parameters.spine)},
-                               .openings = openings(section, parameters),
-                               .key_frames = read_key_frames(section)};
+  cut::Scissors scissors{.name = section.name(),
+                         .pivot = parameters.pivot,
+                         .axis = parameters.axis.stableNormalized(),
+                         .edges = {read_edge(section, "Edge [m]", parameters.edge, parameters.edge_form),
+                                   read_edge(section, "Second edge [m]", second, parameters.edge_form)},
+                         .spines = {parameters.spine, Vec3(-parameters.spine)},
+                         .openings = openings(section, parameters),
+                         .key_frames = read_key_frames(section)};
+  if (const Vec3 spine = usual_spine(scissors); parameters.spine.isZero(0))
+    scissors.spines = {spine, Vec3(-spine)};
   world.scissors.push_back({world.blades.size(), scissors.pivot, scissors.axis, parameters.handle});
   for (cut::Blade& blade : make_blades(section, scissors, static_cast<grid::CutLabel>(world.blades.size() + 1)))
     world.blades.push_back(std::move(blade));
@@ -163,6 +168,7 @@ void compose_forceps(const Section& section, World& world) {
   if (n_held == 0)
     throw section.complaint("the region holds no corner or phyxel of a body",
                             "Move or enlarge it: it is meant in the rest configuration, in metres");
+  complete_shape(forceps, world, parameters.grip_time);
   world.composition.push_back(
     line("forceps ", forceps.name, ": hold ", n_held, " corners or phyxels from step ", forceps.grip_step));
   world.forceps.push_back(std::move(forceps));

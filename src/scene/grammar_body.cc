@@ -6,17 +6,53 @@
 #include "dynamics/loads.h"
 #include "dynamics/surface_load.h"
 #include "material/elastic.h"
+#include "scene/crack.h"
 #include "scene/grammar_interior.h"
 #include "scene/grammar_physics.h"
 #include "scene/initial_state.h"
 #include "scene/region.h"
 
+#include <algorithm>
+
 namespace kerf::scene {
 
+void BodyShapeParameters::describe(Parameters& p) {
+  const auto is_any_of = [&](const std::vector<std::string>& shapes) {
+    return shape.empty() || std::find(shapes.begin(), shapes.end(), shape) != shapes.end();
+  };
+  const auto require_of_a_shape = [&] {
+    if (!shape.empty())
+      p.require_last();
+  };
+  if (is_any_of({"mesh"})) {
+    p.file("Mesh", mesh, "Mesh: closed triangles (OFF, OBJ, STL, PLY); a relative path starts at the scene file.");
+    require_of_a_shape();
+    p.number("Mesh unit [m]", mesh_unit, positive, "Mesh: length of one unit of the file.");
+  }
+  if (is_any_of({"box", "ball", "cylinder"}))
+    p.vector("Centre [m]", centre, "Box, ball, cylinder: the middle.");
+  if (is_any_of({"box"})) {
+    p.vector("Sides [m]", sides, "Box: lengths of its sides along x, y, z, before it is turned.");
+    require_of_a_shape();
+    p.vector("Rotation [degrees]", rotation, "Box: turned about its middle by this rotation vector.");
+  }
+  if (is_any_of({"ball", "cylinder"})) {
+    p.number(
+      "Radius [m]", radius, positive,
+      "Ball, cylinder: the radius. Their triangles are half a cube wide, and enclose the volume of the round body.");
+    require_of_a_shape();
+  }
+  if (is_any_of({"cylinder"})) {
+    p.number("Height [m]", height, positive, "Cylinder: from end face to end face.");
+    require_of_a_shape();
+    p.vector("Axis [1]", axis, "Cylinder: direction of its axis, of any length.");
+  }
+}
+
 void BodyParameters::describe(Parameters& p) {
-  p.file("Mesh", mesh, "Closed triangle mesh (OFF, OBJ, STL, PLY); a relative path starts at the scene file.");
-  p.require_last();
-  p.number("Mesh unit [m]", mesh_unit, positive, "Length of one unit of the mesh file.");
+  p.choice("Shape", shape, {"mesh", "box", "ball", "cylinder"},
+           "What the body is. Of the keys below, those of the shape must be set where they have no default, and no "
+           "others.");
   p.number("Cube edge [m]", cube_edge, positive, "Edge h of the grid's cubes: the resolution of physics and cuts.");
   p.require_last();
   p.vector(
@@ -35,6 +71,10 @@ void BodyParameters::describe(Parameters& p) {
            "Backend fem: strain inside a cell: that of the trilinear displacement, too stiff in bending and near a "
            "Poisson's ratio of "
            "0.5, or enhanced by 12 modes of the cell's own, which cure both.");
+  p.choice(
+    "Mass", mass, {"lumped", "consistent"},
+    "Backend fem: a mass for each corner, or the mass matrix of the shape functions, whose frequencies are nearer to "
+    "those of the body in bending; for implicit integrators only.");
   p.choice("Integrator", integrator, integrator_names(),
            "How time advances; lattice shape matching is an integrator by itself.");
 }
@@ -110,10 +150,11 @@ std::vector<SectionKind> body_kinds() {
      "A point whose motion is reported; see the observables probes and probe strains.",
      keys_of<ProbeParameters>(),
      {}}};
+  inside.push_back(crack_front_kind());
   const auto physics = physics_kinds();
   inside.insert(inside.begin() + 2, physics.begin(), physics.end());
   inside.push_back(interior_kind());
-  return {{"Body", Occurrence::named, "A deformable solid.", keys_of<BodyParameters>(), inside},
+  return {{"Body", Occurrence::named, "A deformable solid.", keys_of<BodyParameters, BodyShapeParameters>(), inside},
           {"Floor",
            Occurrence::named,
            "A plane that every body lands on, with friction.",

@@ -9,15 +9,28 @@
 
 namespace kerf::scene {
 
-struct BodyParameters {
+/// What a body is made of: a mesh file, or a simple body. Describes the keys of `shape`; those of all shapes while it is empty.
+struct BodyShapeParameters {
+  std::string shape;
   std::string mesh;
-  double mesh_unit = 1;                      ///< [m]
+  double mesh_unit = 1;          ///< [m]
+  Vec3 centre = Vec3::Zero();    ///< [m]
+  Vec3 sides = Vec3::Ones();     ///< [m]
+  double radius = 1, height = 1; ///< [m]
+  Vec3 axis = Vec3::UnitZ();     ///< any length [1]
+  Vec3 rotation = Vec3::Zero();  ///< rotation vector [degrees]
+  void describe(Parameters& p);
+};
+
+struct BodyParameters {
+  std::string shape = "mesh";
   double cube_edge = 0.01;                   ///< [m]
   Vec3 lattice_offset = Vec3::Constant(0.5); ///< parts of a cube edge [1]
   double sharp_angle = 45;                   ///< [degrees]
   std::string backend = "fem";
   std::string integration = "octants";
   std::string element = "trilinear";
+  std::string mass = "lumped";
   std::string integrator = "implicit Euler";
   void describe(Parameters& p);
 };

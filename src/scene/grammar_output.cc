@@ -32,7 +32,8 @@ void SurfaceFileParameters::describe(Parameters& p) {
 
 void ObservableParameters::describe(Parameters& p) {
   p.text("Names", names,
-         "Quantities of every body to record at every step, separated by commas: " + observable_names() + ".");
+         "Quantities of every body to record at every step, separated by commas: " + observable_names() +
+           ". 'kerf params' ends with their units and meanings.");
   p.require_last();
 }
 

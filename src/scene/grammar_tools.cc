@@ -29,7 +29,10 @@ void BladeParameters::describe(Parameters& p) {
   p.points("Edge [m]", edge, "The cutting edge, in the blade's frame.");
   p.require_last();
   describe_edge_form(p, edge_form);
-  p.vector("Spine [m]", spine, "From the cutting edge to the back of the blade, in its frame; only drawn.");
+  p.vector("Spine [m]", spine,
+           "From the cutting edge to the back of the blade, in its frame; only drawn. Zero: against the blade's first "
+           "motion, a "
+           "fifth of the edge long.");
 }
 
 void ScissorsParameters::describe(Parameters& p) {
@@ -42,9 +45,9 @@ void ScissorsParameters::describe(Parameters& p) {
   p.require_last();
   describe_edge_form(p, edge_form);
   p.points("Second edge [m]", second_edge, "The second blade's edge when closed. Empty: the same as the first's.");
-  p.vector(
-    "Spine [m]", spine,
-    "From the first edge to the back of its blade when closed; the second has it the other way round. Only drawn.");
+  p.vector("Spine [m]", spine,
+           "From the first edge to the back of its blade when closed; the second has it the other way round. Only "
+           "drawn. Zero: to the side that it opens to, a tenth of the edge long.");
   p.number("Handle [m]", handle, non_negative, "Length of the handles beyond the pivot; only drawn.");
   p.numbers("Opening times [s]", opening_times, any_number, "Times at which the opening is given, increasing.");
   p.require_last();
@@ -64,14 +67,17 @@ void ForcepsParameters::describe(Parameters& p) {
   p.number("Release time [s]", release_time, non_negative,
            "Free again, with its velocity, before the first step that begins then or later.");
   p.vector("Jaws [m]", jaws,
-           "From the middle between the jaws to one of them while they hold, tool frame; only drawn.");
+           "From the middle between the jaws to one of them while they hold, tool frame; only drawn. Zero: as far "
+           "apart as what they "
+           "hold.");
   p.vector("Handle [m]", handle,
-           "From the middle between the jaws to the joint of the arms; only drawn. Zero: not drawn.");
+           "From the middle between the jaws to the joint of the arms; only drawn. Zero: away from the body, four "
+           "times the size of what they hold.");
 }
 
 void CutSurfaceParameters::describe(Parameters& p) {
   p.number("Time [s]", time, non_negative, "When it cuts: before the first step that begins then or later.");
-  p.choice("Shape", shape, {"plane", "sphere", "cylinder", "disc", "mesh"},
+  p.choice("Shape", shape, {"plane", "sphere", "cylinder", "disc", "rectangle", "mesh"},
            "What cuts, in the world frame, every body as it stands at that time. Of the keys below, those of the shape "
            "must be set, and no others.");
   p.require_last();
@@ -85,12 +91,18 @@ void ShapeParameters::describe(Parameters& p) {
     if (!shape.empty())
       p.require_last();
   };
-  if (is_any_of({"plane", "sphere", "cylinder", "disc"})) {
-    p.vector("Point [m]", point, "Plane: a point of it. Sphere, cylinder, disc: the centre.");
+  if (is_any_of({"plane", "sphere", "cylinder", "disc", "rectangle"})) {
+    p.vector("Point [m]", point, "Plane: a point of it. Sphere, cylinder, disc, rectangle: the centre.");
     require_of_a_shape();
   }
   if (is_any_of({"plane", "disc"})) {
     p.vector("Normal [1]", normal, "Plane, disc: the normal, of any length.");
+    require_of_a_shape();
+  }
+  if (is_any_of({"rectangle"})) {
+    p.vector("First side [m]", first_side, "Rectangle: direction and length of one side.");
+    require_of_a_shape();
+    p.vector("Second side [m]", second_side, "Rectangle: the same of the other, at right angles.");
     require_of_a_shape();
   }
   if (is_any_of({"cylinder"})) {

@@ -55,9 +55,10 @@ struct CutSurfaceParameters {
 /// those of all shapes while it is empty.
 struct ShapeParameters {
   std::string shape;
-  Vec3 point = Vec3::Zero();                         ///< [m]
-  Vec3 normal = Vec3::UnitZ(), axis = Vec3::UnitZ(); ///< any length [1]
-  double radius = 0.01, height = 0.01;               ///< [m]
+  Vec3 point = Vec3::Zero();                                    ///< [m]
+  Vec3 normal = Vec3::UnitZ(), axis = Vec3::UnitZ();            ///< any length [1]
+  Vec3 first_side = Vec3::UnitX(), second_side = Vec3::UnitY(); ///< [m]
+  double radius = 0.01, height = 0.01;                          ///< [m]
   std::string mesh;
   double mesh_unit = 1; ///< [m]
   void describe(Parameters& p);

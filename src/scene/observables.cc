@@ -1,8 +1,12 @@
 #include "scene/observables.h"
 
 #include "dynamics/forces.h"
+#include "geometry/box_tree.h"
+#include "grid/opening.h"
 #include "grid/shape.h"
 #include "physics/phyxels.h"
+
+#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <array>
@@ -62,7 +66,7 @@ Vec3 reaction(const Body& body, const std::size_t support) {
   return body.accounts->reactions()[support].force;
 }
 
-std::vector<Observable> reactions(const Body& body, const std::vector<std::string>&) {
+std::vector<Observable> reactions(const Body& body, const ToolNames&) {
   std::vector<Observable> series;
   for (std::size_t i = 0; i < body.regions.size(); ++i)
     add_vector(series, "reaction " + body.regions[i].name, "N", "force of the support on the body (quantities.h)",
@@ -70,9 +74,9 @@ std::vector<Observable> reactions(const Body& body, const std::vector<std::strin
   return series;
 }
 
-std::vector<Observable> tool_forces(const Body&, const std::vector<std::string>& forceps) {
+std::vector<Observable> tool_forces(const Body&, const ToolNames& tools) {
   std::vector<Observable> series;
-  for (const std::string& name : forceps)
+  for (const std::string& name : tools.forceps)
     add_vector(series, "tool force " + name, "N", "force of the forceps on the body, 0 while they hold nothing of it",
                [name](const Body& b) {
                  const auto it = std::find(b.grips.begin(), b.grips.end(), name);
@@ -82,7 +86,7 @@ std::vector<Observable> tool_forces(const Body&, const std::vector<std::string>&
   return series;
 }
 
-std::vector<Observable> load_forces(const Body& body, const std::vector<std::string>&) {
+std::vector<Observable> load_forces(const Body& body, const ToolNames&) {
   std::vector<Observable> series;
   for (std::size_t i = 0; i < body.load_makers.size(); ++i)
     add_vector(series, "force of " + body.load_makers[i].name, "N", "sum of the load's forces on the body",
@@ -118,7 +122,7 @@ Mat3 strain(const Body& body, const Probe& probe) {
   return 0.5 * (F.transpose() * F - Mat3::Identity());
 }
 
-std::vector<Observable> probes(const Body& body, const std::vector<std::string>&) {
+std::vector<Observable> probes(const Body& body, const ToolNames&) {
   std::vector<Observable> series;
   for (std::size_t i = 0; i < body.probes.size(); ++i)
     add_vector(series, "probe " + body.probes[i].name, "m", "displacement of the rest point, by its copy's corners",
@@ -126,7 +130,7 @@ std::vector<Observable> probes(const Body& body, const std::vector<std::string>&
   return series;
 }
 
-std::vector<Observable> probe_strains(const Body& body, const std::vector<std::string>&) {
+std::vector<Observable> probe_strains(const Body& body, const ToolNames&) {
   constexpr std::array<std::array<int, 2>, 6> components = {{{0, 0}, {1, 1}, {2, 2}, {0, 1}, {1, 2}, {2, 0}}};
   std::vector<Observable> series;
   for (std::size_t i = 0; i < body.probes.size(); ++i)
@@ -135,6 +139,91 @@ std::vector<Observable> probe_strains(const Body& body, const std::vector<std::s
         {"strain " + body.probes[i].name + " " + axes[row] + axes[column], "1",
          "Green's strain at the rest point, by its copy's corners",
          [i, row = row, column = column](const Body& b) { return strain(b, b.probes[i])(row, column); }});
+  return series;
+}
+
+/// A series for each cut of a scene.
+template <class Value>
+std::vector<Observable> of_cuts(const ToolNames& tools, const std::string& what, const std::string& unit,
+                                const std::string& source, const Value& value) {
+  std::vector<Observable> series;
+  for (std::size_t i = 0; i < tools.cuts.size(); ++i)
+    series.push_back({what + " " + tools.cuts[i], unit, source,
+                      [=](const Body& body) { return value(body, static_cast<grid::CutLabel>(i + 1)); }});
+  return series;
+}
+
+/// Half the rest area of the faces that a cut has revealed.
+double cut_area(const Body& body, const grid::CutLabel label) {
+  double sum = 0;
+  const auto& [rest, triangles, labels, copies, weights] = body.surface;
+  for (std::size_t t = 0; t < triangles.size(); ++t)
+    if (labels[t] == label) {
+      const auto [a, b, c] = triangles[t];
+      sum += 0.25 * (rest[b] - rest[a]).cross(rest[c] - rest[a]).norm();
+    }
+  return sum;
+}
+
+/// The box around them, at rest.
+Vec3 cut_extent(const Body& body, const grid::CutLabel label) {
+  Points points;
+  for (std::size_t t = 0; t < body.surface.triangles.size(); ++t)
+    if (body.surface.labels[t] == label)
+      for (const auto v : body.surface.triangles[t])
+        points.push_back(body.surface.rest[v]);
+  if (points.empty())
+    return Vec3::Zero();
+  const Box box = geometry::box_around(points);
+  return box.upper - box.lower;
+}
+
+double largest_opening(const Body& body, const grid::CutLabel label) {
+  double largest = 0;
+  for (const grid::Gap& gap : grid::gaps(body.solid, label, corners(body)))
+    largest = std::max(largest, gap.way.norm());
+  return largest;
+}
+
+std::vector<Observable> cut_areas(const Body&, const ToolNames& tools) {
+  return of_cuts(tools, "cut area", "m^2", "half the rest area of the faces that the cut has revealed", cut_area);
+}
+
+std::vector<Observable> cut_extents(const Body&, const ToolNames& tools) {
+  std::vector<Observable> series;
+  for (std::size_t i = 0; i < tools.cuts.size(); ++i)
+    add_vector(series, "cut extent " + tools.cuts[i], "m", "sides of the box around the revealed faces, at rest",
+               [i](const Body& b) { return cut_extent(b, static_cast<grid::CutLabel>(i + 1)); });
+  return series;
+}
+
+std::vector<Observable> cut_openings(const Body&, const ToolNames& tools) {
+  return of_cuts(tools, "cut opening", "m", "largest way between the two sides of a cut edge (grid/opening.h)",
+                 largest_opening);
+}
+
+std::vector<Observable> cut_volumes(const Body&, const ToolNames& tools) {
+  return of_cuts(tools, "cut volume", "m^3", "between the two sides of the cut edges (grid/opening.h)",
+                 [](const Body& body, const grid::CutLabel label) {
+                   return grid::opened_volume(grid::gaps(body.solid, label, corners(body)));
+                 });
+}
+
+std::vector<Observable> energy_release_rates(const Body& body, const ToolNames&) {
+  std::vector<Observable> series;
+  for (std::size_t i = 0; i < body.fronts.size(); ++i)
+    series.push_back({"energy release rate " + body.fronts[i].name, "J/m^2",
+                      "domain integral around the front (fem/energy_release.h)",
+                      [i](const Body& b) { return energy_release_rate(b, b.fronts[i]); }});
+  return series;
+}
+
+std::vector<Observable> stress_intensities(const Body& body, const ToolNames&) {
+  std::vector<Observable> series;
+  for (std::size_t i = 0; i < body.fronts.size(); ++i)
+    series.push_back({"stress intensity " + body.fronts[i].name, "Pa m^(1/2)",
+                      "sqrt(G E / (1 - nu^2)) of the energy release rate G",
+                      [i](const Body& b) { return stress_intensity(b, b.fronts[i]); }});
   return series;
 }
 
@@ -253,11 +342,22 @@ const Observable* find_observable(const std::string& name) {
 
 const std::vector<ObservableGroup>& observable_groups() {
   static const std::vector<ObservableGroup> all = {
-    {"reactions", "force of each support on the body [N]", reactions},
-    {"tool forces", "force of each forceps on the body [N]", tool_forces},
-    {"load forces", "force of each load and floor on the body [N]", load_forces},
-    {"probes", "displacement of each probe [m]", probes},
-    {"probe strains", "Green's strain at each probe [1]", probe_strains},
+    {"reactions", "N", "force of each support on the body, x, y, z", reactions},
+    {"tool forces", "N", "force of each forceps on the body, x, y, z", tool_forces},
+    {"load forces", "N", "force of each load, each floor and each support that holds at the skin, x, y, z",
+     load_forces},
+    {"probes", "m", "displacement of each probe, x, y, z", probes},
+    {"cut areas", "m^2", "half the rest area of the faces that each blade or cut surface has revealed", cut_areas},
+    {"cut extents", "m", "sides of the box around those faces, at rest, x, y, z: how far each cut has come",
+     cut_extents},
+    {"cut openings", "m", "largest way between the two sides of each cut", cut_openings},
+    {"cut volumes", "m^3", "volume between the two sides of each cut, first order in the cube's edge", cut_volumes},
+    {"energy release rates", "J/m^2",
+     "energy that each crack front would release by growing, per area, in statics (fem/energy_release.h)",
+     energy_release_rates},
+    {"stress intensities", "Pa m^(1/2)",
+     "sqrt(G E / (1 - nu^2)) of each crack front: K of a crack that opens in plane strain", stress_intensities},
+    {"probe strains", "1", "Green's strain at each probe, six components", probe_strains},
   };
   return all;
 }
@@ -271,13 +371,12 @@ std::string observable_names() {
   return names;
 }
 
-std::vector<Observable> observables_named(const std::string& name, const Body& body,
-                                          const std::vector<std::string>& forceps) {
+std::vector<Observable> observables_named(const std::string& name, const Body& body, const ToolNames& tools) {
   if (const Observable* one = find_observable(name))
     return {*one};
   for (const ObservableGroup& group : observable_groups())
     if (group.name == name)
-      return group.of(body, forceps);
+      return group.of(body, tools);
   return {};
 }
 

@@ -15,21 +15,27 @@ const std::vector<Observable>& body_observables();
 /// Null when there is none of that name.
 const Observable* find_observable(const std::string& name);
 
-/// A name that stands for several series: one for each support, tool, load or probe that a scene has, and component.
+/// The tools of a scene, by name.
+struct ToolNames {
+  std::vector<std::string> forceps;
+  std::vector<std::string> cuts; ///< what makes label 1, 2, ...: blades, then surfaces
+};
+
+/// A name that stands for several series: one for each support, tool, cut, load or probe that a scene has, and component.
 struct ObservableGroup {
   std::string name; ///< "reactions"
-  std::string text;
-  std::vector<Observable> (*of)(const Body& body, const std::vector<std::string>& forceps);
+  std::string unit;
+  std::string text; ///< what each series is
+  std::vector<Observable> (*of)(const Body& body, const ToolNames& tools);
 };
 const std::vector<ObservableGroup>& observable_groups();
 
 /// Names of both, for people: "kinetic energy, ...".
 std::string observable_names();
 
-/// The series that a name stands for; `forceps` of the scene. Empty when there is none of that name, or nothing that it
+/// The series that a name stands for. Empty when there is none of that name, or nothing that it
 /// is about.
-std::vector<Observable> observables_named(const std::string& name, const Body& body,
-                                          const std::vector<std::string>& forceps);
+std::vector<Observable> observables_named(const std::string& name, const Body& body, const ToolNames& tools);
 
 /// Whether a name needs Body::accounts.
 bool needs_accounts(const std::string& name);

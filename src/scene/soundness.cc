@@ -43,10 +43,12 @@ const grid::Copy& copy_of(const Body& body, const std::size_t c) {
   return body.solid.complex.copies[grid::CopyId(static_cast<std::uint32_t>(c))];
 }
 
-/// Signed volume of each piece that the surface bounds, with its vertices at `points`.
+/// Signed volume of each piece that the surface bounds, with its vertices at `points`; none of crumbs, which are rigid.
 std::vector<double> piece_volumes(const Body& body, const Watch& watch, const Points& points) {
   std::vector<double> volumes(watch.rest_volumes.size(), 0);
   for (std::size_t t = 0; t < body.surface.triangles.size(); ++t) {
+    if (body.solid.crumbs.holds(body.surface.copies[t]))
+      continue;
     const Triangle& v = body.surface.triangles[t];
     volumes[watch.piece_of_copy[body.surface.copies[t].value]] +=
       points[v[0]].dot(points[v[1]].cross(points[v[2]])) / 6;
@@ -96,7 +98,8 @@ double inverted_part(const Body& body) {
   for (std::size_t c = 0; c < body.solid.complex.n_copies(); ++c) {
     const double n = std::popcount(static_cast<unsigned>(copy_of(body, c).nodes));
     all += n;
-    inverted += volume_ratio(body, copy_of(body, c)) < 0 ? n : 0;
+    if (!body.solid.crumbs.holds(grid::CopyId(static_cast<std::uint32_t>(c))))
+      inverted += volume_ratio(body, copy_of(body, c)) < 0 ? n : 0;
   }
   return all > 0 ? inverted / all : 0;
 }

@@ -1,5 +1,7 @@
 #include "scene/text_print.h"
 
+#include "scene/observables.h"
+
 #include <sstream>
 
 namespace kerf::scene {
@@ -54,6 +56,16 @@ void print_kinds(std::ostream& out, const std::vector<SectionKind>& kinds, const
 std::string print_parameters(const std::vector<SectionKind>& grammar) {
   std::ostringstream out;
   print_kinds(out, grammar, "");
+  return out.str();
+}
+
+std::string print_observables() {
+  std::ostringstream out;
+  print_comment(out, "Observables, for Names of the section Observables: name [unit]: meaning.", "");
+  for (const Observable& one : body_observables())
+    print_comment(out, one.name + " [" + one.unit + "]: " + one.source + ".", "");
+  for (const ObservableGroup& group : observable_groups())
+    print_comment(out, group.name + " [" + group.unit + "]: " + group.text + ".", "");
   return out.str();
 }
 

@@ -16,11 +16,7 @@ namespace {
 /// By how much the relief rises along a whole edge, seen at p.
 float slope(const InPlane& inside, const Vec3& p, const Vec3& edge, const double relief, const double pixel) {
   const double length = edge.norm();
-  if (!(length > 0))
-    return 0;
-  const Vec3 step = pixel / length * edge;
-  const float rise = inside.height(p + step) - inside.height(p - step);
-  return static_cast<float>(relief * rise * length / (2 * pixel));
+  return length > 0 ? static_cast<float>(relief * inside.rise(p, edge / length) * length / (2 * pixel)) : 0;
 }
 
 std::array<std::uint8_t, 3> to_bytes(const Eigen::Array4f& colour) {

@@ -39,6 +39,8 @@ class Atlas {
   /// Samples are at most `resolution` apart [m].
   explicit Atlas(const double resolution) : resolution_(resolution) {}
 
+  static double bytes_a_sample(const double relief) { return relief != 0 ? 11 : 3; } ///< colour, and slopes
+
   /// Fills what is new. Returns the number of triangles filled. The cost beside them: one look at each triangle.
   std::size_t fill(const SurfaceView& surface, const Paint& paint);
 
@@ -66,6 +68,10 @@ class Atlas {
 
 /// Samples of a triangle with n parts a side.
 inline std::size_t n_samples(const int n) { return static_cast<std::size_t>(n + 1) * (n + 2) / 2; }
+
+/// About how many samples revealed faces of that area take [m^2]: right-angled triangles with two equal sides would
+/// take 2 a square of the resolution.
+inline double n_samples_of(const double area, const double resolution) { return 3 * area / (resolution * resolution); }
 
 /// Calls f(i, j) for each sample in their order: the point a + i/n (b - a) + j/n (c - a) of the triangle a, b, c.
 template <class Function>

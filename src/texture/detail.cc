@@ -28,26 +28,36 @@ LocalHistograms::LocalHistograms(const Chart& chart)
           sum += *value++;
         }
       std::sort(values.begin(), values.end());
-      for (int k = 0; k < n_quantiles; ++k)
-        quantiles_(c, r)[k] = static_cast<std::int16_t>(
-          std::lround(units * (values[k * (n_in_window - 1) / (n_quantiles - 1)] - sum / n_in_window)));
+      const auto quantile = [&](const int k) {
+        const float difference = values[k * (n_in_window - 1) / n_pairs] - sum / n_in_window;
+        return static_cast<std::uint32_t>(std::lround(units * difference)) & 0xffffu;
+      };
+      for (int k = 0; k < n_pairs; ++k)
+        quantiles_(c, r)[k] = quantile(k) | quantile(k + 1) << 16;
     }
   });
 }
 
 float LocalHistograms::at(const float x, const float y, const float place) const {
   const image::Footing f = image::footing(quantiles_.width, quantiles_.height, x, y);
-  const float number = place * (n_quantiles - 1);
-  const int k = std::min(static_cast<int>(number), n_quantiles - 2);
+  const float number = place * n_pairs;
+  const int k = std::min(static_cast<int>(number), n_pairs - 1);
   const float u = number - static_cast<float>(k);
   const auto value = [&](const Quantiles& q) {
-    return (1 - u) * static_cast<float>(q[k]) + u * static_cast<float>(q[k + 1]);
+    const auto low = static_cast<std::int16_t>(q[k] & 0xffffu), high = static_cast<std::int16_t>(q[k] >> 16);
+    return (1 - u) * static_cast<float>(low) + u * static_cast<float>(high);
   };
   const Quantiles* const p = &quantiles_.values[quantiles_.index(f.column, f.row)];
   const Quantiles* const q = p + quantiles_.width;
   const float top = value(p[0]) + f.right * (value(p[1]) - value(p[0]));
   const float bottom = value(q[0]) + f.right * (value(q[1]) - value(q[0]));
   return (top + f.down * (bottom - top)) / units;
+}
+
+void LocalHistograms::add(PointRow points, const float* const places, float* const sums) const {
+  points.weight /= units;
+  points.weight_step /= units;
+  add_quantiles(quantiles_.values.front().data(), quantiles_.width, quantiles_.height, points, places, sums);
 }
 
 Detail::Detail(const Interior& interior) {

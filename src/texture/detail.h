@@ -8,10 +8,9 @@
 /// in that distribution picks the value at the same place in the exemplars' distributions, mixed by their weights.
 
 #include "texture/interior.h"
+#include "texture/kernels.h"
 
 namespace kerf::texture {
-
-constexpr int window_radius = 3; ///< 7 x 7
 
 class LocalHistograms {
  public:
@@ -19,10 +18,11 @@ class LocalHistograms {
 
   /// The value at a place in [0, 1] of the distribution around a point [pixels]: bilinear between pixels.
   float at(float x, float y, float place) const;
+  /// Adds those of eight points, weighted, each at a place of its own.
+  void add(PointRow points, const float* places, float* sums) const;
 
  private:
-  static constexpr int n_quantiles = 9;
-  using Quantiles = std::array<std::int16_t, n_quantiles>;
+  using Quantiles = std::array<std::uint32_t, n_pairs>;
   image::Raster<Quantiles> quantiles_;
 };
 
@@ -34,6 +34,8 @@ class Detail {
   /// The luminance about the local mean that a point with this blend, at this place of its window's distribution,
   /// should have.
   float luminance(const Blend& blend, float place) const;
+
+  const LocalHistograms& histograms(const int exemplar) const { return histograms_[exemplar]; }
 
  private:
   std::vector<LocalHistograms> histograms_;

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "image/filters.h"
+#include "image/spline.h"
 
 #include <algorithm>
 #include <cmath>
@@ -108,6 +109,7 @@ void paint(const image::Image& picture, const Grey& mask, const ToPicture& to_pi
     const image::Rgb& rgb = colours.values[i];
     chart.colours.values[i] = Eigen::Array4f(rgb[0], rgb[1], rgb[2], image::luminance(rgb));
   }
+  chart.spline = image::spline_coefficients(chart.colours);
   chart.luminance = image::luminance(colours);
 }
 
@@ -148,6 +150,7 @@ Chart make_chart(const Exemplar& exemplar, const geometry::TriangleMesh& body,
   const auto step = [&](const Vec2& pixels) { return Vec3(plane.point(plane.to_local(pixels))); };
   Chart chart{SectionPlane(step(box.lower), step(box.lower + Vec2(1, 0)) - step(box.lower),
                            step(box.lower + Vec2(0, 1)) - step(box.lower)),
+              {},
               {},
               {},
               {},

@@ -46,7 +46,8 @@ struct Exemplar {
 struct Chart {
   SectionPlane plane;                    ///< pixel (0, 0) of the chart is its origin
   image::Raster<Eigen::Array4f> colours; ///< red, green, blue, luminance; defined everywhere
-  image::Grey luminance;                 ///< that alone
+  image::Raster<Eigen::Array4f> spline;  ///< coefficients of the cubic spline through them
+  image::Grey luminance;                 ///< luminance alone
   image::Grey shown;                     ///< 1 where the picture shows the section
   image::Grey inside;                    ///< 1 where the body's own section is
   std::vector<Segment> outline;          ///< of the body's section, local coordinates [m]

@@ -7,22 +7,6 @@
 
 namespace kerf::texture {
 
-namespace {
-
-/// Bilinear between four corners.
-struct Quad {
-  std::array<float, 4> shares;
-  Quad(const float right, const float down)
-    : shares{(1 - right) * (1 - down), right * (1 - down), (1 - right) * down, right * down} {}
-  template <class Value>
-  float operator()(const std::array<const Blend*, 4>& blends, const Value& value) const {
-    return shares[0] * value(*blends[0]) + shares[1] * value(*blends[1]) + shares[2] * value(*blends[2]) +
-           shares[3] * value(*blends[3]);
-  }
-};
-
-} // namespace
-
 InPlane::InPlane(const Interior& inside, const Detail* const detail, const Relief relief, const Corners& corners)
   : inside_(inside) {
   const bool has_relief = relief == Relief::wanted;
@@ -45,21 +29,28 @@ InPlane::InPlane(const Interior& inside, const Detail* const detail, const Relie
   if (has_relief)
     height_ = image::Grey(width_, height_in_points_, 0);
   for (int r = 0; r < height_in_points_; ++r) {
-    if (detail)
+    if (detail) {
       windows.find(r, spans_[r]);
-    for (int c = spans_[r].first; c <= spans_[r].last; ++c) {
-      const float luminance = windows.luminance(c, r);
-      if (detail)
-        change_(c, r) = detail_at(c, r, *detail, windows.place(c, r)) - (luminance - windows.mean(c, r));
-      if (has_relief)
-        height_(c, r) = std::clamp(luminance + (detail ? change_(c, r) : 0), 0.0f, 1.0f);
+      find_change(r, *detail, windows);
     }
+    if (has_relief)
+      find_height(r, windows);
   }
 }
 
 Eigen::Array4f InPlane::colour(const Vec3& p) const {
   const Eigen::Array4f colour = inside_.colour(p);
-  return change_.width > 0 ? (colour + sample(change_, p)).max(0.0f).min(1.0f).eval() : colour;
+  if (change_.width == 0)
+    return colour;
+  const Eigen::Vector2f q = on_lattice(p).cast<float>();
+  return (colour + image::sample(change_, q[0], q[1])).max(0.0f).min(1.0f);
+}
+
+float InPlane::rise(const Vec3& p, const Vec3& along) const {
+  if (height_.width == 0)
+    return 0;
+  const Eigen::Vector2f q = on_lattice(p).cast<float>(), d = Vec2(x_.dot(along), y_.dot(along)).cast<float>();
+  return image::sample(height_, q[0] + d[0], q[1] + d[1]) - image::sample(height_, q[0] - d[0], q[1] - d[1]);
 }
 
 /// The part of the plane's lattice around a triangle: what lies within `margin` points of it is asked for, for
@@ -135,72 +126,101 @@ void InPlane::find_blends(const std::vector<Span>& rows) {
       blends_(i, k) = inside_.blend(point(i * step, k * step), inside_.options().blending);
 }
 
-/// Along a row, as long as the blends around stay the same.
-void InPlane::find_luminance(const int row, const Span& span, Windows& windows) {
-  for (int c = span.first; c <= span.last;) {
-    const Around first = around(c, row);
-    const bool is_whole = first[0] == &blends_(c / step, row / step) &&
-                          first[3] == &blends_(c / step + 1, row / step + 1) && first[1] == first[0] + 1 &&
-                          first[2] == first[3] - 1;
-    const int last =
-      is_whole ? std::min(span.last, c - c % step + step - 1) : c; // else the next may be in another cell
-    add_luminance(row, {c, last}, first, windows);
-    c = last + 1;
+template <class Block, class Point>
+void InPlane::for_each_block(const int row, const Span& span, const Block& block, const Point& point) {
+  const int k = row / step;
+  for (int i = span.first / step; i <= span.last / step && span.first <= span.last; ++i) {
+    const Around around = nearest(i, k);
+    if (std::all_of(around.begin(), around.end(), [&](const Blend* b) { return b->cell == around[0]->cell; }))
+      block(i * step, around); // cells are convex: the points lie in the same one
+    else
+      for (int c = std::max(span.first, i * step); c <= std::min(span.last, i * step + step - 1); ++c)
+        point(c, mixed(c, row));
   }
 }
 
-void InPlane::add_luminance(const int row, const Span& span, const Around& around, Windows& windows) const {
+/// Of eight points from a blend to the next one, what exemplar i shows.
+PointRow InPlane::points(const Around& around, const int i, const int row) const {
   const float down = static_cast<float>(row % step) / step;
-  const auto along = [down](const float upper, const float lower) { return upper + down * (lower - upper); };
-  float* const out = &windows.luminance(0, row);
-  for (int i = 0; i < around[0]->n; ++i) {
-    const image::Grey& grey = inside_.charts()[around[0]->exemplars[i]].luminance;
-    const auto& [a, b, c, d] = around;
-    const Eigen::Array4f left(along(a->weights[i], c->weights[i]), along(a->x[i], c->x[i]), along(a->y[i], c->y[i]), 0);
-    const Eigen::Array4f right(along(b->weights[i], d->weights[i]), along(b->x[i], d->x[i]), along(b->y[i], d->y[i]),
-                               0);
-    for (int k = span.first; k <= span.last; ++k) {
-      const Eigen::Array4f at = left + static_cast<float>(k % step) / step * (right - left);
-      out[k] += at[0] * image::sample(grey, at[1], at[2]);
-    }
+  const auto& [a, b, c, d] = around;
+  const auto between = [down](const float upper, const float lower) { return upper + down * (lower - upper); };
+  const Eigen::Array3f left(between(a->weights[i], c->weights[i]), between(a->x[i], c->x[i]),
+                            between(a->y[i], c->y[i]));
+  const Eigen::Array3f right(between(b->weights[i], d->weights[i]), between(b->x[i], d->x[i]),
+                             between(b->y[i], d->y[i]));
+  const Eigen::Array3f each = (right - left) / step;
+  return {left[0], left[1], left[2], each[0], each[1], each[2]};
+}
+
+/// The blend of a point between blends of several cells.
+Blend InPlane::mixed(const int column, const int row) {
+  const int i = column / step, k = row / step, own = inside_.partition().find(point(column, row));
+  const Around around = {corner(i, k, own), corner(i + 1, k, own), corner(i, k + 1, own), corner(i + 1, k + 1, own)};
+  const auto right = static_cast<float>(column % step);
+  Blend blend;
+  blend.n = around[0]->n;
+  blend.cell = own;
+  blend.exemplars = around[0]->exemplars;
+  for (int e = 0; e < blend.n; ++e) {
+    const PointRow p = points(around, e, row);
+    blend.weights[e] = p.weight + right * p.weight_step;
+    blend.x[e] = p.x + right * p.x_step;
+    blend.y[e] = p.y + right * p.y_step;
   }
-  for (int k = span.first; k <= span.last; ++k)
-    out[k] = std::clamp(out[k], 0.0f, 1.0f);
+  return blend;
 }
 
-InPlane::Around InPlane::around(const int column, const int row) {
-  const int i = std::min(column / step, blends_.width - 2), k = std::min(row / step, blends_.height - 2);
-  const Around nearest = {&blends_(i, k), &blends_(i + 1, k), &blends_(i, k + 1), &blends_(i + 1, k + 1)};
-  const int cell = nearest[0]->cell;
-  if (std::all_of(nearest.begin(), nearest.end(), [&](const Blend* b) { return b->cell == cell; }))
-    return nearest; // cells are convex: the point lies in the same one
-  const int own = inside_.partition().find(point(column, row));
-  return {corner(i, k, own), corner(i + 1, k, own), corner(i, k + 1, own), corner(i + 1, k + 1, own)};
-}
-
-const Blend* InPlane::corner(const int column, const int row, const int cell) {
-  if (blends_(column, row).cell == cell)
-    return &blends_(column, row);
+const Blend* InPlane::corner(const int i, const int k, const int cell) {
+  if (blends_(i, k).cell == cell)
+    return &blends_(i, k);
   for (const Other& other : others_)
-    if (other.column == column && other.row == row && other.blend.cell == cell)
+    if (other.column == i && other.row == k && other.blend.cell == cell)
       return &other.blend;
-  const Vec3 p = point(column * step, row * step);
-  others_.push_back({column, row, inside_.blend(p, inside_.options().blending, cell)});
+  others_.push_back({i, k, inside_.blend(point(i * step, k * step), inside_.options().blending, cell)});
   return &others_.back().blend;
 }
 
-float InPlane::detail_at(const int column, const int row, const Detail& detail, const float place) {
-  const Around around = this->around(column, row);
-  const Quad quad(static_cast<float>(column % step) / step, static_cast<float>(row % step) / step);
-  Blend blend;
-  blend.n = around[0]->n;
-  blend.exemplars = around[0]->exemplars;
-  for (int i = 0; i < blend.n; ++i) {
-    blend.weights[i] = quad(around, [&](const Blend& b) { return b.weights[i]; });
-    blend.x[i] = quad(around, [&](const Blend& b) { return b.x[i]; });
-    blend.y[i] = quad(around, [&](const Blend& b) { return b.y[i]; });
+void InPlane::find_luminance(const int row, const Span& span, Windows& windows) {
+  float* const out = &windows.luminance(0, row);
+  const auto grey = [&](const Blend& blend, const int i) -> const image::Grey& {
+    return inside_.charts()[blend.exemplars[i]].luminance;
+  };
+  for_each_block(
+    row, span,
+    [&](const int first, const Around& around) {
+      std::array<float, n_lanes> sums = {};
+      for (int i = 0; i < around[0]->n; ++i) {
+        const image::Grey& g = grey(*around[0], i);
+        add_values(g.values.data(), g.width, g.height, points(around, i, row), sums.data());
+      }
+      std::copy_n(sums.begin(), step, out + first);
+    },
+    [&](const int column, const Blend& blend) {
+      for (int i = 0; i < blend.n; ++i)
+        out[column] += blend.weights[i] * image::sample(grey(blend, i), blend.x[i], blend.y[i]);
+    });
+}
+
+void InPlane::find_change(const int row, const Detail& detail, const Windows& windows) {
+  float* const out = &change_(0, row);
+  for_each_block(
+    row, spans_[row],
+    [&](const int first, const Around& around) {
+      std::array<float, n_lanes> sums = {};
+      for (int i = 0; i < around[0]->n; ++i)
+        detail.histograms(around[0]->exemplars[i]).add(points(around, i, row), &windows.place(first, row), sums.data());
+      std::copy_n(sums.begin(), step, out + first);
+    },
+    [&](const int column, const Blend& blend) { out[column] = detail.luminance(blend, windows.place(column, row)); });
+  for (int c = spans_[row].first; c <= spans_[row].last; ++c)
+    out[c] -= windows.luminance(c, row) - windows.mean(c, row);
+}
+
+void InPlane::find_height(const int row, const Windows& windows) {
+  for (int c = spans_[row].first; c <= spans_[row].last; ++c) {
+    const float change = change_.width > 0 ? change_(c, row) : 0;
+    height_(c, row) = std::clamp(windows.luminance(c, row) + change, 0.0f, 1.0f);
   }
-  return detail.luminance(blend, place);
 }
 
 } // namespace kerf::texture

@@ -24,8 +24,9 @@ class InPlane {
 
   /// Of a point of the triangle [m].
   Eigen::Array4f colour(const Vec3& p) const;
-  /// Luminance with small features where relief is wanted, at most a pixel beside the triangle.
-  float height(const Vec3& p) const { return height_.width > 0 ? sample(height_, p) : inside_.colour(p)[3]; }
+  /// By how much the luminance, with small features, rises over two pixels along a unit vector in the plane, midway at a
+  /// point of the triangle [m]. Where relief is wanted.
+  float rise(const Vec3& p, const Vec3& along) const;
 
  private:
   void lay_out(const Corners& corners, double margin);
@@ -33,19 +34,24 @@ class InPlane {
   Span reached(int row, int radius) const;
   void find_blends(const std::vector<Span>& rows);
   void find_luminance(int row, const Span& span, Windows& windows);
-  /// The four blends around a point of the lattice, of its own cell.
+  void find_change(int row, const Detail& detail, const Windows& windows);
+  void find_height(int row, const Windows& windows);
+  /// Four blends around a point of the lattice: of its own cell.
   using Around = std::array<const Blend*, 4>;
-  Around around(int column, int row);
-  const Blend* corner(int column, int row, int cell);
-  void add_luminance(int row, const Span& span, const Around& around, Windows& windows) const;
-  float detail_at(int column, int row, const Detail& detail, float place);
-  Vec3 point(const int column, const int row) const { return origin_ + pixel_ * (column * x_ + row * y_); }
-  float sample(const image::Grey& lattice, const Vec3& p) const {
-    const Vec3 d = (p - origin_) / pixel_;
-    return image::sample(lattice, static_cast<float>(x_.dot(d)), static_cast<float>(y_.dot(d)));
+  Around nearest(const int i, const int k) const {
+    return {&blends_(i, k), &blends_(i + 1, k), &blends_(i, k + 1), &blends_(i + 1, k + 1)};
   }
+  const Blend* corner(int i, int k, int cell);
+  /// Goes through a span of a row, from blend to blend: `block(first column, four blends)` for all points between these
+  /// at once, where they belong to one cell; else `point(column, blend)` for each.
+  template <class Block, class Point>
+  void for_each_block(int row, const Span& span, const Block& block, const Point& point);
+  Blend mixed(int column, int row);
+  PointRow points(const Around& around, int i, int row) const;
+  Vec3 point(const int column, const int row) const { return origin_ + pixel_ * (column * x_ + row * y_); }
+  Vec2 on_lattice(const Vec3& p) const { return Vec2(x_.dot(p - origin_), y_.dot(p - origin_)) / pixel_; }
 
-  static constexpr int step = 6; ///< points of the lattice from blend to blend
+  static constexpr int step = 6; ///< points of the lattice from blend to blend, at most n_lanes
 
   const Interior& inside_;
   Vec3 origin_ = Vec3::Zero(), x_ = Vec3::Zero(), y_ = Vec3::Zero();

@@ -13,16 +13,16 @@ namespace kerf::texture {
 
 namespace {
 
-/// The map of the table at a point [pixels], to all faces at once: 2 n floats.
+/// The map of the table at a point [pixels], to all faces at once.
 template <class Use>
 void look_up(const WarpTable& table, const Vec2& p, const Use& use) {
   const image::Footing f =
     image::footing(table.n_columns, table.n_rows, (static_cast<float>(p[0]) - table.left) * table.columns_by_pixel,
                    (static_cast<float>(p[1]) - table.top) * table.rows_by_pixel);
   const float* const a = table.node(f.column, f.row);
-  const float* const b = a + 2 * table.n_faces;
-  const float* const c = a + 2 * table.n_faces * table.n_columns;
-  const float* const d = c + 2 * table.n_faces;
+  const float* const b = a + table.n_numbers;
+  const float* const c = a + table.n_numbers * table.n_columns;
+  const float* const d = c + table.n_numbers;
   use(a, b, c, d, f.right, f.down);
 }
 
@@ -71,6 +71,20 @@ Cell with_a_face(Cell cell, const std::vector<Chart>& charts) {
   return cell;
 }
 
+/// Before warps are sought, which takes long.
+void require_few_faces(const std::vector<Cell>& cells, const Components components) {
+  std::size_t most = 0;
+  for (const Cell& cell : cells)
+    most = std::max(most, cell.faces.size());
+  if (most > max_sources)
+    throw ParameterError(Complaint{
+      .path = components == Components::each ? "Components" : "Exemplar",
+      .rule = std::to_string(most) + " faces bound one cell, at most " + std::to_string(max_sources) + " are allowed",
+      .remedy = components == Components::each ? "Set Components to together: then a section is one face"
+                                               : "Leave exemplars out until at most " + std::to_string(max_sources) +
+                                                   " of them bound a common cell"});
+}
+
 } // namespace
 
 Interior::Interior(const std::vector<Exemplar>& exemplars, const geometry::TriangleMesh& body,
@@ -86,6 +100,7 @@ Interior::Interior(const std::vector<Exemplar>& exemplars, const geometry::Trian
     pixel_ += charts_.back().plane.pixel() / static_cast<double>(exemplars.size());
   }
   partition_.emplace(exemplars, charts_, options.components);
+  require_few_faces(partition_->cells(), options.components);
   check_pins(options.warps.pins, partition_->cells(), exemplars, charts_);
   cells_.resize(partition_->cells().size());
   maps_.warps.resize(cells_.size());
@@ -97,12 +112,6 @@ void Interior::build_cell(const int number, const std::vector<Exemplar>& exempla
   const Cell cell = with_a_face(partition_->cells()[number], charts_);
   CellData& data = cells_[number];
   const std::size_t n = cell.faces.size();
-  if (n > max_sources)
-    throw ParameterError(
-      Complaint{.path = "Components",
-                .value = std::to_string(n) + " faces of one cell",
-                .rule = "at most " + std::to_string(max_sources) + " are allowed",
-                .remedy = "Use fewer exemplars; where sections have several components, together they are one face"});
   for (const Face& face : cell.faces) {
     data.pixels.push_back(face.pixels);
     data.sources.emplace_back(face, cell, exemplars[face.exemplar], charts_[face.exemplar], body);
@@ -127,27 +136,36 @@ void Interior::find_sources(const CellData& cell, const Vec3& p, const Blending&
   for (std::size_t i = 0; i < n; ++i) {
     const Source& source = cell.sources[i];
     const SectionPlane& plane = charts_[source.exemplar()].plane;
-    const Vec2 local = source.find(p);
-    found.points[i] = plane.point(local);
-    found.pixels[i] = plane.to_pixels(local);
-    distances[i] = (found.points[i] - p).norm();
+    const Source::Point point = source.find(p);
+    found.locals[i] = point.local;
+    found.pixels[i] = plane.to_pixels(point.local);
+    distances[i] = point.distance;
   }
   shepard(std::span(distances).first(n), how.power, found.shares);
   if (how.weights == Weights::mean_value && !cell.triangles.empty())
-    enclose(p, std::span(found.points).first(n), cell.triangles, found.shares);
+    enclose(cell, p, found);
+}
+
+/// Shepard's shares become mean value coordinates where source points enclose the point.
+void Interior::enclose(const CellData& cell, const Vec3& p, Found& found) const {
+  std::array<Vec3, max_sources> points;
+  for (std::size_t i = 0; i < cell.sources.size(); ++i)
+    points[i] = charts_[cell.sources[i].exemplar()].plane.point(found.locals[i]);
+  texture::enclose(p, std::span(points).first(cell.sources.size()), cell.triangles, found.shares);
 }
 
 /// (3.14) for all sources at once: each table says where its source point goes on every face.
 void Interior::morph(const CellData& cell, const Found& found, std::array<Vec2, max_sources>& q) const {
   const int n = static_cast<int>(cell.sources.size());
-  std::array<float, 2 * max_sources> sum = {};
+  std::array<float, 2 * max_sources> sum;
+  std::fill_n(sum.begin(), cell.tables.front().n_numbers, 0.0f);
   for (int j = 0; j < n; ++j) {
     const auto share = static_cast<float>(found.shares[j]);
     look_up(cell.tables[j], found.pixels[j],
             [&](const float* a, const float* b, const float* c, const float* d, const float u, const float v) {
               const float wa = share * (1 - u) * (1 - v), wb = share * u * (1 - v);
               const float wc = share * (1 - u) * v, wd = share * u * v;
-              for (int k = 0; k < 2 * n; ++k)
+              for (int k = 0; k < cell.tables[j].n_numbers; ++k)
                 sum[k] += wa * a[k] + wb * b[k] + wc * c[k] + wd * d[k];
             });
   }
@@ -197,8 +215,9 @@ Blend Interior::blend(const Vec3& p, const Blending& how, const int number) cons
   const CellData& cell = cells_[blend.cell];
   Found found;
   find_sources(cell, p, how, found);
-  std::array<Vec2, max_sources> q = found.pixels;
   blend.n = static_cast<int>(cell.sources.size());
+  std::array<Vec2, max_sources> q;
+  std::copy_n(found.pixels.begin(), blend.n, q.begin());
   if (how.morph == Morph::first_order || how.morph == Morph::exact_inverse)
     morph(cell, found, q);
   if (how.morph == Morph::exact_inverse)
@@ -218,7 +237,7 @@ Blend Interior::blend(const Vec3& p, const Blending& how, const int number) cons
 Eigen::Array4f Interior::colour(const Blend& blend) const {
   Eigen::Array4f sum = Eigen::Array4f::Zero();
   for (int i = 0; i < blend.n; ++i)
-    sum += blend.weights[i] * image::sample_cubic(charts_[blend.exemplars[i]].colours, blend.x[i], blend.y[i]);
+    sum += blend.weights[i] * image::sample_spline(charts_[blend.exemplars[i]].spline, blend.x[i], blend.y[i]);
   return sum.max(0.0f).min(1.0f);
 }
 

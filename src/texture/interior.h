@@ -101,13 +101,14 @@ class Interior {
   /// The source points of one question.
   struct Found {
     std::array<Vec2, max_sources> pixels; ///< of the charts
-    std::array<Vec3, max_sources> points; ///< [m]
+    std::array<Vec2, max_sources> locals; ///< [m]
     Shares shares;
   };
 
   void build_cell(int cell, const std::vector<Exemplar>& exemplars, const geometry::TriangleMesh& body,
                   const Maps* known);
   void find_sources(const CellData& cell, const Vec3& p, const Blending& how, Found& found) const;
+  void enclose(const CellData& cell, const Vec3& p, Found& found) const;
   void morph(const CellData& cell, const Found& found, std::array<Vec2, max_sources>& q) const;
   Vec2 in_picture(int exemplar, const Vec2& pixel) const;
   void count_folds(const CellData& cell, int from, int to, Folds& folds) const;

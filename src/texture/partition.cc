@@ -35,6 +35,20 @@ Grey section_in(const Cell& cell, const Chart& chart, const int own) {
   return section;
 }
 
+/// Whether some pixel of a section lies half a pixel away, along the section, from the planes of all half spaces but its
+/// own. Planes that meet in a line leave nothing of each other's sections but that line where another one lies between
+/// them; round-off may give a cell the pixels on it, which are no face.
+bool has_width(const Grey& section, const Cell& cell, const Chart& chart, const int own) {
+  std::vector<HalfSpace> within = cell.halves;
+  for (HalfSpace& half : within)
+    half.offset -= 0.5 * chart.plane.pixel() * half.normal.cross(chart.plane.normal()).norm();
+  for (int r = 0; r < section.height; ++r)
+    for (int c = 0; c < section.width; ++c)
+      if (section(c, r) > 0 && contains(within, pixel_point(chart, c, r), own))
+        return true;
+  return false;
+}
+
 std::size_t count(const Grey& mask) {
   std::size_t n = 0;
   for (const float value : mask.values)
@@ -92,7 +106,7 @@ void Partition::divide(const int exemplar, const std::vector<Chart>& charts) {
   for (int i = 0; i < n_cells; ++i) {
     const Grey section = section_in(cells_[i], chart, -1);
     const std::size_t n = count(section);
-    if (n < least_pixels ||
+    if (n < least_pixels || !has_width(section, cells_[i], chart, -1) ||
         static_cast<double>(count_shown(section, chart.shown)) < least_share * static_cast<double>(n))
       continue;
     const int other = static_cast<int>(cells_.size());
@@ -121,7 +135,7 @@ void Partition::add_faces(const std::vector<Exemplar>& exemplars, const std::vec
       const int e = cell.exemplars[h];
       const Grey section = section_in(cell, charts[e], h);
       const std::size_t n_pixels = count(section);
-      if (n_pixels < least_pixels)
+      if (n_pixels < least_pixels || !has_width(section, cell, charts[e], h))
         continue;
       int n = 0;
       const auto least = static_cast<std::size_t>(least_component * static_cast<double>(n_pixels)) + 1;

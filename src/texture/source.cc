@@ -218,17 +218,19 @@ Vec2 Source::find(const Swept& swept) const {
     const float* const r = &squared_radii_[step_number * row + k];
     return (1 - u) * r[0] + u * r[1];
   };
-  const double here = std::sqrt(squared(0));
-  const double there = std::sqrt((1 - s) * squared(i) + s * squared(i + 1));
-  const double length = arm.norm();
-  if (!reach_.empty())
-    return length > 0 ? Vec2(middles_[0] + drawn_in(length * here / there, here, arm / length) * arm / length)
+  const double here = squared(0), there = (1 - s) * squared(i) + s * squared(i + 1);
+  const double ratio = std::sqrt(here / there);
+  if (!reach_.empty()) {
+    const double length = arm.norm();
+    return length > 0 ? Vec2(middles_[0] + drawn_in(length * ratio, std::sqrt(here), arm / length) * arm / length)
                       : middles_[0];
+  }
   // Far beyond the boundary, outside of the body, the source point stays there. How far is far falls from infinity in
-  // the face itself, where interpolated radii may cut a corner off and the source point must still be the point itself.
-  const double beyond = there * (1 + 0.02 * (n_steps - 1) / std::max(step, 1e-12));
-  const double ratio = here / there * (length > beyond ? beyond / length : 1);
-  return middles_[0] + ratio * arm;
+  // the face itself, where interpolated radii may cut a corner off and the source point must still be the point itself:
+  // there (step + far) / step.
+  constexpr double far = 0.02 * (n_steps - 1);
+  const double squared_length = arm.squaredNorm() * step * step, farthest = there * (step + far) * (step + far);
+  return middles_[0] + (squared_length > farthest ? ratio * std::sqrt(farthest / squared_length) : ratio) * arm;
 }
 
 } // namespace kerf::texture

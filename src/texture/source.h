@@ -13,6 +13,8 @@
 
 #include "texture/partition.h"
 
+#include <cmath>
+
 namespace kerf::texture {
 
 class Source {
@@ -24,10 +26,18 @@ class Source {
 
   int exemplar() const { return exemplar_; }
 
-  /// The source point of p [m], in local coordinates of the plane [m].
-  Vec2 find(const Vec3& p) const {
+  /// In local coordinates of the plane, and how far from the point that is asked for [m].
+  struct Point {
+    Vec2 local;
+    double distance;
+  };
+  /// The source point of p [m].
+  Point find(const Vec3& p) const {
     const Swept swept = sweep(p);
-    return find(swept);
+    const Vec2 local = find(swept);
+    if (turns_)
+      return {local, (plane_.origin + local[0] * plane_.x + local[1] * plane_.y - p).norm()};
+    return {local, std::sqrt(swept.t * swept.t + (local - swept.local).squaredNorm())}; // it has gone along the normal
   }
 
  private:

@@ -228,11 +228,17 @@ WarpTable empty_table(const Face& face, const int n_faces) {
     return std::max(2, static_cast<int>(std::ceil(length / pixels_a_node)) + 1);
   };
   const int width = std::max(1, right - left), height = std::max(1, bottom - top);
-  WarpTable table{
-    n_nodes(width), n_nodes(height), n_faces, static_cast<float>(left), static_cast<float>(top), 0, 0, {}};
+  WarpTable table{n_nodes(width),
+                  n_nodes(height),
+                  (2 * n_faces + 3) / 4 * 4,
+                  static_cast<float>(left),
+                  static_cast<float>(top),
+                  0,
+                  0,
+                  {}};
   table.columns_by_pixel = static_cast<float>(table.n_columns - 1) / static_cast<float>(width);
   table.rows_by_pixel = static_cast<float>(table.n_rows - 1) / static_cast<float>(height);
-  table.targets.assign(2 * n_faces * table.n_columns * table.n_rows, 0.0f);
+  table.targets.assign(static_cast<std::size_t>(table.n_numbers) * table.n_columns * table.n_rows, 0.0f);
   return table;
 }
 
@@ -244,7 +250,7 @@ void fill(WarpTable& table, const int target, const warp::LatticeMap& map, const
     for (int c = 0; c < table.n_columns; ++c) {
       const Vec2 pixel(table.left + c / table.columns_by_pixel, table.top + r / table.rows_by_pixel);
       const Vec2 image = to(map(back(pixel)));
-      float* const place = &table.targets[2 * (table.n_faces * (r * table.n_columns + c) + target)];
+      float* const place = &table.targets[table.n_numbers * (r * table.n_columns + c) + 2 * target];
       place[0] = static_cast<float>(image[0]);
       place[1] = static_cast<float>(image[1]);
     }

@@ -65,13 +65,14 @@ bool are_partners(const Face& from, const Face& to, const std::vector<Exemplar>&
 /// Where the pixels of a face go on all faces of its cell: a lattice over the face's box, with one target a face at
 /// each node.
 struct WarpTable {
-  int n_columns = 0, n_rows = 0, n_faces = 0;
+  int n_columns = 0, n_rows = 0;
+  int n_numbers = 0; ///< of a node: two a face, and zeros up to a multiple of 4, which is what processors take at once
   float left = 0, top = 0; ///< of the first node [pixels of the chart]
   float columns_by_pixel = 0, rows_by_pixel = 0;
   std::vector<float>
     targets; ///< node by node: x, y on each face [pixels of its chart]; zero for itself and for no partners
 
-  const float* node(const int c, const int r) const { return &targets[2 * n_faces * (r * n_columns + c)]; }
+  const float* node(const int c, const int r) const { return &targets[n_numbers * (r * n_columns + c)]; }
 };
 
 /// All warps of a cell: of its partners alone. `known` are the maps of pairs (i, j), i < j in order of i, then j, found

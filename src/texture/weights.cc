@@ -13,8 +13,9 @@ void normalise(Shares& shares, const std::size_t n) {
   double sum = 0;
   for (std::size_t i = 0; i < n; ++i)
     sum += shares[i];
+  const double scale = 1 / sum;
   for (std::size_t i = 0; i < n; ++i)
-    shares[i] /= sum;
+    shares[i] *= scale;
 }
 
 /// How far below zero a coordinate may be before the point counts as not enclosed at all.

@@ -11,7 +11,7 @@
 namespace kerf::texture {
 
 /// Most source points of one cell.
-constexpr int max_sources = 16;
+constexpr int max_sources = 32;
 
 /// Of each source point the share of what it shows; they sum to 1.
 using Shares = std::array<double, max_sources>;

@@ -20,23 +20,21 @@ class Windows {
   Windows(int width, int height, int gutter, int stride);
 
   float& luminance(const int column, const int row) { return luminance_[index(column, row)]; }
+  float luminance(const int column, const int row) const { return luminance_[index(column, row)]; }
   /// Finds mean and place along a row, from luminances that are all there.
   void find(int row, const Span& span);
   float mean(const int column, const int row) const { return mean_[inner(column, row)]; }
-  /// The share of the window's values below the point's own. Counted softly, so that it changes continuously: a value
-  /// within a quarter of the spread counts in part.
-  float place(const int column, const int row) const { return place_[inner(column, row)]; }
+  /// The share of the window's values below the point's own.
+  const float& place(const int column, const int row) const { return place_[inner(column, row)]; }
 
  private:
   std::size_t index(const int column, const int row) const {
     return static_cast<std::size_t>(row + gutter_) * (width_ + 2 * gutter_) + gutter_ + column;
   }
   std::size_t inner(const int column, const int row) const { return static_cast<std::size_t>(row) * width_ + column; }
-  template <class Function>
-  void for_each_shift(int row, const Function& f) const;
 
   int width_, gutter_, stride_;
-  std::vector<float> luminance_, mean_, place_, sharpness_;
+  std::vector<float> luminance_, mean_, place_;
 };
 
 } // namespace kerf::texture

@@ -11,6 +11,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 #include <algorithm>
+#include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 
@@ -22,6 +24,12 @@ using scene::falling_blade;
 using scene::line_of;
 using scene::mesh_path;
 using Words = std::vector<std::string>;
+
+/// The program under test; the environment may name another build of it: KERF_PROGRAM=build/asan/apps/kerf.
+inline std::string program() {
+  const char* const other = std::getenv("KERF_PROGRAM");
+  return other ? std::filesystem::absolute(other).string() : KERF_PROGRAM;
+}
 
 struct Result {
   int exit_code = -1; ///< -1 when a signal ended it
@@ -60,7 +68,7 @@ class Program : public testing::Test {
     const std::string out = (folder / "stdout").string(), err = (folder / "stderr").string();
     const std::string script =
       "cd '" + (folder / "").string() + "' && exec >stdout 2>stderr && " + before + " && exec \"$0\" \"$@\"";
-    Words words = {"/bin/sh", "-c", script, KERF_PROGRAM};
+    Words words = {"/bin/sh", "-c", script, program()};
     words.insert(words.end(), arguments.begin(), arguments.end());
     const int status = wait_for(words);
     Result result{.out = read_text(out), .err = read_text(err)};

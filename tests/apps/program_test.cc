@@ -55,6 +55,30 @@ TEST_F(ProgramTest, ListsItsParameters) {
     EXPECT_NE(result.out.find(words), std::string::npos) << words;
 }
 
+/// Each name that the key takes stands below, with its unit and what it means.
+TEST_F(ProgramTest, ListsItsObservables) {
+  const std::string page = kerf({"params"}).out;
+  std::string key = std::regex_replace(page, std::regex("\n *# "), " ");
+  key = key.substr(key.find("separated by commas: ") + 21);
+  std::istringstream names(key.substr(0, key.find(". 'kerf params' ends")));
+  std::size_t n = 0;
+  for (std::string name; std::getline(names >> std::ws, name, ','); ++n)
+    EXPECT_TRUE(std::regex_search(page, std::regex("\n# " + name + " \\[[^\\]]+\\]: \\S"))) << name;
+  EXPECT_GT(n, 40u);
+}
+
+TEST_F(ProgramTest, HelpsBesideACommandAndSaysWhatItIs) {
+  for (const Words& words : {Words{"run", "--help"}, {"run", "no.prm", "-h"}, {"study", "--help"}, {"help"}}) {
+    const Result help = kerf(words);
+    EXPECT_EQ(help.exit_code, 0) << words[0];
+    EXPECT_NE(help.out.find("--resume"), std::string::npos) << help.out;
+  }
+  const Result version = kerf({"--version"});
+  EXPECT_EQ(version.exit_code, 0);
+  EXPECT_TRUE(std::regex_search(version.out, std::regex(R"(^kerf \d+\.\d+\.\d+, commit .*deal\.II \d)")))
+    << version.out;
+}
+
 TEST_F(ProgramTest, SumsUpTheRun) {
   const Result result = run(cube_scene() + falling_blade() + all_outputs());
   EXPECT_EQ(result.exit_code, 0) << result.err;

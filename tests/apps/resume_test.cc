@@ -1,5 +1,6 @@
 // Runs that end early, by signals at any moment, and go on: to the bits of one that nobody disturbed. Folders in use.
 
+#include "output/checkpoint_file.h"
 #include "output/h5_array.h"
 #include "output/reader.h"
 #include "output/study_file.h"
@@ -42,7 +43,7 @@ class Resume : public Program {
  protected:
   /// Starts `kerf arguments...` beside this process.
   pid_t start(const Words& arguments) const {
-    Words words = {KERF_PROGRAM};
+    Words words = {program()};
     words.insert(words.end(), arguments.begin(), arguments.end());
     const std::vector<char*> pointers = pointers_to(words);
     const pid_t id = fork();
@@ -180,6 +181,32 @@ TEST_F(Resume, KeepsWhatIntegratorsRemember) {
   }
 }
 
+/// Killed while a checkpoint is half written, before it is on the disk, before it takes its name, and just after: the one
+/// before serves, or the new one.
+TEST_F(Resume, AKillInTheMiddleOfACheckpointLeavesTheOneBefore) {
+  write("scene.prm", busy_scene("fem"));
+  ASSERT_EQ(kerf({"run", "scene.prm", "--output", "whole"}).exit_code, 0) << read_text(folder / "stderr");
+  const Words words = {"run", "scene.prm", "--output", "out", "--resume"};
+  for (const std::string moment : {"write 1", "write 3", "fsync 3", "rename 3", "renamed 3"}) {
+    SCOPED_TRACE(moment);
+    const Result killed =
+      kerf(words, "export KERF_KILL='" + moment +
+                    "' ASAN_OPTIONS=verify_asan_link_order=0 LD_PRELOAD='" KERF_KILLED_AT_CHECKPOINT "'");
+    EXPECT_EQ(killed.signal, SIGKILL) << killed.err;
+    const auto checkpoint = folder / "out/checkpoint.kerf";
+    EXPECT_EQ(std::filesystem::exists(checkpoint.string() + ".new"), moment != "renamed 3");
+    EXPECT_EQ(std::filesystem::exists(checkpoint), moment != "write 1");
+    if (moment != "write 1") {
+      EXPECT_EQ(output::read_checkpoint(checkpoint)->step, moment == "renamed 3" ? 12 : 8);
+    }
+    const Result last = kerf(words);
+    ASSERT_EQ(last.exit_code, 0) << last.err;
+    expect_same_runs("whole", "out");
+    EXPECT_FALSE(std::filesystem::exists(checkpoint.string() + ".new"));
+    std::filesystem::remove_all(folder / "out");
+  }
+}
+
 TEST_F(Resume, SignalsEndAStepCleanly) {
   write("scene.prm", busy_scene("fem"));
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
@@ -204,7 +231,7 @@ TEST_F(Resume, ASecondRunLeavesTheFirstWhole) {
   const pid_t first = start(words);
   wait_for_first_frame();
   ::kill(first, SIGSTOP); // it shall not come to its end before the others have tried
-  const std::string second = "cd '" + (folder / "").string() + "' && '" KERF_PROGRAM "' run scene.prm --output out ";
+  const std::string second = "cd '" + (folder / "").string() + "' && '" + program() + "' run scene.prm --output out ";
   for (const std::string option : {"", "--force", "--resume"})
     EXPECT_EQ(WEXITSTATUS(std::system((second + option + " >second 2>&1").c_str())), 2);
   EXPECT_NE(read_text(folder / "second").find("is in use: process "), std::string::npos)

@@ -1,6 +1,6 @@
 /// How far painted insides are from the truth.
 ///
-///     bench_texture_error [brain|facing|middles|onion|wood|citrus|all] [FOLDER [STIFFNESS]]
+///     bench_texture_error [brain|facing|middles|onion|wood|citrus|all] [FOLDER [STIFFNESS [PIXELS LEVELS]]]
 ///
 /// A brain of which one of nine sections is left out at a time and painted from the others; and solids whose colour is
 /// known everywhere, painted on planes between 2 to 9 parallel exemplars. By method: PSNR [dB] and SSIM against
@@ -34,6 +34,7 @@ const std::vector<Method> methods = {{"nearest", Morph::nearest, false},
                                      {"first order + small", Morph::first_order, true}};
 /// Of the warps between faces, for all subjects.
 warp::MatchOptions match_options = WarpOptions().match;
+int match_pixels = WarpOptions().pixels;
 constexpr int n_bands = 4;
 
 struct Score {
@@ -172,6 +173,7 @@ InteriorOptions brain_options(const Partners partners) {
   options.components = Components::together;
   options.warps.partners = partners;
   options.warps.match = match_options;
+  options.warps.pixels = match_pixels;
   return options;
 }
 
@@ -255,6 +257,7 @@ void study_solid(const std::string& name, const Solid& solid, const std::string&
   for (int n = 2; n <= 9; ++n) {
     InteriorOptions options;
     options.warps.match = match_options;
+    options.warps.pixels = match_pixels;
     const Interior interior(sections_along_z(solid, n), ball(5), options);
     const Detail detail(interior);
     std::vector<Score> means(methods.size() + 1);
@@ -276,6 +279,8 @@ int main(const int argc, char** const argv) {
   const std::string subject = argc > 1 ? argv[1] : "all", folder = argc > 2 ? argv[2] : "";
   const auto is_asked = [&](const std::string& name) { return subject == "all" || subject == name; };
   match_options.stiffness = argc > 3 ? std::atof(argv[3]) : match_options.stiffness;
+  match_pixels = argc > 4 ? std::atoi(argv[4]) : match_pixels;
+  match_options.n_levels = argc > 5 ? std::atoi(argv[5]) : match_options.n_levels;
   std::setvbuf(stdout, nullptr, _IOLBF, 0);
   if (is_asked("brain")) {
     std::printf("brain, one section left out\n");

@@ -265,6 +265,33 @@ TEST(CutSurface, DiscsMakeCracks) {
   }
 }
 
+/// A rectangle cuts the edges that the disc around it cuts and that lie between its sides, as the two triangles that fill it
+/// do, and ends at its rim.
+TEST(CutSurface, RectanglesMakeCracks) {
+  constexpr double h = 1. / 32, a = 0.5, b = 0.3;
+  Random random(47);
+  for (int i = 0; i < 12; ++i) {
+    Resting body = cube(1, h, random_offset(random));
+    const Vec3 centre = 0.05 * random_offset(random), normal = i < 3 ? Vec3(Vec3::Unit(i)) : random_direction(random);
+    const Vec3 u = normal.unitOrthogonal(), v = normal.cross(u);
+    const Rectangle patch{centre, a * u, -b * v};
+    expect_same(body.meet(patch).cuts, body.meet(square(centre, 0.5 * a * u, 0.5 * b * v)).cuts);
+    const auto found = body.cut(patch);
+    EXPECT_NEAR(static_cast<double>(found.cuts.size()) / (a * b / (h * h) * normal.lpNorm<1>()), 1, 0.1);
+    EXPECT_EQ(grid::n_pieces(body.body.complex), 1u);
+    const auto surface = body.surface();
+    double reach = 0;
+    for (std::size_t k = 0; k < surface.triangles.size(); ++k)
+      if (surface.labels[k] == 1)
+        for (const auto vertex : surface.triangles[k]) {
+          const Vec3 d = surface.rest[vertex] - centre;
+          reach = std::max({reach, std::abs(d.dot(u)) - 0.5 * a, std::abs(d.dot(v)) - 0.5 * b});
+        }
+    EXPECT_LT(reach, h);
+    EXPECT_GT(reach, -h);
+  }
+}
+
 TEST(CutSurface, ABigSquareAndABladeCutLikeThePlane) {
   const Resting body = cube(1, 0.07, Vec3(0.3, 0.5, 0.7));
   Random random(46);
@@ -428,6 +455,12 @@ TEST(CutSurface, RefusesWhatIsNoSurface) {
   expect_complaint(Cylinder{o, z, nan, 1}, "Radius [m]");
   expect_complaint(Disc{o, Vec3::Constant(nan), 1}, "Normal [1]");
   expect_complaint(Disc{o, z, std::numeric_limits<double>::infinity()}, "Radius [m]");
+  const Vec3 x = Vec3::UnitX(), y = Vec3::UnitY();
+  EXPECT_NO_THROW(check({"good", Rectangle{o, x, 2 * y}, 1}));
+  expect_complaint(Rectangle{Vec3::Constant(nan), x, y}, "Point [m]");
+  expect_complaint(Rectangle{o, o, y}, "First side [m]");
+  expect_complaint(Rectangle{o, x, Vec3::Constant(nan)}, "Second side [m]");
+  expect_complaint(Rectangle{o, x, x + y}, "Second side [m]");
   expect_complaint(geometry::TriangleMesh{}, "Mesh");
 }
 

@@ -192,10 +192,14 @@ TEST(EdgeBoxes, FindWhatShapesCut) {
       const Vec3 centre = 0.5 * (box.lower + box.upper) + 0.2 * size * random_vector(random);
       const Vec3 direction = i % 3 ? random_direction(random) : Vec3(Vec3::Unit(i % 9 / 3));
       const double r = size * uniform(random, 0.01, 0.6);
-      const std::array<Shape, 5> shapes = {Plane{centre, direction}, Sphere{centre, r},
-                                           Cylinder{centre, direction, r, r}, Disc{centre, direction, r},
+      const Vec3 side = r * direction.unitOrthogonal();
+      const std::array<Shape, 6> shapes = {Plane{centre, direction},
+                                           Sphere{centre, r},
+                                           Cylinder{centre, direction, r, r},
+                                           Disc{centre, direction, r},
+                                           Rectangle{centre, side, 2 * direction.cross(side)},
                                            geometry::sphere_mesh(r, centre, 2)};
-      const CutSurface surface{"", shapes[i % 5], 1};
+      const CutSurface surface{"", shapes[i % 6], 1};
       placed.boxes.fit(placed.x);
       const auto find = [&](const EdgeBoxes* boxes) { return cut_edges(surface, placed.body, placed.x, boxes); };
       expect_same(find(&placed.boxes), find(nullptr));

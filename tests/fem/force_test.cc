@@ -159,8 +159,7 @@ TEST(Force, EnergyIsThatOfTheLawAndOfTheHourglass) {
     for (std::size_t e = 0; e < model.n_elements(); ++e) {
       const grid::Copy& copy = one.body.complex.copies[grid::CopyId(e)];
       const Mat3 F = model.deformation_gradient(e, one.x), R = material::rotation_of(F);
-      expected +=
-        model.element(e).volume * std::visit([&](const auto& law) { return law.energy(F); }, model.law());
+      expected += model.element(e).volume * std::visit([&](const auto& law) { return law.energy(F); }, model.law());
       Vector24 g;
       for (int a = 0; a < 8; ++a)
         g.segment<3>(3 * a) =
@@ -305,6 +304,63 @@ TEST(Mass, ConsistentOneIntegratesLinearFields) {
       expected += rubber.density * 0.008 * weight * (A * (body.grid.origin(copy.cell) + 0.2 * x)).squaredNorm();
   }
   EXPECT_NEAR(found / expected, 1, 1e-12);
+}
+
+/// Lumped masses and their coupling, element by element against the matrices themselves; as a product and as entries; built
+/// at once and after cuts.
+TEST(Mass, CouplingMakesTheConsistentMatrixOfTheLumpedOne) {
+  Draw draw(71);
+  Body body = make_block({3, 2, 3}, 0.2, draw, {0.2, 0.8});
+  cut_at_random(body, 0.5, draw, {0.2, 0.8});
+  const Hexahedra model(body, {.material = rubber, .mass = MassMatrix::consistent});
+  const auto n = static_cast<Eigen::Index>(3 * model.lumped_mass().size());
+  Eigen::MatrixXd expected = Eigen::MatrixXd::Zero(n, n), entries = expected, products = expected;
+  for (std::size_t e = 0; e < model.n_elements(); ++e) {
+    const grid::Copy& copy = body.complex.copies[grid::CopyId(e)];
+    const auto mass = consistent_mass(material_moments(body, copy), rubber.density * 0.008);
+    for (int a = 0; a < 8; ++a)
+      for (int b = 0; b < 8; ++b)
+        expected.block<3, 3>(3 * copy.corners[a].value, 3 * copy.corners[b].value) += mass(a, b) * Mat3::Identity();
+  }
+  for (Eigen::Index i = 0; i < n; ++i)
+    entries(i, i) = products(i, i) = model.lumped_mass()[i / 3];
+  std::vector<Eigen::Triplet<double>> list;
+  model.mass_coupling()->add_entries(1, list);
+  for (const auto& entry : list)
+    entries(entry.row(), entry.col()) += entry.value();
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const Eigen::VectorXd unit = Eigen::VectorXd::Unit(n, i);
+    model.mass_coupling()->add_product({unit.data(), static_cast<std::size_t>(n)},
+                                       {products.col(i).data(), static_cast<std::size_t>(n)});
+  }
+  const double size = expected.lpNorm<Eigen::Infinity>();
+  EXPECT_LT((entries - expected).lpNorm<Eigen::Infinity>(), 1e-13 * size);
+  EXPECT_LT((products - expected).lpNorm<Eigen::Infinity>(), 1e-13 * size);
+  EXPECT_EQ(make_model(body, {.material = rubber}).mass_coupling(), nullptr);
+}
+
+/// With the mass that is extended to corners of near-empty copies: still positive, of the same sum, and symmetric.
+TEST(Mass, CouplingOfExtendedMassIsPositive) {
+  Draw draw(72);
+  for (int round = 0; round < 10; ++round) {
+    Body body = make_block({3, 2, 3}, 0.2, draw, {1e-4, 1 - 1e-4});
+    cut_at_random(body, 0.5, draw, {1e-4, 1 - 1e-4});
+    const Hexahedra model(body, {.material = rubber, .inertia = Inertia::extended, .mass = MassMatrix::consistent});
+    const auto n = static_cast<Eigen::Index>(3 * model.lumped_mass().size());
+    Eigen::MatrixXd M = Eigen::MatrixXd::Zero(n, n);
+    for (Eigen::Index i = 0; i < n; ++i)
+      M(i, i) = model.lumped_mass()[i / 3];
+    const double sum = M.trace() / 3;
+    std::vector<Eigen::Triplet<double>> list;
+    model.mass_coupling()->add_entries(1, list);
+    for (const auto& entry : list)
+      M(entry.row(), entry.col()) += entry.value();
+    EXPECT_LT((M - M.transpose()).lpNorm<Eigen::Infinity>(), 1e-14 * M.lpNorm<Eigen::Infinity>());
+    EXPECT_NEAR(M.sum() / 3 / sum, 1, 1e-12);
+    const Eigen::VectorXd scale = M.diagonal().cwiseAbs().cwiseSqrt().cwiseInverse();
+    const Eigen::MatrixXd scaled = scale.asDiagonal() * M * scale.asDiagonal();
+    EXPECT_GT(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(scaled, Eigen::EigenvaluesOnly).eigenvalues()[0], -1e-12);
+  }
 }
 
 TEST(Mass, OfEachCornerIsPositive) {

@@ -199,7 +199,7 @@ class Draw {
     const Vec3 centre = draw(random_, 2) ? at(random_node()) : random_point(random_, reach_);
     const Vec3 direction = draw(random_, 2) ? Vec3(Vec3::Unit(draw(random_, 3))) : support::random_direction(random_);
     const double radius = subject_.grid().h() * (draw(random_, 2) ? 1 + draw(random_, 4) : uniform(random_, 0.01, 6));
-    switch (draw(random_, 5)) {
+    switch (draw(random_, 6)) {
       case 0:
         return by("plane", cut::Plane{centre, direction}, Extent::closed);
       case 1:
@@ -208,6 +208,10 @@ class Draw {
         return by("cylinder", cut::Cylinder{centre, direction, radius, 1.5 * radius}, Extent::closed);
       case 3:
         return by("disc", cut::Disc{centre, direction, radius}, Extent::open);
+      case 4: {
+        const Vec3 side = radius * direction.unitOrthogonal();
+        return by("rectangle", cut::Rectangle{centre, side, 1.5 * direction.cross(side)}, Extent::open);
+      }
       default:
         return mesh(centre, radius);
     }

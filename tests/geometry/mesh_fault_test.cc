@@ -56,6 +56,11 @@ TEST(MeshFault, NamesTheLine) {
   expect(error_of("nan.obj", "v 0 0 0\nv 1 0 0\nv 0 nan 0\nf 1 2 3\n"), "line 3: 'nan' is no finite number");
 }
 
+/// The library that reads them writes past the end of a list there.
+TEST(MeshFault, APropertyBeforeAnyElementIsRefused) {
+  expect(error_of("stray.ply", with(ply, "element vertex 3\n", "")), "a property stands before any element");
+}
+
 TEST(MeshFault, SaysWhereAFileEnds) {
   expect(error_of("cut.off", off.substr(0, off.find("3 0 3 2"))),
          "it ends in line 9, after 4 of 4 vertices and 2 of 4 faces");

@@ -137,7 +137,7 @@ struct Mill {
 
 /// Spins and shakes without damping while its edges are cut at places anywhere, down to single nodes. The energy never
 /// exceeds what it was at first, but for the swing of symplectic Euler: cuts themselves leave both energies alone, up
-/// to 5 % of the elastic one (material changes regions) and 1 % of the kinetic one (a later cut moves the point where
+/// to 15 % of the elastic one (material changes regions, and corners of hardly any mass have none of it) and 1 % of the kinetic one (a later cut moves the point where
 /// the octants of a cell meet, and with it mass from copy to copy).
 void expect_to_survive(const Mill& mill) {
   Draw draw(98);
@@ -160,7 +160,7 @@ void expect_to_survive(const Mill& mill) {
     state.x = inherited(state.x, parents);
     state.v = inherited(state.v, parents);
     model = make();
-    EXPECT_LT(model->energy(state.x), 1.05 * E + 1e-9 * start) << round;
+    EXPECT_LT(model->energy(state.x), 1.15 * E + 1e-9 * start) << round;
     EXPECT_NEAR(kinetic(), T, 0.01 * T) << round;
     const Points momenta = momenta_of_pieces(body, *model, state);
     ShapeMatching stepper(*model, 0);

@@ -208,7 +208,7 @@ TEST(CutSurfaceScene, RefusesWhatIsNoCut) {
     expect_refused(surface_text("slice", keys), words);
   };
   refuse("Point [m] = 0, 0, 0", {"Shape", "must be one of plane"});
-  refuse("Shape = cone", {"'cone'", "must be one of plane, sphere, cylinder, disc, mesh"});
+  refuse("Shape = cone", {"'cone'", "must be one of plane, sphere, cylinder, disc, rectangle, mesh"});
   refuse("Shape = sphere;Point [m] = 0, 0, 0;Radius [m] = 0", {"Radius [m]", "'0'", "must be > 0"});
   refuse("Shape = sphere;Point [m] = 0, 0, 0;Radius [m] = -1", {"Radius [m]", "must be > 0"});
   refuse("Shape = sphere;Radius [m] = 1", {"'sphere' must have the key 'Point [m]'"});

@@ -79,6 +79,18 @@ TEST_F(InteriorScene, RevealedFacesAreColouredAsTheyAppear) {
   ASSERT_EQ(colours.size(), 3 * body.surface.rest.size());
 }
 
+TEST_F(InteriorScene, SamplesAreAboutAsManyAsExpected) {
+  std::string text = scene_with(interior(folder / "stripes.png"));
+  text.replace(text.find("Resolution [m] = 0.01"), 21, "Resolution [m] = 0.002");
+  World world = compose(scan_scene_text(text, (folder / "scene.prm").string(), {}));
+  run_silently(world, folder / "out");
+  const auto n = static_cast<double>(world.bodies.front().interior->atlas.colours().size());
+  const double expected = texture::n_samples_of(2 * 0.2 * 0.2, 0.002);
+  std::printf("%.0f samples on both sides of a cut, %.0f expected\n", n, expected);
+  EXPECT_GT(n, expected / 2);
+  EXPECT_LT(n, 2 * expected);
+}
+
 TEST_F(InteriorScene, IsInTheRunFile) {
   World world = this->world();
   run_silently(world, folder / "out");

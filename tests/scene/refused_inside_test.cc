@@ -128,6 +128,34 @@ TEST_F(Inside, SeveralComponents) {
   expect_refused(text, {"Interior/Components", "2 components", "exemplar legs", "one more exemplar"});
 }
 
+TEST_F(Inside, ResolutionsThatWouldTakeAllMemory) {
+  const auto world = [&](const std::string& resolution, const std::string& edge, const std::string& more = "") {
+    std::string text = scene(more + exemplar("one", "good.png", "-0.1, -0.1, 0.01"));
+    text.replace(text.find("Resolution [m] = 0.01"), 21, "Resolution [m] = " + resolution);
+    text.replace(text.find("Cube edge [m] = 0.05"), 20, "Cube edge [m] = " + edge);
+    return compose(scan_scene_text(text, (folder / "scene.prm").string(), {}));
+  };
+  const auto expect = [&](const Words& parts, const auto&... arguments) {
+    try {
+      world(arguments...);
+      FAIL() << parts.back();
+    } catch (const ParameterError& error) {
+      const std::string said = error.what();
+      EXPECT_NE(said.find("scene.prm:"), std::string::npos) << said;
+      EXPECT_NE(said.find("Interior/Resolution [m]"), std::string::npos) << said;
+      for (const std::string& part : parts)
+        EXPECT_NE(said.find(part), std::string::npos) << "no '" << part << "' in: " << said;
+    }
+  };
+  // Two sides of 0.04 m^2, three samples a square of 1e-7 m, 3 bytes each.
+  expect({"1e-7", "68000 GiB", "at least 0.00079"}, "1e-7", "0.05");
+  expect({"0.0006", "at least 0.00079"}, "0.0006", "0.05");
+  expect({"6.8 GiB", "at least 2.6e-5"}, "1e-5", "0.0005");
+  expect({"25 GiB", "at least 5e-5"}, "1e-5", "0.0005", "    set Relief [m] = 0.001\n");
+  expect({"27 GiB", "at least 5.2e-5"}, "1e-5", "0.0005", "    set Skin image = good.png\n");
+  EXPECT_NE(world("0.0008", "0.05").bodies.front().interior, nullptr);
+}
+
 TEST_F(Inside, SkinPictures) {
   const std::string one = exemplar("one", "good.png", "-0.1, -0.1, 0.01");
   std::ofstream(folder / "text.png") << "no picture";

@@ -288,6 +288,23 @@ TEST(Forceps, HoldASphere) {
   EXPECT_EQ(drawing(world, 1).rods.size(), 4u) << "two arms and two jaws";
 }
 
+/// A tool of whose looks the scene says nothing has a size, and stands clear of what it works on.
+TEST(ToolShapes, WhatNobodyDescribesIsDrawn) {
+  const World world =
+    world_of(cube_scene() +
+             section("Blade knife", {"Edge [m] = 0, -0.2, 0; 0, 0.2, 0", "Times [s] = 0, 0.05",
+                                     "Positions [m] = 0.003, 0, 0.13; 0.003, 0, -0.13"}) +
+             section("Scissors shears", with(shears, "Spine [m]", "")) + section("Forceps tweezers", tweezers));
+  EXPECT_LT((world.blades[0].spine - Vec3(0, 0, 0.08)).norm(), 1e-12) << "it falls, and is 0.4 m long";
+  EXPECT_LT((world.blades[1].spine - Vec3(0, -0.039, 0)).norm(), 1e-12) << "the first blade opens towards -y";
+  EXPECT_EQ(world.blades[1].spine, Vec3(-world.blades[2].spine));
+  const auto rods = drawing(world, 3).rods;
+  ASSERT_EQ(rods.size(), 4u) << "two arms and two jaws";
+  EXPECT_GT((rods[0].path.back() - rods[2].path.back()).norm(), 0.1);
+  for (const auto& rod : rods)
+    EXPECT_GT(rod.path.front()[2], 0.1) << "above the cube, whose upper layers they hold";
+}
+
 TEST(Forceps, AreDrawnOpenUntilTheyGrip) {
   auto keys = with(with(tweezers, "Jaws [m]", "0, 0.01, 0"), "Handle [m]", "0, 0, 0.1");
   const World world = world_of(cube_scene() + section("Forceps tweezers", keys));

@@ -2,6 +2,7 @@
 
 /// The same physical section, stored in another way.
 
+#include "image/spline.h"
 #include "texture/exemplar.h"
 
 #include <cmath>
@@ -46,6 +47,7 @@ inline Exemplar turned_by(const Exemplar& e, const double angle) {
     return Vec2(middle + (c - 0.5 * (n - 1)) * u + (r - 0.5 * (n - 1)) * v);
   };
   const auto at = [&](const Vec2& p) { return Vec3(e.plane.point(e.plane.to_local(p))); };
+  const image::Colours spline = image::spline_coefficients(e.picture.colours);
   Exemplar result = e;
   result.plane = SectionPlane(at(of(0, 0)), at(of(1, 0)) - at(of(0, 0)), at(of(0, 1)) - at(of(0, 0)));
   result.picture.colours = image::Colours(n, n, image::Rgb::Zero());
@@ -56,7 +58,7 @@ inline Exemplar turned_by(const Exemplar& e, const double angle) {
       if (p[0] < 0 || p[1] < 0 || p[0] > w - 1 || p[1] > h - 1)
         continue;
       const auto x = static_cast<float>(p[0]), y = static_cast<float>(p[1]);
-      result.picture.colours(c, r) = image::sample_cubic(e.picture.colours, x, y).max(0.0f).min(1.0f);
+      result.picture.colours(c, r) = image::sample_spline(spline, x, y).max(0.0f).min(1.0f);
       result.picture.alpha(c, r) = e.picture.has_alpha() ? image::sample(e.picture.alpha, x, y) : 1.0f;
     }
   result.background = Background::alpha;

@@ -25,13 +25,13 @@ Input swept(const Sweep& sweep, const int first = 0) {
   return input;
 }
 
-/// Three planes through z turn about it.
-Input about_axis() {
+/// Three planes through z turn about it, whose pictures have n columns: an odd number has one on the axis.
+Input about_axis(const int n = 70) {
   Input input;
   for (int i = 0; i < 3; ++i) {
     const double angle = M_PI * i / 3 + 0.02;
     const Vec3 out(std::cos(angle), std::sin(angle), 0);
-    input.exemplars.push_back(exemplar_of("e" + std::to_string(i), onion, Vec3::Zero(), out, Vec3::UnitZ(), 70));
+    input.exemplars.push_back(exemplar_of("e" + std::to_string(i), onion, Vec3::Zero(), out, Vec3::UnitZ(), n));
     input.exemplars.back().sweep = {Sweep::Path::axis, Vec3::Zero(), Vec3::UnitZ()};
   }
   return input;
@@ -103,24 +103,30 @@ TEST_P(Ways, GiveTheSameBitsInAnyOrderAndWithAnyNumberOfThreads) {
     ASSERT_TRUE((found[0][i] == found[1][i]).all()) << i;
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Ways,
-                         testing::Values(Way{"normal", [] { return swept({}); }},
-                                         Way{"middles", [] { return swept({Sweep::Path::middles}); }},
-                                         Way{"arc",
-                                             [] {
-                                               return swept({Sweep::Path::arc, Vec3::Zero()}, 1);
-                                             }},
-                                         Way{"axis", about_axis}, Way{"partial", [] { return partial(Fit::none); }},
-                                         Way{"rigid", [] { return partial(Fit::rigid); }},
-                                         Way{"harmonic", [] { return partial(Fit::harmonic); }},
-                                         Way{"each", [] { return legs(Components::each); }},
-                                         Way{"together", [] { return legs(Components::together); }}),
-                         [](const auto& info) { return std::string(info.param.name); });
+INSTANTIATE_TEST_SUITE_P(
+  All, Ways,
+  testing::Values(Way{"normal", [] { return swept({}); }}, Way{"middles", [] { return swept({Sweep::Path::middles}); }},
+                  Way{"arc",
+                      [] {
+                        return swept({Sweep::Path::arc, Vec3::Zero()}, 1);
+                      }},
+                  Way{"axis", [] { return about_axis(); }}, Way{"axis_on_pixels", [] { return about_axis(71); }},
+                  Way{"partial", [] { return partial(Fit::none); }}, Way{"rigid", [] { return partial(Fit::rigid); }},
+                  Way{"harmonic", [] { return partial(Fit::harmonic); }},
+                  Way{"each", [] { return legs(Components::each); }},
+                  Way{"together", [] { return legs(Components::together); }}),
+  [](const auto& info) { return std::string(info.param.name); });
 
 TEST(Sweeps, AboutAnAxisFindWhatIsRoundAboutIt) {
+  for (const int n : {70, 71}) {
+    const Input input = about_axis(n);
+    const Interior inside(input.exemplars, input.body, {});
+    EXPECT_EQ(inside.partition().cells().size(), 6u);
+    for (const Cell& cell : inside.partition().cells())
+      EXPECT_EQ(cell.faces.size(), 2u) << n; // nothing of the third plane but the axis
+  }
   const Input input = about_axis();
   const Interior inside(input.exemplars, input.body, {});
-  EXPECT_EQ(inside.partition().cells().size(), 6u);
   const auto error = [&](const Interior& of) {
     double sum = 0;
     const Points points = points_inside(500, 3);
@@ -158,6 +164,34 @@ TEST(Components, SeveralAreRefusedUntilOneMoreExemplarPartsThem) {
   const Interior inside(more, input.body, {});
   EXPECT_EQ(inside.partition().cells().size(), 4u);
   EXPECT_LT(largest_error_on_exemplars(inside, inside.options().blending), 2e-3);
+}
+
+/// Balls side by side, cut by one plane: as many components as there are balls.
+Input balls(const int n_columns, const int n_rows, const Components components) {
+  Input input{{exemplar_of("all", onion, Vec3::Zero(), Vec3::UnitX(), Vec3::UnitY(), 120)}, {}};
+  for (int i = 0; i < n_columns * n_rows; ++i) {
+    const Vec3 middle(0.014 * (i % n_columns - 2.5), 0.014 * (i / n_columns - 2.5), 0);
+    const auto one = geometry::sphere_mesh(0.006, middle, 2);
+    const auto first = static_cast<std::uint32_t>(input.body.vertices.size());
+    input.body.vertices.insert(input.body.vertices.end(), one.vertices.begin(), one.vertices.end());
+    for (const Triangle& t : one.triangles)
+      input.body.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+  }
+  input.options.components = components;
+  input.options.warps.pixels = 16;
+  input.options.warps.match.n_levels = 1;
+  input.options.warps.match.n_iterations = 2;
+  return input;
+}
+
+TEST(Components, AsManyAsACellMayHave) {
+  const Input many = balls(6, 5, Components::each), too_many = balls(6, 6, Components::each),
+              as_one = balls(6, 6, Components::together);
+  const Interior inside(many.exemplars, many.body, many.options);
+  EXPECT_EQ(inside.blend(Vec3(0, 0, 0.001), {}).n, 30);
+  EXPECT_LT(largest_error_on_exemplars(inside, inside.options().blending), 2e-3);
+  expect_refused(too_many.exemplars, "Components", "36 faces bound one cell", too_many.options, too_many.body);
+  EXPECT_EQ(Interior(as_one.exemplars, as_one.body, as_one.options).blend(Vec3(0, 0, 0.001), {}).n, 1);
 }
 
 TEST(Components, EachOrTogether) {

@@ -128,23 +128,17 @@ namespace {
 using Sparse = Eigen::SparseMatrix<double>;
 using Vector = Eigen::VectorXd;
 
-Sparse mass_matrix(const Built& built, const double density, const MassMatrix kind) {
+Sparse mass_matrix(const Built& built) {
   const fem::Hexahedra& model = *built.model;
-  if (kind == MassMatrix::consistent)
-    return fem::assemble(model.incidence(), [&](const std::size_t copy) {
-      const auto mass =
-        fem::consistent_mass(fem::material_moments(built.body, built.body.complex.copies[grid::CopyId(copy)]),
-                             density * std::pow(model.h(), 3));
-      fem::Matrix24 M = fem::Matrix24::Zero();
-      for (int a = 0; a < 8; ++a)
-        for (int b = 0; b < 8; ++b)
-          M.block<3, 3>(3 * a, 3 * b) = mass(a, b) * Mat3::Identity();
-      return M;
-    });
   Vector diagonal(3 * model.lumped_mass().size());
   for (Eigen::Index i = 0; i < diagonal.size(); ++i)
     diagonal[i] = model.lumped_mass()[i / 3];
-  return Sparse(diagonal.asDiagonal());
+  Sparse mass(diagonal.size(), diagonal.size());
+  std::vector<Eigen::Triplet<double>> coupling;
+  if (model.mass_coupling())
+    model.mass_coupling()->add_entries(1, coupling);
+  mass.setFromTriplets(coupling.begin(), coupling.end());
+  return mass + Sparse(diagonal.asDiagonal());
 }
 
 /// omega^2 of the mode of the symmetry of `shape`, by inverse iteration; `guess` of it shifts away rigid motions.
@@ -202,11 +196,13 @@ Sparse free_components(const Points& rest, const double length) {
 BeamResult frequency(const Vibration kind, const double slenderness, const int n_over_thickness, const MassMatrix mass,
                      const BeamModel& model) {
   const Wave wave{std::numbers::pi / slenderness, 0.3};
+  auto options = options_of(model, 1, wave.nu);
+  options.mass = mass;
   Built built = build(
     [&] {
       return box({Vec3::Zero(), Vec3(slenderness, 1, 1)}, 1.0 / n_over_thickness, Vec3::Zero());
     },
-    options_of(model, 1, wave.nu));
+    options);
   const CpuTimer timer;
   const Points rest = built.body.rest();
   Vector shape(3 * rest.size());
@@ -214,8 +210,7 @@ BeamResult frequency(const Vibration kind, const double slenderness, const int n
     shape.segment<3>(3 * c) = wave.shape(kind, rest[c]);
   const double expected = wave.squared_frequency(kind);
   const double found = lowest_eigenvalue(built.model->stiffness_matrix(rest, dynamics::Tangent::exact),
-                                         mass_matrix(built, options_of(model, 1, wave.nu).material.density, mass),
-                                         free_components(rest, slenderness), shape, expected);
+                                         mass_matrix(built), free_components(rest, slenderness), shape, expected);
   return result_of(built, timer, std::sqrt(found / expected));
 }
 

@@ -50,7 +50,7 @@ BeamResult elastica(double alpha, double slenderness, int n_over_thickness);
 /// Of the first mode of a kind of a square beam whose ends x = 0 and x = L may only move within their planes:
 /// waves with wave number k = pi / L, of which theory has closed forms without end effects.
 enum class Vibration { bending, axial, torsion };
-enum class MassMatrix { consistent, lumped };
+using fem::MassMatrix;
 /// Frequency over theory's: bending by Timoshenko's beam with the shear coefficient 5 (1 + nu)/(6 + 5 nu) (Hutchinson
 /// 2001 compares coefficients), axial with Love's lateral inertia, torsion by Saint-Venant with J = 0.140577 t^4.
 BeamResult frequency(Vibration kind, double slenderness, int n_over_thickness, MassMatrix mass, const BeamModel& model);

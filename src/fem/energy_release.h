@@ -1,0 +1,56 @@
+#pragma once
+
+/// The energy that the virtual growth of a crack would release, as an integral over a domain around its front.
+///
+/// Material that is shifted by q, with all corners held where they are, changes the elastic energy by the integral of
+/// (W I - F^T P) : grad q (Eshelby 1951, 1975). In equilibrium, with q along the crack and along the skin, and zero where loads
+/// and supports act, that is what the whole body's energy changes by: so minus the integral, over the area by which the crack
+/// grows, is the energy release rate G (Li, Shih and Needleman 1985, A comparison of methods for calculating energy release
+/// rates, Eng. Fract. Mech. 21). q is constant in a tube around the front, where fields are singular and where cells
+/// that hold the front are whole, and falls to zero in a wider one. Any law, any rotation.
+///
+/// In place of F stands F - F_0, F_0 its mean over the domain: virtual work of F_0 q is zero in equilibrium, and P : grad q is of
+/// lower order in the strain than what is looked for.
+///
+/// Each copy counts with its mean deformation gradient, which neither locks nor knows hourglass modes, and q is trilinear in it.
+/// Limits: statics only; along the skin q must be tangential; between the tubes the crack must be plane, and there must be no
+/// load.
+
+#include "fem/hexahedra.h"
+
+#include <functional>
+#include <variant>
+
+namespace kerf::fem {
+
+/// A front from skin to skin, along a line; the crack grows along `growth`.
+struct LineFront {
+  Vec3 first = Vec3::Zero(), second = Vec3::UnitY(); ///< rest configuration [m]
+  Vec3 growth = Vec3::UnitX();                       ///< unit, across the line
+};
+
+/// A whole circle, of which the crack is the inside.
+struct CircleFront {
+  Vec3 centre = Vec3::Zero();  ///< rest configuration [m]
+  Vec3 normal = Vec3::UnitZ(); ///< unit
+  double radius = 1;           ///< [m]
+};
+
+using CrackFront = std::variant<LineFront, CircleFront>;
+
+/// Radii of the two tubes [m].
+struct Tubes {
+  double inner = 0, outer = 0;
+};
+
+/// Length of the front [m].
+double length(const CrackFront& front);
+
+/// G, the mean along the front [J/m^2], for corners at `x`, which rest at `rest` [m].
+double energy_release_rate(const Hexahedra& model, const Points& rest, const Points& x, const CrackFront& front,
+                           const Tubes& tubes);
+
+/// |K| of a crack that opens in plane strain, sqrt(G E / (1 - nu^2)) [Pa m^1/2]; zero where G is negative.
+double stress_intensity(double energy_release_rate, const material::Elastic& material);
+
+} // namespace kerf::fem
