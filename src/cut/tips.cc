@@ -17,7 +17,7 @@ using grid::CellId;
 using grid::Items;
 using grid::SkinSegment;
 
-constexpr double no_volume = 1e-9; // of a cube
+constexpr double no_volume = 1e-9;     // of a cube
 constexpr std::size_t most_cells = 64; // of a tip; what is larger has volume
 
 using Tip = std::map<CellId, Items>; // points of the skin that hang together

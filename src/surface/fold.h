@@ -13,7 +13,8 @@ namespace kerf::surface {
 /// less than -.02 cubes?
 bool is_folded(const grid::Solid& solid, const View& view);
 
-/// Does a vertex at p not see all of a side of the cell's skeleton that lies in a face?
+/// With a vertex of the cuts at p in a side of the cell's skeleton that lies in a face: has a part of it negative area, in
+/// the same sense?
 bool is_folded(const grid::Solid& solid, const View& view, int side, const Vec3& p);
 
 } // namespace kerf::surface

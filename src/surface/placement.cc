@@ -226,7 +226,9 @@ class Placer {
 
   /// On the rim between two cuts, nearest to the plane of a third one.
   Vec3 on_rim(const View& view, const grid::Segments two, const grid::Segments third) const {
-    const auto at = [&](const grid::Segments segments) { return cut_plane(solid_, view, std::countr_zero(segments)).plane; };
+    const auto at = [&](const grid::Segments segments) {
+      return cut_plane(solid_, view, std::countr_zero(segments)).plane;
+    };
     const Vec3 p = at(two).point, q = at(two & (two - 1)).point;
     const Plane plane = at(third);
     const double a = plane.normal.dot(p - plane.point), b = plane.normal.dot(q - plane.point);
