@@ -1,5 +1,6 @@
 #include "tests/compare/grind.h"
 
+#include "cut/target.h"
 #include "grid/followed.h"
 #include "grid/locate.h"
 
@@ -27,6 +28,23 @@ std::vector<grid::EdgeId> edges_that_hold(const Body& body) {
           !body.solid.cuts.is_cut(e) && body.solid.grid.is_material(a) && body.solid.grid.is_material(b))
         edges.push_back(e);
   return edges;
+}
+
+/// Segments of the skin that join what belongs to different nodes, as they stand now.
+std::vector<cut::Segment> skin_that_holds(const Body& body) {
+  std::vector<cut::Segment> segments;
+  for (const grid::CellId c : ids<grid::CellId>(body.solid.grid.n_cells())) {
+    const grid::CellCuts cuts = grid::cuts_of(body.solid, c);
+    const grid::Skeleton& skeleton = cuts.skeleton();
+    if (!cuts.has_skin())
+      continue;
+    cut::SkinNow(body.solid, c).for_each_uncut([&](const int segment) {
+      const auto& ends = skeleton.segment[segment].ends;
+      if (skeleton.vertex[ends[0]] != skeleton.vertex[ends[1]])
+        segments.push_back(cut::SkinNow(body.solid, c).segment(segment, corners(body)));
+    });
+  }
+  return segments;
 }
 
 struct Sums {
@@ -81,14 +99,19 @@ class Grinder {
 
   Body& body() { return world_.bodies.at(0); }
 
-  /// A short stroke that crosses a random edge that still holds; false when there is none.
+  /// A short stroke that crosses a random edge that still holds, or where none does a segment of the skin; false when
+  /// there is none.
   bool aim() {
     const auto edges = edges_that_hold(body());
-    if (edges.empty())
+    const auto skin = edges.empty() ? skin_that_holds(body()) : std::vector<cut::Segment>();
+    if (edges.empty() && skin.empty())
       return false;
-    const auto [a, b] = body().solid.grid.ends(edges[random_() % edges.size()]);
-    const Vec3 from = corners(body())[body().solid.complex.real_corner[a].value],
-               to = corners(body())[body().solid.complex.real_corner[b].value];
+    const auto current = [&](const grid::EdgeId e) {
+      const auto [a, b] = body().solid.grid.ends(e);
+      return cut::Segment{corners(body())[body().solid.complex.real_corner[a].value],
+                          corners(body())[body().solid.complex.real_corner[b].value]};
+    };
+    const auto [from, to] = edges.empty() ? skin[random_() % skin.size()] : current(edges[random_() % edges.size()]);
     const Vec3 along = (to - from).normalized();
     Vec3 blade, way;
     do {
