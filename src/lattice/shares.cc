@@ -77,7 +77,7 @@ CopyShares shares_of(const grid::Solid& solid, const grid::Copy& copy) {
     }
     for (int v = 0; v < 8; ++v)
       if ((owners >> v & 1) != 0) // even parts where a hollow skin leaves a node less than nothing (grid/material.h)
-        shares[v][a] = std::max(total, least_share) *
+        shares[v][a] = std::max(total, 0.0) *
                        (least > 0 ? integrals[v][a] / of_owners : 1.0 / std::popcount(owners));
   }
   return shares;
