@@ -48,11 +48,9 @@ constexpr int place_in_face(const int face, const int vertex) {
   return place;
 }
 
-/// What a writer does with a vertex that is there already.
-enum class Known { kept, renewed };
+enum class Known { kept, renewed }; ///< what a writer does with a vertex that is there already
 
-/// Writes the vertices and triangles of cells. A vertex that several cells share is made by the first of them; its
-/// place and weights come from its edge or face alone, so that they are the same bits whichever cell writes them.
+/// Writes the vertices and triangles of cells. What cells share comes from its edge or face alone: the same bits.
 class Writer {
  public:
   Writer(const Solid& solid, Surface& surface, SurfaceIndex& index, const Known known)
@@ -444,7 +442,7 @@ class Writer {
     return id;
   }
 
-  /// True for a vertex that is to be made, or to be renewed for the first time in this cell.
+  /// Is a vertex to be made, or to be renewed for the first time in this cell?
   bool is_wanted(const std::uint32_t id, const int vertex_of_cell) {
     const bool was_seen = seen_[vertex_of_cell];
     seen_[vertex_of_cell] = true;
