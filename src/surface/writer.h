@@ -64,8 +64,7 @@ class Writer {
     edges.reserve(solid_.cuts.all().size());
     for (const grid::EdgeCut& cut : solid_.cuts.all())
       edges.push_back(cut.edge);
-    for (const grid::TouchedCell& touched :
-         grid::touched_cells(solid_.grid, edges)) // by which lines is its configuration
+    for (const grid::TouchedCell& touched : grid::touched_cells(solid_.grid, edges)) // its lines: the configuration
       write(touched.cell, touched.lines);
   }
 

@@ -202,7 +202,8 @@ const std::vector<Family> families = {
      cut_by_plane(body, {1, 0.2, -0.1}, {2, 2, 2}, 0.5 * t, 1);
      cut_by_plane(body, {0.1, 1, 0.3}, {2, 2, 2}, -0.5 * t, 2);
      return body;
-   }},
+   },
+   0.3}, // at .5 a wedge of skin alone, of .02 cubes, hangs by its edge: 178
   {"rinds",
    [](const double t) { // under the skin a plane leaves a flap of rinds alone, 0.4 t thick, that hangs at one side
      auto body = support::block({4, 3, 3});

@@ -137,16 +137,20 @@ inline bool is_below_skin(const Body& body, const grid::EdgeId e, const double t
                                                      : t > skin + grid::min_edge_parameter;
 }
 
-/// The edges that a plane crosses in the material.
+/// The edges that a plane crosses in the material: those whose nodes, or node and point of the skin, it parts.
 inline std::vector<grid::EdgeCut> plane_cuts(const Body& body, const Plane& plane, const grid::CutLabel label = 1) {
   std::vector<grid::EdgeCut> cuts;
   for (const auto e : ids<grid::EdgeId>(body.grid.n_edges())) {
-    const auto& [lower, upper] = body.grid.ends(e);
-    const double a = plane.height(body.grid.position(lower)), b = plane.height(body.grid.position(upper));
-    if (!body.cuts.can_be_cut(body.grid, e) || (a < 0) == (b < 0))
+    if (!body.cuts.can_be_cut(body.grid, e))
       continue;
-    if (const double t = a / (a - b); is_inner(body, e) || is_below_skin(body, e, t))
-      cuts.push_back({e, t, plane.normal, label});
+    const auto [lower, upper] = body.grid.ends(e);
+    const auto end = [&](const grid::NodeId n) {
+      return body.grid.is_material(n) ? body.grid.position(n) : grid::edge_skin_point(body, e);
+    };
+    if ((plane.height(end(lower)) < 0) == (plane.height(end(upper)) < 0))
+      continue;
+    const double a = plane.height(body.grid.position(lower)), b = plane.height(body.grid.position(upper));
+    cuts.push_back({e, a / (a - b), plane.normal, label});
   }
   return cuts;
 }
