@@ -1,6 +1,6 @@
 #include "cut/cutter.h"
 
-#include "cut/tips.h"
+#include "cut/shreds.h"
 
 #include <algorithm>
 
@@ -72,7 +72,6 @@ CutChange Cutter::cut(Solid& solid, const SweepCuts& cuts) {
       continue; // by another of the same step
     solid.cuts.add(solid.grid, cut);
     edges.push_back(cut.edge);
-    ++counts_.n_cut_edges[cut.label - 1];
     passed_[cut.label - 1].remove(solid.grid.cells(cut.edge));
   }
   std::vector<grid::SkinSegment> segments;
@@ -83,8 +82,11 @@ CutChange Cutter::cut(Solid& solid, const SweepCuts& cuts) {
     segments.push_back(cut.segment);
     passed_[cut.label - 1].remove(cells_of(solid.grid, cut.segment));
   }
+  std::sort(edges.begin(), edges.end());
   std::sort(segments.begin(), segments.end());
-  counts_.n_tips += leave_tips_whole(solid, segments);
+  counts_.n_left_whole += leave_shreds(solid, edges, segments);
+  for (const EdgeId e : edges)
+    ++counts_.n_cut_edges[solid.cuts.find(e)->label - 1];
   if (edges.empty() && segments.empty())
     return {};
   CutChange change = grid::update_complex(solid, std::move(edges), std::move(segments));

@@ -29,9 +29,9 @@ struct CutCounts {
   std::vector<std::size_t> n_cut_edges; ///< by label, from 1
   std::size_t n_double_crossings = 0; ///< edges and segments of the skin that one cut crossed an even number of times:
                                       ///< left uncut
-  std::size_t n_tips = 0; ///< segments of the skin that were left whole, as no material lies behind them (tips.h)
+  std::size_t n_left_whole = 0; ///< edges and segments of the skin that were left whole (shreds.h)
 
-  void archive(Archive& a) { a(n_cut_edges, n_double_crossings, n_tips); }
+  void archive(Archive& a) { a(n_cut_edges, n_double_crossings, n_left_whole); }
 };
 
 /// What blades meet in a step: two edges of a cell at most are cut in it, the rest waits (pending.h); or all are. The

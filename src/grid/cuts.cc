@@ -60,6 +60,25 @@ void Cuts::add(SkinCut cut) {
   skin_cuts_.push_back(cut);
 }
 
+void Cuts::take_back(const std::span<const EdgeId> edges) {
+  std::size_t n = n_settled_;
+  for (std::size_t i = n; i < cuts_.size(); ++i) {
+    const EdgeId e = cuts_[i].edge;
+    const bool is_outer = outer_cut_[e] == i;
+    if (is_outer || !std::ranges::binary_search(edges, e)) {
+      (is_outer ? outer_cut_ : edge_cut_).at(e) = static_cast<std::uint32_t>(n);
+      cuts_[n++] = cuts_[i];
+      continue;
+    }
+    edge_cut_.at(e) = outer_cut_[e];
+    if (outer_cut_[e] != none) {
+      outer_cut_.at(e) = none;
+      --n_cut_twice_;
+    }
+  }
+  cuts_.resize(n);
+}
+
 void Cuts::take_back(const std::span<const SkinSegment> segments) {
   std::size_t n = n_settled_of_skin_;
   for (std::size_t i = n; i < skin_cuts_.size(); ++i) {

@@ -103,7 +103,8 @@ class Cuts {
   std::span<const SkinCut> skin_cuts() const { return skin_cuts_; }
   /// Cuts a segment of the skin that is not cut yet; t is clamped.
   void add(SkinCut cut);
-  /// Takes back cuts of segments that are not settled yet; ascending.
+  /// Takes back blades' cuts that are not settled yet; ascending.
+  void take_back(std::span<const EdgeId> edges);
   void take_back(std::span<const SkinSegment> segments);
 
   /// What has been cut since settle() was called last: its vertices are yet to be placed.

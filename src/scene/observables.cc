@@ -301,9 +301,10 @@ const std::vector<Observable>& body_observables() {
      [](const Body& b) { return count(b.n_thin_walls); }},
     {"thin gaps", "1", "grid edges through gaps of the mesh between two material nodes, which are filled",
      [](const Body& b) { return count(b.n_thin_gaps); }},
-    {"tips left whole", "1",
-     "segments of the skin that blades crossed and that were left uncut, as no material lies behind them",
-     [](const Body& b) { return b.cutter ? count(b.cutter->counts().n_tips) : 0.0; }},
+    {"left whole", "1",
+     "grid edges and segments of the skin that were crossed and left uncut: behind them are shavings thinner than a tenth "
+     "of a cube, or no material (cut/shreds.h)",
+     [](const Body& b) { return b.cutter ? count(b.cutter->counts().n_left_whole) : 0.0; }},
     {"cells passed uncut", "1",
      "cells whose material a blade passed through without cutting anything in them, so far (cut/passed.h)",
      [](const Body& b) { return b.cutter ? count(b.cutter->n_passed_cells()) : 0.0; }},

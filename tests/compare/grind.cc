@@ -91,9 +91,11 @@ void join_splinters(const grid::Solid& solid, std::vector<std::uint32_t>& corner
 
 class Grinder {
  public:
-  Grinder(const std::string& backend, const unsigned seed)
+  Grinder(const std::string& backend, const unsigned seed, const int most_strokes)
     : random_(seed), is_lattice_(backend == "lattice"), world_(free_cube(backend)) {
     set_in_motion(body(), Vec3(0.02, 0.01, -0.03), speed);
+    body().cutter = std::make_unique<cut::Cutter>(most_strokes); // else shavings would stay (cut/shreds.h)
+    body().cutter->begin(body().solid, corners(body()));
     at_first_ = sums(body());
   }
 
@@ -121,6 +123,7 @@ class Grinder {
     const Vec3 middle = from + uniform(0.2, 0.8) * (to - from);
     constexpr double reach = 0.02; // half a cube [m]
     cut::Blade& knife = world_.blades.at(0);
+    knife.label = next_label_++;
     knife.edge = {-reach * blade, reach * blade};
     knife.key_frames = {{time_, middle - reach * way}, {time_ + dt, middle + reach * way}};
     return true;
@@ -221,13 +224,14 @@ class Grinder {
   bool is_lattice_;
   World world_;
   double time_ = 0;
+  grid::CutLabel next_label_ = 1; ///< each stroke is a blade of its own
   Sums at_first_;
 };
 
 } // namespace
 
 Ground grind(const std::string& backend, const unsigned seed, const int most_strokes) {
-  Grinder grinder(backend, seed);
+  Grinder grinder(backend, seed, most_strokes);
   Ground ground;
   for (; ground.n_strokes < most_strokes && grinder.aim(); ++ground.n_strokes)
     grinder.step(ground);

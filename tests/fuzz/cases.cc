@@ -161,7 +161,7 @@ class Run {
       ++tally_.n_sweeps;
     }
     drain();
-    tally_.n_tips += subject_.cutter.counts().n_tips;
+    tally_.n_left_whole += subject_.cutter.counts().n_left_whole;
     require_untouched_elsewhere();
     require_same_in_any_order();
     outcome_.digest = digest(subject_, outcome_.digest);

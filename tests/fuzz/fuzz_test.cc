@@ -79,8 +79,8 @@ void expect_same_bits(const Case& one, Tally& tally) {
 void print(const Tally& tally, const double seconds) {
   std::cout << tally.n_cases << " cases, " << tally.n_sweeps << " sweeps (" << tally.n_idle_sweeps << " cut nothing), "
             << tally.n_releases << " releases, " << tally.n_cut_edges << " cut edges (" << tally.n_below_skin
-            << " of the skin), " << tally.n_of_skin << " cut segments of the skin (" << tally.n_tips
-            << " tips left whole), " << tally.n_placed << " placed vertices (" << tally.n_clamped << " clamped), "
+            << " of the skin), " << tally.n_of_skin << " cut segments of the skin (" << tally.n_left_whole
+            << " cuts left whole), " << tally.n_placed << " placed vertices (" << tally.n_clamped << " clamped), "
             << tally.n_double_crossings << " double crossings, " << tally.n_masses << " corner masses, "
             << tally.n_thread_pairs << " cases on 1 and 2 threads; at most " << tally.n_most_pieces << " pieces and "
             << tally.n_most_waiting << " waiting cuts\nworst change of volume " << tally.worst_volume
@@ -115,7 +115,7 @@ void fuzz(const std::uint32_t first_seed, const std::size_t n_sweeps) {
   EXPECT_GT(tally.n_cut_edges, n_sweeps);
   EXPECT_GT(tally.n_below_skin, n_sweeps);
   EXPECT_GT(tally.n_of_skin, n_sweeps);
-  EXPECT_GT(tally.n_tips, 0u);
+  EXPECT_GT(tally.n_left_whole, 0u);
   EXPECT_GT(tally.n_masses, n_sweeps);
   EXPECT_GT(tally.n_double_crossings, 0u);
   EXPECT_GT(tally.n_thread_pairs, 0u);
