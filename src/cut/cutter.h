@@ -29,7 +29,7 @@ struct CutCounts {
   std::vector<std::size_t> n_cut_edges; ///< by label, from 1
   std::size_t n_double_crossings = 0; ///< edges and segments of the skin that one cut crossed an even number of times:
                                       ///< left uncut
-  std::size_t n_left_whole = 0; ///< edges and segments of the skin that were left whole (shreds.h)
+  std::size_t n_left_whole = 0;       ///< edges and segments of the skin that were left whole (shreds.h)
 
   void archive(Archive& a) { a(n_cut_edges, n_double_crossings, n_left_whole); }
 };

@@ -21,8 +21,8 @@ using grid::EdgeId;
 using grid::Items;
 using grid::SkinSegment;
 
-constexpr double no_volume = 1e-9;                   // of a cube
-constexpr double thin = 0.1;                         // of a cube's edge
+constexpr double no_volume = 1e-9;                     // of a cube
+constexpr double thin = 0.1;                           // of a cube's edge
 constexpr std::size_t most_nodes = 8, most_cells = 64; // of a shred
 
 /// Nodes and points of the skin that hang together, and with nothing else.

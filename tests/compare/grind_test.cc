@@ -19,15 +19,16 @@ std::string name_of(const testing::TestParamInfo<std::string>& backend) {
 /// copy to another: momentum goes with it, and where the other copy's corners had hardly any mass before and are fast
 /// or far away, a stroke adds energy: in 10^4 strokes 3 % of the first at most with elements, 8 % with shape matching,
 /// whose splinters may go with another node then. Phyxels of a piece that lose their last bond get a weak one back, which
-/// may be stretched by then: 15 % at most. Strokes end in the skin too, and so many pieces of it are left without a node:
+/// may be stretched by then, and throws a phyxel away when the piece goes on to fall apart: 40 % in the worst stroke, though
+/// never more energy than at first. Strokes end in the skin too, and so many pieces of it are left without a node:
 /// up to two for each node. A crumb weighs what its material does, which is not quite what its phyxels stand for: masses of points change by some
 /// per cent.
 void expect_carried_on(const Ground& ground, const std::string& backend) {
   EXPECT_TRUE(ground.is_finite);
   EXPECT_LE(ground.most_energy, backend == "lattice" ? 1.1 : 1.0001);
-  EXPECT_LE(ground.most_work_of_cut, backend == "mass-spring" ? 0.01 : backend == "pba" ? 0.2 : 0.1);
-  EXPECT_LE(ground.most_mass, backend == "pba" ? 0.05 : 1e-12);
-  EXPECT_LE(ground.most_momentum, backend == "pba" ? 0.08 : 0.02);
+  EXPECT_LE(ground.most_work_of_cut, backend == "mass-spring" ? 0.01 : backend == "pba" ? 0.5 : 0.1);
+  EXPECT_LE(ground.most_mass, backend == "pba" ? 0.06 : 1e-12);
+  EXPECT_LE(ground.most_momentum, backend == "pba" ? 0.3 : 0.02);
   EXPECT_LE(ground.most_drift, 1e-4);
   EXPECT_EQ(ground.n_pieces, ground.n_nodes);
   EXPECT_LT(ground.n_splinters, 3 * ground.n_nodes);

@@ -106,8 +106,9 @@ void stroke(const geometry::TriangleMesh& mesh, const std::string& name, const u
   if (are_alike(ours, *theirs, least))
     return;
   ++counted.n_different;
-  std::cout << name << ", seed " << seed << ", " << planes.size() << " blades, " << speed << " cubes a step: "
-            << n_above(ours, least) << " pieces for " << n_above(*theirs, least) << "; the smallest [cubes]";
+  std::cout << name << ", seed " << seed << ", " << planes.size() << " blades, " << speed
+            << " cubes a step: " << n_above(ours, least) << " pieces for " << n_above(*theirs, least)
+            << "; the smallest [cubes]";
   for (const auto* volumes : {&ours, &*theirs})
     for (std::size_t i = 0; i < std::min<std::size_t>(4, volumes->size()); ++i)
       std::cout << (i == 0 ? " | " : " ") << (*volumes)[i] / cube;
@@ -125,8 +126,8 @@ Counted strokes(const std::filesystem::path& folder, const unsigned n) {
     stroke(mesh, name, seed, counted);
   }
   std::cout << counted.n_strokes << " strokes through " << solids.size() << " meshes, " << counted.n_pieces
-            << " pieces; other pieces than the Boolean's after " << counted.n_different
-            << "; no Boolean for " << counted.n_unknown << '\n';
+            << " pieces; other pieces than the Boolean's after " << counted.n_different << "; no Boolean for "
+            << counted.n_unknown << '\n';
   return counted;
 }
 
