@@ -180,22 +180,21 @@ bool is_shaving(const grid::Solid& solid, const Shred& shred, const std::vector<
   });
 }
 
+/// Of a tip all new cuts of the blade that comes nearest: it may hang on both sides of another one.
 void leave(const grid::Solid& solid, const Shred& shred, const NewCuts& new_cuts, TakenBack& back) {
   const std::vector<Bound> bounds = bounds_of(solid, shred);
-  if (shred.nodes.empty() && volume(solid, shred) <= no_volume) {
-    for (const Bound& bound : bounds)
-      if (new_cuts.holds(bound))
-        back.add(bound);
-    return;
-  }
-  if (!is_shaving(solid, shred, bounds))
+  const bool is_tip = shred.nodes.empty() && volume(solid, shred) <= no_volume;
+  if (!is_tip && !is_shaving(solid, shred, bounds))
     return;
   const Bound* nearest = nullptr;
   for (const Bound& bound : bounds)
     if (new_cuts.holds(bound) && (!nearest || bound.distance < nearest->distance))
       nearest = &bound;
-  if (nearest)
-    back.add(*nearest);
+  if (!nearest)
+    return;
+  for (const Bound& bound : bounds)
+    if (&bound == nearest || (is_tip && bound.label == nearest->label && new_cuts.holds(bound)))
+      back.add(bound);
 }
 
 template <class Key>

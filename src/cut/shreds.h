@@ -4,7 +4,7 @@
 ///
 /// Tips are points of the skin that bound no material: where a blade passes along the skin, or the skin is so hollow that
 /// a point of it lies on a blade's other side than its neighbours, though the material there is not parted. They stay
-/// with all their neighbours.
+/// with all their neighbours across the blade.
 ///
 /// Shavings are a few nodes, or points of the skin, between cuts of one blade on both sides that are less than a tenth of
 /// a cube apart: where it comes back through a body that has moved, beside where it was before. They stay by that one of
