@@ -176,7 +176,8 @@ void penny_row(const int n, const double half_width) {
 void penny_head() {
   std::printf(
     "\n| disc cut, cells a radius | half width / radius | cells | error of the opening [%%] | volume of the gap / "
-    "exact | missing radius / h | error of the energy release rate [%%] | CPU [s] |\n|---|---|---|---|---|---|---|---|\n");
+    "exact | missing radius / h | error of the energy release rate [%%] | CPU [s] "
+    "|\n|---|---|---|---|---|---|---|---|\n");
 }
 
 void penny_table() {

@@ -254,8 +254,8 @@ BeamResult double_cantilever(const DoubleCantilever& beam, const BeamModel& mode
   };
   SplitArms arms = split_arms(beam, pull, model);
   const fem::LineFront front{Vec3(c, 0, beam.arm), Vec3(c, b, beam.arm), Vec3::UnitX()};
-  const double G = fem::energy_release_rate(*arms.built.model, arms.built.body.rest(), deformed(arms.built.body, arms.u),
-                                            front, {0.5 * beam.a, 0.9 * beam.a});
+  const double G = fem::energy_release_rate(*arms.built.model, arms.built.body.rest(),
+                                            deformed(arms.built.body, arms.u), front, {0.5 * beam.a, 0.9 * beam.a});
   arms.result.value = G / (12 * c * c / (b * b * std::pow(beam.arm, 3)) * std::pow(1 + 0.673 * beam.arm / c, 2));
   return arms.result;
 }
