@@ -102,3 +102,24 @@ def fitted_order(h, errors):
         return None
     order, shift = np.polyfit(np.log(h[good]), np.log(errors[good]), 1)
     return float(order), float(np.exp(shift))
+
+
+def fronts(study, norm):
+    """Numbers of the rows on the front of their problem, in the order of the table."""
+    rows, times, errors = comparable(study, norm)
+    found = []
+    for members in problems(study).values():
+        mine = np.flatnonzero(np.isin(rows, members))
+        found += [int(rows[mine[i]]) for i in front(times[mine], errors[mine])]
+    return sorted(found)
+
+
+def orders(study, norm="error"):
+    """Method -> (order, factor) of error = factor h^order, for those with several grids."""
+    h, errors = study.columns["h"].values, np.full(study.n_rows, np.nan)
+    rows, _, good = comparable(study, norm)
+    errors[rows] = good
+    if not has_families(study):
+        return {}
+    fits = {m: fitted_order(h[members], errors[members]) for m, members in methods(study).items()}
+    return {method: fit for method, fit in fits.items() if fit}

@@ -14,17 +14,17 @@ def percent(axis):
     axis.set_major_formatter(FuncFormatter(lambda value, _: f"{100 * value:g}"))
 
 
-def draw_error_against_time(axes, study, norm):
-    """One study in one panel: a line a method, its rows by time; rings mark the front of each problem."""
+def draw_error_against_time(axes, study, norm, numbers):
+    """One study in one panel: a line a method, its rows by time; rings mark the front of each problem. numbers: of lines."""
     rows, times, errors = studies.comparable(study, norm)
-    for number, (method, members) in enumerate(studies.methods(study).items()):
+    for method, members in studies.methods(study).items():
         mine = np.flatnonzero(np.isin(rows, members))
         mine = mine[np.argsort(times[mine], kind="stable")]
-        style = drawing.look(number)
+        style = drawing.look(numbers[method])
         if not studies.has_families(study):
             style["linestyle"] = "none"  # rows of different problems: a line between them would mean nothing
         axes.plot(times[mine], errors[mine], label=method, **style)
-    for index in fronts(study, norm):
+    for index in studies.fronts(study, norm):
         at = np.flatnonzero(rows == index)[0]
         axes.plot(times[at], errors[at], "o", ms=11, mfc="none", mec="#555555", mew=1.1, label="on the Pareto front")
     axes.set_xscale("log")
@@ -34,40 +34,21 @@ def draw_error_against_time(axes, study, norm):
     axes.set_ylabel(f"{norm.replace('_', ' ')} [%]")
 
 
-def fronts(study, norm):
-    """Numbers of the rows on the front of their problem, in the order of the table."""
-    rows, times, errors = studies.comparable(study, norm)
-    found = []
-    for members in studies.problems(study).values():
-        mine = np.flatnonzero(np.isin(rows, members))
-        found += [int(rows[mine[i]]) for i in studies.front(times[mine], errors[mine])]
-    return sorted(found)
-
-
 def error_against_time(several, labels, norm="error"):
-    """A panel a study."""
+    """A panel a study; a method looks the same in all of them."""
+    names = dict.fromkeys(method for study in several for method in studies.methods(study))
+    numbers = {name: number for number, name in enumerate(names)}
     figure, axes = drawing.panels(len(several), width=5.5 if len(several) == 1 else 4, height=3.6)
     for one, study, label in zip(axes, several, labels):
-        draw_error_against_time(one, study, norm)
+        draw_error_against_time(one, study, norm, numbers)
         one.set_title(label)
     drawing.legend_beside(figure, axes)
     return figure
 
 
-def orders(study, norm="error"):
-    """Method -> (order, factor) of error = factor h^order, for those with several grids."""
-    h, errors = study.columns["h"].values, np.full(study.n_rows, np.nan)
-    rows, _, good = studies.comparable(study, norm)
-    errors[rows] = good
-    if not studies.has_families(study):
-        return {}
-    fits = {m: studies.fitted_order(h[members], errors[members]) for m, members in studies.methods(study).items()}
-    return {method: fit for method, fit in fits.items() if fit}
-
-
 def error_against_h(study, norm="error"):
     """Errors over h with the fitted lines; None where no method has several grids."""
-    fits = orders(study, norm)
+    fits = studies.orders(study, norm)
     if not fits:
         return None
     figure, (axes,) = drawing.panels(1, width=5.5, height=3.6)

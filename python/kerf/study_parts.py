@@ -68,7 +68,7 @@ def notes(study):
 
 def front_in_words(study, norm):
     """The front from the fastest to the most accurate."""
-    members = study_figures.fronts(study, norm)
+    members = studies.fronts(study, norm)
     rows = [study.row(i) for i in members]
     if studies.has_families(study):
         rows.sort(key=lambda row: row["cpu_time"])
@@ -77,7 +77,7 @@ def front_in_words(study, norm):
 
 
 def orders_table(study, norm, name):
-    fits = study_figures.orders(study, norm)
+    fits = studies.orders(study, norm)
     rows = [[method, page.number(order, ".2f")] for method, (order, _) in fits.items()]
     return page.table(f"{name}-{norm}-orders", [("method", ""), ("fitted order", "1")], rows) if rows else ""
 
@@ -109,7 +109,7 @@ def has_times(study):
 def study_part(study, name, figures):
     """The part of a study."""
     norms = studies.norms(study)
-    marked = study_figures.fronts(study, norms[0]) if norms else []
+    marked = studies.fronts(study, norms[0]) if norms else []
     pieces = [page.heading(f"Study {name}: {study.title}", name), page.paragraph(f"Value: {study.answer}."), notes(study)]
     for norm in norms:
         pieces += norm_parts(study, norm, name, figures)
