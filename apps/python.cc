@@ -16,7 +16,8 @@ namespace {
 std::filesystem::path find_package() {
   std::error_code error;
   const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
-  for (const auto& folder : {program.parent_path() / KERF_PYTHON_FROM_PROGRAM, std::filesystem::path(KERF_PYTHON_IN_SOURCES)})
+  for (const auto& folder :
+       {program.parent_path() / KERF_PYTHON_FROM_PROGRAM, std::filesystem::path(KERF_PYTHON_IN_SOURCES)})
     if (std::filesystem::exists(folder / "main.py", error))
       return folder / "main.py";
   throw DataError(Complaint{.file = (program.parent_path() / KERF_PYTHON_FROM_PROGRAM).string(),

@@ -11,7 +11,8 @@ def main():
         from kerf import commands
     except ImportError as error:
         package = PACKAGES.get(error.name, error.name)
-        sys.stderr.write(f"kerf: {error.name} is missing for {sys.executable}. Install {package}, or name a Python with KERF_PYTHON.\n")
+        remedy = f"Install {package}, or name a Python with KERF_PYTHON"
+        sys.stderr.write(f"kerf: {error.name} is missing for {sys.executable}. {remedy}.\n")
         return 2
     return commands.run(sys.argv[1:])
 

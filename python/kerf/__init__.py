@@ -17,7 +17,7 @@ __all__ = ["Complaint", "open"]
 def open(path):
     """A Run (runs.py) or a Study (studies.py), by what the file or folder holds. Raises Complaint."""
     path = files.find(path)
-    with files.open_h5(path) as file:
+    with files.open_h5(path) as file, files.told(path):
         kind = files.kind_of(file)
     if kind in ("study", "stability"):
         return studies.Study(path, kind)

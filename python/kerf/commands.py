@@ -7,10 +7,12 @@ import sys
 from . import files
 
 USAGE = """usage:
-  kerf report FILE.h5|FOLDER... [--output DIR] [--force]    one page about runs and studies, and its figures: into results/report
+  kerf report FILE.h5|FOLDER... [--output DIR] [--force]
+      one page about runs and studies, and its figures: into results/report
   kerf export --volume RUN [--body NAME] [--output FILE.vtkhdf] [--force]
-                                                            a run's cells with fields over time, for ParaView: beside the run
-  kerf inspect FILE...                                      what is in a file: a run, study, surface, checkpoint
+      a run's cells with fields over time, for ParaView: beside the run
+  kerf inspect FILE...
+      what is in a file: a run, study, surface, checkpoint
 """
 
 
@@ -37,7 +39,10 @@ def report(arguments):
     from . import report as reports
 
     page, figures = reports.make(given.files, given.output, given.force)
-    print(f"report in {page} ({page.stat().st_size / 1e6:.1f} MB), {len(figures)} figures as PNG and SVG in {page.parent / 'figures'}")
+    print(
+        f"report in {page} ({page.stat().st_size / 1e6:.1f} MB), "
+        f"{len(figures)} figures as PNG and SVG in {page.parent / 'figures'}"
+    )
 
 
 def export(arguments):
@@ -56,7 +61,9 @@ def export(arguments):
     body = body_of(run, given.body)
     target = pathlib.Path(given.output or run.path.parent / f"volume_{body.name}.vtkhdf")
     if target.exists() and not given.force:
-        raise files.Complaint(f"{target}: is there already. Replace it with --force, or choose another with --output.", 1)
+        raise files.Complaint(
+            f"{target}: is there already. Replace it with --force, or choose another with --output.", 1
+        )
     with files.told(run.path):
         volume_file.write(target, body)
     print(f"{len(body)} frames of {body.name} in {target}")
@@ -83,7 +90,12 @@ def inspect(arguments):
 
 def missing(error):
     """What to say of a package that is not there."""
-    packages = {"h5py": "python3-h5py", "numpy": "python3-numpy", "matplotlib": "python3-matplotlib", "PIL": "python3-pil"}
+    packages = {
+        "h5py": "python3-h5py",
+        "numpy": "python3-numpy",
+        "matplotlib": "python3-matplotlib",
+        "PIL": "python3-pil",
+    }
     package = packages.get((error.name or "").split(".")[0], error.name)
     return f"{error.name} is missing for {sys.executable}. Install {package}, or name a Python with KERF_PYTHON."
 

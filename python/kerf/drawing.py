@@ -46,9 +46,24 @@ def look(index):
     }
 
 
-def fill(index):
-    """Colour and hatch of the bars of that number."""
-    i = index % len(FILLS)
+STAGES = [
+    "set-up",
+    "cut",
+    "topology",
+    "assemble",
+    "visibility",
+    "solve",
+    "surface",
+    "colour",
+    "output",
+    "images",
+    "stepping",
+]
+
+
+def fill(stage):
+    """Colour and hatch of the bars of a stage, the same in all figures."""
+    i = STAGES.index(stage) % len(FILLS) if stage in STAGES else len(FILLS) - 1
     return {"color": FILLS[i], "hatch": HATCHES[i], "edgecolor": "white", "linewidth": 0.3}
 
 

@@ -52,9 +52,19 @@ def told(path):
     """Turns what h5py throws while the file is read into a complaint about it."""
     try:
         yield
-    except (OSError, KeyError, RuntimeError, ValueError, IndexError, AttributeError) as error:
+    except (OSError, KeyError, RuntimeError, ValueError, TypeError, IndexError, AttributeError) as error:
         reason = " ".join(str(error).split())
         raise complaint(path, f"is damaged, or not whole ({reason})", "Make it again, or give another") from error
+
+
+def write(path, content):
+    """Writes bytes into a file, and makes its folder."""
+    path = pathlib.Path(path)
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(content)
+    except OSError as error:
+        raise complaint(path, f"cannot be written ({error.strerror})", "Choose another folder with --output") from error
 
 
 def open_h5(path):
@@ -76,8 +86,8 @@ def open_h5(path):
         raise complaint(path, f"cannot be read ({reason})", "Copy it again, or check that you may read it") from error
 
 
-# What a writer that was killed leaves behind (src/output/journaled_file.cc): pages, their numbers, and a trailer of five
-# words at the end of the file: magic, size of the file after the commit, where the pages begin, their number, a checksum.
+# What a writer that was killed leaves behind (src/output/journaled_file.cc): pages, their numbers, and at the end of
+# the file five words: magic, size of the file after the commit, where the pages begin, their number, a checksum.
 MAGIC, PAGE, WORD = 0x6B6572666A726E6C, 4096, 8
 
 

@@ -25,9 +25,15 @@ def columns(rows, indent="  "):
 def of_run(path):
     run = runs.Run(path)
     lines = [f"outcome: {run.outcome}" + (f": {run.failure}" if run.failure else "")]
-    lines.append(f"{len(run.time)} output steps" + (f", {run.time[0]:g} to {run.time[-1]:g} s" if len(run.time) else ""))
+    lines.append(
+        f"{len(run.time)} output steps" + (f", {run.time[0]:g} to {run.time[-1]:g} s" if len(run.time) else "")
+    )
     lines.append("series, from first to last:" if run.series else "no series")
-    rows = [(s.name, f"[{s.unit}]", f"{s.values[0]:.5g} to {s.values[-1]:.5g}") for s in run.series.values() if len(s.values)]
+    rows = [
+        (s.name, f"[{s.unit}]", f"{s.values[0]:.5g} to {s.values[-1]:.5g}")
+        for s in run.series.values()
+        if len(s.values)
+    ]
     lines += columns(rows)
     for body in run.bodies.values():
         lines.append(f"body {body.name}: {len(body)} frames" + described_frame(body))
@@ -86,7 +92,11 @@ def of_vtk(path):
 def of_arrays(path):
     """The table of Splitting Cubes, and other plain arrays."""
     with files.open_h5(path) as file, files.told(path):
-        lines = [files.text(file.attrs["title"]), "source: " + files.text(file.attrs["source"])] if "title" in file.attrs else []
+        lines = (
+            [files.text(file.attrs["title"]), "source: " + files.text(file.attrs["source"])]
+            if "title" in file.attrs
+            else []
+        )
         found = []
 
         def take(name, item):
@@ -154,7 +164,7 @@ def described(path):
     n_bytes = size(path.stat().st_size)
     if is_checkpoint(path):
         return [f"{path}: a checkpoint, from which a run goes on; {n_bytes}", *of_checkpoint(path)]
-    with files.open_h5(path) as file:
+    with files.open_h5(path) as file, files.told(path):
         kind = files.kind_of(file)
     if kind is None:
         raise files.complaint(path, "is HDF5, but no file of Kerf's")

@@ -5,7 +5,7 @@ import io
 import pathlib
 from typing import NamedTuple
 
-from . import drawing
+from . import drawing, files
 
 HERE = pathlib.Path(__file__).parent
 THREE = pathlib.Path("/usr/share/javascript/three")  # Debian's libjs-three
@@ -81,17 +81,16 @@ class Figures:
 
     def __init__(self, folder):
         self.folder = pathlib.Path(folder)
-        self.folder.mkdir(parents=True, exist_ok=True)
         self.names = []
 
     def add(self, name, figure, caption):
-        """The figure's piece of the page; "" for None. The page holds the SVG, or the PNG where that is much smaller."""
+        """The figure's piece of the page; "" for None. The page holds the SVG, or a much smaller PNG."""
         if figure is None:
             return ""
         images = {form: drawing.image(figure, form) for form in ("svg", "png")}
         drawing.plt.close(figure)
         for form, content in images.items():
-            (self.folder / f"{name}.{form}").write_bytes(content)
+            files.write(self.folder / f"{name}.{form}", content)
         self.names.append(name)
         if len(images["svg"]) <= 2 * len(images["png"]):
             return picture(drawing.data_address(images["svg"], "svg+xml"), caption)
@@ -116,8 +115,8 @@ def frames(paths, width=480):
 def viewer(name):
     """The place of a surface that is turned by hand; its data stand in the script element of that name."""
     return f"""<div class="viewer" data-source="{escaped(name)}"><div class="canvas"></div><div class="bar">
-<button class="play" type="button">Play</button><input type="range" min="0" value="0" aria-label="frame"><output></output>
-<button class="home" type="button">First view</button></div></div>"""
+<button class="play" type="button">Play</button><input type="range" min="0" value="0" aria-label="frame">
+<output></output><button class="home" type="button">First view</button></div></div>"""
 
 
 def data_element(name, json_text):
@@ -137,7 +136,9 @@ def scripts(with_viewers):
         library = [THREE / "three.min.js", THREE / "examples/js/controls/OrbitControls.js"]
         texts = [path.read_text() for path in library] + texts
         licence = f"<!--\n{(HERE / 'three.LICENSE').read_text()}-->\n"
-    return licence + "\n".join(f"<script>{text.replace('</script', '<' + chr(92) + '/script')}</script>" for text in texts)
+    return licence + "\n".join(
+        f"<script>{text.replace('</script', '<' + chr(92) + '/script')}</script>" for text in texts
+    )
 
 
 def whole(title, contents, body, with_viewers):

@@ -29,7 +29,9 @@ def read(path):
         kind = files.kind_of(file)
     if kind not in KINDS:
         what = "is HDF5, but no file of Kerf's" if kind is None else f"is {files.KINDS[kind]}"
-        raise files.complaint(path, f"{what}; reports are about runs and studies", "See what is in it: kerf inspect FILE")
+        raise files.complaint(
+            path, f"{what}; reports are about runs and studies", "See what is in it: kerf inspect FILE"
+        )
     return kind, runs.Run(path) if kind == "run" else studies.Study(path, kind)
 
 
@@ -86,20 +88,19 @@ def make(paths, folder, replace):
     folder = pathlib.Path(folder)
     target = folder / "report.html"
     if target.exists() and not replace:
-        raise files.Complaint(f"{target}: there is a report. Replace it with --force, or choose a folder with --output.", 1)
+        raise files.Complaint(
+            f"{target}: there is a report. Replace it with --force, or choose a folder with --output.", 1
+        )
     items = read_all(paths)
     check_names(items)
-    try:
-        figures = page.Figures(folder / "figures")
-        n_runs = sum(kind == "run" for kind, _, _ in items)
-        pieces = [overview(items), together(items, figures)]
-        for kind, name, item in items:
-            with files.told(item.path):
-                pieces.append(part(kind, name, item, figures, SURFACES // max(n_runs, 2)))
-        contents = [(f"{kind} {name}", name) for kind, name, _ in items]
-        title = "Kerf: " + ", ".join(name for _, name, _ in items)
-        body = "\n".join(pieces)
-        target.write_text(page.whole(title, contents, body, 'class="viewer"' in body), encoding="utf-8")
-    except PermissionError as error:
-        raise files.complaint(folder, f"cannot be written ({error})", "Choose another folder with --output") from error
+    figures = page.Figures(folder / "figures")
+    n_runs = sum(kind == "run" for kind, _, _ in items)
+    pieces = [overview(items), together(items, figures)]
+    for kind, name, item in items:
+        with files.told(item.path):
+            pieces.append(part(kind, name, item, figures, SURFACES // max(n_runs, 2)))
+    contents = [(f"{kind} {name}", name) for kind, name, _ in items]
+    body = "\n".join(pieces)
+    title = "Kerf: " + ", ".join(name for _, name, _ in items)
+    files.write(target, page.whole(title, contents, body, 'class="viewer"' in body).encode())
     return target, figures.names

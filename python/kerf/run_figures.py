@@ -101,11 +101,13 @@ def time_per_stage(run):
     edges = np.unique(np.linspace(0, len(run.time), 61).astype(int))
     bottom = np.zeros(len(edges) - 1)
     for number, (name, values) in enumerate(stages.items()):
-        left.barh(number, values.sum(), **drawing.fill(number))
-        left.text(values.sum(), number, f" {values.sum():.3g} s, {100 * values.sum() / total:.0f} %", va="center", fontsize=7)
+        left.barh(number, values.sum(), **drawing.fill(name))
+        left.text(
+            values.sum(), number, f" {values.sum():.3g} s, {100 * values.sum() / total:.0f} %", va="center", fontsize=7
+        )
         part = np.add.reduceat(values, edges[:-1])
         at = run.time[edges[:-1]]
-        right.bar(at, part, np.diff([*at, run.time[-1]]), bottom, align="edge", **drawing.fill(number))
+        right.bar(at, part, np.diff([*at, run.time[-1]]), bottom, align="edge", **drawing.fill(name))
         bottom += part
     left.set_yticks(range(len(stages)), stages)
     left.invert_yaxis()
@@ -132,7 +134,7 @@ VIEW = np.array([[0.84, 0.54, 0.0], [-0.21, 0.33, 0.92], [-0.50, 0.77, -0.39]]) 
 
 
 def draw_surfaces(axes, surfaces):
-    """[(Surface, inside's colours)] in the frame's positions, from the right, the front and above; far triangles first."""
+    """[(Surface, inside's colours)] in the frame's positions, from the right, the front and above: far ones first."""
     corners = np.concatenate([s.points[s.triangles] for s, _ in surfaces]) @ VIEW.T
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     length = np.maximum(np.linalg.norm(normals, axis=1), 1e-300)
@@ -140,7 +142,11 @@ def draw_surfaces(axes, surfaces):
     colours = np.concatenate([triangle_colours(*s) for s in surfaces]) * light[:, None]
     order = np.argsort(-corners[:, :, 2].mean(axis=1))
     order = order[np.einsum("ij,j->i", normals, [0, 0, 1.0])[order] >= 0]  # the rest turns its back to us
-    axes.add_collection(PolyCollection(corners[order, :, :2], facecolors=colours[order], edgecolors="face", linewidths=0.4, rasterized=True))
+    axes.add_collection(
+        PolyCollection(
+            corners[order, :, :2], facecolors=colours[order], edgecolors="face", linewidths=0.4, rasterized=True
+        )
+    )
     axes.set_aspect("equal")
     axes.axis("off")
 
@@ -152,7 +158,7 @@ def surfaces_of(run, frame):
 
 
 def window(frames):
-    """Lower and upper ends of what holds all frames' points, but goes beyond the first by no more than half its size."""
+    """Lower and upper ends of what holds all points, but goes beyond the first frame by at most half its size."""
     first_low, first_high = frames[0].min(axis=0), frames[0].max(axis=0)
     beyond = (first_high - first_low).max() / 2
     low = np.min([points.min(axis=0) for points in frames], axis=0)

@@ -34,7 +34,9 @@ def surface_part(run, name, budget):
     if not any(len(body) for body in run.bodies.values()):
         return ""
     if not page.three_is_there():
-        return page.note("three.js is missing, so surfaces cannot be turned here: install libjs-three and report again.")
+        return page.note(
+            "three.js is missing, so surfaces cannot be turned here: install libjs-three and report again."
+        )
     view = surface_view.encoded(run, budget)
     if view is None:
         return page.note("The surface is too large for this page: only pictures of it follow.")
@@ -47,7 +49,15 @@ def surface_part(run, name, budget):
 
 def series_table(run, name):
     """First, last, smallest and largest of each series."""
-    header = [("series", ""), ("unit", ""), ("first", ""), ("last", ""), ("smallest", ""), ("largest", ""), ("source", "")]
+    header = [
+        ("series", ""),
+        ("unit", ""),
+        ("first", ""),
+        ("last", ""),
+        ("smallest", ""),
+        ("largest", ""),
+        ("source", ""),
+    ]
     rows = []
     for one in run.series.values():
         if len(one.values):

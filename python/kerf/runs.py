@@ -83,7 +83,9 @@ class Body:
         path = frame.get(part, getlink=True).path
         if part not in self._kept or self._kept[part][0] != path:
             arrays = {}
-            frame[part].visititems(lambda name, item: arrays.update({name: item[()]}) if hasattr(item, "shape") else None)
+            frame[part].visititems(
+                lambda name, item: arrays.update({name: item[()]}) if hasattr(item, "shape") else None
+            )
             self._kept[part] = (path, int(path.rsplit("/", 1)[-1]), arrays)
         return self._kept[part][1:]
 
@@ -109,7 +111,7 @@ class Body:
         return Volume(frame.attrs["time"], frame["position"][()], c["rest_position"], cells, c["nodes"], fields, number)
 
     def colours(self, index):
-        """(m, 3), sRGB 0 .. 255: mean colour of each triangle of the frame's surface, NaN of the skin; None without an inside."""
+        """(m, 3), sRGB 0 .. 255: of each triangle in a frame, NaN of the skin; None without an inside."""
         _, s = self._topology("surface", self._frame(index))
         if "first_sample" not in s or "colours" not in self._group:
             return None

@@ -62,7 +62,7 @@ def has_families(study):
 
 
 def methods(study):
-    """Method -> numbers of its rows, in the order of the table: a method is a family, or a variant where there are none."""
+    """Method -> numbers of its rows, in the table's order: a method is a family, or a variant where there are none."""
     families = study.columns["family"].values
     if not has_families(study):
         families = [name.split(", ")[0] for name in study.columns["name"].values]

@@ -15,7 +15,7 @@ def percent(axis):
 
 
 def draw_error_against_time(axes, study, norm, numbers):
-    """One study in one panel: a line a method, its rows by time; rings mark the front of each problem. numbers: of lines."""
+    """One study in one panel: a line a method, its rows by time; rings mark fronts. numbers: method -> its line's."""
     rows, times, errors = studies.comparable(study, norm)
     for method, members in studies.methods(study).items():
         mine = np.flatnonzero(np.isin(rows, members))
@@ -94,8 +94,8 @@ def time_per_stage(study):
     total = np.maximum(sum(seconds.values()), 1e-300)
     figure, axes = plt.subplots(figsize=(7, 0.7 + 0.2 * study.n_rows))
     left, y = np.zeros(study.n_rows), np.arange(study.n_rows)
-    for number, (stage, values) in enumerate(seconds.items()):
-        axes.barh(y, values / total, left=left, label=stage, **drawing.fill(number))
+    for stage, values in seconds.items():
+        axes.barh(y, values / total, left=left, label=stage, **drawing.fill(stage))
         left += values / total
     for i in y:
         axes.text(1.01, i, f"{total[i]:.3g} s", va="center", fontsize=7)

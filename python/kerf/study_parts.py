@@ -7,21 +7,21 @@ from . import page, stability_figures, studies, study_figures
 # Column -> (title, unit in the table, factor, format); columns that are not named follow as they are.
 SHOWN = {
     "name": ("row", "", 1, ""),
-    "backend": ("backend", "", 1, ""),
-    "integrator": ("integrator", "", 1, ""),
+    "error": ("error", "%", 100, "+.2f"),
+    "order": ("order", "1", 1, ".2f"),
+    "cpu_time": ("CPU", "s", 1, ".2f"),
+    "setup_time": ("set-up", "s", 1, ".3f"),
+    "stepping_time": ("stepping", "s", 1, ".2f"),
+    "peak_memory": ("memory", "MB", 1e-6, ".0f"),
     "h": ("h", "m", 1, ".4g"),
     "dt": ("dt", "s", 1, ".4g"),
     "dof": ("dof", "1", 1, "d"),
     "value": ("value", None, 1, ".5g"),
     "reference": ("reference", None, 1, ".5g"),
-    "error": ("error", "%", 100, "+.2f"),
-    "order": ("order", "1", 1, ".2f"),
-    "setup_time": ("set-up", "s", 1, ".3f"),
-    "stepping_time": ("stepping", "s", 1, ".2f"),
-    "cpu_time": ("CPU", "s", 1, ".2f"),
     "steps": ("steps", "1", 1, "d"),
-    "peak_memory": ("memory", "MB", 1e-6, ".0f"),
     "iterations": ("iterations", "1", 1, "d"),
+    "backend": ("backend", "", 1, ""),
+    "integrator": ("integrator", "", 1, ""),
     "outcome": ("outcome", "", 1, ""),
 }
 ASIDE = ("family", "changes", "reference_source")
@@ -96,7 +96,7 @@ def norm_parts(study, norm, name, figures):
         figures.add(
             f"{name}_{norm}_h",
             study_figures.error_against_h(study, norm),
-            f"{study.title}: {title} against the edge of the grid's cubes; lines and orders are least squares of the logarithms.",
+            f"{study.title}: {title} against the edge of the grid's cubes; orders are least squares of the logarithms.",
         ),
         orders_table(study, norm, name),
     ]
@@ -110,7 +110,11 @@ def study_part(study, name, figures):
     """The part of a study."""
     norms = studies.norms(study)
     marked = studies.fronts(study, norms[0]) if norms else []
-    pieces = [page.heading(f"Study {name}: {study.title}", name), page.paragraph(f"Value: {study.answer}."), notes(study)]
+    pieces = [
+        page.heading(f"Study {name}: {study.title}", name),
+        page.paragraph(f"Value: {study.answer}."),
+        notes(study),
+    ]
     for norm in norms:
         pieces += norm_parts(study, norm, name, figures)
     if has_times(study):
@@ -127,7 +131,10 @@ def background(study, name):
     return [
         page.details("The study as written", page.preformatted(study.text)),
         page.details("What each row changes", page.facts(f"{name}-changes", changes)) if changes else "",
-        page.details("Provenance", page.facts(f"{name}-info", [("file", pathlib.Path(study.path).resolve()), *study.info.items()])),
+        page.details(
+            "Provenance",
+            page.facts(f"{name}-info", [("file", pathlib.Path(study.path).resolve()), *study.info.items()]),
+        ),
     ]
 
 
@@ -138,7 +145,7 @@ def stability_part(study, name, figures):
     if study.outcome != "completed":
         pieces.append(page.note(f"The study's outcome is '{study.outcome}': it has the {study.n_rows} rows so far."))
     for backend in stability_figures.unique(row["backend"] for row in rows):
-        caption = f"{study.title}: {backend}. A panel is a variant in a sweep, a cell a run; letters and colours: what became of it."
+        caption = f"{study.title}: {backend}. A panel is a variant in a sweep, a cell a run."
         pieces.append(figures.add(f"{name}_{backend}", stability_figures.stability_map(backend, rows), caption))
     header = [("sweep", ""), ("variant", ""), *((outcome, "") for outcome in stability_figures.OUTCOMES)]
     lines = [

@@ -64,7 +64,11 @@ def make(*arguments):
 
 def run(name, *sets):
     """params/first.prm on a coarse grid, cut through, with stress and few images."""
-    changes = ["Body bar/Cube edge [m]=0.07", "Output/Frames every [1]=10", "Output/Fields=von Mises stress, displacement"]
+    changes = [
+        "Body bar/Cube edge [m]=0.07",
+        "Output/Frames every [1]=10",
+        "Output/Fields=von Mises stress, displacement",
+    ]
     words = [word for one in [*changes, "Images/Every [1]=100", *sets] for word in ("--set", one)]
     make("run", SOURCES / "params/first.prm", *words, "--output", FILES / name, "--threads", "1")
 
