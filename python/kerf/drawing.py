@@ -88,10 +88,10 @@ def legend_beside(figure, axes):
     n_columns = max(1, min(len(entries), int(figure.get_figwidth() / (0.75 + 0.068 * longest))))
     rows = -(-len(entries) // n_columns)
     height = figure.get_figheight()
-    figure.set_figheight(height + 0.22 * rows)
-    bottom = 0.22 * rows / figure.get_figheight()
+    below = 0.17 * rows + 0.1  # inches
+    figure.set_figheight(height + below)
     figure.legend(entries.values(), entries.keys(), ncol=n_columns, loc="lower center", handlelength=3)
-    figure.tight_layout(rect=(0, bottom, 1, 1))
+    figure.tight_layout(rect=(0, below / figure.get_figheight(), 1, 1))
 
 
 def image(figure, form):
