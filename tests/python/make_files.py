@@ -56,8 +56,9 @@ end
 """
 
 
-def make(*arguments):
-    done = kerf(*arguments)
+def make(*arguments, seconds=None):
+    """Runs the program, for no longer than some seconds."""
+    done = kerf(*arguments, seconds=seconds)
     if done.returncode != 0:
         raise SystemExit(f"kerf {' '.join(map(str, arguments))} has ended with {done.returncode}: {done.stderr}")
 
@@ -79,7 +80,7 @@ def main():
     run("bar")
     run("springs", "Body bar/Backend=mass-spring", "Output/Fields=none")
     run("short", "Time/End time [s]=0.2")
-    make("study", SOURCES / "params/studies/quick.prm", "--output", FILES / "quick", "--threads", "1")
+    make("study", SOURCES / "params/studies/quick.prm", "--output", FILES / "quick", "--threads", "1", seconds=120)
     (FILES / "energy.prm").write_text(NO_REFERENCE.format(scene=SOURCES / "params/first.prm"))
     make("study", FILES / "energy.prm", "--output", FILES / "energy", "--threads", "1")
     (FILES / "block.prm").write_text(STABILITY.format(scene=SOURCES / "params/stability/block.prm"))

@@ -20,11 +20,13 @@ PROGRAM = os.environ["KERF_PROGRAM"]
 FILES = pathlib.Path(os.environ["KERF_TEST_FILES"])
 
 
-def kerf(*arguments, folder=None):
-    """Runs the program: the finished process, with stdout and stderr as texts."""
+def kerf(*arguments, folder=None, seconds=None):
+    """Runs the program: the finished process, with stdout and stderr as texts. Raises where it takes longer."""
     words = [PROGRAM, *map(str, arguments)]
     environment = {**os.environ, "KERF_PYTHON": sys.executable}
-    return subprocess.run(words, capture_output=True, text=True, cwd=folder, env=environment, check=False)
+    return subprocess.run(
+        words, capture_output=True, text=True, cwd=folder, env=environment, check=False, timeout=seconds
+    )
 
 
 def skip(reason):
