@@ -1,5 +1,6 @@
 """The report's numbers against the HDF5, and that the page needs nothing but itself."""
 
+import base64
 import contextlib
 import html.parser
 import io
@@ -7,6 +8,7 @@ import pathlib
 import re
 import tempfile
 import unittest
+import zlib
 
 from support import FILES, kerf
 import h5py
@@ -181,7 +183,26 @@ class Report(unittest.TestCase):
         self.assertEqual(report.names_of(paths), ["run", "run-2", "x-y"])
 
 
+def unpacked(text, n_columns):
+    """What viewer.js makes of a packed text: (n, columns)."""
+    planes = np.frombuffer(zlib.decompress(base64.b64decode(text)), np.uint8).reshape(4, -1)
+    return planes.T.copy().view("<i4").reshape(n_columns, -1).cumsum(axis=1).T
+
+
 class View(unittest.TestCase):
+    def test_what_it_draws_is_the_surface_to_an_8191st_of_its_box(self):
+        run = package.open(FILES / "bar")
+        view = surface_view.encoded(run, 10**8)
+        for frame, index in zip(view["frames"], range(21)):
+            (body,), surface = frame["bodies"], run.bodies["bar"].surface(index)
+            topology = view["topologies"][body["topology"]]
+            np.testing.assert_array_equal(unpacked(topology["triangles"], 3), surface.triangles)
+            np.testing.assert_array_equal(unpacked(topology["labels"], 1)[:, 0], surface.labels)
+            points = body["low"] + body["step"] * unpacked(body["points"], 3)
+            box = np.ptp(surface.points, axis=0).max()
+            np.testing.assert_allclose(points, surface.points, atol=0.51 * box / 8191)
+            self.assertEqual(frame["time"], surface.time)
+
     def test_a_large_surface_is_shown_in_fewer_frames(self):
         run = package.open(FILES / "bar")
         whole = surface_view.encoded(run, 10**8)
