@@ -80,7 +80,7 @@ CellComplex build_complex(const Solid& solid);
 struct CutChange {
   std::vector<EdgeId> edges;         ///< that are cut now
   std::vector<SkinSegment> segments; ///< of the skin, that are cut now
-  std::vector<CellId> cells;         ///< around them; ascending
+  std::vector<CellId> cells;         ///< around them, and with fronts that are new; ascending
   std::size_t n_copies_before = 0, n_corners_before = 0;
   std::vector<CopyId> copies;    ///< new, or divided, or with other items or corners than before; ascending
   std::vector<CopyId> reshaped;  ///< these, and all whose material has another shape: those in the cells; ascending
@@ -90,9 +90,10 @@ struct CutChange {
   bool any() const { return !cells.empty(); }
 };
 
-/// Brings the complex up to date with edges and segments of the skin that are cut, but were not when it was built or
-/// updated last. What it costs depends on these alone.
-CutChange update_complex(Solid& solid, std::vector<EdgeId> new_edges, std::vector<SkinSegment> new_segments = {});
+/// Brings the complex up to date with edges and segments of the skin that are cut, and with cells that have fronts, but
+/// were and had not when it was built or updated last. What it costs depends on these alone.
+CutChange update_complex(Solid& solid, std::vector<EdgeId> new_edges, std::vector<SkinSegment> new_segments = {},
+                         std::span<const CellId> new_fronts = {});
 
 /// Appends for each new corner what its parent has.
 template <class T>

@@ -231,7 +231,7 @@ SplitArms split_arms(const DoubleCantilever& beam, const Tractions& tractions, c
   const Strip strip{beam.a + 4 * beam.arm, 2 * beam.arm, h};
   const auto make = [&] {
     Body body = box(strip.box(), h, Vec3(0, 0, 0.5));
-    cut(body, {Vec3::UnitZ(), beam.arm}, [&](const Vec3& X) { return X[0] < c; });
+    cut_at_once(body, cut::Rectangle{Vec3(0, h, beam.arm), Vec3(2 * c, 0, 0), Vec3(0, 4 * h, 0)});
     return body;
   };
   Built built = build(make, options_of(model, 1, 0));

@@ -1,5 +1,6 @@
 #include "tests/verification/body.h"
 
+#include "cut/cutter.h"
 #include "surface/placement.h"
 #include "tests/fem/quadrature.h"
 
@@ -95,6 +96,12 @@ void cut(Body& body, const support::Plane& plane, const std::function<bool(const
       }
   }
   place(body);
+}
+
+void cut_at_once(Body& body, const cut::Shape& shape) {
+  cut::Cutter cutter(1, cut::Release::queued, cut::Fronts::inside_cells);
+  cutter.begin(body, body.rest());
+  surface::place(body, cutter.at_once(body, {"cut", shape, 1}, body.rest()), {});
 }
 
 Points traction_forces(const Body& body, const std::function<Vec3(const SurfacePoint&)>& traction) {
