@@ -1,6 +1,5 @@
 #include "cut/fronts.h"
 
-#include "base/union_find.h"
 #include "grid/fronts.h"
 #include "grid/shape.h"
 
@@ -26,7 +25,8 @@ using grid::Solid;
 
 using Polygon = std::vector<Vec3>;
 
-constexpr double least_passed = 0.02; // below it a front is not worth a copy [1]
+constexpr double least_passed =
+  0.02; // below it a front is not worth a copy; as much less than 1 is tied until it is cut [1]
 
 struct HalfSpace {
   Vec3 outward;
@@ -134,7 +134,7 @@ class CellAtPlane {
     const double whole = area_of(now);
     for (const HalfSpace& side : outline_.sides)
       now = clipped(now, side);
-    front.passed = std::min(1.0, area_of(now) / whole);
+    front.passed = std::min(1 - least_passed, area_of(now) / whole);
     return front;
   }
 
@@ -216,38 +216,17 @@ class CellAtPlane {
   unsigned above_ = 0;
 };
 
-/// Does the plane of a front part the material in a face of its cell?
-bool parts_face(const Solid& solid, const Front& front, const int face) {
-  int n = 0;
-  for (const grid::Part& part : grid::whole_parts_of(grid::with(grid::cuts_of(solid, front.cell), front.ahead)))
-    n += grid::detail::in_face(part, face) != 0;
-  return n > 1;
-}
-
-/// Without those that would let parts of the body fall apart: the parts of a cell with a front are held together by a
-/// whole cell ahead of it, or through other such cells.
-std::vector<Front> held_together(const Solid& solid, const std::vector<Front>& fronts) {
-  UnionFind groups(fronts.size());
-  std::vector<std::uint8_t> is_held(fronts.size(), 0);
-  for (std::size_t i = 0; i < fronts.size(); ++i)
-    for (int face = 0; face < cube::n_faces; ++face) {
-      const CellId next = solid.grid.neighbour(fronts[i].cell, face);
-      if (!next.valid() || !parts_face(solid, fronts[i], face))
-        continue;
-      const auto other = std::ranges::lower_bound(fronts, next, {}, &Front::cell);
-      if (other != fronts.end() && other->cell == next)
-        groups.unite(static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(other - fronts.begin()));
-      else if (solid.cuts.front(next) || grid::whole_parts_of(grid::cuts_of(solid, next)).n == 1)
-        is_held[i] = 1;
-    }
-  for (std::size_t i = 0; i < fronts.size(); ++i)
-    if (is_held[i])
-      is_held[groups.root(static_cast<std::uint32_t>(i))] = 1;
-  std::vector<Front> held;
-  for (std::size_t i = 0; i < fronts.size(); ++i)
-    if (is_held[groups.root(static_cast<std::uint32_t>(i))])
-      held.push_back(fronts[i]);
-  return held;
+/// Would a part of the cell hold on to a neighbour by points of the skin alone? Neighbours that no blade has cut do not say
+/// which part holds those (grid/parts.h).
+bool hangs_by_skin(const Solid& solid, const Front& front) {
+  constexpr unsigned nodes = 0xf;
+  const grid::Parts parts = grid::parts_of(grid::with(grid::cuts_of(solid, front.cell), front.ahead));
+  for (int face = 0; face < cube::n_faces; ++face)
+    if (solid.grid.neighbour(front.cell, face).valid())
+      for (const grid::Part& part : parts)
+        if (const unsigned items = grid::detail::in_face(part, face); items != 0 && (items & nodes) == 0)
+          return true;
+  return false;
 }
 
 bool is_same_plane(const Front& one, const Front& other, const double h) {
@@ -266,7 +245,7 @@ std::vector<Front> find_fronts(const CutSurface& surface, const Solid& solid, co
   const double h = solid.grid.h();
   const auto outline =
     std::visit([&](const auto& shape) -> std::optional<Outline> { return outline_with_lag(shape, h); }, surface.shape);
-  std::vector<Front> fronts, moved;
+  std::vector<Front> fronts;
   if (!outline)
     return fronts;
   for (const auto c : ids<CellId>(solid.grid.n_cells())) {
@@ -283,19 +262,16 @@ std::vector<Front> find_fronts(const CutSurface& surface, const Solid& solid, co
     Front front = cell.front();
     if (earlier) {
       if (front.passed > earlier->passed && is_same_plane(front, *earlier, h))
-        moved.push_back(moved_on(*earlier, front.passed));
+        fronts.push_back(moved_on(*earlier, front.passed));
       continue;
     }
     front.label = surface.label;
     if (front.passed < least_passed)
       continue;
     front.ahead = cell.ahead();
-    if (front.ahead != 0)
+    if (front.ahead != 0 && !hangs_by_skin(solid, front))
       fronts.push_back(front);
   }
-  fronts = held_together(solid, fronts);
-  fronts.insert(fronts.end(), moved.begin(), moved.end());
-  std::ranges::sort(fronts, {}, &Front::cell);
   return fronts;
 }
 

@@ -13,7 +13,7 @@
 namespace kerf::cut {
 
 /// Ascending; with the corners at `x` [m]. What the surface cuts must be cut. Cells whose fronts it only moves on are among
-/// them. Where the parts of a cell would not hang together ahead of the front, at the skin, there is none.
+/// them.
 std::vector<grid::Front> find_fronts(const CutSurface& surface, const grid::Solid& solid, const Points& x);
 
 } // namespace kerf::cut

@@ -4,6 +4,7 @@
 #include "base/union_find.h"
 #include "grid/corner_classes.h"
 #include "grid/cube.h"
+#include "grid/fronts.h"
 #include "grid/solid.h"
 #include "grid/touched.h"
 
@@ -333,12 +334,15 @@ CellComplex build_complex(const Solid& solid) {
   const auto cut_cells = find_cut_cells(solid);
   make_copies(solid.grid, cut_cells, complex);
   make_corners(solid.grid, cut_cells, complex);
+  complex.tied = tied_copies(solid, complex);
   return complex;
 }
 
 CutChange update_complex(Solid& solid, std::vector<EdgeId> new_edges, std::vector<SkinSegment> new_segments,
                          const std::span<const CellId> new_fronts) {
-  return Update(solid).run(std::move(new_edges), std::move(new_segments), new_fronts);
+  CutChange change = Update(solid).run(std::move(new_edges), std::move(new_segments), new_fronts);
+  solid.complex.tied = tied_copies(solid, solid.complex);
+  return change;
 }
 
 Pieces pieces(const CellComplex& complex) {
@@ -348,6 +352,8 @@ Pieces pieces(const CellComplex& complex) {
   for (const Copy& copy : complex.copies)
     for (Items left = copy.items(); left != 0; left &= left - 1)
       corners.unite(first(copy), copy.corners[vertex_at(std::countr_zero(left))].value);
+  for (const auto& [c, d] : complex.tied)
+    corners.unite(first(complex.copies[c]), first(complex.copies[d]));
   Pieces result;
   Table<CornerId, std::uint32_t> number(complex.n_corners(), none);
   result.piece.reserve(complex.n_copies());

@@ -9,7 +9,7 @@
 /// corners of two copies at one node. Seen from the front the cell is one spring of stiffness k_0 against opening, and to open by a
 /// part f of what the open cell does, k_0 + k has to be k_0 / f. So
 ///
-///     sum of k over the cell's n pairs = c E / (1 - nu^2)  A / h  (1 - f) / f,
+///     sum of k over the copies' n pairs = c E / (1 - nu^2)  A / h  (1 - f) / f,
 ///
 /// A the area of the plane in the cell. The compliance of the body then grows linearly with what the cut passes, and a
 /// front that moves on gives and takes no energy at once. c is measured: at .12 the stiffness of a double cantilever
@@ -35,7 +35,10 @@ struct Tie {
   double length; ///< its spring's stiffness over E / (1 - nu^2) [m]
 };
 
-/// By front, copies and vertices. None where a cut has come through the cell meanwhile.
+/// The copies that fronts alone part: none in cells through which cuts have come meanwhile.
+std::vector<std::array<CopyId, 2>> tied_copies(const Solid& solid, const CellComplex& complex);
+
+/// Between them, in their order.
 std::vector<Tie> ties(const Solid& solid);
 
 } // namespace kerf::grid

@@ -268,7 +268,7 @@ class Writer {
   }
 
   std::uint32_t item_vertex(const int item) {
-    const CopyId copy = copy_of_[item];
+    const CopyId copy = copy_of_[lowest_beside(item)];
     if (item < skeleton::first_on_arc) {
       const int line = item - skeleton::first_on_line;
       const bool is_upper = skeleton_->vertex[item] == cube::line_vertices[line][1];
@@ -282,6 +282,15 @@ class Writer {
     if (id == unset || known_ == Known::renewed)
       set_in_face(id, face, grid::face_point(solid_, faces_[face]), copy);
     return id;
+  }
+
+  /// Of the items that hang together with a point of the skin on its line or in the polygon at its arc.
+  int lowest_beside(const int item) const {
+    if (item >= skeleton::first_middle)
+      return item;
+    if (item >= skeleton::first_on_arc)
+      return std::countr_zero(part_of_side(item - skeleton::first_on_arc, item));
+    return (blades_ >> (item - skeleton::first_on_line) & 1) ? item : skeleton_->vertex[item];
   }
 
   /// Of the nodes of a polygon beside an arc.
