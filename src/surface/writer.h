@@ -5,6 +5,7 @@
 #include "grid/cube.h"
 #include "grid/shape.h"
 #include "grid/touched.h"
+#include "surface/places.h"
 #include "surface/surface.h"
 #include "surface/table.h"
 
@@ -27,27 +28,6 @@ using grid::NodeId;
 using grid::Solid;
 
 inline constexpr std::uint32_t unset = Id<void>::no_value;
-inline constexpr std::size_t triangles_per_end = 8; // two in each of the four cells around an edge
-
-/// Which of the four cells around a cell's line the cell is: the lattice offsets of the line across its axis.
-inline constexpr std::array<int, 12> place_around_line = [] {
-  std::array<int, 12> place{};
-  for (int line = 0; line < cube::n_lines; ++line) {
-    const int axis = cube::line_axis(line), lower = cube::line_vertices[line][0];
-    place[line] = (lower >> (axis + 1) % 3 & 1) | (lower >> (axis + 2) % 3 & 1) << 1;
-  }
-  return place;
-}();
-
-/// The place of a vertex among those of its face.
-constexpr int place_in_face(const int face, const int vertex) {
-  int place = 0;
-  for (int i = 1; i < 4; ++i)
-    if (cube::face_vertices[face][i] == vertex)
-      place = i;
-  return place;
-}
-
 enum class Known { kept, renewed }; ///< what a writer does with a vertex that is there already
 
 /// Writes the vertices and triangles of cells. What cells share comes from its edge or face alone: the same bits. A vertex

@@ -132,5 +132,18 @@ TEST(DoubleCantilever, EnergyReleaseRateConvergesToFooteAndBuchwalds) {
   EXPECT_LT(std::abs(errors[2]), 0.6 * std::abs(errors[1]));
 }
 
+/// Wherever a front lies in a cell, the energy release rate changes as it does with the length of the crack.
+TEST(DoubleCantilever, FrontsLieWhereTheyAreCutInsideCells) {
+  double least = 10, most = 0;
+  for (int i = 0; i < 10; ++i) {
+    const double ratio = double_cantilever({.n_over_arm = 4, .front = i / 10.0}, {}).value;
+    record("front_" + std::to_string(i), ratio);
+    std::printf("%d %g\n", i, ratio);
+    least = std::min(least, ratio);
+    most = std::max(most, ratio);
+  }
+  EXPECT_LT(most / least - 1, 0.02);
+}
+
 } // namespace
 } // namespace kerf::verification

@@ -1,6 +1,5 @@
 #include "tests/verification/body.h"
 
-#include "cut/cutter.h"
 #include "surface/placement.h"
 #include "tests/fem/quadrature.h"
 
@@ -98,8 +97,8 @@ void cut(Body& body, const support::Plane& plane, const std::function<bool(const
   place(body);
 }
 
-void cut_at_once(Body& body, const cut::Shape& shape) {
-  cut::Cutter cutter(1, cut::Release::queued, cut::Fronts::inside_cells);
+void cut_at_once(Body& body, const cut::Shape& shape, const cut::Fronts fronts) {
+  cut::Cutter cutter(1, cut::Release::queued, fronts);
   cutter.begin(body, body.rest());
   surface::place(body, cutter.at_once(body, {"cut", shape, 1}, body.rest()), {});
 }
