@@ -37,9 +37,8 @@ void CrackFrontParameters::describe(Parameters& p) {
     p.number("Radius [m]", radius, positive, "Circle: its radius.");
     require_of_a_form();
   }
-  p.number(
-    "Inner radius [1]", inner, positive,
-    "Of the tube around the front in which nothing is summed, in cube edges: the fields are singular there.");
+  p.number("Inner radius [1]", inner, positive,
+           "Of the tube around the front in which nothing is summed, in cube edges: the fields are singular there.");
   p.number("Outer radius [1]", outer, positive,
            "Of the tube to which the sum goes, in cube edges: inside of it there must be neither loads nor supports.");
 }

@@ -1,6 +1,7 @@
 #include "fem/ties.h"
 
 #include "cut/cutter.h"
+#include "dynamics/state.h"
 #include "fem/hexahedra.h"
 #include "tests/support/placed.h"
 

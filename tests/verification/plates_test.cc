@@ -56,7 +56,6 @@ TEST(PennyShapedCut, OpensAsItShouldWhereverItsFrontLies) {
     EXPECT_NEAR(found.volume / volume, 1, 0.06) << problem.offset.transpose() << "; " << problem.normal.transpose();
     EXPECT_NEAR(found.release_rate / rate, 1, 0.05) << problem.offset.transpose() << "; " << problem.normal.transpose();
     EXPECT_LT(found.opening_error, 0.12) << problem.offset.transpose() << "; " << problem.normal.transpose();
-    printf("V %.4f G %.4f w %.4f\n", found.volume / volume, found.release_rate / rate, found.opening_error);
   }
 }
 
