@@ -1,4 +1,5 @@
 #include "commands.h"
+#include "streams.h"
 
 #include "base/error.h"
 #include "base/interrupt.h"
@@ -66,10 +67,13 @@ int dispatch(const kerf::apps::Arguments& arguments) {
 } // namespace
 
 int main(const int argc, char** const argv) {
+  kerf::apps::make_streams_safe();
   kerf::heed_signals();
   std::signal(SIGXFSZ, SIG_IGN); // a file size limit is then an error of the write, like a full disk
   try {
-    return dispatch({argv + 1, argv + argc});
+    const int exit_code = dispatch({argv + 1, argv + argc});
+    kerf::apps::finish_stdout();
+    return exit_code;
   } catch (const kerf::Error& error) {
     std::fprintf(stderr, "kerf: %s\n", error.what());
     return error.exit_code();
