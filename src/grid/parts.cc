@@ -34,11 +34,13 @@ Segments cut_by_blades(const Solid& solid, const CellId c, const unsigned cut_li
     for (int line = 0; line < cube::n_lines; ++line)
       blades |= Segments((skeleton.items >> skeleton::on_line(line) & 1) != 0 && cuts.is_cut_twice(edges[line]))
                 << line;
-  if (!cuts.skin_cuts().empty())
-    for (Segments left = skeleton.segments & ~skeleton::lines; left != 0; left &= left - 1)
-      if (const int segment = std::countr_zero(left); cuts.is_cut(skin_segment(solid.grid, c, segment)))
-        blades |= Segments(1) << segment;
-  return blades;
+  if (cuts.skin_cuts().empty())
+    return blades;
+  const auto faces = solid.grid.faces(c);
+  for (int face = 0; face < cube::n_faces; ++face)
+    if ((skeleton.segments & skeleton::halves_of(face)) != 0)
+      blades |= Segments(cuts.cut_halves(faces[face])) << skeleton::half(face, 0);
+  return blades | Segments(cuts.cut_spokes(c)) << skeleton::first_spoke;
 }
 
 } // namespace
