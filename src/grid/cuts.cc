@@ -46,22 +46,6 @@ std::uint32_t Cuts::index(const SkinSegment& segment) const {
   return i == none ? none : cells_[i][SkinOfCell::spokes + segment.place];
 }
 
-unsigned Cuts::cut_halves(const FaceId f) const {
-  const std::uint32_t i = skin_of_face_[f];
-  unsigned bits = 0;
-  for (int place = 0; i != none && place < SkinOfFace::inner; ++place)
-    bits |= unsigned(faces_[i][SkinOfFace::halves + place] != none) << place;
-  return bits;
-}
-
-unsigned Cuts::cut_spokes(const CellId c) const {
-  const std::uint32_t i = skin_of_cell_[c];
-  unsigned bits = 0;
-  for (int place = 0; i != none && place < SkinOfCell::triangles; ++place)
-    bits |= unsigned(cells_[i][SkinOfCell::spokes + place] != none) << place;
-  return bits;
-}
-
 std::uint32_t& Cuts::entry(const SkinSegment& segment) {
   return segment.face.valid() ? face(segment.face)[SkinOfFace::halves + segment.place]
                               : cell(segment.cell)[SkinOfCell::spokes + segment.place];

@@ -99,9 +99,6 @@ class Cuts {
     const std::uint32_t i = index(segment);
     return i == none ? nullptr : &skin_cuts_[i];
   }
-  /// Bits of the halves that are cut in a face, by place; of a cell's spokes, by place.
-  unsigned cut_halves(FaceId f) const;
-  unsigned cut_spokes(CellId c) const;
   /// All of them, in the order in which they were added.
   std::span<const SkinCut> skin_cuts() const { return skin_cuts_; }
   /// Cuts a segment of the skin that is not cut yet; t is clamped.

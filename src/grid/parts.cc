@@ -25,6 +25,12 @@ Parts parts_of_nodes(const unsigned material, const unsigned cut) {
   return result;
 }
 
+SkinSegment skin_segment(const std::array<FaceId, 6>& faces, const CellId c, const int segment) {
+  const int of_faces = segment - skeleton::first_half;
+  return segment < skeleton::first_spoke ? SkinSegment::half(faces[of_faces / 4], of_faces % 4)
+                                         : SkinSegment::spoke(c, segment - skeleton::first_spoke);
+}
+
 /// Of a cell with skin: what blades have cut of its lines, and of its skin.
 Segments cut_by_blades(const Solid& solid, const CellId c, const unsigned cut_lines, const Skeleton& skeleton) {
   const Cuts& cuts = solid.cuts;
@@ -37,10 +43,10 @@ Segments cut_by_blades(const Solid& solid, const CellId c, const unsigned cut_li
   if (cuts.skin_cuts().empty())
     return blades;
   const auto faces = solid.grid.faces(c);
-  for (int face = 0; face < cube::n_faces; ++face)
-    if ((skeleton.segments & skeleton::halves_of(face)) != 0)
-      blades |= Segments(cuts.cut_halves(faces[face])) << skeleton::half(face, 0);
-  return blades | Segments(cuts.cut_spokes(c)) << skeleton::first_spoke;
+  for (Segments left = skeleton.segments & ~skeleton::lines; left != 0; left &= left - 1)
+    if (const int segment = std::countr_zero(left); cuts.is_cut(skin_segment(faces, c, segment)))
+      blades |= Segments(1) << segment;
+  return blades;
 }
 
 } // namespace
@@ -54,9 +60,7 @@ unsigned material_of(const Grid& grid, const CellId c) {
 }
 
 SkinSegment skin_segment(const Grid& grid, const CellId c, const int segment) {
-  const int of_faces = segment - skeleton::first_half;
-  return segment < skeleton::first_spoke ? SkinSegment::half(grid.faces(c)[of_faces / 4], of_faces % 4)
-                                         : SkinSegment::spoke(c, segment - skeleton::first_spoke);
+  return skin_segment(grid.faces(c), c, segment);
 }
 
 CellCuts cuts_of(const Solid& solid, const CellId c) {
