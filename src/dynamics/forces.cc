@@ -50,9 +50,11 @@ void total_force(ForceModel& model, const Loads& loads, const Moment& moment, co
   const double alpha = mass_damping == MassDamping::included ? loads.mass_damping : 0;
   parallel_for(
     forces.size(), [&](const std::size_t i) { forces[i] += mass[i] * (loads.gravity - alpha * moment.v[i]); }, worth);
-  if (const Points more = coupled(model, moment.v); alpha > 0)
+  if (alpha > 0) {
+    const Points more = coupled(model, moment.v);
     for (std::size_t i = 0; i < more.size(); ++i)
       forces[i] -= alpha * more[i];
+  }
   add_load_forces(loads, moment, forces);
 }
 

@@ -20,17 +20,6 @@ namespace kerf::scene {
 
 namespace {
 
-BodyShapeParameters read_shape(const Section& section, const std::string& name) {
-  BodyShapeParameters shape, every_shape;
-  shape.shape = name;
-  Parameters mine, all;
-  shape.describe(mine);
-  every_shape.describe(all);
-  require_keys_of_choice(section, "the shape '" + name + "'", mine, all);
-  section.read(shape);
-  return shape;
-}
-
 geometry::TriangleMesh read_solid(const Section& section, const BodyShapeParameters& shape) {
   const std::string path = resolved(shape.mesh, section);
   try {
@@ -49,7 +38,9 @@ Mat3 turned_by(const Vec3& rotation) {
 } // namespace
 
 geometry::TriangleMesh read_body_mesh(const Section& section, const BodyParameters& parameters) {
-  const BodyShapeParameters shape = read_shape(section, parameters.shape);
+  BodyShapeParameters of_shape;
+  of_shape.shape = parameters.shape;
+  const BodyShapeParameters shape = read_of_choice(section, "the shape '" + parameters.shape + "'", of_shape);
   const double edge = 0.5 * parameters.cube_edge;
   if (shape.shape == "ball")
     return geometry::ball_mesh(shape.centre, shape.radius, edge);

@@ -4,15 +4,6 @@ namespace kerf::scene {
 
 namespace {
 
-/// Each shape needs keys of its own and reads no others.
-void require_keys_of_shape(const Section& section, ShapeParameters parameters) {
-  Parameters mine, all;
-  ShapeParameters every_shape;
-  parameters.describe(mine);
-  every_shape.describe(all);
-  require_keys_of_choice(section, "the shape '" + parameters.shape + "'", mine, all);
-}
-
 cut::Shape make_shape(const ShapeParameters& p, const Section& section) {
   if (p.shape == "plane")
     return cut::Plane{p.point, p.normal.stableNormalized()};
@@ -35,10 +26,9 @@ cut::Shape make_shape(const ShapeParameters& p, const Section& section) {
 
 TimedSurface compose_cut_surface(const Section& section, const World& world) {
   const auto parameters = section.read<CutSurfaceParameters>();
-  ShapeParameters shape;
-  shape.shape = parameters.shape;
-  require_keys_of_shape(section, shape);
-  section.read(shape);
+  ShapeParameters of_shape;
+  of_shape.shape = parameters.shape;
+  const ShapeParameters shape = read_of_choice(section, "the shape '" + parameters.shape + "'", of_shape);
   cut::CutSurface surface{section.name(), make_shape(shape, section),
                           static_cast<grid::CutLabel>(world.blades.size() + world.cut_surfaces.size() + 1)};
   try {

@@ -31,6 +31,18 @@ std::string resolved(const std::filesystem::path& path, const Section& section);
 void require_keys_of_choice(const Section& section, const std::string& choice, const Parameters& chosen,
                             const Parameters& all);
 
+/// Reads a section whose keys depend on a choice: those of `chosen`, which names it. `what`: "the shape 'disc'".
+template <class Fields>
+Fields read_of_choice(const Section& section, const std::string& what, Fields chosen) {
+  Parameters mine, all;
+  chosen.describe(mine);
+  Fields every_one;
+  every_one.describe(all);
+  require_keys_of_choice(section, what, mine, all);
+  section.read(chosen);
+  return chosen;
+}
+
 /// The first step that begins at `time` [s] or later, from 1; n_steps + 1 when none does.
 int first_step_from(double time, double time_step, int n_steps);
 

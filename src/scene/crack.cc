@@ -92,13 +92,9 @@ std::vector<NamedFront> compose_crack_fronts(const Section& section, const doubl
     if (backend != "fem")
       throw one->complaint("needs the stresses of finite elements, and this body has the backend '" + backend + "'",
                            "Remove it, or write 'set Backend = fem'");
-    CrackFrontParameters mine, all;
-    mine.form = one->read<CrackFormParameters>().form;
-    Parameters keys, all_keys;
-    mine.describe(keys);
-    all.describe(all_keys);
-    require_keys_of_choice(*one, "the form '" + mine.form + "'", keys, all_keys);
-    one->read(mine);
+    CrackFrontParameters of_form;
+    of_form.form = one->read<CrackFormParameters>().form;
+    const CrackFrontParameters mine = read_of_choice(*one, "the form '" + of_form.form + "'", of_form);
     check_tubes(*one, mine, cube_edge);
     fronts.push_back({one->name(), front_of(*one, mine), {mine.inner * cube_edge, mine.outer * cube_edge}});
   }

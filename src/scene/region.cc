@@ -59,13 +59,9 @@ void RegionParameters::describe(Parameters& p) {
 }
 
 Region read_region(const Section& section, const std::string& name) {
-  RegionParameters parameters, every_region;
-  parameters.region = name;
-  Parameters mine, all;
-  parameters.describe(mine);
-  every_region.describe(all);
-  require_keys_of_choice(section, "the region '" + name + "'", mine, all);
-  section.read(parameters);
+  RegionParameters of_region;
+  of_region.region = name;
+  const RegionParameters parameters = read_of_choice(section, "the region '" + name + "'", of_region);
   if (name == "mesh")
     return read_mesh_region(section, parameters);
   if (name == "sphere")

@@ -137,8 +137,8 @@ struct Mill {
 
 /// Spins and shakes without damping while its edges are cut at places anywhere, down to single nodes. The energy never
 /// exceeds what it was at first, but for the swing of symplectic Euler: cuts themselves leave both energies alone, up
-/// to 15 % of the elastic one (material changes regions, and corners of hardly any mass have none of it) and 1 % of the kinetic one (a later cut moves the point where
-/// the octants of a cell meet, and with it mass from copy to copy).
+/// to 15 % of the elastic one (material changes regions, and corners of hardly any mass have none of it) and 1 % of the
+/// kinetic one (a later cut moves the point where the octants of a cell meet, and with it mass from copy to copy).
 void expect_to_survive(const Mill& mill) {
   Draw draw(98);
   Body body = fem::make_block({mill.n_nodes, mill.n_nodes, mill.n_nodes}, 0.1, draw, {0.1, 0.9});
