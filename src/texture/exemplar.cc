@@ -49,11 +49,13 @@ void check_size(const PixelBox& box) {
                                    .remedy = "Check the unit, or take a coarser picture"});
 }
 
-double mean_error(const warp::LatticeMap& map, const std::vector<warp::Pin>& pairs) {
-  double sum = 0;
-  for (const warp::Pin& pair : pairs)
-    sum += (map(pair.from) - pair.to).norm();
-  return sum / static_cast<double>(pairs.size());
+/// How far apart the outlines lie in the picture once a map has been applied, seen from both [pixels].
+warp::Gap gap_after(const warp::LatticeMap& map, const warp::Curve& section, const warp::Curve& picture) {
+  warp::Curve there;
+  for (const Vec2& p : section)
+    there.push_back(map(p));
+  const warp::Gap a = warp::gap(there, picture), b = warp::gap(picture, there);
+  return {std::max(a.mean, b.mean), std::max(a.largest, b.largest)};
 }
 
 /// Fills colours and what is shown: chart pixel (c, r) shows the picture at to_picture(c, r).
@@ -131,7 +133,7 @@ Chart make_chart(const Exemplar& exemplar, const geometry::TriangleMesh& body,
               inside_of(shifted, static_cast<int>(size[0]) + 1, static_cast<int>(size[1]) + 1),
               {},
               1,
-              0,
+              {},
               axes_of(body)};
   chart.outline = slice(body, frame_of(chart.plane));
   used.reset();
@@ -144,10 +146,14 @@ Chart make_chart(const Exemplar& exemplar, const geometry::TriangleMesh& body,
       exemplar.picture, mask, [&](const Vec2& p) { return Vec2(p + box.lower); }, chart);
     return chart;
   }
-  const auto pairs = boundary_pairs(chart.inside, box.lower, mask);
+  Outlines outlines = outlines_of(chart.inside, mask);
+  for (Vec2& p : outlines.section)
+    p += box.lower;
   const auto inside = exemplar.fit == Fit::rigid ? warp::Regularity::rigid : warp::Regularity::jacobian;
-  used = known ? *known : warp::fit(pairs, box.lower, box.upper, {.inside = inside});
-  chart.fit_error = mean_error(*used, pairs);
+  used = known ? *known
+               : warp::fit(outlines.section, outlines.picture, outlines.within, box.lower,
+                           box.lower + Vec2(chart.inside.width - 1, chart.inside.height - 1), {.inside = inside});
+  chart.fit_error = gap_after(*used, outlines.section, outlines.picture);
   paint(
     exemplar.picture, mask, [&](const Vec2& p) { return (*used)(p + box.lower); }, chart);
   return chart;

@@ -1,44 +1,21 @@
 #include "texture/outline.h"
 
+#include "image/distance.h"
 #include "image/filters.h"
 #include "texture/mask.h"
-#include "texture/slice.h"
 
+#include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
+#include <vector>
 
 namespace kerf::texture {
 
 namespace {
 
 using image::Grey;
-
-constexpr int n_pairs = 256;
-
-double cross(const Vec2& a, const Vec2& b) { return a[0] * b[1] - a[1] * b[0]; }
-
-/// The mean of a mask's pixels.
-Vec2 middle(const Grey& mask) {
-  Vec2 sum = Vec2::Zero();
-  double n = 0;
-  for (int r = 0; r < mask.height; ++r)
-    for (int c = 0; c < mask.width; ++c)
-      if (mask(c, r) > 0.5f) {
-        sum += Vec2(c, r);
-        ++n;
-      }
-  return sum / std::max(n, 1.0);
-}
-
-/// With n pixels of nothing around it.
-Grey padded(const Grey& mask, const int n) {
-  Grey result(mask.width + 2 * n, mask.height + 2 * n, 0);
-  for (int r = 0; r < mask.height; ++r)
-    for (int c = 0; c < mask.width; ++c)
-      result(c + n, r + n) = mask(c, r);
-  return result;
-}
 
 /// An edge between two pixels by number: each pixel has one to the right and one down.
 struct GridEdge {
@@ -77,122 +54,64 @@ Vec2 crossing(const Grey& grey, const std::size_t edge) {
   return p + (edge % 2 == 0 ? Vec2(t, 0) : Vec2(0, t));
 }
 
-/// Positive where the outline turns from the first axis to the second.
-double area_of(const Outline& outline) {
-  double twice = 0;
-  for (std::size_t i = 0; i < outline.size(); ++i)
-    twice += cross(outline[i], outline[(i + 1) % outline.size()]);
-  return 0.5 * twice;
+double sum_of(const Grey& mask) { return std::accumulate(mask.values.begin(), mask.values.end(), 0.0); }
+
+/// The longer side of a mask's box [pixels].
+double size_of(const Grey& mask) {
+  int left = mask.width, right = 0, top = mask.height, bottom = 0;
+  for (int r = 0; r < mask.height; ++r)
+    for (int c = 0; c < mask.width; ++c)
+      if (mask(c, r) > 0.5f) {
+        left = std::min(left, c);
+        right = std::max(right, c);
+        top = std::min(top, r);
+        bottom = std::max(bottom, r);
+      }
+  return std::max(right - left, bottom - top);
 }
 
-double length_of(const Outline& outline) {
-  double length = 0;
-  for (std::size_t i = 0; i < outline.size(); ++i)
-    length += (outline[(i + 1) % outline.size()] - outline[i]).norm();
-  return length;
-}
+/// A mask without bays narrower than a part of its size, and of what it then is the largest component.
+struct Whole {
+  Grey mask;
+  double share; ///< of its pixels
+};
 
-/// Around its mean, divided by its length.
-Outline normalised(const Outline& outline, const double length) {
-  Vec2 mean = Vec2::Zero();
-  for (const Vec2& p : outline)
-    mean += p / static_cast<double>(outline.size());
-  Outline result;
-  for (const Vec2& p : outline)
-    result.push_back((p - mean) / length);
-  return result;
-}
-
-/// Pairs in the same direction from two middles, blurred masks given.
-std::vector<warp::Pin> pairs_around(const Grey& section, const Vec2& offset, const Grey& shown) {
-  const Vec2 from = middle(section), to = middle(shown);
-  std::vector<warp::Pin> pairs = {{from + offset, to}};
-  for (int k = 0; k < n_pairs; ++k) {
-    const Vec2 along = direction(k, n_pairs);
-    pairs.push_back({from + offset + reach(section, from, along) * along, to + reach(shown, to, along) * along});
-  }
-  return pairs;
+Whole whole(const Grey& mask, const double part) {
+  const Grey closed = image::closed(mask, 0.5 * part * size_of(mask));
+  Grey largest = largest_component(closed);
+  const double share = sum_of(largest) / sum_of(closed);
+  return {std::move(largest), share};
 }
 
 } // namespace
 
-Outline outline_of(const Grey& mask) {
+warp::Curve outline_of(const Grey& mask) {
   constexpr int margin = 4;
-  const Grey grey = image::blurred(padded(largest_component(mask), margin), 1);
+  const Grey grey = image::blurred(image::padded(largest_component(mask), margin), 1);
   std::vector<std::size_t> next = next_edges(grey);
-  Outline result;
+  warp::Curve result;
   for (std::size_t start = 0; start < next.size(); ++start) {
-    Outline outline;
+    warp::Curve outline;
     for (std::size_t edge = start; next[edge] != none;) {
       outline.push_back(crossing(grey, edge) - Vec2::Constant(margin));
       edge = std::exchange(next[edge], none);
     }
-    if (std::abs(area_of(outline)) > std::abs(area_of(result)))
+    if (!outline.empty() && std::abs(warp::area_of(outline)) > std::abs(warp::area_of(result)))
       result = std::move(outline);
   }
   return result;
 }
 
-bool is_star(const Outline& outline, const Vec2& centre, const double least) {
-  const std::size_t n = outline.size();
-  const double sense = std::copysign(1.0, area_of(outline));
-  double angle = 0, furthest = 0;
-  for (std::size_t i = 0; i < 2 * n; ++i) { // twice around: it may begin within an undercut
-    const Vec2 a = outline[i % n] - centre, b = outline[(i + 1) % n] - centre;
-    angle += sense * std::atan2(cross(a, b), a.dot(b));
-    furthest = std::max(furthest, angle);
-    if ((furthest - angle) * b.norm() > least)
-      return false;
+Outlines outlines_of(const Grey& section, const Grey& picture) {
+  constexpr double least = 0.05, most = 0.2, enough = 0.9;
+  for (double part = least; part <= most; part *= 1.5) {
+    Whole a = whole(section, part);
+    const Whole b = whole(picture, part);
+    if (std::min(a.share, b.share) >= enough)
+      return {outline_of(a.mask), outline_of(b.mask), std::move(a.mask)};
   }
-  return angle > 3 * M_PI; // the centre lies inside
-}
-
-Outline equally_spaced(const Outline& outline, const int n) {
-  const double step = length_of(outline) / n;
-  Outline result;
-  double passed = 0;
-  for (std::size_t i = 0; i < outline.size(); ++i) {
-    const Vec2 &a = outline[i], &b = outline[(i + 1) % outline.size()];
-    const double length = (b - a).norm();
-    for (; static_cast<int>(result.size()) < n && step * static_cast<double>(result.size()) < passed + length;)
-      result.push_back(a + (step * static_cast<double>(result.size()) - passed) / length * (b - a));
-    passed += length;
-  }
-  return result;
-}
-
-std::vector<warp::Pin> pairs_along(const Outline& from, const Outline& to) {
-  constexpr int finer = 8; // starts are tried between the points, too
-  const Outline a = equally_spaced(from, n_pairs), b = equally_spaced(to, finer * n_pairs);
-  const Outline unit_a = normalised(a, length_of(from)), unit_b = normalised(b, length_of(to));
-  const auto other = [&](const int start, const int i) { return (start + finer * i) % (finer * n_pairs); };
-  int best = 0;
-  double least = 1e300;
-  for (int start = 0; start < finer * n_pairs; ++start) {
-    double sum = 0;
-    for (int i = 0; i < n_pairs; ++i)
-      sum += (unit_a[i] - unit_b[other(start, i)]).squaredNorm();
-    if (sum < least) {
-      least = sum;
-      best = start;
-    }
-  }
-  std::vector<warp::Pin> pairs;
-  for (int i = 0; i < n_pairs; ++i)
-    pairs.push_back({a[i], b[other(best, i)]});
-  return pairs;
-}
-
-std::vector<warp::Pin> boundary_pairs(const Grey& section, const Vec2& offset, const Grey& mask) {
-  // A blur takes the steps of the pixels away.
-  const Grey inside = image::blurred(largest_component(section), 1), shown = image::blurred(largest_component(mask), 1);
-  const Outline from = outline_of(section), to = outline_of(mask);
-  if (is_star(from, middle(inside)) && is_star(to, middle(shown)))
-    return pairs_around(inside, offset, shown);
-  std::vector<warp::Pin> pairs = pairs_along(from, to);
-  for (warp::Pin& pair : pairs)
-    pair.from += offset;
-  return pairs;
+  Whole a = whole(section, least);
+  return {outline_of(a.mask), outline_of(whole(picture, least).mask), std::move(a.mask)};
 }
 
 } // namespace kerf::texture

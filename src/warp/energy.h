@@ -45,6 +45,10 @@ struct EnergyOptions {
   double barrier = 0.1;
   double pin_weight = 10;
   double pin_unit = 1; ///< in units of the target
+  /// A mask whose pixels span the rectangle: triangles of cells without any of it count by the part `outside`. Null: all
+  /// triangles count. Must live while the energy is built.
+  const image::Grey* section = nullptr;
+  double outside = 0.02;
 };
 
 /// A lattice of unknowns: x, y of each node, row by row.
@@ -73,12 +77,14 @@ class Energy {
     std::array<double, 4> shares;
   };
   Foot foot(const Vec2& p) const;
+  std::vector<double> weights_of_cells() const;
 
   LatticeMap rest_;
   const FeatureLevel* features_;
   std::vector<Pin> pins_;
   EnergyOptions options_;
   Mat2 global_inverse_ = Mat2::Identity();
+  std::vector<double> cells_; ///< by how much each counts
   std::vector<Foot> pixels_, pin_feet_;
 };
 

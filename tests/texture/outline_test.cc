@@ -1,14 +1,13 @@
-// Which points of two outlines belong together, and the fit they give, where rays would meet an outline more than once.
+// Outlines of masks, and fits of sections that rays from their middles would leave more than once.
 
+#include "base/error.h"
 #include "image/file.h"
-#include "tests/texture/refused.h"
-#include "texture/mask.h"
 #include "texture/exemplar.h"
 #include "texture/outline.h"
-#include "warp/fit.h"
 
 #include <gtest/gtest.h>
-#include <cstdio>
+
+#include <cmath>
 
 namespace kerf::texture {
 namespace {
@@ -24,53 +23,151 @@ Grey mask_where(const int width, const int height, const IsIn& is_in) {
   return mask;
 }
 
+Grey disk() {
+  return mask_where(240, 240, [](const Vec2& p) { return (p - Vec2(120, 120)).norm() < 90; });
+}
+
 /// A disk without a smaller one.
-[[maybe_unused]] Grey crescent(const double radius, const double bite, const double off) {
+Grey crescent() {
+  return mask_where(240, 240, [](const Vec2& p) {
+    const Vec2 q = p - Vec2(120, 120);
+    return q.norm() < 90 && (q - Vec2(70, 0)).norm() > 70;
+  });
+}
+
+/// A ring that is open on one side, by an angle to each side [rad].
+Grey letter_c(const double open) {
   return mask_where(240, 240, [=](const Vec2& p) {
     const Vec2 q = p - Vec2(120, 120);
-    return q.norm() < radius && (q - Vec2(off, 0)).norm() > bite;
+    return q.norm() < 90 && q.norm() > 45 && std::abs(std::atan2(q[1], q[0])) > open;
   });
 }
 
-/// A band along a sine.
-[[maybe_unused]] Grey letter_s(const double width, const double swing) {
-  return mask_where(260, 260, [=](const Vec2& p) {
-    double nearest = 1e9;
-    for (double t = -1; t <= 1; t += 0.01)
-      nearest = std::min(nearest, (p - Vec2(130 + swing * std::sin(M_PI * t), 130 + 85 * t)).norm());
-    return nearest < width;
+/// A disk with a bay from the right to its middle.
+Grey with_bay(const double width) {
+  return mask_where(240, 240, [=](const Vec2& p) {
+    const Vec2 q = p - Vec2(120, 120);
+    return q.norm() < 90 && !(q[0] > 0 && std::abs(q[1]) < 0.5 * width);
   });
 }
 
-void say(const char*name,const Grey&a,const Grey&b){
-  const Outline oa=outline_of(a), ob=outline_of(b);
-  auto mid=[](const Grey&m){Vec2 s(0,0);double n=0;for(int r=0;r<m.height;++r)for(int c=0;c<m.width;++c)if(m(c,r)>.5f){s+=Vec2(c,r);++n;}return Vec2(s/n);};
-  const auto pairs=boundary_pairs(a,Vec2::Zero(),b);
-  Vec2 lo=Vec2::Constant(1e9),hi=-lo; for(auto&p:oa){lo=lo.cwiseMin(p);hi=hi.cwiseMax(p);}
-  lo-=Vec2::Constant(3);hi+=Vec2::Constant(3);
-  static int nfile=0; FILE*f=fopen(("/tmp/fit17/p"+std::to_string(nfile++)).c_str(),"w");
-  auto mm=warp::fit(pairs,lo,hi,{});
-  for(auto&p:pairs)fprintf(f,"%g %g %g %g %g %g\n",p.from[0],p.from[1],p.to[0],p.to[1],mm(p.from)[0],mm(p.from)[1]);
-  fclose(f);
-  auto&map=mm; auto d=0.,w=0.; for(auto&p:pairs){double e=(map(p.from)-p.to).norm();d+=e/pairs.size();w=std::max(w,e);}
+/// How a picture of one mask is drawn to a section of another, both on pixels of one lattice.
+struct Drawn {
+  warp::LatticeMap map;
+  warp::Gap gap; ///< the larger of both ways [pixels]
+};
 
-  printf("star %d %d size %.0f err %.3f worst %.2f det %.3g ",is_star(oa,mid(a)),is_star(ob,mid(b)),(hi-lo).maxCoeff(),d,w,warp::smallest_determinant(map,warp::best_similarity(pairs).linear)); (void)name;
+Drawn drawn(const Grey& section, const Grey& picture) {
+  const Outlines outlines = outlines_of(section, picture);
+  Drawn result{warp::fit(outlines.section, outlines.picture, outlines.within, Vec2::Zero(),
+                         Vec2(section.width - 1, section.height - 1), {}),
+               {}};
+  warp::Curve there;
+  for (const Vec2& p : outlines.section)
+    there.push_back(result.map(p));
+  const warp::Gap a = warp::gap(there, outlines.picture), b = warp::gap(outlines.picture, there);
+  result.gap = {std::max(a.mean, b.mean), std::max(a.largest, b.largest)};
+  return result;
 }
 
-TEST(Outline, Liver) {
-  const auto body=geometry::read_mesh(KERF_SOURCE_DIR "/params/meshes/liver_25k.off", 1e-3);
-  struct P{const char*f;Vec3 o,c,r;};
-  for(const P&p:{P{"axial_z75",{0.05,0,0.075},{0.0007,0,0},{0,0.0005,0}},P{"sagittal_x60",{0.1,0,0},{0,0.0005,0},{0,0,0.0005}},P{"coronal_y140",{0.05,0.08,0},{0.0007,0,0},{0,0,0.0005}}})
-   for(double dz:{0.,.015}){
-    Exemplar e{p.f,image::read_image(std::string(KERF_SOURCE_DIR "/params/sections/brain/")+p.f+".png"),Background::black,SectionPlane(p.o+dz*p.c.cross(p.r).normalized(),p.c,p.r),Fit::rigid};
-    std::optional<warp::LatticeMap> used;
-    try{
-    const Chart chart=make_chart(e,body,{},used);
-    int n; components(chart.inside,16,n);
-    printf("%s %g: %d components, ",p.f,dz,n);
-    say("fit",largest_component(chart.inside),mask_of(e.picture,e.background));
-    printf("  fit error %.3f shown %.4f %dx%d\n",chart.fit_error,chart.shown_share,chart.inside.width,chart.inside.height);
-    }catch(const Error&x){printf("%s %g: %s\n",p.f,dz,x.what());}
+TEST(Outline, IsWhereADiskEnds) {
+  const warp::Curve outline = outline_of(disk());
+  for (const Vec2& p : outline)
+    EXPECT_NEAR((p - Vec2(120, 120)).norm(), 90, 0.75);
+  EXPECT_NEAR(std::abs(warp::area_of(outline)), M_PI * 90 * 90, 0.01 * M_PI * 90 * 90);
+}
+
+TEST(Outline, ClosesNarrowBaysAndKeepsWideOnes) {
+  // A twentieth of 180 pixels is 9.
+  EXPECT_GT(std::abs(warp::area_of(outlines_of(with_bay(6), disk()).section)), 0.99 * M_PI * 90 * 90);
+  EXPECT_LT(std::abs(warp::area_of(outlines_of(with_bay(24), disk()).section)), 0.94 * M_PI * 90 * 90);
+}
+
+TEST(Outline, BridgesGapsThatPartASection) {
+  const auto halves = [](const double gap) {
+    return mask_where(240, 240, [=](const Vec2& p) {
+      return (p - Vec2(120, 120)).norm() < 90 && std::abs(p[0] - 120) > 0.5 * gap;
+    });
+  };
+  for (const double gap : {6.0, 16.0})
+    EXPECT_GT(std::abs(warp::area_of(outlines_of(disk(), halves(gap)).picture)), 0.95 * M_PI * 90 * 90) << gap;
+  EXPECT_LT(std::abs(warp::area_of(outlines_of(disk(), halves(80)).picture)), 0.5 * M_PI * 90 * 90);
+}
+
+TEST(Outline, FitsShapesThatAreNoStars) {
+  const std::vector<Grey> shapes = {disk(), crescent(), letter_c(0.5), letter_c(0.7), with_bay(6), with_bay(24)};
+  for (std::size_t i = 0; i < shapes.size(); ++i)
+    for (const std::size_t k : {i, (i + 1) % shapes.size()}) {
+      if (i != k && std::min(i, k) == 0)
+        continue; // a disk is no crescent
+      const Drawn there = drawn(shapes[i], shapes[k]);
+      EXPECT_LT(there.gap.mean, 2) << i << " " << k;
+      EXPECT_LT(there.gap.largest, 4) << i << " " << k;
+      EXPECT_GT(warp::smallest_determinant(there.map), 0);
+    }
+}
+
+TEST(Outline, FindsAffineImages) {
+  // What is stretched along any two axes and moved finds itself, inside, too.
+  Mat2 linear;
+  linear << 0.9, 0.08, 0.08, 1.1; // no rotation: a disk could not tell
+  const Vec2 middle(120, 120), shift(6, -4);
+  for (const Grey& picture : {disk(), crescent(), letter_c(0.6), with_bay(24)}) {
+    const auto there = [&](const Vec2& p) { return Vec2(middle + shift + linear * (p - middle)); };
+    const Grey section = mask_where(240, 240, [&](const Vec2& p) {
+      const Vec2 q = there(p);
+      return q.minCoeff() >= 0 && q.maxCoeff() <= 239 &&
+             image::sample(picture, static_cast<float>(q[0]), static_cast<float>(q[1])) > 0.5f;
+    });
+    const Drawn found = drawn(section, picture);
+    EXPECT_LT(found.gap.largest, 1.5);
+    double sum = 0, n = 0;
+    for (int r = 0; r < 240; r += 4)
+      for (int c = 0; c < 240; c += 4)
+        if (section(c, r) > 0.5f) {
+          sum += (found.map(Vec2(c, r)) - there(Vec2(c, r))).norm();
+          ++n;
+        }
+    EXPECT_LT(sum / n, 1.0) << sum / n; // of 180 pixels
+  }
+}
+
+struct Case {
+  std::string picture, body;
+  Vec3 origin, column, row;
+};
+
+/// A picture of params/sections fitted to a body of params/meshes.
+Chart fitted(const Case& c) {
+  const std::string params = KERF_SOURCE_DIR "/params/";
+  const auto body = geometry::read_mesh(params + "meshes/" + c.body + ".off", c.body == "apple" ? 1 : 1e-3);
+  const Exemplar exemplar{c.picture,
+                          image::read_image(params + "sections/" + c.picture + ".png"),
+                          c.picture[0] == 'b' ? Background::black : Background::alpha,
+                          SectionPlane(c.origin, c.column, c.row),
+                          Fit::rigid};
+  std::optional<warp::LatticeMap> used;
+  Chart chart = make_chart(exemplar, body, {}, used);
+  EXPECT_GT(warp::smallest_determinant(*used), 0) << c.picture;
+  return chart;
+}
+
+TEST(Outline, FitsBrainsAndFruitToTheLiverTheBrainAndTheApple) {
+  for (const Case& c : std::vector<Case>{
+         {"brain/axial_z75", "liver_25k", {0.05, 0, 0.075}, {0.0007, 0, 0}, {0, 0.0005, 0}},
+         {"brain/axial_z75", "liver_25k", {0.05, 0, 0.09}, {0.0007, 0, 0}, {0, 0.0005, 0}},
+         {"brain/sagittal_x60", "liver_25k", {0.1, 0, 0}, {0, 0.0005, 0}, {0, 0, 0.0005}},
+         {"brain/coronal_y140", "liver_25k", {0.05, 0.08, 0}, {0.0007, 0, 0}, {0, 0, 0.0005}},
+         {"brain/coronal_y140", "liver_25k", {0.05, 0.065, 0}, {0.0007, 0, 0}, {0, 0, 0.0005}},
+         {"fruit/kiwi_whole", "liver_25k", {0.05, 0.08, 0}, {0.0005, 0, 0}, {0, 0, 0.0005}},
+         {"brain/axial_z35", "brain_40k", {0.015, 0.018, 0.035}, {0.0005, 0, 0}, {0, 0.0005, 0}},
+         {"brain/sagittal_x60", "brain_40k", {0.06, 0.018, 0.0015}, {0, 0.0005, 0}, {0, 0, 0.0005}},
+         {"brain/coronal_y140", "brain_40k", {0.015, 0.13, 0.0015}, {0.0005, 0, 0}, {0, 0, 0.0005}},
+         {"fruit/lemon", "apple", {-0.0376, 0.041, -0.0418}, {0.0002, 0, 0}, {0, 0, 0.0002}},
+         {"fruit/orange_whole", "apple", {-0.02632, 0.014, -0.02926}, {0.00014, 0, 0}, {0, 0, 0.00014}}}) {
+    const Chart chart = fitted(c);
+    EXPECT_LT(chart.fit_error.mean, 0.5) << c.picture << " " << c.body << " " << c.origin.transpose();
+    EXPECT_LT(chart.fit_error.largest, 4) << c.picture << " " << c.body << " " << c.origin.transpose();
   }
 }
 
