@@ -11,9 +11,9 @@ namespace kerf::warp {
 
 namespace {
 
-constexpr double turn_weight = 0.005;  ///< of directions that differ, against squared distances over the area
-constexpr double pace_weight = 0.008;  ///< of steps that differ from the mean one
-constexpr int longest_step = 4;        ///< of mean ones
+constexpr double turn_weight = 0.005; ///< of directions that differ, against squared distances over the area
+constexpr double pace_weight = 0.008; ///< of steps that differ from the mean one
+constexpr int longest_step = 4;       ///< of mean ones
 constexpr float never = std::numeric_limits<float>::infinity();
 
 double length_of(const Curve& curve) {
