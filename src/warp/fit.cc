@@ -57,7 +57,7 @@ struct Matched {
 Affine affine_between(Matched& curves) {
   const Mat2 linear = spread_of(curves.to) * spread_of(curves.from).inverse();
   Affine affine{linear, mean_of(curves.to) - linear * mean_of(curves.from)};
-  for (int i = 0; i < 10; ++i) {
+  for (int i = 0; i < 4; ++i) {
     curves.find_partners(affine);
     const Affine next = best_affine(curves.from, curves.partners);
     if (!(next.linear.determinant() > 0.3 * linear.determinant()))
