@@ -62,19 +62,19 @@ void print_cutting(const scene::World& world) {
     print_cut(world, blade.label, "blade " + blade.name, "Check its key frames");
   for (const auto& [surface, step] : world.cut_surfaces)
     print_cut(world, surface.label, "cut surface " + surface.name, "Check its place and time");
-  std::size_t n_double = 0, n_waiting = 0, n_passed = 0, n_tips = 0, n_crumbs = 0;
+  std::size_t n_double = 0, n_waiting = 0, n_passed = 0, n_left_whole = 0, n_crumbs = 0;
   for (const scene::Body& body : world.bodies)
     if (body.cutter) {
       n_double += body.cutter->counts().n_double_crossings;
       n_waiting += body.cutter->n_waiting();
-      n_tips += body.cutter->counts().n_tips;
+      n_left_whole += body.cutter->counts().n_left_whole;
       n_passed += body.cutter->n_passed_cells();
       n_crumbs += body.physics->crumbs().size();
     }
   if (n_double + n_waiting > 0)
     std::printf("  %zu edges crossed twice by one cut and left whole, %zu cuts still waiting\n", n_double, n_waiting);
-  if (n_tips > 0)
-    std::printf("  %zu tips of the skin left whole: no other edge holds what was cut off there\n", n_tips);
+  if (n_left_whole > 0)
+    std::printf("  %zu edges left whole: behind them is a shaving thinner than a tenth of a cube, or no material\n", n_left_whole);
   if (n_crumbs > 0)
     std::printf("  %zu crumbs, pieces that the grid cannot deform: they moved as rigid bodies\n", n_crumbs);
   if (n_passed > 0)

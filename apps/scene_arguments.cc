@@ -23,6 +23,15 @@ void add_scene(const std::string& scene, const Scenes scenes, SceneArguments& pa
   parsed.scenes.push_back(scene);
 }
 
+void set_earlier(const std::string& option, SceneArguments& parsed) {
+  const auto wanted = option == "--force" ? output::Earlier::replace : output::Earlier::resume;
+  if (parsed.earlier != output::Earlier::refuse && parsed.earlier != wanted)
+    throw ParameterError(Complaint{.value = option,
+                                   .rule = "--force and --resume exclude each other",
+                                   .remedy = "--force begins anew, --resume goes on from what there is"});
+  parsed.earlier = wanted;
+}
+
 } // namespace
 
 std::filesystem::path default_output(const std::string& scene, const std::filesystem::path& folder) {
@@ -47,7 +56,7 @@ SceneArguments parse_scene_arguments(const Arguments& arguments, const Scenes sc
     else if (argument == "--jobs" && scenes == Scenes::several)
       parsed.n_jobs = parse_number(argument, value());
     else if (argument == "--force" || argument == "--resume")
-      parsed.earlier = argument == "--force" ? output::Earlier::replace : output::Earlier::resume;
+      set_earlier(argument, parsed);
     else if (argument.starts_with("-"))
       throw ParameterError(
         Complaint{.value = argument,

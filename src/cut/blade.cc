@@ -165,14 +165,4 @@ std::vector<std::array<Vec3, 3>> sweep(const Blade& blade, const double t0, cons
   return strip;
 }
 
-std::vector<std::array<Vec3, 3>> whereabouts(const Blade& blade, const double t0, const double t1) {
-  auto triangles = sweep(blade, t0, t1);
-  if (!triangles.empty())
-    return triangles;
-  const Points edge = world_points(blade, t1);
-  for (std::size_t i = 1; i < edge.size(); ++i)
-    triangles.push_back({edge[i - 1], edge[i], edge[i]});
-  return triangles;
-}
-
 } // namespace kerf::cut

@@ -68,7 +68,4 @@ void add_strip(const Points& before, const Points& after, std::vector<std::array
 /// The triangles [m, world frame] that the cutting edge sweeps from t0 to t1 [s]; none while the blade rests.
 std::vector<std::array<Vec3, 3>> sweep(const Blade& blade, double t0, double t1);
 
-/// Where the blade is from t0 to t1: what it sweeps, or while it rests its edge, as triangles without area.
-std::vector<std::array<Vec3, 3>> whereabouts(const Blade& blade, double t0, double t1);
-
 } // namespace kerf::cut

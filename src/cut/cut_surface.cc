@@ -10,8 +10,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
-#include <numbers>
 #include <type_traits>
 
 namespace kerf::cut {
@@ -222,39 +220,6 @@ void check(const CutSurface& surface) {
   std::visit([](const auto& shape) { check_shape(shape); }, surface.shape);
 }
 
-std::vector<std::array<Vec3, 3>> rim(const CutSurface& surface) {
-  std::vector<std::array<Vec3, 3>> result;
-  if (const Disc* const disc = std::get_if<Disc>(&surface.shape)) {
-    constexpr int n = 64;
-    const Vec3 u = disc->radius * disc->normal.unitOrthogonal(), v = disc->normal.cross(u);
-    const auto at = [&](const int i) -> Vec3 {
-      const double angle = 2 * std::numbers::pi * i / n;
-      return disc->centre + std::cos(angle) * u + std::sin(angle) * v;
-    };
-    for (int i = 0; i < n; ++i)
-      result.push_back({at(i), at(i + 1), at(i + 1)});
-  }
-  if (const Rectangle* const rectangle = std::get_if<Rectangle>(&surface.shape)) {
-    const Vec3 u = 0.5 * rectangle->first_side, v = 0.5 * rectangle->second_side, &c = rectangle->centre;
-    const std::array<Vec3, 4> corners = {c - u - v, c + u - v, c + u + v, c - u + v};
-    for (std::size_t i = 0; i < 4; ++i)
-      result.push_back({corners[i], corners[(i + 1) % 4], corners[(i + 1) % 4]});
-  }
-  if (const geometry::TriangleMesh* const mesh = std::get_if<geometry::TriangleMesh>(&surface.shape)) {
-    std::map<std::pair<std::uint32_t, std::uint32_t>, bool> is_odd;
-    for (const auto& triangle : mesh->triangles)
-      for (int i = 0; i < 3; ++i) {
-        const std::uint32_t a = triangle[i], b = triangle[(i + 1) % 3];
-        bool& odd = is_odd[std::minmax(a, b)];
-        odd = !odd;
-      }
-    for (const auto& [edge, odd] : is_odd)
-      if (odd)
-        result.push_back({mesh->vertices[edge.first], mesh->vertices[edge.second], mesh->vertices[edge.second]});
-  }
-  return result;
-}
-
 SweepCuts cut_edges(const CutSurface& surface, const grid::Solid& solid, const Points& x,
                     const EdgeBoxes* const boxes) {
   const auto cut_by = [&](const auto& shape) {
@@ -263,7 +228,7 @@ SweepCuts cut_edges(const CutSurface& surface, const grid::Solid& solid, const P
     } else {
       const Target target(solid, x, x, boxes);
       return target.cut(surface.label, {Box(), [&](const Box& box) { return near(shape, box); }},
-                        [&](const grid::EdgeId edge) { return meet(shape, target.segment(edge)); });
+                        [&](const Segment&, const Segment& now) { return meet(shape, now); });
     }
   };
   return std::visit(cut_by, surface.shape);

@@ -64,10 +64,6 @@ struct CutSurface {
 /// unit vector, sides of no length or not at right angles, numbers that are not finite, a mesh without triangles.
 void check(const CutSurface& surface);
 
-/// Where the surface may end inside a body: the rim of a disc or a rectangle, the edges of a mesh with an odd number of
-/// triangles; as triangles without area [m]. Empty for surfaces that are closed, and for planes.
-std::vector<std::array<Vec3, 3>> rim(const CutSurface& surface);
-
 /// The edges that the surface cuts when the corners are at `x` [m, world frame, one a corner]; check() must accept the
 /// surface. `boxes`, fitted to x, spare it edges that are far away; null for none. Throws NumericalError when a corner
 /// is not at a finite position.

@@ -1,5 +1,9 @@
 #include "cut/cutter.h"
 
+#include "cut/shreds.h"
+
+#include <algorithm>
+
 namespace kerf::cut {
 
 using grid::CutChange;
@@ -7,8 +11,22 @@ using grid::EdgeCut;
 using grid::EdgeId;
 using grid::Solid;
 
+namespace {
+
+void append(SweepCuts& all, const SweepCuts& more) {
+  all.cuts.insert(all.cuts.end(), more.cuts.begin(), more.cuts.end());
+  all.of_skin.insert(all.of_skin.end(), more.of_skin.begin(), more.of_skin.end());
+  all.n_double_crossings += more.n_double_crossings;
+}
+
+std::array<grid::CellId, 2> cells_of(const grid::Grid& grid, const grid::SkinSegment& segment) {
+  return segment.face.valid() ? grid.cells(segment.face) : std::array{segment.cell, grid::CellId()};
+}
+
+} // namespace
+
 Cutter::Cutter(const std::size_t n_labels, const Release release)
-  : release_(release), passed_(n_labels), open_ends_(n_labels), counts_{std::vector<std::size_t>(n_labels, 0)} {}
+  : release_(release), passed_(n_labels), counts_{std::vector<std::size_t>(n_labels, 0)} {}
 
 void Cutter::begin(const Solid& solid, const Points& x) {
   boxes_.emplace(solid);
@@ -33,41 +51,47 @@ CutChange Cutter::step(Solid& solid, const std::span<const Stroke> strokes, cons
 
 /// `boxes_` are fitted.
 CutChange Cutter::take(Solid& solid, const std::span<const Stroke> strokes, const Points& x) {
-  auto cuts = queue(solid, strokes, x);
-  std::vector<EdgeId> ended;
-  for (const Stroke& stroke : strokes)
-    for (const EdgeId e : close(solid, stroke.whereabouts, x, stroke.label))
-      ended.push_back(e);
+  SweepCuts cuts = queue(solid, strokes, x);
   if (release_ == Release::queued)
-    cuts = pending_.release(solid);
+    cuts.cuts = pending_.release(solid);
   x_before_ = x; // not after the cut: where corners jump then, the blade meets them on their way
-  std::vector<EdgeId> edges = add(solid, cuts, Front::possible, x);
-  edges.insert(edges.end(), ended.begin(), ended.end());
-  const CutChange change = follow(solid, std::move(edges));
-  for (const Stroke& stroke : strokes)
-    open_ends_[stroke.label - 1].note(solid, change.cells, stroke.label);
-  return change;
+  return cut(solid, cuts);
 }
 
 CutChange Cutter::at_once(Solid& solid, const CutSurface& surface, const Points& x) {
   boxes_->fit(x);
   const SweepCuts found = cut_edges(surface, solid, x, &*boxes_);
   counts_.n_double_crossings += found.n_double_crossings;
-  const Front front = rim(surface).empty() ? Front::none : Front::possible;
-  const CutChange change = cut(solid, found.cuts, front, x);
-  OpenEnds& ends = open_ends_[surface.label - 1];
-  ends = {};
-  if (front == Front::possible)
-    ends.note(solid, change.cells, surface.label);
+  return cut(solid, found);
+}
+
+CutChange Cutter::cut(Solid& solid, const SweepCuts& cuts) {
+  std::vector<EdgeId> edges;
+  for (const EdgeCut& cut : cuts.cuts) {
+    if (!solid.cuts.can_be_cut(solid.grid, cut.edge))
+      continue; // by another of the same step
+    solid.cuts.add(solid.grid, cut);
+    edges.push_back(cut.edge);
+    passed_[cut.label - 1].remove(solid.grid.cells(cut.edge));
+  }
+  std::vector<grid::SkinSegment> segments;
+  for (const grid::SkinCut& cut : cuts.of_skin) {
+    if (solid.cuts.is_cut(cut.segment))
+      continue;
+    solid.cuts.add(cut);
+    segments.push_back(cut.segment);
+    passed_[cut.label - 1].remove(cells_of(solid.grid, cut.segment));
+  }
+  std::sort(edges.begin(), edges.end());
+  std::sort(segments.begin(), segments.end());
+  counts_.n_left_whole += leave_shreds(solid, edges, segments);
+  for (const EdgeId e : edges)
+    ++counts_.n_cut_edges[solid.cuts.find(e)->label - 1];
+  if (edges.empty() && segments.empty())
+    return {};
+  CutChange change = grid::update_complex(solid, std::move(edges), std::move(segments));
+  grid::inherit(change, x_before_);
   return change;
-}
-
-CutChange Cutter::end(Solid& solid, const CutSurface& surface, const Points& x) {
-  return follow(solid, close(solid, rim(surface), x, surface.label));
-}
-
-CutChange Cutter::cut(Solid& solid, const std::span<const EdgeCut> cuts, const Front front, const Points& x) {
-  return follow(solid, add(solid, cuts, front, x));
 }
 
 std::size_t Cutter::n_passed_cells() const {
@@ -78,53 +102,24 @@ std::size_t Cutter::n_passed_cells() const {
 }
 
 Stroke Cutter::stroke(const Solid& solid, const Blade& blade, const double t0, const double t1, const Points& x) const {
-  Stroke stroke{blade.label, {}, sweep(blade, t0, t1), whereabouts(blade, t0, t1)};
-  for (const BladePath& path : paths(blade, t0, t1)) {
-    const auto [cuts, n_double_crossings] = cut_edges(path, solid, x_before_, x, blade.label, &*boxes_);
-    stroke.found.cuts.insert(stroke.found.cuts.end(), cuts.begin(), cuts.end());
-    stroke.found.n_double_crossings += n_double_crossings;
-  }
+  Stroke stroke{blade.label, {}, sweep(blade, t0, t1)};
+  for (const BladePath& path : paths(blade, t0, t1))
+    append(stroke.found, cut_edges(path, solid, x_before_, x, blade.label, &*boxes_));
   return stroke;
 }
 
 /// Puts what blades have met to what waits, and counts what the grid cannot resolve of it. Returns all cuts that were
 /// met.
-std::vector<EdgeCut> Cutter::queue(const Solid& solid, const std::span<const Stroke> strokes, const Points& x) {
-  std::vector<EdgeCut> met;
-  for (const auto& [label, found, swept, whereabouts] : strokes) {
-    met.insert(met.end(), found.cuts.begin(), found.cuts.end());
+SweepCuts Cutter::queue(const Solid& solid, const std::span<const Stroke> strokes, const Points& x) {
+  SweepCuts met;
+  for (const auto& [label, found, swept] : strokes) {
+    append(met, found);
     counts_.n_double_crossings += found.n_double_crossings;
-    passed_[label - 1].pass(swept, found.cuts, solid, x, *boxes_, label);
+    passed_[label - 1].pass(swept, found, solid, x, *boxes_, label);
   }
   if (release_ == Release::queued)
-    pending_.push(met);
+    pending_.push(met.cuts);
   return met;
-}
-
-/// Ends the cuts of a label where its blade is no more. Returns cut edges at faces whose skin is parted so.
-std::vector<EdgeId> Cutter::close(Solid& solid, const std::span<const std::array<Vec3, 3>> whereabouts, const Points& x,
-                                  const grid::CutLabel label) {
-  return open_ends_[label - 1].close(whereabouts, pending_, solid, x, label);
-}
-
-/// Adds cuts, and counts them; returns the edges at which something has changed.
-std::vector<EdgeId> Cutter::add(Solid& solid, const std::span<const EdgeCut> cuts, const Front front, const Points& x) {
-  const std::size_t n_before = solid.cuts.all().size();
-  AddedCuts added = add_cuts(solid, x, cuts, front);
-  counts_.n_tips += added.n_tips;
-  for (const EdgeCut& cut : solid.cuts.all().subspan(n_before)) {
-    ++counts_.n_cut_edges[cut.label - 1];
-    passed_[cut.label - 1].remove_around(solid.grid, cut.edge);
-  }
-  return std::move(added.edges);
-}
-
-CutChange Cutter::follow(Solid& solid, std::vector<EdgeId> edges) {
-  if (edges.empty())
-    return {};
-  CutChange change = grid::update_complex(solid, std::move(edges));
-  grid::inherit(change, x_before_);
-  return change;
 }
 
 } // namespace kerf::cut

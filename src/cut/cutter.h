@@ -6,9 +6,7 @@
 ///
 /// Labels: of blades and surfaces, from 1 on.
 
-#include "cut/add_cuts.h"
 #include "cut/cut_surface.h"
-#include "cut/open_ends.h"
 #include "cut/passed.h"
 #include "cut/pending.h"
 #include "grid/solid.h"
@@ -22,21 +20,22 @@ using Strip = std::vector<std::array<Vec3, 3>>;
 /// What a blade does in a step.
 struct Stroke {
   grid::CutLabel label = 1;
-  SweepCuts found = {};   ///< that it meets
-  Strip swept = {};       ///< triangles [m, world frame]
-  Strip whereabouts = {}; ///< the same, or of a blade that rests its edge; nothing of one that has gone
+  SweepCuts found = {}; ///< that it meets
+  Strip swept = {};     ///< triangles [m, world frame]
 };
 
 /// All so far.
 struct CutCounts {
   std::vector<std::size_t> n_cut_edges; ///< by label, from 1
-  std::size_t n_double_crossings = 0;   ///< edges that one cut crossed an even number of times: left uncut
-  std::size_t n_tips = 0;               ///< edges of the skin whose cuts would have cut a tip off alone: left uncut
+  std::size_t n_double_crossings = 0; ///< edges and segments of the skin that one cut crossed an even number of times:
+                                      ///< left uncut
+  std::size_t n_left_whole = 0;       ///< edges and segments of the skin that were left whole (shreds.h)
 
-  void archive(Archive& a) { a(n_cut_edges, n_double_crossings, n_tips); }
+  void archive(Archive& a) { a(n_cut_edges, n_double_crossings, n_left_whole); }
 };
 
-/// What blades meet in a step: two edges of a cell at most are cut in it, the rest waits (pending.h); or all are.
+/// What blades meet in a step: two edges of a cell at most are cut in it, the rest waits (pending.h); or all are. The
+/// skin is always cut at once.
 enum class Release { queued, at_once };
 
 class Cutter {
@@ -57,11 +56,8 @@ class Cutter {
 
   /// Cuts with a surface, all of it at once.
   grid::CutChange at_once(grid::Solid& solid, const CutSurface& surface, const Points& x);
-  /// After at_once(), when corners have followed that to x: ends the cuts where the surface ends inside the body.
-  grid::CutChange end(grid::Solid& solid, const CutSurface& surface, const Points& x);
-
-  /// Cuts edges that are known.
-  grid::CutChange cut(grid::Solid& solid, std::span<const grid::EdgeCut> cuts, Front front, const Points& x);
+  /// Cuts edges and segments of the skin that are known.
+  grid::CutChange cut(grid::Solid& solid, const SweepCuts& cuts);
 
   const CutCounts& counts() const { return counts_; }
   /// Cuts that wait.
@@ -72,7 +68,7 @@ class Cutter {
   /// All but the boxes, which are made of the body before its first cut and fitted in each step.
   void archive(Archive& a) {
     a.name("cutter");
-    a(pending_, passed_, open_ends_, x_before_, counts_);
+    a(pending_, passed_, x_before_, counts_);
   }
   /// Memory of what grows with the body [B].
   std::size_t n_bytes() const { return boxes_->n_bytes() + sizeof(Vec3) * x_before_.capacity(); }
@@ -80,17 +76,12 @@ class Cutter {
  private:
   Stroke stroke(const grid::Solid& solid, const Blade& blade, double t0, double t1, const Points& x) const;
   grid::CutChange take(grid::Solid& solid, std::span<const Stroke> strokes, const Points& x);
-  std::vector<grid::EdgeCut> queue(const grid::Solid& solid, std::span<const Stroke> strokes, const Points& x);
-  std::vector<grid::EdgeId> close(grid::Solid& solid, std::span<const std::array<Vec3, 3>> whereabouts, const Points& x,
-                                  grid::CutLabel label);
-  grid::CutChange follow(grid::Solid& solid, std::vector<grid::EdgeId> edges);
-  std::vector<grid::EdgeId> add(grid::Solid& solid, std::span<const grid::EdgeCut> cuts, Front front, const Points& x);
+  SweepCuts queue(const grid::Solid& solid, std::span<const Stroke> strokes, const Points& x);
 
   Release release_;
   PendingCuts pending_;
   std::optional<EdgeBoxes> boxes_;  // around the edges; there from begin() on
   std::vector<PassedCells> passed_; // by label, from 1
-  std::vector<OpenEnds> open_ends_; // by label, from 1
   Points x_before_;                 // where the corners were when the blades were met last [m]
   CutCounts counts_;
 };

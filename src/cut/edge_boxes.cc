@@ -169,6 +169,14 @@ void EdgeBoxes::list_cells(const grid::Grid& grid, const Nodes& nodes) {
   std::transform(starts_.begin(), starts_.end() - 1, next.begin(), [](const Start& start) { return start.cell; });
   for (const auto c : ids<grid::CellId>(grid.n_cells()))
     cells_[next[block_of(c)]++] = c;
+  for (std::uint32_t k = 0; k < n_blocks(); ++k) {
+    starts_[k].skin_cell = static_cast<std::uint32_t>(skin_cells_.size());
+    for_each_cell(k, [&](const grid::CellId c) {
+      if (grid::material_of(grid, c) != 0xff)
+        skin_cells_.push_back(c);
+    });
+  }
+  starts_.back().skin_cell = static_cast<std::uint32_t>(skin_cells_.size());
 }
 
 void EdgeBoxes::list_skin(const grid::Solid& solid, const Nodes& nodes) {
@@ -282,7 +290,8 @@ void EdgeBoxes::visit(const std::size_t level, const std::size_t i, const std::f
 std::size_t EdgeBoxes::n_bytes() const {
   std::size_t n = starts_.capacity() * sizeof(Start) + rows_.capacity() * sizeof(Row) +
                   (slabs_.capacity() + rows_of_blocks_.capacity()) * sizeof(std::uint32_t) +
-                  cells_.capacity() * sizeof(grid::CellId) + skin_.capacity() * sizeof(SkinEdge);
+                  (cells_.capacity() + skin_cells_.capacity()) * sizeof(grid::CellId) +
+                  skin_.capacity() * sizeof(SkinEdge);
   for (const auto& level : levels_)
     n += level.capacity() * sizeof(Block);
   return n;

@@ -69,6 +69,13 @@ class EdgeBoxes {
       f(skin_[i].edge, skin_[i].corner);
   }
 
+  /// Calls f(cell) for each cell of a block through which the skin passes.
+  template <class Function>
+  void for_each_skin_cell(const std::uint32_t block, const Function& f) const {
+    for (std::uint32_t i = starts_[block].skin_cell; i < starts_[block + 1].skin_cell; ++i)
+      f(skin_cells_[i]);
+  }
+
   /// Whether a corner has moved between what the boxes were fitted to.
   bool moves() const { return moves_; }
   const Block& block(const std::uint32_t i) const { return levels_[0][i]; }
@@ -94,7 +101,7 @@ class EdgeBoxes {
 
   /// Where a block's entries begin.
   struct Start {
-    std::uint32_t row = 0, cell = 0, skin = 0;
+    std::uint32_t row = 0, cell = 0, skin = 0, skin_cell = 0;
   };
 
   struct SkinEdge {
@@ -123,6 +130,7 @@ class EdgeBoxes {
   std::vector<std::uint32_t> slabs_;          // where they begin among the rows, and where the last one ends
   std::vector<std::uint32_t> rows_of_blocks_; // by block
   std::vector<grid::CellId> cells_;           // by block
+  std::vector<grid::CellId> skin_cells_;      // by block
   std::vector<SkinEdge> skin_;                // by block
   bool moves_ = false;
   std::vector<std::vector<Block>> levels_; // the blocks, eights of them, ... one

@@ -9,6 +9,7 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
+#include <bit>
 
 namespace kerf::cut {
 
@@ -62,13 +63,16 @@ bool meets(const std::array<Vec3, 3>& triangle, const grid::Tetrahedron& tetrahe
 /// Finds the cells in some blocks that a strip passes.
 class Search {
  public:
-  Search(const std::span<const std::array<Vec3, 3>> strip, const std::span<const grid::EdgeCut> found,
-         const grid::Solid& solid, const Points& x, const grid::CutLabel label)
+  Search(const std::span<const std::array<Vec3, 3>> strip, const SweepCuts& found, const grid::Solid& solid,
+         const Points& x, const grid::CutLabel label)
     : near_(patches(strip)), solid_(solid), x_(x), label_(label) {
     std::vector<grid::EdgeId> edges;
-    for (const grid::EdgeCut& cut : found)
+    for (const grid::EdgeCut& cut : found.cuts)
       edges.push_back(cut.edge);
-    met_ = grid::touched_cells(solid.grid, edges);
+    std::vector<grid::SkinSegment> segments;
+    for (const grid::SkinCut& cut : found.of_skin)
+      segments.push_back(cut.segment);
+    met_ = grid::touched_cells(solid.grid, edges, segments);
   }
 
   /// Boxes hold the ends of edges alone; other corners of the cells may lie beside them.
@@ -121,12 +125,18 @@ class Search {
   }
 
   bool is_cut_by_label(const grid::CellId cell) const {
-    if (std::ranges::binary_search(met_, cell, {}, &grid::TouchedCell::cell))
+    if (std::ranges::binary_search(met_, cell))
       return true;
-    return std::ranges::any_of(solid_.grid.edges(cell), [&](const grid::EdgeId e) {
-      const grid::EdgeCut* const cut = solid_.cuts.find(e);
-      return cut && cut->label == label_;
-    });
+    const auto edges = solid_.grid.edges(cell);
+    for (grid::Segments left = grid::cuts_of(solid_, cell).blades; left != 0; left &= left - 1) {
+      const int segment = std::countr_zero(left);
+      const grid::CutLabel label = segment < grid::skeleton::first_half
+                                     ? solid_.cuts.find(edges[segment])->label
+                                     : solid_.cuts.find(grid::skin_segment(solid_.grid, cell, segment))->label;
+      if (label == label_)
+        return true;
+    }
+    return false;
   }
 
   bool passes(const grid::Copy& copy, const std::array<Vec3, 8>& corners, const std::array<Vec3, 3>& triangle) const {
@@ -153,12 +163,12 @@ class Search {
   const grid::Solid& solid_;
   const Points& x_;
   grid::CutLabel label_;
-  std::vector<grid::TouchedCell> met_; // whose edges are cut now
+  std::vector<grid::CellId> met_; // in which it cuts now
 };
 
 } // namespace
 
-void PassedCells::pass(const std::span<const std::array<Vec3, 3>> strip, const std::span<const grid::EdgeCut> found,
+void PassedCells::pass(const std::span<const std::array<Vec3, 3>> strip, const SweepCuts& found,
                        const grid::Solid& solid, const Points& x, const EdgeBoxes& boxes, const grid::CutLabel label) {
   if (strip.empty())
     return;
@@ -176,10 +186,10 @@ void PassedCells::pass(const std::span<const std::array<Vec3, 3>> strip, const s
     cells_.insert(of_block.begin(), of_block.end());
 }
 
-void PassedCells::remove_around(const grid::Grid& grid, const grid::EdgeId edge) {
+void PassedCells::remove(const std::span<const grid::CellId> cells) {
   if (cells_.empty())
     return;
-  for (const grid::CellId c : grid.cells(edge))
+  for (const grid::CellId c : cells)
     if (c.valid())
       cells_.erase(c);
 }

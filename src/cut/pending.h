@@ -2,8 +2,7 @@
 
 /// Cuts that wait. At most two edges of a cell are cut in one step, so that its vertices can be placed one cut after
 /// the other (thesis §2.4.3); the rest waits, first come first served. The input mesh and cut surfaces, cut all at
-/// once, do not go through here; nor do edges of the skin that a cut below takes along (at_skin.h), without which it
-/// would end in a bridge.
+/// once, do not go through here; nor do the skin's own segments.
 
 #include "grid/solid.h"
 

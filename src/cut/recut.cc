@@ -57,8 +57,7 @@ SweepCuts cut_edges(const Strip sweep, const grid::Solid& solid, const Points& x
   const geometry::BoxTree tree(triangle_boxes);
   const NearSweep near(patches(sweep));
   return target.cut(label, {near.reach(), [&](const Box& box) { return near.may_be_in(box); }},
-                    [&](const grid::EdgeId edge) {
-                      const Segment segment = target.segment(edge);
+                    [&](const Segment&, const Segment& segment) {
                       Crossings crossings(sweep, segment);
                       tree.for_each(box_around(segment), [&](const std::size_t i) { crossings.test(i); });
                       return crossings.verdict();
@@ -76,8 +75,7 @@ SweepCuts cut_edges(const BladePath& path, const grid::Solid& solid, const Point
   const Target target(solid, x_before, x, boxes);
   const NearSweep near(patches(path));
   return target.cut(label, {near.reach(), [&](const Box& box) { return near.may_be_in(box); }},
-                    [&](const grid::EdgeId edge) {
-                      const Segment before = target.segment(edge, x_before), now = target.segment(edge);
+                    [&](const Segment& before, const Segment& now) {
                       return overlap(room(before, now), near.reach()) ? meet(path, before, now) : Verdict();
                     });
 }

@@ -4,13 +4,14 @@
 ///
 /// Method: an uncut edge between two material nodes is one current segment, from the real corner of its lower node to
 /// that of its upper node; an edge of the skin that no blade has cut is the one from its material node to the skin,
-/// among the corners of that node's copy. It is cut when an odd number of the sweep's triangles cross it, by the exact
+/// among the corners of that node's copy; and the segments of the skin in faces and cells (grid/skeleton.h) are met as
+/// edges are, so that where a cut meets the skin is found, and not inferred. It is cut when an odd number of the sweep's triangles cross it, by the exact
 /// predicates of geometry/predicates.h; boxes keep most pairs away from them. The normal is pulled back to rest
 /// (target.h).
 ///
 /// Who cuts a body often keeps boxes around its edges (edge_boxes.h) and hands them over, fitted to the corners'
 /// places: then the time goes with the area that is cut. Without them every edge is looked at. The result is the same,
-/// bit by bit, but for edges of the skin that reach further from their block than four times the longest edge of the
+/// bit by bit, but for edges and segments of the skin that reach further from their block than four times the longest edge of the
 /// body.
 ///
 /// A body that moves is met in relative motion (moving_edge.h): what a blade sweeps in successive steps leaves no gap
@@ -26,7 +27,8 @@ namespace kerf::cut {
 
 struct SweepCuts {
   std::vector<grid::EdgeCut> cuts;    ///< ordered by edge
-  std::size_t n_double_crossings = 0; ///< edges crossed 2, 4, ... times: left uncut
+  std::vector<grid::SkinCut> of_skin; ///< ordered by segment
+  std::size_t n_double_crossings = 0; ///< edges and segments crossed 2, 4, ... times: left uncut
 };
 
 /// The edges that `sweep` (triangles [m], world frame) cuts, when the corners are at `x` [m, world frame, one a

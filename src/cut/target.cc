@@ -5,8 +5,12 @@
 #include "grid/shape.h"
 
 #include <algorithm>
+#include <bit>
+#include <limits>
 
 namespace kerf::cut {
+
+namespace cube = grid::cube;
 
 namespace {
 
@@ -15,7 +19,7 @@ constexpr std::size_t edges_per_chunk = 4096, blocks_per_chunk = 16;
 /// dx/dX of a copy at a point of the unit cube.
 Mat3 deformation_gradient(const grid::Copy& copy, const Points& x, const double h, const Vec3& at) {
   Mat3 F = Mat3::Zero();
-  for (int v = 0; v < grid::cube::n_vertices; ++v)
+  for (int v = 0; v < cube::n_vertices; ++v)
     F += x[copy.corners[v].value] * grid::shape_gradient(v, at).transpose() / h;
   return F;
 }
@@ -28,8 +32,13 @@ SweepCuts joined(const std::size_t n, const Fill& fill) {
   SweepCuts result;
   for (const SweepCuts& part : parts) {
     result.cuts.insert(result.cuts.end(), part.cuts.begin(), part.cuts.end());
+    result.of_skin.insert(result.of_skin.end(), part.of_skin.begin(), part.of_skin.end());
     result.n_double_crossings += part.n_double_crossings;
   }
+  std::sort(result.cuts.begin(), result.cuts.end(),
+            [](const grid::EdgeCut& a, const grid::EdgeCut& b) { return a.edge < b.edge; });
+  std::sort(result.of_skin.begin(), result.of_skin.end(),
+            [](const grid::SkinCut& a, const grid::SkinCut& b) { return a.segment < b.segment; });
   return result;
 }
 
@@ -56,53 +65,52 @@ Target::Target(const grid::Solid& solid, const Points& x_before, const Points& x
     require_finite(x);
 }
 
-Segment Target::segment(const grid::EdgeId edge, const Points& x) const { return ends_of(solid_, edge).segment(x); }
-
-SweepCuts Target::cut(const grid::CutLabel label, const Nearness& near,
-                      const std::function<Verdict(grid::EdgeId)>& judge) const {
+SweepCuts Target::cut(const grid::CutLabel label, const Nearness& near, const Judge& judge) const {
   return boxes_ ? cut_near(label, near, judge) : cut_anywhere(label, judge);
 }
 
-SweepCuts Target::cut_anywhere(const grid::CutLabel label, const std::function<Verdict(grid::EdgeId)>& judge) const {
-  return joined((solid_.grid.n_edges() + edges_per_chunk - 1) / edges_per_chunk,
-                [&](const std::size_t k, SweepCuts& part) {
-                  const std::size_t end = std::min(solid_.grid.n_edges(), (k + 1) * edges_per_chunk);
-                  for (std::size_t e = k * edges_per_chunk; e < end; ++e)
-                    if (const grid::EdgeId edge(e); solid_.cuts.can_be_cut(solid_.grid, edge))
-                      add(edge, judge(edge), label, part);
-                });
-}
-
-SweepCuts Target::cut_near(const grid::CutLabel label, const Nearness& near,
-                           const std::function<Verdict(grid::EdgeId)>& judge) const {
-  const auto is_near = [&](const Box& box) { return geometry::overlap(box, near.reach) && near.may_meet(box); };
-  const double longest = std::max(boxes_->longest(), solid_.grid.h());
-  const auto blocks = boxes_->blocks([&](const EdgeBoxes::Block& block) { return is_near(with_skin(block, longest)); });
-  const std::size_t n = (blocks.size() + blocks_per_chunk - 1) / blocks_per_chunk;
-  SweepCuts result = joined(n, [&](const std::size_t k, SweepCuts& part) {
-    const auto add_judged = [&](const grid::EdgeId edge) { add(edge, judge(edge), label, part); };
-    for (std::size_t b = k * blocks_per_chunk; b < std::min(blocks.size(), (k + 1) * blocks_per_chunk); ++b) {
-      judge_skin(blocks[b], near, longest, add_judged);
-      if (!is_near(boxes_->block(blocks[b]).box))
-        continue;
-      boxes_->for_each_edge(blocks[b], [&](const grid::CornerId lower, const grid::CornerId upper, const int axis) {
-        const Segment before{x_before_[lower.value], x_before_[upper.value]}, now{x_[lower.value], x_[upper.value]};
-        if (!geometry::overlap(room(before, now), near.reach))
-          return;
-        const grid::EdgeId edge = solid_.grid.edge(solid_.complex.node[lower], axis);
-        if (solid_.cuts.can_be_cut(solid_.grid, edge))
-          add_judged(edge);
-      });
+SweepCuts Target::cut_anywhere(const grid::CutLabel label, const Judge& judge) const {
+  const std::size_t n = std::max(solid_.grid.n_edges(), solid_.grid.n_cells());
+  return joined((n + edges_per_chunk - 1) / edges_per_chunk, [&](const std::size_t k, SweepCuts& part) {
+    for (std::size_t i = k * edges_per_chunk; i < (k + 1) * edges_per_chunk; ++i) {
+      if (i < solid_.grid.n_edges() && solid_.cuts.can_be_cut(solid_.grid, grid::EdgeId(i)))
+        this->judge(grid::EdgeId(i), label, judge, part);
+      if (i < solid_.grid.n_cells() && grid::material_of(solid_.grid, grid::CellId(i)) != 0xff)
+        judge_skin(grid::CellId(i), nullptr, label, judge, part);
     }
   });
-  std::sort(result.cuts.begin(), result.cuts.end(),
-            [](const grid::EdgeCut& a, const grid::EdgeCut& b) { return a.edge < b.edge; });
-  return result;
 }
 
-void Target::judge_skin(const std::uint32_t block, const Nearness& near, const double longest,
-                        const std::function<void(grid::EdgeId)>& judge) const {
-  const double room_around = reach_of_skin * longest;
+SweepCuts Target::cut_near(const grid::CutLabel label, const Nearness& near, const Judge& judge) const {
+  const auto is_near = [&](const Box& box) { return geometry::overlap(box, near.reach) && near.may_meet(box); };
+  const auto blocks =
+    boxes_->blocks([&](const EdgeBoxes::Block& block) { return is_near(with_skin(block, longest())); });
+  const std::size_t n = (blocks.size() + blocks_per_chunk - 1) / blocks_per_chunk;
+  return joined(n, [&](const std::size_t k, SweepCuts& part) {
+    for (std::size_t b = k * blocks_per_chunk; b < std::min(blocks.size(), (k + 1) * blocks_per_chunk); ++b) {
+      judge_skin_edges(blocks[b], near, label, judge, part);
+      boxes_->for_each_skin_cell(blocks[b], [&](const grid::CellId c) { judge_skin(c, &near, label, judge, part); });
+      if (is_near(boxes_->block(blocks[b]).box))
+        judge_edges(blocks[b], near, label, judge, part);
+    }
+  });
+}
+
+void Target::judge_edges(const std::uint32_t block, const Nearness& near, const grid::CutLabel label,
+                         const Judge& judge, SweepCuts& result) const {
+  boxes_->for_each_edge(block, [&](const grid::CornerId lower, const grid::CornerId upper, const int axis) {
+    const Segment before{x_before_[lower.value], x_before_[upper.value]}, now{x_[lower.value], x_[upper.value]};
+    if (!geometry::overlap(room(before, now), near.reach))
+      return;
+    const grid::EdgeId edge = solid_.grid.edge(solid_.complex.node[lower], axis);
+    if (solid_.cuts.can_be_cut(solid_.grid, edge))
+      this->judge(edge, label, judge, result);
+  });
+}
+
+void Target::judge_skin_edges(const std::uint32_t block, const Nearness& near, const grid::CutLabel label,
+                              const Judge& judge, SweepCuts& result) const {
+  const double room_around = reach_of_skin * longest();
   const auto is_near = [&](const Vec3& before, const Vec3& now) {
     return ((near.reach.lower - before.cwiseMax(now)).array() <= room_around).all() &&
            ((before.cwiseMin(now) - near.reach.upper).array() <= room_around).all();
@@ -112,18 +120,40 @@ void Target::judge_skin(const std::uint32_t block, const Nearness& near, const d
       return;
     const EdgeEnds ends = ends_of(solid_, edge);
     if (geometry::overlap(room(ends.segment(x_before_), ends.segment(x_)), near.reach))
-      judge(edge);
+      this->judge(edge, label, judge, result);
   });
 }
 
-void Target::add(const grid::EdgeId edge, const Verdict& verdict, const grid::CutLabel label, SweepCuts& result) const {
+void Target::judge(const grid::EdgeId edge, const grid::CutLabel label, const Judge& judge, SweepCuts& result) const {
+  const EdgeEnds ends = ends_of(solid_, edge);
+  const Verdict verdict = judge(ends.segment(x_before_), ends.segment(x_));
   if (verdict.n_crossings % 2 == 1) {
-    const EdgeEnds ends = ends_of(solid_, edge);
-    const double t = ends.from + verdict.t * (ends.to - ends.from), least = grid::min_edge_parameter;
-    if ((ends.from == 0 || t > ends.from + least) && (ends.to == 1 || t < ends.to - least)) // else on the skin itself
-      result.cuts.push_back({edge, t, pulled_back(solid_, x_, edge, t, verdict.normal), label});
+    const double t = ends.from + verdict.t * (ends.to - ends.from);
+    result.cuts.push_back({edge, t, pulled_back(solid_, x_, edge, t, verdict.normal), label});
   } else if (verdict.n_crossings > 0)
     ++result.n_double_crossings;
+}
+
+/// In a face the cell below it judges, where there is one. `near` is null where all are judged.
+void Target::judge_skin(const grid::CellId cell, const Nearness* const near, const grid::CutLabel label,
+                        const Judge& judge, SweepCuts& result) const {
+  const SkinNow skin(solid_, cell);
+  if (near) {
+    const Box box = skin.box(x_before_, x_);
+    if (!geometry::overlap(box, near->reach) || !near->may_meet(box))
+      return;
+  }
+  skin.for_each_uncut([&](const int segment) {
+    const Segment before = skin.segment(segment, x_before_), now = skin.segment(segment, x_);
+    if (near && !geometry::overlap(room(before, now), near->reach))
+      return;
+    const Verdict verdict = judge(before, now);
+    if (verdict.n_crossings % 2 == 1)
+      result.of_skin.push_back({grid::skin_segment(solid_.grid, cell, segment), verdict.t,
+                                skin.pulled_back(segment, verdict.t, x_, verdict.normal), label});
+    else if (verdict.n_crossings > 0)
+      ++result.n_double_crossings;
+  });
 }
 
 EdgeEnds ends_of(const grid::Solid& solid, const grid::EdgeId edge) {
@@ -154,12 +184,83 @@ Mat3 gradient_on(const grid::Solid& solid, const Points& x, const grid::EdgeId e
   return sum;
 }
 
+namespace {
+
+Vec3 unit_normal_at_rest(const Mat3& F, const Vec3& normal, const Vec3& otherwise) {
+  const Vec3 at_rest = F.transpose() * normal;
+  const double length = at_rest.norm();
+  return length > 0 ? Vec3(at_rest / length) : otherwise;
+}
+
+} // namespace
+
 Vec3 pulled_back(const grid::Solid& solid, const Points& x, const grid::EdgeId edge, const double t,
                  const Vec3& normal) {
-  const Vec3 at_rest = gradient_on(solid, x, edge, t).transpose() * normal;
   // Along the edge it is n . (q - p) / h, which is 0 only by rounding, since the surface is crossed.
-  const double length = at_rest.norm();
-  return length > 0 ? Vec3(at_rest / length) : Vec3::Unit(solid.grid.axis(edge));
+  return unit_normal_at_rest(gradient_on(solid, x, edge, t), normal, Vec3::Unit(solid.grid.axis(edge)));
+}
+
+SkinNow::SkinNow(const grid::Solid& solid, const grid::CellId cell)
+  : solid_(solid), cell_(cell), cuts_(grid::cuts_of(solid, cell)), skeleton_(cuts_.skeleton()) {}
+
+Box SkinNow::box(const Points& x_before, const Points& x) const {
+  Box box{Vec3::Constant(std::numeric_limits<double>::infinity()), {}};
+  box.upper = -box.lower;
+  for (const grid::CopyId c : solid_.complex.copies_of(cell_))
+    for (const grid::CornerId corner : solid_.complex.copies[c].corners)
+      for (const Vec3& p : {x_before[corner.value], x[corner.value]}) {
+        box.lower = box.lower.cwiseMin(p);
+        box.upper = box.upper.cwiseMax(p);
+      }
+  return box;
+}
+
+const grid::Copy& SkinNow::copy_with(const int item) const {
+  const auto& complex = solid_.complex;
+  return complex
+    .copies[cuts_.blades != 0 ? complex.copy_with(cell_, item) : complex.copy_at(cell_, skeleton_.vertex[item])];
+}
+
+/// In coordinates of the cell [1].
+Vec3 SkinNow::local(const int item) const {
+  return (grid::item_point(solid_, cell_, item) - solid_.grid.origin(cell_)) / solid_.grid.h();
+}
+
+Segment SkinNow::segment(const int segment, const Points& x) const {
+  const auto& [a, b] = skeleton_.segment[segment].ends;
+  return {place(a, x), place(b, x)};
+}
+
+/// The same bits in all cells that know the item: on a line as an edge of the grid ends, in a face by its corners alone.
+Vec3 SkinNow::place(const int item, const Points& x) const {
+  const grid::Copy& copy = copy_with(item);
+  const auto corner = [&](const int v) -> const Vec3& { return x[copy.corners[v].value]; };
+  if (item < grid::skeleton::first_on_arc) {
+    const int line = item - grid::skeleton::first_on_line;
+    const Vec3 &lower = corner(cube::line_vertices[line][0]), &upper = corner(cube::line_vertices[line][1]);
+    return lower + solid_.cuts.find_outer(solid_.grid.edges(cell_)[line])->t * (upper - lower);
+  }
+  if (item < grid::skeleton::first_middle) {
+    const int face = (item - grid::skeleton::first_on_arc) / 2, axis = cube::face_axis(face);
+    const auto& vertices = cube::face_vertices[face];
+    const Vec3 p = grid::face_point(solid_, solid_.grid.faces(cell_)[face]) -
+                   solid_.grid.position(solid_.grid.nodes(cell_)[vertices[0]]);
+    const double u = p[(axis + 1) % 3] / solid_.grid.h(), v = p[(axis + 2) % 3] / solid_.grid.h();
+    return (1 - v) * ((1 - u) * corner(vertices[0]) + u * corner(vertices[1])) +
+           v * ((1 - u) * corner(vertices[2]) + u * corner(vertices[3]));
+  }
+  const Vec3 at = local(item);
+  Vec3 sum = Vec3::Zero();
+  for (int v = 0; v < cube::n_vertices; ++v)
+    sum += grid::shape(v, at) * corner(v);
+  return sum;
+}
+
+Vec3 SkinNow::pulled_back(const int segment, const double t, const Points& x, const Vec3& normal) const {
+  const auto& [a, b] = skeleton_.segment[segment].ends;
+  const Vec3 p = local(a), q = local(b);
+  const Mat3 F = deformation_gradient(copy_with(a), x, solid_.grid.h(), p + t * (q - p));
+  return unit_normal_at_rest(F, normal, (q - p).normalized());
 }
 
 } // namespace kerf::cut

@@ -2,8 +2,10 @@
 
 /// The body that is cut, edge by edge, as it stands now. An uncut edge between two material nodes is one current
 /// segment, from the real corner of its lower node to that of its upper node; an edge of the skin that is cut once is
-/// one from the real corner of its material node towards the virtual corner at its empty node, as far as the skin.
-/// Whoever cuts judges the segments one by one, all of them or those near the cut (edge_boxes.h).
+/// one from the real corner of its material node towards the virtual corner at its empty node, as far as the skin. A
+/// segment of the skin (grid/skeleton.h) that is not cut is one between two points of the skin, which lie among the
+/// corners of the copy that holds them. Whoever cuts judges the segments one by one, all of them or those near the cut
+/// (edge_boxes.h).
 ///
 /// Normals are pulled back to rest with the deformation gradient F = dx/dX at the cut, averaged over the copies around
 /// the edge: N ~ F^T n; and pushed forward as n ~ F^-T N.
@@ -12,6 +14,8 @@
 #include "cut/recut.h"
 #include "geometry/box_tree.h"
 
+#include <algorithm>
+#include <bit>
 #include <functional>
 
 namespace kerf::cut {
@@ -30,6 +34,9 @@ struct Verdict {
   double t = 0;               ///< of the crossing nearest to the lower node, in [0, 1] [1]
   Vec3 normal = Vec3::Zero(); ///< of the surface there, of any length, current configuration
 };
+
+/// How a surface meets a segment that was at one place, and is at another one now.
+using Judge = std::function<Verdict(const Segment& before, const Segment& now)>;
 
 /// Which edges a surface may meet: all others are not crossed.
 struct Nearness {
@@ -59,27 +66,64 @@ Mat3 gradient_on(const grid::Solid& solid, const Points& x, grid::EdgeId edge, d
 /// The unit normal at rest of a surface that cuts an edge at t with a current normal.
 Vec3 pulled_back(const grid::Solid& solid, const Points& x, grid::EdgeId edge, double t, const Vec3& normal);
 
+/// The skin of a cell as it stands.
+class SkinNow {
+ public:
+  /// The solid must outlive it.
+  SkinNow(const grid::Solid& solid, grid::CellId cell);
+
+  /// Around all corners of the cell's copies, before and now [m].
+  Box box(const Points& x_before, const Points& x) const;
+  /// Calls f(segment) for each segment of the skin that is not cut: spokes, and halves in those faces that have no cell
+  /// below, or below which this one lies.
+  template <class Function>
+  void for_each_uncut(const Function& f) const {
+    for (grid::Segments left = skeleton_.segments & ~grid::skeleton::lines & ~cuts_.blades; left != 0; left &= left - 1)
+      if (const int segment = std::countr_zero(left); is_own(segment))
+        f(segment);
+  }
+  /// Between its two items when the corners are at `x` [m].
+  Segment segment(int segment, const Points& x) const;
+  /// The unit normal at rest of a surface that cuts it at t with a current normal.
+  Vec3 pulled_back(int segment, double t, const Points& x, const Vec3& normal) const;
+
+ private:
+  bool is_own(const int segment) const {
+    const int face = (segment - grid::skeleton::first_half) / 4;
+    return segment >= grid::skeleton::first_spoke || face % 2 == 1 ||
+           !solid_.grid.cells(solid_.grid.faces(cell_)[face])[0].valid();
+  }
+  const grid::Copy& copy_with(int item) const;
+  Vec3 local(int item) const;
+  Vec3 place(int item, const Points& x) const;
+
+  const grid::Solid& solid_;
+  grid::CellId cell_;
+  grid::CellCuts cuts_;
+  const grid::Skeleton& skeleton_;
+};
+
 class Target {
  public:
   /// Everything must outlive it. `boxes` are fitted to x_before and x, or null: then every edge is judged. Throws
   /// NumericalError when a corner is not at a finite position.
   Target(const grid::Solid& solid, const Points& x_before, const Points& x, const EdgeBoxes* boxes);
 
-  Segment segment(grid::EdgeId edge) const { return segment(edge, x_); }
-  /// Where the edge is when the corners are at `x`.
-  Segment segment(grid::EdgeId edge, const Points& x) const;
-
-  /// Cuts every edge whose segment `judge` finds crossed an odd number of times. Edges are judged in
-  /// parallel; the result is ordered by edge.
-  SweepCuts cut(grid::CutLabel label, const Nearness& near, const std::function<Verdict(grid::EdgeId)>& judge) const;
+  /// Cuts every edge and every segment of the skin that `judge` finds crossed an odd number of times. They are judged in
+  /// parallel; the result is ordered.
+  SweepCuts cut(grid::CutLabel label, const Nearness& near, const Judge& judge) const;
 
  private:
-  SweepCuts cut_anywhere(grid::CutLabel label, const std::function<Verdict(grid::EdgeId)>& judge) const;
-  SweepCuts cut_near(grid::CutLabel label, const Nearness& near,
-                     const std::function<Verdict(grid::EdgeId)>& judge) const;
-  void judge_skin(std::uint32_t block, const Nearness& near, double longest,
-                  const std::function<void(grid::EdgeId)>& judge) const;
-  void add(grid::EdgeId edge, const Verdict& verdict, grid::CutLabel label, SweepCuts& result) const;
+  SweepCuts cut_anywhere(grid::CutLabel label, const Judge& judge) const;
+  SweepCuts cut_near(grid::CutLabel label, const Nearness& near, const Judge& judge) const;
+  void judge_edges(std::uint32_t block, const Nearness& near, grid::CutLabel label, const Judge& judge,
+                   SweepCuts& result) const;
+  void judge_skin_edges(std::uint32_t block, const Nearness& near, grid::CutLabel label, const Judge& judge,
+                        SweepCuts& result) const;
+  void judge_skin(grid::CellId cell, const Nearness* near, grid::CutLabel label, const Judge& judge,
+                  SweepCuts& result) const;
+  void judge(grid::EdgeId edge, grid::CutLabel label, const Judge& judge, SweepCuts& result) const;
+  double longest() const { return std::max(boxes_->longest(), solid_.grid.h()); }
 
   const grid::Solid& solid_;
   const Points& x_before_;

@@ -8,18 +8,12 @@ namespace kerf::fem {
 
 namespace {
 
-/// Which way a point would move as the front does, unit, and how far it is from the front [m].
-struct Growth {
-  Vec3 direction = Vec3::Zero();
-  double distance = 0;
-};
-
-Growth growth_at(const LineFront& front, const Vec3& X) {
+Growth of_front(const LineFront& front, const Vec3& X) {
   const Vec3 along = (front.second - front.first).normalized(), d = X - front.first;
   return {front.growth, (d - d.dot(along) * along).norm()};
 }
 
-Growth growth_at(const CircleFront& front, const Vec3& X) {
+Growth of_front(const CircleFront& front, const Vec3& X) {
   const Vec3 d = X - front.centre;
   const double above = d.dot(front.normal);
   const Vec3 out = d - above * front.normal;
@@ -36,6 +30,10 @@ double part(const Tubes& tubes, const double distance) {
 }
 
 } // namespace
+
+Growth growth_at(const CrackFront& front, const Vec3& X) {
+  return std::visit([&](const auto& f) { return of_front(f, X); }, front);
+}
 
 double length(const CrackFront& front) {
   return std::visit([](const auto& f) { return length_of(f); }, front);
@@ -58,7 +56,7 @@ std::vector<Piece> domain(const Hexahedra& model, const Points& rest, const Poin
     Mat3 growth = Mat3::Zero();
     for (int a = 0; a < 8; ++a) {
       const Vec3& X = rest[model.incidence().corners(copy)[a]];
-      const auto [direction, distance] = std::visit([&](const auto& f) { return growth_at(f, X); }, front);
+      const auto [direction, distance] = growth_at(front, X);
       growth += part(tubes, distance) * direction * element.gradient[a].transpose();
     }
     if (!growth.isZero(1e-12 / tubes.outer))

@@ -43,6 +43,14 @@ struct Tubes {
   double inner = 0, outer = 0;
 };
 
+/// Which way a point at X would move as the front does, unit or zero, and how far it is from the front, which a line goes on
+/// beyond its ends [m].
+struct Growth {
+  Vec3 direction = Vec3::Zero();
+  double distance = 0;
+};
+Growth growth_at(const CrackFront& front, const Vec3& X);
+
 /// Length of the front [m].
 double length(const CrackFront& front);
 

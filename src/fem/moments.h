@@ -22,7 +22,7 @@ Moments octant_moments(const grid::Solid& solid, grid::CellId cell, unsigned ver
 /// volumes (grid/material.h): it may be no distribution of material at all, and an element of it would gain energy.
 Moments without_negative_squares(const Moments& m);
 /// Moments of all material of a copy. Material of less than 1e-12 of a cube counts as that much, spread over the whole
-/// cube: for where the skin is bent, the volume of rinds may vanish.
+/// cube: for what a blade cuts off the skin alone may have hardly any.
 Moments material_moments(const grid::Solid& solid, const grid::Copy& copy);
 
 } // namespace kerf::fem

@@ -25,13 +25,17 @@ struct CutCell {
   Parts parts;
 };
 
-/// The lower end of the lowest of some lines.
-int first_vertex_of_rinds(const unsigned rinds) { return cube::line_vertices[std::countr_zero(rinds)][0]; }
+/// A vertex of the cube that an item touches: any will do for a middle.
+int vertex_at(const int item) {
+  if (item < skeleton::first_on_line)
+    return item;
+  if (item < skeleton::first_on_arc)
+    return cube::line_vertices[item - skeleton::first_on_line][0];
+  return item < skeleton::first_middle ? cube::face_vertices[(item - skeleton::first_on_arc) / 2][0] : 0;
+}
 
 /// Parts come in this order.
-int rank(const Copy& copy) {
-  return copy.nodes != 0 ? std::countr_zero(copy.nodes) : cube::n_vertices + std::countr_zero(copy.rinds);
-}
+int rank(const Copy& copy) { return std::countr_zero(copy.items()); }
 
 /// The cells with a cut edge, ascending.
 std::vector<CutCell> find_cut_cells(const Solid& solid) {
@@ -60,7 +64,7 @@ void make_copies(const Grid& grid, const std::vector<CutCell>& cut_cells, CellCo
     }
     for (const Part& part : cut->parts) {
       const bool is_last = &part + 1 == cut->parts.end();
-      complex.copies.push_back({c, part.nodes, part.rinds, {}, is_last ? CopyId() : CopyId(complex.n_copies() + 1)});
+      complex.copies.push_back({c, part.nodes, part.skin, {}, is_last ? CopyId() : CopyId(complex.n_copies() + 1)});
     }
     ++cut;
   }
@@ -153,13 +157,12 @@ class Update {
     change_.n_corners_before = solid.complex.n_corners();
   }
 
-  CutChange run(std::vector<EdgeId> new_edges) {
+  CutChange run(std::vector<EdgeId> new_edges, std::vector<SkinSegment> new_segments) {
     change_.edges = std::move(new_edges);
-    change_.parted.assign(solid_.cuts.newly_parted().begin(), solid_.cuts.newly_parted().end());
-    for (const TouchedCell& touched : touched_cells(solid_.grid, change_.edges)) {
-      change_.cells.push_back(touched.cell);
-      split(touched.cell);
-    }
+    change_.segments = std::move(new_segments);
+    change_.cells = touched_cells(solid_.grid, change_.edges, change_.segments);
+    for (const CellId cell : change_.cells)
+      split(cell);
     std::sort(slots_.begin(), slots_.end());
     for (auto slot = slots_.begin(); slot != slots_.end();) {
       const NodeId node = slot->node;
@@ -188,12 +191,11 @@ class Update {
 
   void split(const CellId cell) {
     const CellCuts cell_cuts = cuts_of(solid_, cell);
-    const Parts parts = parts_of(cell_cuts);
-    const unsigned rinds = new_rinds(cell, cell_cuts);
+    const Parts parts = parts_of(cell_cuts), before = unsaid_parts(cell, cell_cuts);
     bool splits = false;
     for (CopyId c = solid_.complex.first_copy[cell]; c.valid();) {
       const CopyId next = solid_.complex.copies[c].next;
-      splits |= divide(c, parts, rinds);
+      splits |= divide(c, parts, before);
       c = next;
     }
     if (splits) {
@@ -204,31 +206,33 @@ class Update {
     }
   }
 
-  /// Lines that have been cut a second time since: their rinds are in the copies of their nodes still.
-  unsigned new_rinds(const CellId cell, const CellCuts& cell_cuts) const {
-    unsigned known = 0;
+  /// Where blades have cut at the skin of a cell for the first time, what its copies were, points of the skin included;
+  /// else none.
+  Parts unsaid_parts(const CellId cell, const CellCuts& cell_cuts) const {
+    if (!cell_cuts.is_cut_at_skin())
+      return {};
     for (const CopyId c : solid_.complex.copies_of(cell))
-      known |= solid_.complex.copies[c].rinds;
-    return cell_cuts.twice & ~known;
+      if (solid_.complex.copies[c].skin != 0)
+        return {};
+    return whole_parts_of({cell_cuts.material, cell_cuts.cut, 0});
   }
 
   /// The first of the parts that a copy falls into keeps it; the others start with its corners, and stand behind it.
   /// Returns whether there are several.
-  bool divide(const CopyId c, const Parts& parts, const unsigned new_rinds) {
+  bool divide(const CopyId c, const Parts& parts, const Parts& before) {
     Part whole = solid_.complex.copies[c].part();
-    for (int line = 0; line < cube::n_lines; ++line)
-      if (const auto& [v, w] = cube::line_vertices[line];
-          new_rinds >> line & 1 && (whole.nodes >> v | whole.nodes >> w) & 1)
-        whole.rinds |= static_cast<std::uint16_t>(1u << line);
+    for (const Part& part : before)
+      if ((part.nodes & whole.nodes) != 0)
+        whole = part;
     bool is_first = true, is_split = false;
     for (const Part& part : parts) {
-      if ((part.nodes & whole.nodes) == 0 && (part.rinds & whole.rinds) == 0)
+      if ((part.items() & whole.items()) == 0)
         continue;
-      if ((part.nodes & ~whole.nodes) != 0 || (part.rinds & ~whole.rinds) != 0)
+      if ((part.items() & ~whole.items()) != 0)
         throw std::logic_error("a cut has joined what was parted");
       if (!is_first)
         add_copy(c, part);
-      else if (part.nodes != solid_.complex.copies[c].nodes || part.rinds != solid_.complex.copies[c].rinds)
+      else if (part != solid_.complex.copies[c].part())
         set_part(c, part);
       is_split |= !is_first;
       is_first = false;
@@ -240,7 +244,7 @@ class Update {
 
   void set_part(const CopyId c, const Part& part) {
     solid_.complex.copies[c].nodes = part.nodes;
-    solid_.complex.copies[c].rinds = part.rinds;
+    solid_.complex.copies[c].skin = part.skin;
     change_.copies.push_back(c);
   }
 
@@ -253,7 +257,7 @@ class Update {
   }
 
   void sort_copies(const CellId cell) {
-    std::array<CopyId, 16> copies;
+    std::array<CopyId, skeleton::n_items> copies;
     int n = 0;
     for (const CopyId c : solid_.complex.copies_of(cell))
       copies[n++] = c;
@@ -304,9 +308,9 @@ CopyId CellComplex::copy_at(const CellId cell, const int vertex) const {
   return {};
 }
 
-CopyId CellComplex::copy_with_rind(const CellId cell, const int line) const {
+CopyId CellComplex::copy_with(const CellId cell, const int item) const {
   for (CopyId c = first_copy[cell]; c.valid(); c = copies[c].next)
-    if (copies[c].rinds >> line & 1)
+    if (copies[c].items() >> item & 1)
       return c;
   return {};
 }
@@ -324,23 +328,17 @@ CellComplex build_complex(const Solid& solid) {
   return complex;
 }
 
-CutChange update_complex(Solid& solid, std::vector<EdgeId> new_edges) {
-  return Update(solid).run(std::move(new_edges));
+CutChange update_complex(Solid& solid, std::vector<EdgeId> new_edges, std::vector<SkinSegment> new_segments) {
+  return Update(solid).run(std::move(new_edges), std::move(new_segments));
 }
 
 Pieces pieces(const CellComplex& complex) {
-  // All copies around a material node that hold it are glued, and so are those around an edge that hold its rind: they
-  // share a corner there.
+  // All copies around an item that hold it are glued: they share corners there.
   UnionFind corners(complex.n_corners());
-  const auto first = [](const Copy& copy) {
-    return copy.corners[copy.nodes != 0 ? std::countr_zero(copy.nodes) : first_vertex_of_rinds(copy.rinds)].value;
-  };
-  for (const Copy& copy : complex.copies) {
-    for (unsigned left = copy.nodes; left != 0; left &= left - 1)
-      corners.unite(first(copy), copy.corners[std::countr_zero(left)].value);
-    for (unsigned left = copy.rinds; left != 0; left &= left - 1)
-      corners.unite(first(copy), copy.corners[first_vertex_of_rinds(left)].value);
-  }
+  const auto first = [](const Copy& copy) { return copy.corners[vertex_at(std::countr_zero(copy.items()))].value; };
+  for (const Copy& copy : complex.copies)
+    for (Items left = copy.items(); left != 0; left &= left - 1)
+      corners.unite(first(copy), copy.corners[vertex_at(std::countr_zero(left))].value);
   Pieces result;
   Table<CornerId, std::uint32_t> number(complex.n_corners(), none);
   result.piece.reserve(complex.n_copies());

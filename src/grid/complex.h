@@ -1,13 +1,13 @@
 #pragma once
 
 /// The cells, duplicated once per connected component (the virtual node algorithm of Molino, Bao and Fedkiw 2004, on
-/// cubes; thesis §2.4.2). Two copies in face-adjacent cells that share a material node, or a rind (cuts.h), on the
-/// common face are glued along the whole face. Corners are the node instances that come out of it, the unknowns of
+/// cubes; thesis §2.4.2). Two copies in face-adjacent cells that share a material node, or a point of the skin (parts.h),
+/// on the common face are glued along the whole face. Corners are the node instances that come out of it, the unknowns of
 /// every physics.
 ///
 /// A cut splits copies, and a corner depends on the copies of the (up to eight) cells around its node alone. So an
 /// update looks at the cells around the new cut edges and at the nodes of those that split; all that is there keeps its
-/// name: a copy the part (parts.h) with its lowest vertex, or rind, a corner the class with the node's own material,
+/// name: a copy the part (parts.h) with its lowest item, a corner the class with the node's own material,
 /// else the first one; what is new comes last. Names depend on the sequence of cuts, the complex up to names does not.
 
 #include "grid/parts.h"
@@ -21,13 +21,14 @@ using CornerId = Id<struct CornerTag>;
 
 struct Copy {
   CellId cell;
-  std::uint8_t nodes = 0;          ///< bits of its material nodes; none where a blade has cut off rinds alone
-  std::uint16_t rinds = 0;         ///< bits of its rinds, by the line of the cell
+  std::uint8_t nodes = 0;          ///< bits of its material nodes; none where a blade has cut off skin alone
+  std::uint32_t skin = 0;          ///< bits of its points of the skin, where blades have cut that (Part)
   std::array<CornerId, 8> corners; ///< in deal.II's vertex order
   CopyId next;                     ///< the cell's next copy, by its part (parts.h); invalid for the last
 
-  Part part() const { return {nodes, rinds}; }
-  void archive(Archive& a) { a(cell, nodes, rinds, corners, next); }
+  Part part() const { return {nodes, skin}; }
+  Items items() const { return part().items(); }
+  void archive(Archive& a) { a(cell, nodes, skin, corners, next); }
 };
 
 /// The copies of one cell: for (const CopyId c : complex.copies_of(cell)).
@@ -65,8 +66,8 @@ struct CellComplex {
   CopiesOfCell copies_of(CellId cell) const { return {copies, first_copy[cell]}; }
   /// The copy of `cell` whose component holds the material node at `vertex`; invalid when that node is empty.
   CopyId copy_at(CellId cell, int vertex) const;
-  /// The copy of `cell` with the rind of `line`; invalid when there is none.
-  CopyId copy_with_rind(CellId cell, int line) const;
+  /// The copy of `cell` with an item of its skeleton that is a node, or that it has said to hold; invalid when none does.
+  CopyId copy_with(CellId cell, int item) const;
   /// Memory of all tables [B].
   std::size_t n_bytes() const;
   void archive(Archive& a) { a(copies, first_copy, node, real_corner); }
@@ -77,23 +78,21 @@ CellComplex build_complex(const Solid& solid);
 
 /// What a cut has done to a body. Placement, surface and physics follow it by this, and look for nothing themselves.
 struct CutChange {
-  std::vector<EdgeId> edges;  ///< that are cut now, and those cut before at faces whose skin is parted now
-  std::vector<FaceId> parted; ///< faces whose skin is parted now; ascending
-  std::vector<CellId> cells;  ///< around the edges; ascending
+  std::vector<EdgeId> edges;         ///< that are cut now
+  std::vector<SkinSegment> segments; ///< of the skin, that are cut now
+  std::vector<CellId> cells;         ///< around them; ascending
   std::size_t n_copies_before = 0, n_corners_before = 0;
-  std::vector<CopyId> copies;    ///< new, or divided, or with other rinds or corners than before; ascending
+  std::vector<CopyId> copies;    ///< new, or divided, or with other items or corners than before; ascending
   std::vector<CopyId> reshaped;  ///< these, and all whose material has another shape: those in the cells; ascending
   std::vector<CornerId> parents; ///< of the corners n_corners_before, ... in their order: where they came from
 
   /// Whether anything is cut.
-  bool any() const { return !edges.empty(); }
+  bool any() const { return !cells.empty(); }
 };
 
-/// Brings the complex up to date with edges that are cut, but were not when it was built or updated last (an edge may be
-/// named again: where the skin of a face at it is now said to be parted). What it costs depends on the new edges
-/// alone. Throws std::logic_error, and leaves the complex of no use, where the skin of a face now joins what was
-/// parted.
-CutChange update_complex(Solid& solid, std::vector<EdgeId> new_edges);
+/// Brings the complex up to date with edges and segments of the skin that are cut, but were not when it was built or
+/// updated last. What it costs depends on these alone.
+CutChange update_complex(Solid& solid, std::vector<EdgeId> new_edges, std::vector<SkinSegment> new_segments = {});
 
 /// Appends for each new corner what its parent has.
 template <class T>

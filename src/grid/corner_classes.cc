@@ -20,14 +20,14 @@ void CellsAround::complete(const Grid& grid) {
 
 CornerClasses::CornerClasses(const CellComplex& complex, const CellsAround& cells) {
   for (int v = 0; v < 8; ++v) {
-    first_slot_[v] = static_cast<std::uint8_t>(n_slots_);
+    first_slot_[v] = static_cast<std::uint16_t>(n_slots_);
     for (CopyId c = cells.at(v).valid() ? complex.first_copy[cells.at(v)] : CopyId(); c.valid();
          c = complex.copies[c].next) {
-      slots_[n_slots_] = {c, static_cast<std::uint8_t>(v), static_cast<std::uint8_t>(n_slots_)};
+      slots_[n_slots_] = {c, static_cast<std::uint8_t>(v), static_cast<std::uint16_t>(n_slots_)};
       parts_[n_slots_++] = complex.copies[c].part();
     }
   }
-  first_slot_[8] = static_cast<std::uint8_t>(n_slots_);
+  first_slot_[8] = static_cast<std::uint16_t>(n_slots_);
   n_classes_ = static_cast<int>(n_slots_);
   for (int v = 0; v < 8; ++v)
     for (int axis = 0; axis < 3; ++axis)
@@ -43,7 +43,7 @@ void CornerClasses::join_across(const int upper_vertex, const int axis) {
     for (int b = first_slot_[lower_vertex]; b < first_slot_[lower_vertex + 1]; ++b) {
       if (!are_glued(parts_[a], parts_[b], axis))
         continue;
-      const std::uint8_t p = slots_[a].class_number, q = slots_[b].class_number;
+      const std::uint16_t p = slots_[a].class_number, q = slots_[b].class_number;
       if (p == q)
         continue;
       --n_classes_;
@@ -54,8 +54,8 @@ void CornerClasses::join_across(const int upper_vertex, const int axis) {
 }
 
 void CornerClasses::number() {
-  std::array<std::uint8_t, max_slots> number_of;
-  std::uint8_t n = 0;
+  std::array<std::uint16_t, max_slots> number_of;
+  std::uint16_t n = 0;
   for (std::size_t i = 0; i < n_slots_; ++i) {
     auto& name = slots_[i].class_number; // the first slot of the class
     if (name == i)

@@ -22,12 +22,12 @@ class CellsAround {
 
 class CornerClasses {
  public:
-  static constexpr int max_slots = 128; ///< sixteen copies in each of eight cells
+  static constexpr int max_slots = 8 * skeleton::n_items; ///< copies in each of eight cells
 
   struct Slot {
     CopyId copy;
     std::uint8_t vertex;
-    std::uint8_t class_number; ///< from 0, in the order of the classes' first slots
+    std::uint16_t class_number; ///< from 0, in the order of the classes' first slots
   };
 
   CornerClasses(const CellComplex& complex, const CellsAround& cells);
@@ -41,8 +41,8 @@ class CornerClasses {
   void number();
 
   std::array<Slot, max_slots> slots_;
-  std::array<Part, max_slots> parts_;      // of the slots' copies
-  std::array<std::uint8_t, 9> first_slot_; // by vertex
+  std::array<Part, max_slots> parts_;       // of the slots' copies
+  std::array<std::uint16_t, 9> first_slot_; // by vertex
   std::size_t n_slots_ = 0;
   int n_classes_ = 0;
 };

@@ -1,6 +1,6 @@
 #include "grid/cuts.h"
 
-#include "grid/cube.h"
+#include "grid/parts.h"
 #include "grid/solid.h"
 
 #include <algorithm>
@@ -11,11 +11,10 @@ namespace kerf::grid {
 Cuts::Cuts(const Grid& grid)
   : edge_cut_(grid.n_edges()),
     outer_cut_(grid.n_edges()),
-    seam_(grid.n_faces()),
     face_point_(grid.n_faces()),
-    face_skin_point_(grid.n_faces()),
     cell_point_(grid.n_cells()),
-    cell_skin_point_(grid.n_cells()) {}
+    skin_of_face_(grid.n_faces()),
+    skin_of_cell_(grid.n_cells()) {}
 
 bool Cuts::can_be_cut(const Grid& grid, const EdgeId e) const {
   const auto& [lower, upper] = grid.ends(e);
@@ -28,7 +27,7 @@ void Cuts::add(const Grid& grid, EdgeCut cut) {
   cut.t = std::clamp(cut.t, min_edge_parameter, 1 - min_edge_parameter);
   if (index != none) {
     const double t_skin = cuts_[index].t;
-    const bool is_inside = grid.is_material(grid.ends(cut.edge)[0]) ? cut.t < t_skin : cut.t > t_skin;
+    const bool is_inside = grid.is_material(grid.ends(cut.edge)[0]) ? cut.t <= t_skin : cut.t >= t_skin;
     if (!can_be_cut(grid, cut.edge) || !is_inside)
       throw std::logic_error("an edge is cut once; one of the skin once more, below the skin");
     outer_cut_.at(cut.edge) = index;
@@ -38,16 +37,92 @@ void Cuts::add(const Grid& grid, EdgeCut cut) {
   cuts_.push_back(cut);
 }
 
-void Cuts::set_seam(const FaceId f, const Seam seam) {
-  std::uint32_t& now = seam_.at(f);
-  if (seam == Seam::parted && now != static_cast<std::uint32_t>(seam))
-    newly_parted_.insert(std::ranges::lower_bound(newly_parted_, f), f);
-  now = static_cast<std::uint32_t>(seam);
+std::uint32_t Cuts::index(const SkinSegment& segment) const {
+  if (segment.face.valid()) {
+    const std::uint32_t i = skin_of_face_[segment.face];
+    return i == none ? none : faces_[i][SkinOfFace::halves + segment.place];
+  }
+  const std::uint32_t i = skin_of_cell_[segment.cell];
+  return i == none ? none : cells_[i][SkinOfCell::spokes + segment.place];
+}
+
+std::uint32_t& Cuts::entry(const SkinSegment& segment) {
+  return segment.face.valid() ? face(segment.face)[SkinOfFace::halves + segment.place]
+                              : cell(segment.cell)[SkinOfCell::spokes + segment.place];
+}
+
+void Cuts::add(SkinCut cut) {
+  std::uint32_t& index = entry(cut.segment);
+  if (index != none)
+    throw std::logic_error("a segment of the skin is cut once");
+  cut.t = std::clamp(cut.t, min_edge_parameter, 1 - min_edge_parameter);
+  index = static_cast<std::uint32_t>(skin_cuts_.size());
+  skin_cuts_.push_back(cut);
+}
+
+void Cuts::take_back(const std::span<const EdgeId> edges) {
+  std::size_t n = n_settled_;
+  for (std::size_t i = n; i < cuts_.size(); ++i) {
+    const EdgeId e = cuts_[i].edge;
+    const bool is_outer = outer_cut_[e] == i;
+    if (is_outer || !std::ranges::binary_search(edges, e)) {
+      (is_outer ? outer_cut_ : edge_cut_).at(e) = static_cast<std::uint32_t>(n);
+      cuts_[n++] = cuts_[i];
+      continue;
+    }
+    edge_cut_.at(e) = outer_cut_[e];
+    if (outer_cut_[e] != none) {
+      outer_cut_.at(e) = none;
+      --n_cut_twice_;
+    }
+  }
+  cuts_.resize(n);
+}
+
+void Cuts::take_back(const std::span<const SkinSegment> segments) {
+  std::size_t n = n_settled_of_skin_;
+  for (std::size_t i = n; i < skin_cuts_.size(); ++i) {
+    const bool is_taken = std::ranges::binary_search(segments, skin_cuts_[i].segment);
+    entry(skin_cuts_[i].segment) = is_taken ? none : static_cast<std::uint32_t>(n);
+    if (!is_taken)
+      skin_cuts_[n++] = skin_cuts_[i];
+  }
+  skin_cuts_.resize(n);
+}
+
+const Vec3* Cuts::inner_point(const FaceId f, const int arc) const {
+  const std::uint32_t i = skin_of_face_[f];
+  return i == none ? nullptr : point_at(faces_[i][SkinOfFace::inner + arc]);
+}
+
+const Vec3* Cuts::inner_point_of(const CellId c, const int entry) const {
+  const std::uint32_t i = skin_of_cell_[c];
+  return i == none ? nullptr : point_at(cells_[i][entry]);
+}
+
+void Cuts::set_inner_point(const FaceId f, const int arc, const Vec3& p) { set(face(f)[SkinOfFace::inner + arc], p); }
+
+Cuts::FaceEntries& Cuts::face(const FaceId f) {
+  std::uint32_t& index = skin_of_face_.at(f);
+  if (index == none) {
+    index = static_cast<std::uint32_t>(faces_.size());
+    faces_.emplace_back().fill(none);
+  }
+  return faces_[index];
+}
+
+Cuts::CellEntries& Cuts::cell(const CellId c) {
+  std::uint32_t& index = skin_of_cell_.at(c);
+  if (index == none) {
+    index = static_cast<std::uint32_t>(cells_.size());
+    cells_.emplace_back().fill(none);
+  }
+  return cells_[index];
 }
 
 void Cuts::settle() {
   n_settled_ = cuts_.size();
-  newly_parted_.clear();
+  n_settled_of_skin_ = skin_cuts_.size();
 }
 
 unsigned Cuts::configuration(const Grid& grid, const CellId c) const {
@@ -60,10 +135,10 @@ unsigned Cuts::configuration(const Grid& grid, const CellId c) const {
 }
 
 std::size_t Cuts::n_bytes() const {
-  return edge_cut_.n_bytes() + outer_cut_.n_bytes() + seam_.n_bytes() + face_point_.n_bytes() +
-         face_skin_point_.n_bytes() + cell_point_.n_bytes() + cell_skin_point_.n_bytes() +
-         newly_parted_.capacity() * sizeof(FaceId) + cuts_.capacity() * sizeof(EdgeCut) +
-         points_.capacity() * sizeof(Vec3) + skin_points_.capacity() * sizeof(SkinPoint);
+  return edge_cut_.n_bytes() + outer_cut_.n_bytes() + face_point_.n_bytes() + cell_point_.n_bytes() +
+         skin_of_face_.n_bytes() + skin_of_cell_.n_bytes() + faces_.capacity() * sizeof(FaceEntries) +
+         cells_.capacity() * sizeof(CellEntries) + cuts_.capacity() * sizeof(EdgeCut) +
+         skin_cuts_.capacity() * sizeof(SkinCut) + points_.capacity() * sizeof(Vec3);
 }
 
 void Cuts::set(std::uint32_t& index, const Vec3& p) {
@@ -72,14 +147,6 @@ void Cuts::set(std::uint32_t& index, const Vec3& p) {
     points_.push_back(p);
   } else
     points_[index] = p;
-}
-
-void Cuts::set(std::uint32_t& index, const SkinPoint& p) {
-  if (index == none) {
-    index = static_cast<std::uint32_t>(skin_points_.size());
-    skin_points_.push_back(p);
-  } else
-    skin_points_[index] = p;
 }
 
 namespace {
@@ -118,14 +185,26 @@ Vec3 cell_point(const Solid& solid, const CellId c) {
   return p ? *p : centre(solid.grid, c);
 }
 
-Vec3 face_skin_point(const Solid& solid, const FaceId f, const int i) {
-  const SkinPoint* const of_skin = solid.cuts.skin_point(f);
-  return of_skin && (of_skin->lines >> i & 1) ? of_skin->p : face_point(solid, f);
+Vec3 item_point(const Solid& solid, const CellId c, const int item) {
+  if (item < skeleton::first_on_line)
+    return solid.grid.position(solid.grid.nodes(c)[item]);
+  if (item < skeleton::first_on_arc)
+    return edge_skin_point(solid, solid.grid.edges(c)[item - skeleton::first_on_line]);
+  return item < skeleton::first_middle ? face_point(solid, solid.grid.faces(c)[(item - skeleton::first_on_arc) / 2])
+                                       : cell_point(solid, c);
 }
 
-Vec3 cell_skin_point(const Solid& solid, const CellId c, const int line) {
-  const SkinPoint* const of_skin = solid.cuts.skin_point(c);
-  return of_skin && (of_skin->lines >> line & 1) ? of_skin->p : cell_point(solid, c);
+Vec3 segment_point(const Solid& solid, const CellId c, const Skeleton& skeleton, const int segment) {
+  const auto& [a, b] = skeleton.segment[segment].ends;
+  if (segment < skeleton::first_half) {
+    const EdgeId e = solid.grid.edges(c)[segment];
+    if (solid.cuts.is_cut_twice(e) || (b < skeleton::first_on_line && solid.cuts.is_cut(e)))
+      return edge_point(solid, e);
+  }
+  const Vec3 p = item_point(solid, c, a), q = item_point(solid, c, b);
+  const SkinCut* const cut =
+    segment < skeleton::first_half ? nullptr : solid.cuts.find(skin_segment(solid.grid, c, segment));
+  return p + (cut ? cut->t : 0.5) * (q - p);
 }
 
 } // namespace kerf::grid

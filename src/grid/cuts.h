@@ -4,13 +4,14 @@
 /// Everything here is in the rest configuration.
 ///
 /// An edge inside the body is cut once. An edge of the skin is cut by the skin, and may be cut once more, between its
-/// material node and the skin: what lies between the two cuts is its rind. It holds no node, and yet it is
-/// material: without it what a blade cuts between the last node and the skin would be lost.
+/// material node and the skin: what lies between the two cuts holds no node, and yet it is material. The skin's own
+/// segments (skeleton.h) are cut once, like edges inside: so where a cut meets the skin is found, and not inferred from
+/// edges.
 
 #include "grid/grid.h"
+#include "grid/skeleton.h"
 #include "grid/sparse_index.h"
 
-#include <algorithm>
 #include <optional>
 #include <span>
 #include <vector>
@@ -36,22 +37,26 @@ struct EdgeCut {
   void archive(Archive& a) { a(edge, t, normal, label); }
 };
 
-/// Whether a cut that parts the material of a face reaches its skin there. Where it does, at the rim of the cut, the
-/// skin is parted; where it leaves the face through two of its edges, or ends inside, the skin stays whole, and holds
-/// together what lies below it. Unsaid: parted where an edge between the face's material nodes is cut, else whole.
-enum class Seam : std::uint8_t { unsaid, whole, parted };
+/// A segment of the skin (skeleton.h): half of an arc in a face, or a spoke in a cell.
+struct SkinSegment {
+  FaceId face;            ///< of a half; invalid for a spoke
+  CellId cell;            ///< of a spoke; invalid for a half
+  std::uint8_t place = 0; ///< of a half that of its line in the face; of a spoke from skeleton::first_spoke on
 
-/// Where blades have cut beside the skin in a face, or anywhere in a cell of the skin, the skin keeps its vertex, and
-/// the cuts have their own. Where a cut meets the skin, at its rim, the skin's vertex stays with the part on its side
-/// of the cut, and the other part's skin ends at the vertex of the cuts.
-struct SkinPoint {
-  static constexpr std::uint16_t all = 0xfff;
-  Vec3 p = Vec3::Zero(); ///< [m]
-  /// Bits of the lines of the skin to which it belongs: of the cell, or by their place in the face (cube::face_lines).
-  std::uint16_t lines = all;
-  bool has_rim = false; ///< the vertex of the cuts lies on a rim: later cuts leave it, but where it would fold the skin
+  static SkinSegment half(const FaceId f, const int place) { return {f, {}, static_cast<std::uint8_t>(place)}; }
+  static SkinSegment spoke(const CellId c, const int place) { return {{}, c, static_cast<std::uint8_t>(place)}; }
+  /// Halves first; by face or cell, then by place.
+  auto operator<=>(const SkinSegment&) const = default;
+  void archive(Archive& a) { a(face, cell, place); }
+};
 
-  void archive(Archive& a) { a(p, lines, has_rim); }
+struct SkinCut {
+  SkinSegment segment;
+  double t = 0.5;              ///< from the segment's first end (Skeleton::Segment) to its second, as in EdgeCut [1]
+  Vec3 normal = Vec3::UnitX(); ///< as in EdgeCut
+  CutLabel label = 1;
+
+  void archive(Archive& a) { a(segment, t, normal, label); }
 };
 
 class Cuts {
@@ -87,32 +92,43 @@ class Cuts {
   /// The 12 line bits of a cell, 0..4095.
   unsigned configuration(const Grid& grid, CellId c) const;
 
-  /// Whether the skin of a face is parted: see Seam.
-  Seam seam(FaceId f) const {
-    const std::uint32_t i = seam_[f];
-    return i == none ? Seam::unsaid : static_cast<Seam>(i);
+  /// The place of a segment's cut in skin_cuts(); none where it is not cut.
+  std::uint32_t index(const SkinSegment& segment) const;
+  bool is_cut(const SkinSegment& segment) const { return index(segment) != none; }
+  const SkinCut* find(const SkinSegment& segment) const {
+    const std::uint32_t i = index(segment);
+    return i == none ? nullptr : &skin_cuts_[i];
   }
-  void set_seam(FaceId f, Seam seam);
+  /// All of them, in the order in which they were added.
+  std::span<const SkinCut> skin_cuts() const { return skin_cuts_; }
+  /// Cuts a segment of the skin that is not cut yet; t is clamped.
+  void add(SkinCut cut);
+  /// Takes back blades' cuts that are not settled yet; ascending.
+  void take_back(std::span<const EdgeId> edges);
+  void take_back(std::span<const SkinSegment> segments);
 
-  /// What has been cut, and where skin has been parted, since settle() was called last: their vertices are yet to be
-  /// placed.
+  /// What has been cut since settle() was called last: its vertices are yet to be placed.
   bool is_new(EdgeId e) const { return edge_cut_[e] != none && edge_cut_[e] >= n_settled_; }
+  bool is_new(const SkinSegment& segment) const { return is_cut(segment) && index(segment) >= n_settled_of_skin_; }
   std::span<const EdgeCut> new_cuts() const { return all().subspan(n_settled_); }
-  bool is_newly_parted(FaceId f) const { return std::ranges::binary_search(newly_parted_, f); }
-  std::span<const FaceId> newly_parted() const { return newly_parted_; }
+  std::span<const SkinCut> new_skin_cuts() const { return skin_cuts().subspan(n_settled_of_skin_); }
   void settle();
 
-  /// The vertex in a face or a cell, where a cut has placed one; the middle otherwise is the caller's to know.
+  /// The vertex in a face or a cell, where a cut has placed one; the middle otherwise is the caller's to know. Where the
+  /// skin passes through it is that of the skin.
   const Vec3* point(FaceId f) const { return point_at(face_point_[f]); }
   const Vec3* point(CellId c) const { return point_at(cell_point_[c]); }
   void set_point(FaceId f, const Vec3& p) { set(face_point_.at(f), p); }
   void set_point(CellId c, const Vec3& p) { set(cell_point_.at(c), p); }
 
-  /// The vertex of the skin, where the blades' cuts have another one; else null.
-  const SkinPoint* skin_point(FaceId f) const { return skin_point_at(face_skin_point_[f]); }
-  const SkinPoint* skin_point(CellId c) const { return skin_point_at(cell_skin_point_[c]); }
-  void set_skin_point(FaceId f, const SkinPoint& p) { set(face_skin_point_.at(f), p); }
-  void set_skin_point(CellId c, const SkinPoint& p) { set(cell_skin_point_.at(c), p); }
+  /// The vertex of blades' cuts where the skin passes through: in the polygon of a face at one of its arcs, in a cell,
+  /// and in a triangle of the cell's skin (counted from skeleton::first_triangle on); null where there is none.
+  const Vec3* inner_point(FaceId f, int arc) const;
+  const Vec3* inner_point(CellId c) const { return inner_point_of(c, SkinOfCell::inner); }
+  const Vec3* inner_point(CellId c, int triangle) const { return inner_point_of(c, SkinOfCell::triangles + triangle); }
+  void set_inner_point(FaceId f, int arc, const Vec3& p);
+  void set_inner_point(CellId c, const Vec3& p) { set(cell(c)[SkinOfCell::inner], p); }
+  void set_inner_point(CellId c, int triangle, const Vec3& p) { set(cell(c)[SkinOfCell::triangles + triangle], p); }
 
   /// The place of a cut edge in all(), as of find() and of find_outer().
   std::uint32_t index(EdgeId e) const { return edge_cut_[e]; }
@@ -123,38 +139,53 @@ class Cuts {
   /// Memory of all tables [B].
   std::size_t n_bytes() const;
   void archive(Archive& a) {
-    a(edge_cut_, outer_cut_, seam_, face_point_, face_skin_point_, cell_point_, cell_skin_point_, cuts_);
-    a(n_cut_twice_, n_settled_, newly_parted_, points_, skin_points_);
+    a(edge_cut_, outer_cut_, face_point_, cell_point_, skin_of_face_, skin_of_cell_, faces_, cells_);
+    a(cuts_, skin_cuts_, n_cut_twice_, n_settled_, n_settled_of_skin_, points_);
   }
 
  private:
   static constexpr std::uint32_t none = Id<void>::no_value;
+  /// What blades have done in a face of the skin: places in skin_cuts_ by half, in points_ by arc.
+  struct SkinOfFace {
+    static constexpr int halves = 0, inner = 4, n = 6;
+  };
+  /// In a cell of the skin: places in skin_cuts_ by spoke, in points_ of the triangles and of the cell.
+  struct SkinOfCell {
+    static constexpr int spokes = 0, triangles = 24, inner = 48, n = 49;
+  };
+  using FaceEntries = std::array<std::uint32_t, SkinOfFace::n>;
+  using CellEntries = std::array<std::uint32_t, SkinOfCell::n>;
 
   const Vec3* point_at(const std::uint32_t i) const { return i == none ? nullptr : &points_[i]; }
-  const SkinPoint* skin_point_at(const std::uint32_t i) const { return i == none ? nullptr : &skin_points_[i]; }
+  const Vec3* inner_point_of(CellId c, int entry) const;
   void set(std::uint32_t& index, const Vec3& p);
-  void set(std::uint32_t& index, const SkinPoint& p);
+  FaceEntries& face(FaceId f);
+  CellEntries& cell(CellId c);
+  std::uint32_t& entry(const SkinSegment& segment);
 
   SparseIndex<EdgeId> edge_cut_, outer_cut_; // the second only of edges that are cut twice
-  SparseIndex<FaceId> seam_;
-  SparseIndex<FaceId> face_point_, face_skin_point_;
-  SparseIndex<CellId> cell_point_, cell_skin_point_;
+  SparseIndex<FaceId> face_point_;
+  SparseIndex<CellId> cell_point_;
+  SparseIndex<FaceId> skin_of_face_; // into faces_
+  SparseIndex<CellId> skin_of_cell_; // into cells_
+  std::vector<FaceEntries> faces_;
+  std::vector<CellEntries> cells_;
   std::vector<EdgeCut> cuts_;
-  std::size_t n_cut_twice_ = 0, n_settled_ = 0;
-  std::vector<FaceId> newly_parted_; // ascending
+  std::vector<SkinCut> skin_cuts_;
+  std::size_t n_cut_twice_ = 0, n_settled_ = 0, n_settled_of_skin_ = 0;
   Points points_;
-  std::vector<SkinPoint> skin_points_;
 };
 
-/// Rest position [m] of the point on an edge (its cut, else its middle), in a face and in a cell (placed, else centre).
+/// Rest position [m] of the point on an edge (its inner cut, else its middle), in a face and in a cell (placed, else
+/// centre; that of the skin where it passes through).
 Vec3 edge_point(const Solid& solid, EdgeId e);
 Vec3 face_point(const Solid& solid, FaceId f);
 Vec3 cell_point(const Solid& solid, CellId c);
-
-/// The same of the skin [m]; in a face for its i-th line, in a cell for a line of its.
+/// Of the outermost cut: where the skin is [m].
 Vec3 edge_skin_point(const Solid& solid, EdgeId e);
-Vec3 face_skin_point(const Solid& solid, FaceId f, int i);
-Vec3 cell_skin_point(const Solid& solid, CellId c, int line);
+/// Of an item of a cell's skeleton; of a segment of it, where a blade has cut it, else its middle [m].
+Vec3 item_point(const Solid& solid, CellId c, int item);
+Vec3 segment_point(const Solid& solid, CellId c, const Skeleton& skeleton, int segment);
 
 /// Centre of a face [m].
 Vec3 centre(const Grid& grid, FaceId f);

@@ -8,11 +8,10 @@ namespace kerf::grid {
 
 namespace {
 
-/// The material end of the copy's lowest rind.
+/// The node below the lowest of the copy's points of the skin.
 NodeId cut_off_from(const Grid& grid, const Copy& copy) {
-  const auto& [lower, upper] = cube::line_vertices[std::countr_zero(copy.rinds)];
-  const auto nodes = grid.nodes(copy.cell);
-  return grid.is_material(nodes[lower]) ? nodes[lower] : nodes[upper];
+  const Skeleton& skeleton = skeleton_of(material_of(grid, copy.cell));
+  return grid.nodes(copy.cell)[skeleton.vertex[std::countr_zero(copy.items())]];
 }
 
 NodeId lowest_node(const Grid& grid, const Copy& copy) { return grid.nodes(copy.cell)[std::countr_zero(copy.nodes)]; }
@@ -59,7 +58,7 @@ std::vector<Followed> followed_nodes(const Solid& solid) {
           at->second = std::min(at->second, lowest_node(solid.grid, copy));
 
   spread(solid.complex, result, node_at);
-  // Pieces of rinds alone: one node for all of a piece.
+  // Pieces of skin alone: one node for all of a piece.
   for (;;) {
     NodeId lowest;
     CopyId from;

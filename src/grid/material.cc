@@ -4,7 +4,6 @@
 
 #include <Eigen/Geometry>
 
-#include <algorithm>
 #include <bit>
 
 namespace kerf::grid {
@@ -35,39 +34,130 @@ std::array<Tetrahedron, 6> octant(const Solid& solid, const CellId c, const int 
   return tetrahedra;
 }
 
-std::array<Tetrahedron, 3> prism(const std::array<Vec3, 3>& from, const std::array<Vec3, 3>& to, const bool mirrored) {
-  std::array<Tetrahedron, 3> tetrahedra = {Tetrahedron{from[0], from[1], from[2], to[2]},
-                                           Tetrahedron{from[0], from[1], to[2], to[1]},
-                                           Tetrahedron{from[0], to[1], to[2], to[0]}};
-  if (mirrored)
-    for (Tetrahedron& t : tetrahedra)
-      std::swap(t[1], t[2]);
-  return tetrahedra;
-}
+namespace {
 
-std::array<Tetrahedron, 6> under_skin(const Solid& solid, const CellId c, const int line) {
-  const Vec3 origin = solid.grid.origin(c);
-  const auto faces = solid.grid.faces(c);
-  const EdgeId edge = solid.grid.edges(c)[line];
-  const auto local = [&](const Vec3& p) -> Vec3 { return (p - origin) / solid.grid.h(); };
-  const int axis = cube::line_axis(line), lower = cube::line_vertices[line][0];
-  const int vertex = solid.grid.is_material(solid.grid.ends(edge)[0]) ? lower : cube::line_vertices[line][1];
-  Vec3 of_cut(lower & 1, lower >> 1 & 1, lower >> 2 & 1), of_skin = of_cut;
-  of_cut[axis] = local(edge_point(solid, edge))[axis];
-  of_skin[axis] = local(edge_skin_point(solid, edge))[axis];
-  const Vec3 middle = local(cell_point(solid, c)), skin_middle = local(cell_skin_point(solid, c, line));
-  std::array<Tetrahedron, 6> tetrahedra;
-  for (int i = 0; i < 2; ++i) {
-    const int normal = (axis + 1 + i) % 3;
-    const int face = cube::face_at(vertex, normal);
-    Vec3 in_face = local(face_point(solid, faces[face])),
-         skin_in_face = local(face_skin_point(solid, faces[face], cube::place_in_face(face, line)));
-    in_face[normal] = skin_in_face[normal] = of_cut[normal];
-    const bool turned = (std::popcount(static_cast<unsigned>(vertex)) & 1) != 0; // as in octant()
-    const auto of_face = prism({of_cut, in_face, middle}, {of_skin, skin_in_face, skin_middle}, turned == (i == 1));
-    std::copy(of_face.begin(), of_face.end(), tetrahedra.begin() + 3 * i);
+/// A cell in coordinates of the unit cube [1]. What lies in a face lies right in it, and on a line right on it: round-
+/// off may not turn a thin tetrahedron over.
+class LocalSkeleton {
+ public:
+  LocalSkeleton(const Solid& solid, const CellId c)
+    : solid_(solid),
+      cell_(c),
+      skeleton_(skeleton_of(material_of(solid.grid, c))),
+      blades_(cuts_of(solid, c).blades),
+      edges_(solid.grid.edges(c)),
+      faces_(solid.grid.faces(c)),
+      origin_(solid.grid.origin(c)) {
+    for (Items left = skeleton_.items; left != 0; left &= left - 1)
+      items_[std::countr_zero(left)] = item(std::countr_zero(left));
   }
-  return tetrahedra;
+
+  const Skeleton& skeleton() const { return skeleton_; }
+  const Vec3& at(const int item) const { return items_[item]; }
+
+  Vec3 cut(const int segment) const {
+    const auto& [a, b] = skeleton_.segment[segment].ends;
+    if ((blades_ >> segment & 1) == 0)
+      return 0.5 * (items_[a] + items_[b]);
+    if (segment < skeleton::first_half)
+      return on_line(segment, local(edge_point(solid_, edges_[segment])));
+    return items_[a] + solid_.cuts.find(skin_segment(solid_.grid, cell_, segment))->t * (items_[b] - items_[a]);
+  }
+
+  Vec3 in_side(const int side) const {
+    if (side < skeleton::first_triangle) {
+      const FaceId f = faces_[side / 2];
+      if (skeleton_.side[side].n == 4 && (skeleton_.items >> skeleton::on_arc(side / 2, 0) & 1) == 0)
+        return in_face(side / 2, local(face_point(solid_, f)));
+      const Vec3* const p = solid_.cuts.inner_point(f, side % 2);
+      return p ? in_face(side / 2, local(*p)) : middle_of(side);
+    }
+    const Vec3* const p = solid_.cuts.inner_point(cell_, side - skeleton::first_triangle);
+    return p ? local(*p) : middle_of(side);
+  }
+
+  Vec3 centre() const {
+    const Vec3* const p = solid_.cuts.inner_point(cell_);
+    return p ? local(*p) : mean_cut(blades_);
+  }
+
+ private:
+  Vec3 local(const Vec3& p) const { return (p - origin_) / solid_.grid.h(); }
+
+  static Vec3 on_line(const int line, const Vec3& p) {
+    const int lower = cube::line_vertices[line][0], axis = cube::line_axis(line);
+    Vec3 result(lower & 1, lower >> 1 & 1, lower >> 2 & 1);
+    result[axis] = p[axis];
+    return result;
+  }
+  static Vec3 in_face(const int face, Vec3 p) {
+    p[cube::face_axis(face)] = face & 1;
+    return p;
+  }
+
+  Vec3 item(const int i) const {
+    if (i < skeleton::first_on_line)
+      return Vec3(i & 1, i >> 1 & 1, i >> 2 & 1);
+    const Vec3 p = local(item_point(solid_, cell_, i));
+    if (i < skeleton::first_on_arc)
+      return on_line(i - skeleton::first_on_line, p);
+    return i < skeleton::first_middle ? in_face((i - skeleton::first_on_arc) / 2, p) : p;
+  }
+
+  /// Where no vertex has been placed: between its cuts, if there are some.
+  Vec3 middle_of(const int side) const {
+    const Skeleton::Side& of = skeleton_.side[side];
+    Segments border = 0;
+    Vec3 sum = Vec3::Zero();
+    for (int i = 0; i < of.n; ++i) {
+      border |= Segments(1) << of.segments[i];
+      sum += items_[of.items[i]];
+    }
+    return (border & blades_) != 0 ? mean_cut(border & blades_) : Vec3(sum / of.n);
+  }
+
+  Vec3 mean_cut(const Segments cuts) const {
+    Vec3 sum = Vec3::Zero();
+    for (Segments left = cuts; left != 0; left &= left - 1)
+      sum += cut(std::countr_zero(left));
+    return sum / std::popcount(cuts);
+  }
+
+  const Solid& solid_;
+  CellId cell_;
+  const Skeleton& skeleton_;
+  Segments blades_;
+  std::array<EdgeId, 12> edges_;
+  std::array<FaceId, 6> faces_;
+  Vec3 origin_;
+  std::array<Vec3, skeleton::n_items> items_;
+};
+
+} // namespace
+
+std::vector<MaterialPiece> pieces_of(const Solid& solid, const CellId c, const Items items) {
+  const LocalSkeleton cell(solid, c);
+  const Skeleton& skeleton = cell.skeleton();
+  const Vec3 centre = cell.centre();
+  std::vector<MaterialPiece> pieces;
+  for (Segments left = skeleton.segments; left != 0; left &= left - 1) {
+    const int s = std::countr_zero(left);
+    const Skeleton::Segment& segment = skeleton.segment[s];
+    if ((items >> segment.ends[0] & 1) == 0 && (items >> segment.ends[1] & 1) == 0)
+      continue;
+    const Vec3 cut = cell.cut(s);
+    for (const int way : {0, 1}) {
+      const Vec3 in_side = cell.in_side(segment.sides[way]);
+      for (const int end : {0, 1}) {
+        const int item = segment.ends[end];
+        if (items >> item & 1) // the side's border passes from here to the cut, or from the cut to here
+          pieces.push_back({way == end ? Tetrahedron{cell.at(item), in_side, cut, centre}
+                                       : Tetrahedron{cell.at(item), cut, in_side, centre},
+                            skeleton.vertex[item]});
+      }
+    }
+  }
+  return pieces;
 }
 
 double volume(const Tetrahedron& t) { return (t[1] - t[0]).dot((t[2] - t[0]).cross(t[3] - t[0])) / 6; }
@@ -78,18 +168,6 @@ double fill(const Solid& solid, const Copy& copy) {
   double sum = 0;
   for_each_tetrahedron(solid, copy, [&](const Tetrahedron& t, int) { sum += volume(t); });
   return sum;
-}
-
-unsigned lines_under_skin(const Solid& solid, const Copy& copy) {
-  const CellCuts cell = cuts_of(solid, copy.cell);
-  if (!cell.has_two_points())
-    return 0;
-  unsigned lines = copy.rinds;
-  for (int line = 0; line < cube::n_lines; ++line)
-    if (const auto& [v, w] = cube::line_vertices[line];
-        ((cell.skin & ~cell.twice) >> line & 1) != 0 && ((copy.nodes >> v | copy.nodes >> w) & 1) != 0)
-      lines |= 1u << line;
-  return lines;
 }
 
 } // namespace kerf::grid

@@ -71,4 +71,23 @@ std::vector<TouchedCell> touched_cells(const Grid& grid, const std::span<const E
   return cells_per_edge * edges.size() > grid.n_cells() ? marked(grid, edges) : sorted(grid, edges);
 }
 
+std::vector<CellId> touched_cells(const Grid& grid, const std::span<const EdgeId> edges,
+                                  const std::span<const SkinSegment> segments) {
+  std::vector<CellId> cells;
+  for (const TouchedCell& touched : touched_cells(grid, edges))
+    cells.push_back(touched.cell);
+  if (segments.empty())
+    return cells;
+  for (const SkinSegment& segment : segments)
+    if (segment.face.valid()) {
+      for (const CellId c : grid.cells(segment.face))
+        if (c.valid())
+          cells.push_back(c);
+    } else
+      cells.push_back(segment.cell);
+  std::sort(cells.begin(), cells.end());
+  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+  return cells;
+}
+
 } // namespace kerf::grid

@@ -2,7 +2,7 @@
 
 /// The cells around edges, and by which of their lines they are among them.
 
-#include "grid/grid.h"
+#include "grid/cuts.h"
 
 #include <span>
 #include <vector>
@@ -17,5 +17,9 @@ struct TouchedCell {
 /// The stored cells around any of these edges, ascending, each once. Takes time by the number of edges, and of all
 /// cells only where the edges are many.
 std::vector<TouchedCell> touched_cells(const Grid& grid, std::span<const EdgeId> edges);
+
+/// The stored cells around edges, and those that segments of the skin belong to; ascending, each once.
+std::vector<CellId> touched_cells(const Grid& grid, std::span<const EdgeId> edges,
+                                  std::span<const SkinSegment> segments);
 
 } // namespace kerf::grid

@@ -4,7 +4,7 @@
 ///
 /// The problem: the force k m (g - x) lets a corner swing about its goal with the frequency sqrt(k) whatever its mass m.
 /// What starts that, a cut that moves its goal by up to a cube, has as much energy as m allows: next to none in a corner
-/// that only a sliver or a rind knows, opposite to the material. So such corners swing by cubes and at any speed, for
+/// that only a sliver or a piece of skin knows, opposite to the material. So such corners swing by cubes and at any speed, for
 /// ever, in silence.
 ///
 /// The method: a *rider* is a corner with less mass than m_ref, a cube that is grid::well_filled; its *carrier* is the

@@ -13,7 +13,7 @@ namespace kerf::lattice {
 
 namespace {
 
-/// Of a cube: a rind without volume has corners too, and they are to move with its node.
+/// Of a cube: a piece of skin without volume has corners too, and they are to move with its node.
 constexpr double least_share = 1e-12;
 
 /// Integral over a tetrahedron of a product of three functions that are linear in it and not negative at its vertices,
@@ -67,14 +67,18 @@ CopyShares shares_of(const grid::Solid& solid, const grid::Copy& copy) {
   const auto& [integrals, elsewhere] = integrals_of(solid, copy);
   for (int a = 0; a < 8; ++a) {
     const unsigned owners = nearest(copy.nodes, a);
-    double total = elsewhere[a], of_owners = 0;
+    double total = elsewhere[a], of_owners = 0, least = 1;
     for (int v = 0; v < 8; ++v) {
       total += integrals[v][a];
-      of_owners += (owners >> v & 1) != 0 ? integrals[v][a] : 0;
+      if ((owners >> v & 1) != 0) {
+        of_owners += integrals[v][a];
+        least = std::min(least, integrals[v][a]);
+      }
     }
     for (int v = 0; v < 8; ++v)
-      if ((owners >> v & 1) != 0)
-        shares[v][a] = total * (integrals[v][a] / of_owners);
+      if ((owners >> v & 1) != 0) // even parts where a hollow skin leaves a node less than nothing (grid/material.h)
+        shares[v][a] = std::max(total, 0.0) *
+                       (least > 0 ? integrals[v][a] / of_owners : 1.0 / std::popcount(owners));
   }
   return shares;
 }

@@ -39,9 +39,9 @@ void write_complex(const h5::Object& group, const Complex& complex) {
   write_table<std::uint32_t>(group, "corners", complex.corners, {"1", "corners of each copy, deal.II's vertex order"});
   write_table<std::int32_t>(group, "cell", complex.cells, {"1", "lattice index of each copy's cell"});
   write_table<std::uint8_t>(group, "nodes", complex.nodes, {"1", "bits of the material nodes of each copy"});
-  write_table<std::uint16_t>(
-    group, "rinds", complex.rinds,
-    {"1", "bits of the lines of which each copy has what lies between a blade's cut and the skin"});
+  write_table<std::uint32_t>(
+    group, "skin", complex.skin,
+    {"1", "bits of the points of the skin that each copy holds, where blades have cut the skin of its cell"});
   write_points(group, "rest_position", complex.rest_positions, position_label, "rest");
 }
 
@@ -133,7 +133,7 @@ void check(const BodyStep& step, const BodyCounts& counts, const std::string& fi
   if (step.complex != nullptr) {
     checks.equal("complex/cell", step.complex->cells.size(), step.complex->corners.size());
     checks.equal("complex/nodes", step.complex->nodes.size(), step.complex->corners.size());
-    checks.equal("complex/rinds", step.complex->rinds.size(), step.complex->corners.size());
+    checks.equal("complex/skin", step.complex->skin.size(), step.complex->corners.size());
   }
   const auto n_corners = step.complex != nullptr ? step.complex->rest_positions.size() : counts.n_corners;
   checks.equal("frames/position", step.positions.size(), n_corners);

@@ -97,7 +97,7 @@ Complex Reader::complex(const std::string& body, const std::size_t index) const 
   const auto group = contents_->item(body, "complex", index);
   return {h5::read_items<std::uint32_t, std::array<std::uint32_t, 8>>(group, "corners"),
           h5::read_items<std::int32_t, Index3>(group, "cell"), h5::read_vector<std::uint8_t>(group, "nodes"),
-          h5::read_vector<std::uint16_t>(group, "rinds"), h5::read_items<double, Vec3>(group, "rest_position")};
+          h5::read_vector<std::uint32_t>(group, "skin"), h5::read_items<double, Vec3>(group, "rest_position")};
 }
 
 std::size_t Reader::n_surfaces(const std::string& body) const { return contents_->count(body, "surface"); }

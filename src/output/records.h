@@ -56,8 +56,7 @@ struct Complex {
   std::vector<std::array<std::uint32_t, 8>> corners; ///< per copy
   std::vector<Index3> cells;                         ///< per copy: lattice index of its cell
   std::vector<std::uint8_t> nodes;                   ///< per copy: bits of its material nodes
-  std::vector<std::uint16_t> rinds; ///< per copy: bits of its cell's lines of which it has what lies between a blade's
-                                    ///< cut and the skin
+  std::vector<std::uint32_t> skin;                   ///< per copy: bits of its points of the skin, where blades cut that
   Points rest_positions;            ///< per corner [m], rest configuration
 };
 

@@ -111,7 +111,6 @@ void recut(Body& body, const std::span<const cut::Blade> blades, const double t0
 
 void cut_at_once(Body& body, const cut::CutSurface& surface, Timings& timings) {
   cut_and_follow(body, timings, [&] { return body.cutter->at_once(body.solid, surface, corners(body)); });
-  cut_and_follow(body, timings, [&] { return body.cutter->end(body.solid, surface, corners(body)); });
 }
 
 void follow(Body& body) {

@@ -175,6 +175,8 @@ Body compose_body(const Section& section, const GravityParameters* gravity, cons
                                    body.regions.size(), " supports, ", body.load_makers.size(), " loads"));
   for (const std::string& said : describe_supports(body))
     world.composition.push_back(said);
+  for (const std::string& warning : check_crack_fronts(section, body))
+    world.composition.push_back(warning);
   if (body.physics->crumbs().any())
     world.composition.push_back(describe_crumbs(body));
   return body;

@@ -3,6 +3,9 @@
 #include "physics/on_corners.h"
 #include "scene/body.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace kerf::scene {
 
 void CrackFormParameters::describe(Parameters& p) {
@@ -99,6 +102,64 @@ std::vector<NamedFront> compose_crack_fronts(const Section& section, const doubl
     fronts.push_back({one->name(), front_of(*one, mine), {mine.inner * cube_edge, mine.outer * cube_edge}});
   }
   return fronts;
+}
+
+namespace {
+
+/// From where to where there are corners in the inner tube, along a line from its first end, or 0 for a circle [m].
+struct Reach {
+  double first = 1e300, last = -1e300;
+};
+
+Reach reach_of(const Body& body, const NamedFront& front) {
+  const auto* const along = std::get_if<fem::LineFront>(&front.front);
+  Reach reach;
+  for (const Vec3& X : body.physics->rest())
+    if (fem::growth_at(front.front, X).distance < front.tubes.inner) {
+      const double at = along ? (X - along->first).dot((along->second - along->first).normalized()) : 0;
+      reach = {std::min(reach.first, at), std::max(reach.last, at)};
+    }
+  return reach;
+}
+
+/// Corners reach up to a cube beyond the skin, which may be oblique to the front.
+bool ends_on_skin(const Reach& reach, const NamedFront& front, const double cube_edge) {
+  const double length = fem::length(front.front), near = front.tubes.inner + cube_edge;
+  return std::holds_alternative<fem::CircleFront>(front.front) ||
+         (std::abs(reach.first) < near && std::abs(reach.last - length) < near);
+}
+
+/// Whether a support holds something in the outer tube against what the growth of the crack shifts.
+bool resists(const dynamics::Support& support, const NamedFront& front, const Points& rest) {
+  return std::any_of(support.corners.begin(), support.corners.end(), [&](const std::uint32_t i) {
+    const auto [direction, distance] = fem::growth_at(front.front, rest[i]);
+    return distance < front.tubes.outer && (support.held * direction).norm() > 1e-6;
+  });
+}
+
+} // namespace
+
+std::vector<std::string> check_crack_fronts(const Section& section, const Body& body) {
+  std::vector<std::string> warnings;
+  for (std::size_t i = 0; i < body.fronts.size(); ++i) {
+    const NamedFront& front = body.fronts[i];
+    const Reach reach = reach_of(body, front);
+    if (reach.first > reach.last)
+      throw section.all("Crack front")[i]->complaint("no corner of the body lies in its inner tube",
+                                                     "Move it into the body: it is meant in the rest configuration");
+    const std::string start = line("warning: body ", body.name, ": crack front ", front.name);
+    if (!ends_on_skin(reach, front, body.solid.grid.h()))
+      warnings.push_back(line(
+        start, " is ", fem::length(front.front), " m long, and beside it the body reaches from ", reach.first, " to ",
+        reach.last, " m of it: its energy release rate is per length of the front. Put its ends on the skin"));
+    for (std::size_t s = 0; s < body.regions.size(); ++s)
+      if (resists(body.loads.supports[s], front, body.physics->rest()))
+        warnings.push_back(
+          line(start, ": support ", body.regions[s].name,
+               " holds corners in its outer tube, and its work counts as energy released. Use a smaller "
+               "Outer radius, or smaller cubes"));
+  }
+  return warnings;
 }
 
 double energy_release_rate(const Body& body, const NamedFront& front) {

@@ -56,7 +56,7 @@ output::Complex to_record(const Body& body) {
     record.corners.push_back(corners);
     record.cells.push_back(body.solid.grid.index(body.solid.grid.nodes(copy.cell)[0]));
     record.nodes.push_back(copy.nodes);
-    record.rinds.push_back(copy.rinds);
+    record.skin.push_back(copy.skin);
   }
   record.rest_positions = grid::rest_positions(body.solid);
   return record;

@@ -47,7 +47,10 @@ MassSpring::MassSpring(const grid::Solid& solid, const MassSpringOptions& option
   parallel_for(
     fill.size(),
     [&](const std::size_t c) {
-      fill[c] = solid.crumbs.holds(grid::CopyId(c)) ? 0 : grid::fill(solid, solid.complex.copies[grid::CopyId(c)]);
+      constexpr double least = 1e-12; // of skin alone, that may lack a little (surface/fold.h)
+      fill[c] = solid.crumbs.holds(grid::CopyId(c))
+                  ? 0
+                  : std::max(least, grid::fill(solid, solid.complex.copies[grid::CopyId(c)]));
     },
     256);
   const double eighth = options.density * solid.grid.h() * solid.grid.h() * solid.grid.h() / 8;

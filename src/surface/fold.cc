@@ -5,13 +5,17 @@
 
 #include <Eigen/Geometry>
 
+#include <algorithm>
+#include <numeric>
+
 namespace kerf::surface {
 
 namespace cube = grid::cube;
+namespace skeleton = grid::skeleton;
 
 namespace {
 
-constexpr double negligible = 1e-13; // of h^3
+constexpr double negligible = 1e-13, little = 0.02; // of h^2, h^3
 
 /// Adds the integrals of the shape functions over a tetrahedron, by a rule that is exact for them.
 void add(std::array<double, 8>& integrals, const grid::Tetrahedron& t) {
@@ -28,45 +32,66 @@ void add(std::array<double, 8>& integrals, const grid::Tetrahedron& t) {
     add_at(centre + (p - centre) / 3, 0.45);
 }
 
+/// Does the cell's vertex see all of its skin from below? Then nothing is folded.
+bool sees_skin(const grid::Solid& solid, const View& view) {
+  const Vec3 p = *solid.cuts.inner_point(view.cell);
+  bool result = true;
+  for_each_bit(view.now.skeleton().sides >> skeleton::first_triangle, [&](const int triangle) {
+    const auto& items = view.now.skeleton().side[skeleton::first_triangle + triangle].items;
+    const Vec3 a = grid::item_point(solid, view.cell, items[0]) - p,
+               b = grid::item_point(solid, view.cell, items[1]) - p,
+               c = grid::item_point(solid, view.cell, items[2]) - p;
+    result = result && a.dot(b.cross(c)) >= 0;
+  });
+  return result;
+}
+
 } // namespace
 
 bool is_folded(const grid::Solid& solid, const View& view) {
-  bool may_be = false;
-  for_each_bit(view.now.skin, [&](const int line) {
-    for (const auto& t : grid::under_skin(solid, view.cell, line))
-      may_be |= grid::volume(t) < -negligible;
-  });
-  if (!may_be)
+  if (sees_skin(solid, view))
     return false;
   for (const grid::Part& part : parts_of(view.now)) {
     std::array<double, 8> integrals{};
-    const grid::Copy copy{view.cell, part.nodes, part.rinds, {}, {}};
-    grid::for_each_tetrahedron(solid, copy, [&](const grid::Tetrahedron& t, int) { add(integrals, t); });
-    for (const double integral : integrals)
-      if (integral < -negligible)
-        return true;
+    for (const auto& [t, vertex] : grid::pieces_of(solid, view.cell, part.items()))
+      add(integrals, t);
+    const double least = *std::min_element(integrals.begin(), integrals.end());
+    const double volume = std::accumulate(integrals.begin(), integrals.end(), 0.0);
+    if (part.nodes != 0 ? least < -negligible : volume < -little)
+      return true;
   }
   return false;
 }
 
-bool is_folded(const View& view, const int face, const Vec3& p, const grid::SkinPoint& skin, const double little) {
-  const int normal = cube::face_axis(face), u = (normal + 1) % 3, v = (normal + 2) % 3;
-  const double negative = -(little + negligible) * (view.upper - view.lower).squaredNorm();
-  for (const grid::SkinArc& arc : grid::skin_arcs(face, view.now.material))
-    for (const int end : {0, 1}) {
-      const int line = arc.lines[end], axis = cube::line_axis(line);
-      if (!(skin.lines >> cube::place_in_face(face, line) & 1))
-        continue;
-      const Vec3 &from = view.planes[line].point, to_skin = skin.p - from, to_cut = p - from;
-      // Outward along the line, the skin's vertex lies ahead of the cut's: turned to it from the side of the face.
-      const bool upward = arc.vertices[end] == cube::line_vertices[line][0];
-      const bool at_lower_side = from[axis == u ? v : u] < 0.5 * (view.lower + view.upper)[axis == u ? v : u];
-      const double turn = to_cut[u] * to_skin[v] - to_cut[v] * to_skin[u];
-      const bool is_left = (axis == v) == (upward == at_lower_side);
-      if ((is_left ? turn : -turn) < negative)
-        return true;
+bool is_folded(const grid::Solid& solid, const View& view, const int side, const Vec3& p) {
+  const auto& [n, items, segments] = view.now.skeleton().side[side];
+  const int axis = cube::face_axis(side / 2);
+  const double outward = side / 2 % 2 == 1 ? 1 : -1,
+               unit = (view.upper - view.lower)[axis] * (view.upper - view.lower)[axis];
+  double area = 0, first = 0; // of the part that an item ends, of the one that the side begins in
+  bool has_node = false, first_has_node = false, is_first = true;
+  const auto is_negative = [&](const double of, const bool with_node) {
+    return of < -(with_node ? negligible : little) * unit;
+  };
+  for (int i = 0; i < n; ++i) {
+    const Vec3 a = grid::item_point(solid, view.cell, items[i]) - p,
+               b = grid::item_point(solid, view.cell, items[(i + 1) % n]) - p;
+    has_node |= items[i] < cube::n_vertices;
+    if ((view.now.blades >> segments[i] & 1) == 0) {
+      area += 0.5 * outward * a.cross(b)[axis];
+      continue;
     }
-  return false;
+    const Vec3 at = grid::segment_point(solid, view.cell, view.now.skeleton(), segments[i]) - p;
+    area += 0.5 * outward * a.cross(at)[axis];
+    if (is_first) {
+      first = area;
+      first_has_node = has_node;
+    } else if (is_negative(area, has_node))
+      return true;
+    is_first = has_node = false;
+    area = 0.5 * outward * at.cross(b)[axis];
+  }
+  return is_negative(first + area, first_has_node || has_node);
 }
 
 } // namespace kerf::surface

@@ -1,19 +1,21 @@
 #pragma once
 
-/// Whether the skin of a cell or face is folded under its cuts. Material between cuts and skin has a signed volume
-/// (grid/material.h); where the skin is rough as the grid, a cut's vertices may come to lie so that a part of it is
-/// negative. With the skin's vertices in place of the cuts' it never is.
+/// Whether cuts are folded over the skin: then a part of a cell would have negative material (grid/material.h). With the
+/// skin's own vertices in place of the cuts' hardly any has: in random cuts of bodies with a jagged skin 1e-4 cubes at a
+/// corner, now and then. A part that holds no node may have a little: where the skin is
+/// hollow, a plane that cuts off one of its points has material behind it, and what that part lacks others have too much,
+/// so that what lies on either side is right.
 
 #include "surface/view.h"
 
 namespace kerf::surface {
 
-/// Has a part of the cell negative mass at one of its corners?
+/// In a cell whose cuts' vertices are placed: has a part of it negative mass at one of its corners, or without a node
+/// less than -.02 cubes?
 bool is_folded(const grid::Solid& solid, const View& view);
 
-/// Does the line of the skin in a face pass below the cuts' vertex p, seen from one of its ends? `skin` is the skin's
-/// vertex.
-/// By more than `little` of the cells' side, an area in h^2: where the skin is hollow, a rim on it lies a little deep.
-bool is_folded(const View& view, int face, const Vec3& p, const grid::SkinPoint& skin, double little = 0);
+/// With a vertex of the cuts at p in a side of the cell's skeleton that lies in a face: has a part of it negative area, in
+/// the same sense?
+bool is_folded(const grid::Solid& solid, const View& view, int side, const Vec3& p);
 
 } // namespace kerf::surface

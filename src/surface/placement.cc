@@ -1,10 +1,10 @@
 #include "surface/placement.h"
 
 #include "grid/cube.h"
-#include "grid/material.h"
 #include "grid/touched.h"
-#include "surface/cell_rim.h"
+#include "surface/below_skin.h"
 #include "surface/fold.h"
+#include "surface/view.h"
 
 #include <Eigen/Geometry>
 
@@ -16,9 +16,11 @@
 namespace kerf::surface {
 
 namespace cube = grid::cube;
+namespace skeleton = grid::skeleton;
 using grid::CellId;
 using grid::EdgeId;
 using grid::FaceId;
+using grid::Skeleton;
 using grid::Solid;
 
 namespace {
@@ -32,7 +34,7 @@ struct Site {
   const View& view;
   Directions inside; ///< the directions within it
   Planes locked;     ///< cuts that already separate material here: the vertex stays on them
-  Few<grid::CutLabel, 12> locked_labels;
+  Few<grid::CutLabel, 60> locked_labels;
   Planes open;         ///< cuts that the vertex has yet to meet
   bool splits = false; ///< with all cuts, material here is separated
 
@@ -80,29 +82,32 @@ class Placer {
       join_(placement.sharp_angle * std::numbers::pi / 180),
       threshold_(std::tan(0.5 * placement.sharp_angle * std::numbers::pi / 180)) {}
 
-  PlacementCounts run() { return run(changed_cells()); }
-  /// `cells` ascending: all around new cuts, and beside newly parted faces that blades have cut.
+  PlacementCounts run() {
+    std::vector<EdgeId> edges;
+    for (const grid::EdgeCut& cut : solid_.cuts.new_cuts())
+      edges.push_back(cut.edge);
+    std::vector<grid::SkinSegment> segments;
+    for (const grid::SkinCut& cut : solid_.cuts.new_skin_cuts())
+      segments.push_back(cut.segment);
+    return run(grid::touched_cells(solid_.grid, edges, segments));
+  }
+  /// `cells` ascending: all around new cuts.
   PlacementCounts run(const std::span<const CellId> cells) {
     for (const CellId c : cells) {
       const View view = look_at(solid_, c);
-      const unsigned new_lines = view.now.cut & ~view.old;
-      if (new_lines == 0 && view.parted_faces == 0)
-        continue;
       const auto faces = solid_.grid.faces(c);
-      for (int face = 0; face < cube::n_faces; ++face) {
-        const FaceId f = faces[face];
-        const bool first_seen = (face & 1) == 1 || !solid_.grid.cells(f)[0].valid(); // else done from the cell below
-        const bool has_changed = (new_lines & cube::lines_of_face[face]) != 0 || (view.parted_faces >> face & 1) != 0;
-        if (has_changed && first_seen) {
-          solid_.cuts.set_point(f, place_face(view, face));
-          count_held();
-        }
+      for (int face = 0; face < cube::n_faces; ++face)
+        if ((face & 1) == 1 || !solid_.grid.cells(faces[face])[0].valid()) // else done from the cell below
+          place_in_face(view, face, faces[face]);
+      if (view.now.is_cut_at_skin()) {
+        for_each_bit(view.now.skeleton().sides >> skeleton::first_triangle,
+                     [&](const int triangle) { place_triangle(view, triangle); });
+        place_inner(view);
+      } else if ((view.now.cut & ~view.old) != 0) {
+        solid_.cuts.set_point(c, place_in(make_site(view, 0xff, 0xfff, Directions()), no_axis,
+                                          grid::cell_point(solid_, c), 0.5 * (view.lower + view.upper)));
+        count_held();
       }
-      const Vec3 before = grid::cell_point(solid_, c);
-      solid_.cuts.set_point(c, place_cell(view));
-      if (view.now.has_two_points())
-        unfold(view, before);
-      count_held();
     }
     solid_.cuts.settle();
     return counts_;
@@ -112,25 +117,6 @@ class Placer {
   void count_held() {
     counts_.n_clamped += is_held_;
     is_held_ = false;
-  }
-
-  /// Those around new cuts, and beside newly parted faces; ascending.
-  std::vector<CellId> changed_cells() const {
-    std::vector<EdgeId> edges;
-    for (const grid::EdgeCut& cut : solid_.cuts.new_cuts())
-      edges.push_back(cut.edge);
-    std::vector<CellId> cells;
-    for (const grid::TouchedCell& touched : grid::touched_cells(solid_.grid, edges))
-      cells.push_back(touched.cell);
-    if (solid_.cuts.newly_parted().empty())
-      return cells;
-    for (const FaceId f : solid_.cuts.newly_parted())
-      for (const CellId c : solid_.grid.cells(f))
-        if (c.valid())
-          cells.push_back(c);
-    std::sort(cells.begin(), cells.end());
-    cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
-    return cells;
   }
 
   /// Sorts the cuts of a face or cell into those that separated material there before and open ones.
@@ -152,92 +138,155 @@ class Placer {
     return site;
   }
 
-  /// The same of the blades' cuts alone, where the skin has a vertex of its own.
-  static Site make_site_of_blades(const View& view, const unsigned lines, const Directions& inside, const int n_before,
-                                  const int n_old, const int n_now) {
+  /// The same of the blades' cuts alone, where the skin has a vertex of its own: of those segments, which have fallen
+  /// into so many parts before any of them, before the new ones, and now.
+  Site make_site_of_blades(const View& view, const grid::Segments of, const Directions& inside,
+                           const std::array<int, 3>& n_parts) const {
     Site site(view, inside);
-    site.splits = n_now > n_before;
-    for_each_bit(view.now.blades() & lines, [&](const int line) {
-      if (n_old > n_before && (view.old >> line & 1))
-        site.lock(view.planes[line], view.labels[line]);
+    const auto& [n_first, n_old, n_now] = n_parts;
+    site.splits = n_now > n_first;
+    for_each_bit(view.now.blades & of, [&](const int segment) {
+      const CutPlane cut = cut_plane(solid_, view, segment);
+      if (n_old > n_first && (view.old_blades >> segment & 1) != 0)
+        site.lock(cut.plane, cut.label);
       else
-        site.open.push_back(view.planes[line]);
+        site.open.push_back(cut.plane);
     });
     return site;
   }
 
-  Vec3 place_face(const View& view, const int face) {
-    const FaceId f = solid_.grid.faces(view.cell)[face];
+  /// Within a face, whose normal's axis stays.
+  static Directions in_face(const int face) {
+    Directions directions{Mat3::Identity(), 2};
     const int normal = cube::face_axis(face);
-    Directions in_face{Mat3::Identity(), 2};
-    in_face.projection(normal, normal) = 0;
+    directions.projection(normal, normal) = 0;
+    return directions;
+  }
+
+  void place_in_face(const View& view, const int face, const FaceId f) {
     const unsigned vertices = cube::face_mask(face), lines = cube::lines_of_face[face];
-    if (!view.now.has_two_points(face))
-      return place_in(make_site(view, vertices, lines, in_face), normal, grid::face_point(solid_, f),
-                      grid::centre(solid_.grid, f));
-    const int n_old = keep_skin_point(f) ? 0 : parts_of(view.before(), face).n;
-    const int n_before = parts_of(view.without_blades(), face).n;
-    for (const grid::SkinArc& arc : grid::skin_arcs(face, view.now.material))
-      if (view.now.is_rim(face, arc) && (solid_.cuts.skin_point(f)->has_rim || n_old <= n_before))
-        return place_on_rim(view, face, arc);
-    const Site site = make_site_of_blades(view, lines, in_face, n_before, n_old, parts_of(view.now, face).n);
-    const Vec3 p = place_in(site, normal, grid::face_point(solid_, f), middle_of_material(site, vertices));
-    const Vec3 from = mean_point_of_blades(view, lines);
-    double part = 1;
-    for (const grid::SkinArc& arc : grid::skin_arcs(face, view.now.material))
-      part = std::min(part, part_before_line(from, p, view.skin_at(arc.lines[0]), solid_.cuts.skin_point(f)->p,
-                                             view.skin_at(arc.lines[1]), normal));
-    const Vec3 q = inside(site, hold_below_skin(from, p, part));
-    const grid::SkinPoint& skin = *solid_.cuts.skin_point(f);
-    if (!is_folded(view, face, q, skin))
-      return q;
-    is_held_ = true;
-    const Vec3 before = grid::face_point(solid_, f);
-    return is_folded(view, face, before, skin) ? skin.p : before;
-  }
-
-  Vec3 place_cell(const View& view) {
-    const Vec3 p = grid::cell_point(solid_, view.cell);
-    if (!view.now.has_two_points())
-      return place_in(make_site(view, 0xff, 0xfff, Directions()), no_axis, p, 0.5 * (view.lower + view.upper));
-    const int n_old = keep_skin_point(view.cell) ? 0 : parts_of(view.before()).n;
-    const int n_before = parts_of(view.without_blades()).n;
-    if (solid_.cuts.skin_point(view.cell)->has_rim)
-      return p; // an earlier rim stays
-    if (n_old <= n_before && rim_passes(solid_, view)) {
-      const auto on_rim = surface::place_on_rim(solid_, view);
-      is_held_ |= !on_rim;
-      if (on_rim) {
-        ++counts_.n_placed;
-        solid_.cuts.set_skin_point(view.cell, on_rim->skin);
-        return on_rim->p;
-      }
+    if (view.now.blades != 0 && (view.now.material & vertices) != vertices) {
+      for (const int arc : {0, 1})
+        if (const int side = skeleton::polygon(face, arc); (view.now.skeleton().sides >> side & 1) != 0)
+          place_polygon(view, side, f);
+    } else if ((view.now.cut & ~view.old & lines) != 0) {
+      solid_.cuts.set_point(f, place_in(make_site(view, vertices, lines, in_face(face)), cube::face_axis(face),
+                                        grid::face_point(solid_, f), grid::centre(solid_.grid, f)));
+      count_held();
     }
-    const Site site = make_site_of_blades(view, 0xfff, Directions(), n_before, n_old, parts_of(view.now).n);
-    const Vec3 q = place_in(site, no_axis, p, middle_of_material(site, 0xff));
-    const Vec3 from = mean_point_of_blades(view, 0xfff);
+  }
+
+  static grid::Segments border(const Skeleton::Side& side) {
+    grid::Segments segments = 0;
+    for (int i = 0; i < side.n; ++i)
+      segments |= grid::Segments(1) << side.segments[i];
+    return segments;
+  }
+
+  /// Of the material beside an arc of the skin, in a face.
+  void place_polygon(const View& view, const int side, const FaceId f) {
+    const int face = side / 2, arc = side % 2;
+    const grid::Segments of = border(view.now.skeleton().side[side]);
+    if ((view.now.blades & ~view.old_blades & of) == 0)
+      return;
+    const auto n_parts = [&](const grid::Segments cut) { return std::max(1, std::popcount(cut & of)); };
+    const Site site =
+      make_site_of_blades(view, of, in_face(face), {1, n_parts(view.old_blades), n_parts(view.now.blades)});
+    const Vec3 middle = middle_of(view, side);
+    const Vec3* const before = solid_.cuts.inner_point(f, arc);
+    const Vec3 mean = mean_point_of(view, of), from = site.locked.empty() ? mean : *before;
+    const Vec3 p = place_in(site, cube::face_axis(face), before ? *before : middle, 0.5 * (mean + middle));
+    const grid::SkinArc& of_skin = grid::skin_arcs(face, view.now.material).arcs[arc];
+    const auto at = [&](const int item) { return grid::item_point(solid_, view.cell, item); };
+    const double part =
+      part_before_line(from, p, at(skeleton::on_line(of_skin.lines[0])), at(skeleton::on_arc(face, arc)),
+                       at(skeleton::on_line(of_skin.lines[1])), cube::face_axis(face));
+    const Vec3 q = hold_below_skin(from, p, part);
+    const bool folds = is_folded(solid_, view, side, q);
+    is_held_ |= folds;
+    solid_.cuts.set_inner_point(f, arc, folds ? at(skeleton::on_arc(face, arc)) : q);
+    count_held();
+  }
+
+  /// On the skin itself: halfway between two cuts of its sides, and so on the rim. A cut of the third side meets it
+  /// there, where the rim crosses that cut's plane.
+  void place_triangle(const View& view, const int triangle) {
+    const Skeleton::Side& side = view.now.skeleton().side[skeleton::first_triangle + triangle];
+    const grid::Segments of = border(side), now = view.now.blades & of, old = view.old_blades & of;
+    if (now == old)
+      return;
+    Vec3 p = mean_point_of(view, of);
+    if (std::popcount(now) == 1)
+      p = 0.5 * (p + middle_of(view, skeleton::first_triangle + triangle));
+    else if (std::popcount(old) == 2)
+      p = on_rim(view, old, now & ~old);
+    solid_.cuts.set_inner_point(view.cell, triangle, p);
+    ++counts_.n_placed;
+  }
+
+  /// On the rim between two cuts, nearest to the plane of a third one.
+  Vec3 on_rim(const View& view, const grid::Segments two, const grid::Segments third) const {
+    const auto at = [&](const grid::Segments segments) {
+      return cut_plane(solid_, view, std::countr_zero(segments)).plane;
+    };
+    const Vec3 p = at(two).point, q = at(two & (two - 1)).point;
+    const Plane plane = at(third);
+    const double a = plane.normal.dot(p - plane.point), b = plane.normal.dot(q - plane.point);
+    constexpr double inside = 1e-3; // of the rim's length
+    return p + (a == b ? 0.5 : std::clamp(a / (a - b), inside, 1 - inside)) * (q - p);
+  }
+
+  /// In a cell with skin.
+  void place_inner(const View& view) {
+    const CellId c = view.cell;
+    if (view.now.blades == view.old_blades)
+      return;
+    const auto n_parts = [&](const grid::Segments cut) {
+      return grid::whole_parts_of({view.now.material, view.now.cut, cut}).n;
+    };
+    const Site site = make_site_of_blades(view, ~grid::Segments(0), Directions(),
+                                          {n_parts(0), n_parts(view.old_blades), n_parts(view.now.blades)});
+    const Vec3* const before = solid_.cuts.inner_point(c);
+    const Vec3 mean = mean_point_of(view, ~grid::Segments(0)), middle = 0.5 * (mean + mean_node(view)),
+               from = site.locked.empty() ? mean : *before;
+    const Vec3 p = place_in(site, no_axis, before ? *before : middle, middle);
     double part = 1;
-    for_each_skin_triangle(solid_, view, [&](const std::array<Vec3, 3>& triangle) {
-      part = std::min(part, part_before(from, q, triangle));
+    for_each_bit(view.now.skeleton().sides >> skeleton::first_triangle, [&](const int triangle) {
+      const Skeleton::Side& side = view.now.skeleton().side[skeleton::first_triangle + triangle];
+      part = std::min(
+        part, part_before(from, p,
+                          {grid::item_point(solid_, c, side.items[0]), grid::item_point(solid_, c, side.items[1]),
+                           grid::item_point(solid_, c, side.items[2])}));
     });
-    return inside(site, hold_below_skin(from, q, part));
+    solid_.cuts.set_inner_point(c, hold_below_skin(from, p, part));
+    if (is_folded(solid_, view)) {
+      is_held_ = true;
+      solid_.cuts.set_inner_point(c, grid::cell_point(solid_, c));
+    }
+    count_held();
   }
 
-  /// Where the cell's vertex folds the skin, it goes back to where it was, on earlier cuts, or else to the skin's.
-  void unfold(const View& view, const Vec3& before) {
-    const Vec3 of_skin = solid_.cuts.skin_point(view.cell)->p;
-    for (const Vec3& p : {before, of_skin})
-      if (is_folded(solid_, view)) {
-        solid_.cuts.set_point(view.cell, p);
-        solid_.cuts.set_skin_point(view.cell, {of_skin});
-        is_held_ = true;
-      }
+  Vec3 middle_of(const View& view, const int side) const {
+    const Skeleton::Side& of = view.now.skeleton().side[side];
+    Vec3 sum = Vec3::Zero();
+    for (int i = 0; i < of.n; ++i)
+      sum += grid::item_point(solid_, view.cell, of.items[i]);
+    return sum / of.n;
   }
 
-  static Vec3 mean_point_of_blades(const View& view, const unsigned lines) {
-    Planes planes;
-    for_each_bit(view.now.blades() & lines, [&](const int line) { planes.push_back(view.planes[line]); });
-    return mean_point(planes);
+  Vec3 mean_node(const View& view) const {
+    Vec3 sum = Vec3::Zero();
+    for_each_bit(view.now.material, [&](const int v) { sum += grid::item_point(solid_, view.cell, v); });
+    return sum / std::popcount(view.now.material);
+  }
+
+  /// Of the blades' cuts among some segments.
+  Vec3 mean_point_of(const View& view, const grid::Segments of) const {
+    Vec3 sum = Vec3::Zero();
+    for_each_bit(view.now.blades & of, [&](const int segment) {
+      sum += grid::segment_point(solid_, view.cell, view.now.skeleton(), segment);
+    });
+    return sum / std::popcount(view.now.blades & of);
   }
 
   /// p, or where the way there from the cuts' edges still lies below the skin: material has no negative volume.
@@ -262,62 +311,6 @@ class Placer {
       return hold_inside(site, start, moves);
     }
     return meet(site, middle);
-  }
-
-  /// Where blades come to have a vertex of their own, the one that was there stays with the skin. Returns whether that
-  /// is so.
-  template <class Id>
-  bool keep_skin_point(const Id id) {
-    if (solid_.cuts.skin_point(id))
-      return false;
-    solid_.cuts.set_skin_point(id, {point_of(id)});
-    return true;
-  }
-  Vec3 point_of(const FaceId f) const { return grid::face_point(solid_, f); }
-  Vec3 point_of(const CellId c) const { return grid::cell_point(solid_, c); }
-
-  Vec3 place_on_rim(const View& view, const int face, const grid::SkinArc& arc) {
-    const FaceId f = solid_.grid.faces(view.cell)[face];
-    grid::SkinPoint of_skin = *solid_.cuts.skin_point(f);
-    if (of_skin.has_rim)
-      return grid::face_point(solid_, f); // an earlier rim stays
-    const RimPoint rim = meet_line(view.mean_plane(view.now.blades() & grid::CellCuts::beside(arc)),
-                                   view.skin_at(arc.lines[0]), of_skin.p, view.skin_at(arc.lines[1]));
-    of_skin.lines &= static_cast<std::uint16_t>(~(1u << cube::place_in_face(face, arc.lines[1 - rim.side_of_corner])));
-    of_skin.has_rim = true;
-    ++counts_.n_placed;
-    is_held_ |= !rim.is_met;
-    const Vec3 p = along_skin(view, cube::face_axis(face), rim.p, of_skin.p);
-    constexpr double little = 0.02;
-    if (is_folded(view, face, p, of_skin, little)) {
-      is_held_ = true;
-      return of_skin.p;
-    }
-    solid_.cuts.set_skin_point(f, of_skin);
-    return p;
-  }
-
-  /// p, no closer to the sides of a face than a vertex may be: it moves towards the skin's vertex, along the skin.
-  static Vec3 along_skin(const View& view, const int normal, const Vec3& p, const Vec3& corner) {
-    const Vec3 inside = view.inside(p);
-    double part = 0;
-    for (int axis = 0; axis < 3; ++axis)
-      if (axis != normal && inside[axis] != p[axis])
-        part = std::max(part, corner[axis] != p[axis] ? (inside[axis] - p[axis]) / (corner[axis] - p[axis]) : 1);
-    return p + std::min(part, 1.0) * (corner - p);
-  }
-
-  /// Halfway between the site's cuts and its material nodes: below the skin, where a front ends there.
-  static Vec3 middle_of_material(const Site& site, const unsigned vertices) {
-    const View& view = site.view;
-    Vec3 sum = Vec3::Zero();
-    int n = 0;
-    for_each_bit(view.now.material & vertices, [&](const int v) {
-      for (int axis = 0; axis < 3; ++axis)
-        sum[axis] += v >> axis & 1 ? view.upper[axis] : view.lower[axis];
-      ++n;
-    });
-    return 0.5 * (mean_point(site.open) + sum / n);
   }
 
   /// The directions that keep all locked planes: what each cut fixes alone, so that a cut that meets an earlier one at

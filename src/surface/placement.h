@@ -9,9 +9,9 @@
 /// each earlier cut. Cell, inside the body: the point nearest its centre that minimises the squared distances to all
 /// planes [GH97]; later cuts of a cell already split project it, in the same way. The skin: the input's planes are
 /// known all at once and give the quadric's minimum; that vertex never moves again (the thesis lets the skin jump:
-/// §2.8). Where a blade cuts beside the skin, the cuts get a vertex of their own (grid::SkinPoint), placed by their
-/// planes alone; where a cut meets the skin it lies on the rim (rim.h), and in the cell as far along the cut from
-/// there as keeps the rest volume of a curved skin to round-off.
+/// §2.8). Where blades cut at the skin, a cell is a polyhedron (grid/skeleton.h), and cuts have vertices of their own in
+/// its sides and in the cell, placed in the same way below the skin; in a triangle of the skin halfway between two cuts of
+/// its sides. So a rim runs on the skin, from cut to cut of its segments, and the skin keeps its shape.
 ///
 /// Departures: the thesis has one vertex a face and component, which cannot lie on the skin and on a cut below it; and
 /// it projects plainly onto the new plane, which would bend an earlier cut that it does not meet at a right angle, and
@@ -20,9 +20,8 @@
 /// are cut in different steps by different fronts is (b) or (c) all the same. A vertex never leaves its face or cell,
 /// so that every octant (grid/material.h) has six positive tetrahedra: where all planes would meet outside, the
 /// weakest of them is given up, then the next; where even the strongest one leads outside, the vertex stops at the
-/// side. Limits: more than three planes in a cell are met in the least-squares sense; a rim has one vertex in a face
-/// and one in a cell, so that where cuts cross on the skin, or a rim bends twice in a cell, it passes by the skin's
-/// vertex; of a plane, the tip of a sharp edge that lies between the grid's edges is lost.
+/// side. Limit: more than three planes in a cell are met in the least-squares sense, and then a later cut may move what
+/// lies between earlier ones.
 
 #include "grid/solid.h"
 

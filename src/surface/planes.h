@@ -5,7 +5,7 @@
 /// Method: seen from the allowed directions (projection P), planes with normals n_i have the quadric A = sum (P n_i)
 /// (P n_i)^T [GH97]. Its eigenvectors with eigenvalues that are not small are the directions that the planes fix; the
 /// others stay free. Eigenvectors come from cyclic Jacobi rotations, to round-off also for equal eigenvalues. No memory
-/// is allocated: a cell has twelve lines, so at most twelve planes.
+/// is allocated: a cell has sixty segments, so at most so many planes.
 ///
 /// Source: M. Garland, P. S. Heckbert, Surface simplification using quadric error metrics, SIGGRAPH 1997.
 
@@ -34,7 +34,7 @@ class Few {
   int size_ = 0;
 };
 
-using Planes = Few<Plane, 12>;
+using Planes = Few<Plane, 60>;
 using Moves = Few<Vec3, 3>;
 
 Vec3 mean_point(const Planes& planes);

@@ -45,9 +45,10 @@ std::size_t Surface::n_bytes() const {
 }
 
 std::size_t SurfaceIndex::n_bytes() const {
-  return first_face_vertex.n_bytes() + first_sheet_vertex.n_bytes() + skin_centres.size() * sizeof(std::uint64_t) +
-         first_of_wall.size() * 2 * sizeof(std::uint64_t) + bytes(face_vertices) + bytes(edge_vertices) +
-         bytes(first_triangle) + bytes(centres.items());
+  return first_face_vertex.n_bytes() + first_inner_vertex.n_bytes() + first_skin_centre.n_bytes() +
+         (in_skin.size() + pieces_of_skin.size()) * 2 * sizeof(std::uint64_t) + bytes(face_vertices) +
+         bytes(edge_vertices) + bytes(segment_vertices) + bytes(first_triangle) + bytes(first_triangle_of_segment) +
+         bytes(skin_centres) + bytes(centres.items());
 }
 
 Surface build_surface(const Solid& solid) {
@@ -58,7 +59,8 @@ Surface build_surface(const Solid& solid) {
 Surface build_surface(const Solid& solid, SurfaceIndex& index) {
   Surface surface;
   index = {};
-  index.first_face_vertex = index.first_sheet_vertex = grid::SparseIndex<FaceId>(solid.grid.n_faces());
+  index.first_face_vertex = index.first_inner_vertex = grid::SparseIndex<FaceId>(solid.grid.n_faces());
+  index.first_skin_centre = grid::SparseIndex<CellId>(solid.grid.n_cells());
   index.centres.reserve(solid.complex.copies.items().capacity());
   Writer writer(solid, surface, index, Known::kept);
   reserve_vertices(surface);

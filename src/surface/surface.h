@@ -7,14 +7,15 @@
 /// place in its copy: linear on an edge, bilinear in a face, trilinear in a cell (§2.4.4, with corners as unknowns
 /// instead of extrapolated frames).
 ///
-/// Where a blade has cut below the skin (grid/cuts.h), cuts and skin are two sheets: the quadrilaterals of an edge
-/// that is cut twice belong to the one and to the other, and so do the vertices in faces and cells that both pass
-/// without meeting. Where they meet, at the rim of a cut, they have their vertices in common.
+/// Where blades have cut at the skin, a cell is a polyhedron with more segments (grid/skeleton.h), to which the same rule
+/// applies: for each cut segment, each of its ends and each of the polyhedron's two sides there, a triangle. The rim is
+/// where they end: on the skin's triangles, which it divides. So the skin keeps its shape, and its parts are those of
+/// the cut.
 ///
-/// A later cut takes no triangle away: a quadrilateral belongs to a cut of an edge. A vertex belongs to a part of a
-/// face or cell, and of those that it falls into, the first keeps the vertex. So an update writes the cells around
-/// what is new, and appends; a vertex of skin or cut that is taken over by the other sheet may remain without
-/// triangles. The order of vertices depends on the sequence of cuts, the surface does not.
+/// A later cut takes no triangle away: a triangle belongs to a cut, and the first piece of a divided triangle of the skin
+/// has the place of the whole. A vertex belongs to a part of a side or cell, and of those that it falls into, the first
+/// keeps the vertex. So an update writes the cells around what is new, and appends. The order of vertices depends on the
+/// sequence of cuts, the surface does not.
 
 #include "base/interpolation.h"
 #include "grid/solid.h"
@@ -39,20 +40,21 @@ struct Surface {
 struct SurfaceIndex {
   grid::SparseIndex<grid::FaceId> first_face_vertex;  ///< into face_vertices, where a face has some
   std::vector<std::uint32_t> face_vertices;           ///< four a face: by the component's smallest vertex
-  grid::SparseIndex<grid::FaceId> first_sheet_vertex; ///< into face_vertices, where a blade has cut below the skin
+  grid::SparseIndex<grid::FaceId> first_inner_vertex; ///< ten a face: of blades' cuts beside arcs of the skin
   std::vector<std::uint32_t> edge_vertices;           ///< two a cut: of its lower and its upper side
   std::vector<std::uint32_t> first_triangle;          ///< of each cut
-  Table<grid::CopyId, std::uint32_t> centres;
-  std::unordered_map<std::uint32_t, std::uint32_t>
-    skin_centres; ///< by copy, where they are others than those of the cuts
-
-  /// By cell, face and line: the first triangle of the wall there, where a cut meets the skin.
-  std::unordered_map<std::uint64_t, std::uint32_t> first_of_wall;
+  std::vector<std::uint32_t> segment_vertices;        ///< two a cut of the skin: of its ends
+  std::vector<std::uint32_t> first_triangle_of_segment;
+  Table<grid::CopyId, std::uint32_t> centres;        ///< of cuts
+  grid::SparseIndex<grid::CellId> first_skin_centre; ///< into skin_centres, four a cell: by Skeleton::loop
+  std::vector<std::uint32_t> skin_centres;
+  /// In triangles of the skin that are cut: by cell, triangle and the first of its items; and the pieces after the first.
+  std::unordered_map<std::uint64_t, std::uint32_t> in_skin, pieces_of_skin;
 
   std::size_t n_bytes() const;
   void archive(Archive& a) {
-    a(first_face_vertex, face_vertices, first_sheet_vertex, edge_vertices, first_triangle, centres, skin_centres);
-    a(first_of_wall);
+    a(first_face_vertex, face_vertices, first_inner_vertex, edge_vertices, first_triangle, centres);
+    a(segment_vertices, first_triangle_of_segment, first_skin_centre, skin_centres, in_skin, pieces_of_skin);
   }
 };
 

@@ -1,39 +1,8 @@
 #include "surface/view.h"
 
-#include <algorithm>
-#include <cmath>
-
 namespace kerf::surface {
 
 namespace cube = grid::cube;
-
-grid::CellCuts View::before() const {
-  grid::CellCuts result = now;
-  result.twice &= old;
-  result.cut &= old | result.skin;
-  for (int face = 0; face < cube::n_faces; ++face)
-    if ((now.blades() & ~old & cube::lines_of_face[face]) != 0 || (parted_faces >> face & 1) != 0)
-      result.seams[face] = grid::Seam::whole; // what parts it now is new
-  return result;
-}
-
-grid::CellCuts View::without_blades() const {
-  grid::CellCuts result = now;
-  result.cut = result.skin;
-  result.twice = 0;
-  return result;
-}
-
-Plane View::mean_plane(const unsigned lines) const {
-  const unsigned fresh = lines & ~old, used = fresh != 0 ? fresh : lines;
-  Planes of_cuts;
-  Vec3 sum = Vec3::Zero();
-  for_each_bit(used, [&](const int line) {
-    of_cuts.push_back(planes[line]);
-    sum += std::copysign(1.0, sum.dot(planes[line].normal)) * planes[line].normal;
-  });
-  return {mean_point(of_cuts), sum.normalized()};
-}
 
 Vec3 View::inside(const Vec3& p) const {
   const Vec3 margin = grid::min_edge_parameter * (upper - lower);
@@ -65,12 +34,20 @@ View look_at(const grid::Solid& solid, const grid::CellId c) {
       view.labels[line] = cut->label;
     }
   view.now = grid::cuts_of(solid, c, cut_lines);
-  const auto faces = solid.grid.faces(c);
-  for (int face = 0; face < cube::n_faces; ++face)
-    view.parted_faces |= unsigned(solid.cuts.is_newly_parted(faces[face]) && view.now.has_two_points(face)) << face;
-  for_each_bit(view.now.twice,
-               [&](const int line) { view.skin_planes[line] = plane_of(line, *solid.cuts.find_outer(edges[line])); });
+  for_each_bit(view.now.blades, [&](const int segment) {
+    const bool is_old = segment < grid::skeleton::first_half
+                          ? (view.old >> segment & 1) != 0
+                          : !solid.cuts.is_new(grid::skin_segment(solid.grid, c, segment));
+    view.old_blades |= grid::Segments(is_old) << segment;
+  });
   return view;
+}
+
+CutPlane cut_plane(const grid::Solid& solid, const View& view, const int segment) {
+  if (segment < grid::skeleton::first_half)
+    return {view.planes[segment], view.labels[segment]};
+  const grid::SkinCut& cut = *solid.cuts.find(grid::skin_segment(solid.grid, view.cell, segment));
+  return {{grid::segment_point(solid, view.cell, view.now.skeleton(), segment), cut.normal}, cut.label};
 }
 
 } // namespace kerf::surface

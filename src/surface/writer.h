@@ -15,6 +15,7 @@
 namespace kerf::surface {
 
 namespace cube = grid::cube;
+namespace skeleton = grid::skeleton;
 using grid::CellComplex;
 using grid::CellId;
 using grid::CopyId;
@@ -47,11 +48,9 @@ constexpr int place_in_face(const int face, const int vertex) {
   return place;
 }
 
-/// What a writer does with a vertex that is there already.
-enum class Known { kept, renewed };
+enum class Known { kept, renewed }; ///< what a writer does with a vertex that is there already
 
-/// Writes the vertices and triangles of cells. A vertex that several cells share is made by the first of them; its
-/// place and weights come from its edge or face alone, so that they are the same bits whichever cell writes them.
+/// Writes the vertices and triangles of cells. What cells share comes from its edge or face alone: the same bits.
 class Writer {
  public:
   Writer(const Solid& solid, Surface& surface, SurfaceIndex& index, const Known known)
@@ -65,8 +64,7 @@ class Writer {
     edges.reserve(solid_.cuts.all().size());
     for (const grid::EdgeCut& cut : solid_.cuts.all())
       edges.push_back(cut.edge);
-    for (const grid::TouchedCell& touched :
-         grid::touched_cells(solid_.grid, edges)) // by which lines is its configuration
+    for (const grid::TouchedCell& touched : grid::touched_cells(solid_.grid, edges)) // its lines: the configuration
       write(touched.cell, touched.lines);
   }
 
@@ -77,9 +75,10 @@ class Writer {
     if (cut_lines == 0)
       return;
     enter(cell, cut_lines);
-    if (const grid::CellCuts cell_cuts = grid::cuts_of(solid_, cell, cut_lines);
-        cell_cuts.skin != 0 && cell_cuts.blades() != 0) {
-      write_sheets(cell_cuts);
+    const grid::CellCuts cell_cuts = grid::cuts_of(solid_, cell, cut_lines);
+    skeleton_ = cell_cuts.has_skin() ? &cell_cuts.skeleton() : nullptr;
+    if (cell_cuts.is_cut_at_skin()) {
+      write_parts(cell_cuts.blades);
       return;
     }
     for (const Quad& quad : table_.row(cut_lines))
@@ -94,7 +93,7 @@ class Writer {
     for (std::size_t i = index_.first_triangle.size(); i < cuts.size(); ++i) {
       index_.first_triangle.push_back(static_cast<std::uint32_t>(n));
       if (solid_.cuts.is_cut_twice(cuts[i].edge) && solid_.cuts.index(cuts[i].edge) == i)
-        n += 2 * triangles_per_end; // one side is that of the rind
+        n += 2 * triangles_per_end; // the other side belongs to the skin
       else
         for (const NodeId end : solid_.grid.ends(cuts[i].edge))
           n += solid_.grid.is_material(end) ? triangles_per_end : 0;
@@ -103,6 +102,15 @@ class Writer {
     surface_.triangles.resize(n);
     surface_.copies.resize(n);
     index_.edge_vertices.resize(2 * cuts.size(), unset);
+    const auto of_skin = solid_.cuts.skin_cuts();
+    for (std::size_t i = index_.first_triangle_of_segment.size(); i < of_skin.size(); ++i) {
+      const std::size_t first = surface_.triangles.size(), n_cells = of_skin[i].segment.face.valid() ? 2 : 1;
+      index_.first_triangle_of_segment.push_back(static_cast<std::uint32_t>(first));
+      surface_.triangles.resize(first + 4 * n_cells); // two sides of the cut, two sides of each cell
+      surface_.copies.resize(first + 4 * n_cells);
+      surface_.labels.resize(first + 4 * n_cells, of_skin[i].label);
+    }
+    index_.segment_vertices.resize(2 * of_skin.size(), unset);
     index_.centres.resize(solid_.complex.n_copies(), unset);
   }
 
@@ -125,7 +133,8 @@ class Writer {
     const CopyId copy = copy_at_[quad.end];
     const auto& vertices = quad.vertices;
     const std::uint32_t edge = edge_vertex(copy, vertices[0]), first = face_vertex(copy, vertices[1]),
-                        middle = centre(copy, vertices[2]), second = face_vertex(copy, vertices[3]);
+                        middle = skeleton_ ? skin_centre(skeleton_->loop[quad.line], copy) : centre(copy, vertices[2]),
+                        second = face_vertex(copy, vertices[3]);
     const auto& [lower, upper] = cube::line_vertices[quad.line];
     put(quad, cut_[quad.line], quad.end == upper && copy_at_[lower].valid(), {edge, first, middle, second}, copy);
   }
@@ -141,146 +150,234 @@ class Writer {
     surface_.copies[t] = surface_.copies[t + 1] = copy;
   }
 
-  enum class Sheet { cuts, skin };
+  /// A cell in which blades have cut at the skin, as a polyhedron (grid/skeleton.h): of each cut segment and each of its
+  /// ends, in each of the segment's two sides a triangle (cut, vertex in the side, centre); and the triangles of the
+  /// skin, in pieces where their sides are cut.
+  void write_parts(const grid::Segments blades) {
+    blades_ = blades;
+    for (const CopyId c : solid_.complex.copies_of(cell_))
+      for (grid::Items left = solid_.complex.copies[c].items(); left != 0; left &= left - 1)
+        copy_of_[std::countr_zero(left)] = c;
+    for (grid::Segments left = blades; left != 0; left &= left - 1)
+      write_cut(std::countr_zero(left));
+    for (grid::Sides left = skeleton_->sides >> skeleton::first_triangle; left != 0; left &= left - 1)
+      write_skin(std::countr_zero(left));
+  }
 
-  /// A cell of the skin that a blade has cut. Beside the quadrilaterals of its lines there are walls: where a rim
-  /// parts the skin of a face, and the skin keeps its own vertex, they close the gap from that to the vertex of the
-  /// cuts.
-  void write_sheets(const grid::CellCuts& cell) {
-    std::array<grid::Parts, 6> parts;
-    for (int face = 0; face < cube::n_faces; ++face)
-      parts[face] = grid::parts_of(cell, face);
-    const auto fans = grid::fans_of(cell);
-    for (const Quad& quad : table_.row(cell.cut)) {
-      const bool is_material = cell.material >> quad.end & 1, is_twice = cell.twice >> quad.line & 1;
-      const bool of_skin = cell.skin >> quad.line & 1;
-      if (is_material && (!of_skin || is_twice))
-        write_of_cuts(parts, quad, quad.end, copy_at_[quad.end]);
-      if (!is_material && is_twice)
-        write_of_cuts(parts, quad, first_rind + quad.line, solid_.complex.copy_with_rind(cell_, quad.line));
-      if (is_material && of_skin) {
-        const int item = is_twice ? first_rind + quad.line : quad.end;
-        write_of_skin(cell, parts, quad, fans[quad.line], item,
-                      is_twice ? solid_.complex.copy_with_rind(cell_, quad.line) : copy_at_[item]);
+  void write_cut(const int segment) {
+    const auto& [ends, sides] = skeleton_->segment[segment];
+    for (const int end : {0, 1}) {
+      const CopyId copy = copy_of_[ends[end]];
+      const std::uint32_t cut = cut_vertex(segment, end, copy), middle = centre(copy);
+      for (const int way : {0, 1}) {
+        const std::uint32_t in_side = side_vertex(sides[way], ends[end], copy);
+        put(triangle_of_cut(segment, end, way),
+            way == end ? Triangle{cut, middle, in_side} : Triangle{cut, in_side, middle}, copy);
       }
     }
   }
 
-  static constexpr int first_rind = cube::n_vertices; ///< items are vertices, then rinds of lines
-
-  /// A quadrilateral of a blade's cut; `item` is what it bounds.
-  void write_of_cuts(const std::array<grid::Parts, 6>& parts, const Quad& quad, const int item, const CopyId copy) {
-    const std::uint32_t cut = solid_.cuts.index(solid_.grid.edges(cell_)[quad.line]);
-    const bool is_upper = quad.end == cube::line_vertices[quad.line][1];
-    const std::uint32_t edge = edge_vertex_of(cut, quad, copy), middle = centre(copy);
-    const int f = quad.vertices[1].index, g = quad.vertices[3].index;
-    put(quad, cut, is_upper,
-        {edge, vertex_in_face(f, Sheet::cuts, parts[f], item, copy, quad.line), middle,
-         vertex_in_face(g, Sheet::cuts, parts[g], item, copy, quad.line)},
-        copy);
+  void put(const std::size_t t, const Triangle& triangle, const CopyId copy) {
+    surface_.triangles[t] = triangle;
+    surface_.copies[t] = copy;
   }
 
-  /// A quadrilateral of the skin, and its walls.
-  void write_of_skin(const grid::CellCuts& cell, const std::array<grid::Parts, 6>& parts, const Quad& quad,
-                     const int fan, const int item, const CopyId copy) {
-    const std::uint32_t cut = solid_.cuts.outer_index(solid_.grid.edges(cell_)[quad.line]);
-    const std::uint32_t edge = edge_vertex_of(cut, quad, copy), middle = skin_centre(fan, copy);
-    std::array<std::uint32_t, 2> in_face;
-    for (const int i : {0, 1}) {
-      const int face = quad.vertices[1 + 2 * i].index;
-      const Sheet sheet = cell.has_two_points(face) ? Sheet::skin : Sheet::cuts;
-      in_face[i] = vertex_in_face(face, sheet, parts[face], item, copy, quad.line);
-      if (is_rim(cell, face, quad.line)) {
-        const std::uint32_t rim = vertex_in_face(face, Sheet::cuts, parts[face], item, copy, quad.line);
-        put_wall(face, quad.line, i == 1, {in_face[i], rim, centre(copy), middle}, copy,
-                 label_beside(cell, face, quad.line));
-      }
+  bool is_at_upper_end(const int line, const int end) const {
+    const int node = skeleton_->segment[line].ends[0] < cube::n_vertices ? skeleton_->segment[line].ends[0] : 0;
+    return (node == cube::line_vertices[line][1]) == (end == 0);
+  }
+
+  std::size_t triangle_of_cut(const int segment, const int end, const int way) const {
+    if (segment < skeleton::first_half) {
+      const std::size_t first = index_.first_triangle[solid_.cuts.index(solid_.grid.edges(cell_)[segment])];
+      return first + (is_at_upper_end(segment, end) ? triangles_per_end : 0) +
+             place_at_line(segment, skeleton_->segment[segment].sides[way] / 2);
     }
-    put(quad, cut, false, {edge, in_face[0], middle, in_face[1]}, copy);
+    const grid::SkinSegment at = grid::skin_segment(solid_.grid, cell_, segment);
+    const std::size_t first = index_.first_triangle_of_segment[solid_.cuts.index(at)];
+    const bool is_upper_cell = at.face.valid() && solid_.grid.cells(at.face)[1] == cell_;
+    return first + 4 * std::size_t(is_upper_cell) + 2 * static_cast<std::size_t>(end) + static_cast<std::size_t>(way);
   }
 
-  static bool is_rim(const grid::CellCuts& cell, const int face, const int line) {
-    return std::ranges::any_of(grid::skin_arcs(face, cell.material), [&](const grid::SkinArc& arc) {
-      return (arc.lines[0] == line || arc.lines[1] == line) && cell.is_rim(face, arc);
-    });
+  /// Of two triangles in each of the four cells around a line, by the faces of the line.
+  std::size_t place_at_line(const int line, const int face) const {
+    const bool is_first = cube::face_axis(face) == (cube::line_axis(line) + 1) % 3;
+    return 2 * static_cast<std::size_t>(place_around_line[line]) + (is_first ? 0 : 1);
   }
 
-  /// A wall: vertex of the skin and of the rim in a face, rim and skin in the cell. It lies on the skin
-  /// where the cuts' vertices lie on a rim, else it belongs to the cut.
-  void put_wall(const int face, const int line, const bool turned, const std::array<std::uint32_t, 4>& vertices,
-                const CopyId copy, const grid::CutLabel label) {
-    const auto& [skin, rim, rim_middle, middle] = vertices;
-    const std::uint64_t place = std::uint64_t(cell_.value) * cube::n_faces + static_cast<unsigned>(face);
-    const std::uint64_t key = place * cube::n_lines + static_cast<unsigned>(line);
+  /// What the cuts of its sides leave of a triangle of the skin.
+  void write_skin(const int triangle) {
+    const int side = skeleton::first_triangle + triangle;
+    const auto& [n, items, segments] = skeleton_->side[side];
+    const bool is_cut =
+      ((std::uint64_t(1) << segments[0] | std::uint64_t(1) << segments[1] | std::uint64_t(1) << segments[2]) &
+       blades_) != 0;
+    if (!is_cut) {
+      const CopyId copy = copy_of_[items[0]];
+      put(triangle_of_skin(triangle, 0),
+          {item_vertex(items[0], copy), item_vertex(items[1], copy), item_vertex(items[2], copy)}, copy);
+      return;
+    }
+    for (int i = 0; i < n; ++i) {
+      const int a = items[i], b = items[(i + 1) % n], segment = segments[i];
+      const CopyId of_a = copy_of_[a], of_b = copy_of_[b];
+      if ((blades_ >> segment & 1) == 0) {
+        put(triangle_of_skin(triangle, i), {item_vertex(a, of_a), item_vertex(b, of_a), side_vertex(side, a, of_a)},
+            of_a);
+        continue;
+      }
+      const int end = skeleton_->segment[segment].ends[0] == a ? 0 : 1;
+      put(triangle_of_skin(triangle, i),
+          {item_vertex(a, of_a), cut_vertex(segment, end, of_a), side_vertex(side, a, of_a)}, of_a);
+      put(triangle_of_skin(triangle, n + i),
+          {cut_vertex(segment, 1 - end, of_b), item_vertex(b, of_b), side_vertex(side, b, of_b)}, of_b);
+    }
+  }
+
+  /// The first piece has the place of the whole.
+  std::size_t triangle_of_skin(const int triangle, const int piece) {
+    const int face = triangle / 4, line = cube::face_lines[face][triangle % 4];
+    if (piece == 0)
+      return index_.first_triangle[solid_.cuts.outer_index(solid_.grid.edges(cell_)[line])] + place_at_line(line, face);
+    const std::uint64_t key =
+      (std::uint64_t(cell_.value) * 24 + static_cast<unsigned>(triangle)) * 6 + static_cast<unsigned>(piece);
     const std::size_t n = surface_.triangles.size();
-    const auto [wall, is_new] = index_.first_of_wall.try_emplace(key, static_cast<std::uint32_t>(n));
+    const auto [found, is_new] = index_.pieces_of_skin.try_emplace(key, static_cast<std::uint32_t>(n));
     if (is_new) {
-      surface_.triangles.resize(n + 2);
-      surface_.labels.resize(n + 2);
-      surface_.copies.resize(n + 2);
+      surface_.triangles.resize(n + 1);
+      surface_.copies.resize(n + 1);
+      surface_.labels.resize(n + 1, grid::skin_label);
     }
-    const std::uint32_t t = wall->second;
-    surface_.triangles[t] = turned ? Triangle{skin, middle, rim} : Triangle{skin, rim, middle};
-    surface_.triangles[t + 1] = turned ? Triangle{rim, middle, rim_middle} : Triangle{rim, rim_middle, middle};
-    surface_.copies[t] = surface_.copies[t + 1] = copy;
-    const bool on_skin = solid_.cuts.skin_point(faces_[face])->has_rim;
-    surface_.labels[t] = on_skin ? grid::skin_label : label;
-    surface_.labels[t + 1] = on_skin && solid_.cuts.skin_point(cell_)->has_rim ? grid::skin_label : label;
+    return found->second;
   }
 
-  /// Of the blade that has cut beside the skin's line in a face.
-  grid::CutLabel label_beside(const grid::CellCuts& cell, const int face, const int line) const {
-    for (const grid::SkinArc& arc : grid::skin_arcs(face, cell.material))
-      if (arc.lines[0] == line || arc.lines[1] == line) {
-        const int cut = std::countr_zero(cell.blades() & grid::CellCuts::beside(arc));
-        return solid_.cuts.find(solid_.grid.edges(cell_)[cut])->label;
-      }
-    return grid::skin_label;
-  }
-
-  std::uint32_t edge_vertex_of(const std::uint32_t cut, const Quad& quad, const CopyId copy) {
-    std::uint32_t& id = index_.edge_vertices[2 * cut + (quad.end == cube::line_vertices[quad.line][1])];
-    if (id == unset || known_ == Known::renewed)
-      set_edge_vertex(id, quad.line, cut, copy);
-    return id;
-  }
-
-  std::uint32_t vertex_in_face(const int face, const Sheet sheet, const grid::Parts& parts, const int item,
-                               const CopyId copy, const int line) {
-    const auto* const part = std::ranges::find_if(parts, [&](const grid::Part& p) {
-      return item < first_rind ? (p.nodes >> item & 1) != 0 : (p.rinds >> (item - first_rind) & 1) != 0;
-    });
-    const bool has_node = part->nodes != 0;
-    const int place = has_node ? place_in_face(face, std::countr_zero(part->nodes))
-                               : cube::place_in_face(face, std::countr_zero(part->rinds));
-    const std::uint32_t i = has_node && sheet == Sheet::cuts
-                              ? block(index_.first_face_vertex.at(faces_[face]), 4) + place
-                              : block(index_.first_sheet_vertex.at(faces_[face]), 12) + place +
-                                  (sheet == Sheet::cuts ? 0
-                                   : has_node           ? 4
-                                                        : 8);
-    std::uint32_t& id = index_.face_vertices[i];
+  std::uint32_t cut_vertex(const int segment, const int end, const CopyId copy) {
+    if (segment < skeleton::first_half) {
+      const std::uint32_t cut = solid_.cuts.index(solid_.grid.edges(cell_)[segment]);
+      return edge_vertex_of(cut, segment, is_at_upper_end(segment, end), copy);
+    }
+    const std::uint32_t cut = solid_.cuts.index(grid::skin_segment(solid_.grid, cell_, segment));
+    std::uint32_t& id = index_.segment_vertices[2 * std::size_t(cut) + static_cast<std::size_t>(end)];
     if (id == unset || known_ == Known::renewed) {
-      const Vec3 p = sheet == Sheet::skin ? grid::face_skin_point(solid_, faces_[face], cube::place_in_face(face, line))
-                                          : grid::face_point(solid_, faces_[face]);
-      set(id, p, (p - node_position(cube::face_vertices[face][0])) / solid_.grid.h(), copy, cube::face_mask(face));
+      const Vec3 p = grid::segment_point(solid_, cell_, *skeleton_, segment);
+      if (segment < skeleton::first_spoke)
+        set_in_face(id, (segment - skeleton::first_half) / 4, p, copy);
+      else
+        set_centre(id, p, copy);
     }
     return id;
   }
 
-  std::uint32_t skin_centre(const int line, const CopyId copy) {
-    const std::uint64_t key = std::uint64_t(cell_.value) * cube::n_lines + static_cast<unsigned>(line);
-    std::uint32_t& id = index_.skin_centres.try_emplace(key, unset).first->second;
+  std::uint32_t item_vertex(const int item, const CopyId copy) {
+    if (item < skeleton::first_on_arc) {
+      const int line = item - skeleton::first_on_line;
+      const bool is_upper = skeleton_->vertex[item] == cube::line_vertices[line][1];
+      return edge_vertex_of(solid_.cuts.outer_index(solid_.grid.edges(cell_)[line]), line, is_upper, copy);
+    }
+    if (item >= skeleton::first_middle)
+      return skin_centre(item - skeleton::first_middle, copy);
+    const int face = (item - skeleton::first_on_arc) / 2;
+    const std::uint32_t first = block(index_.first_face_vertex.at(faces_[face]), 4);
+    std::uint32_t& id = index_.face_vertices[first + place_in_face(face, lowest_node(item - skeleton::first_on_arc))];
     if (id == unset || known_ == Known::renewed)
-      set_centre(id, grid::cell_skin_point(solid_, cell_, line), copy);
+      set_in_face(id, face, grid::face_point(solid_, faces_[face]), copy);
     return id;
   }
 
-  std::uint32_t centre(const CopyId copy) {
-    std::uint32_t& id = index_.centres[copy];
+  /// Of the nodes of a polygon beside an arc.
+  int lowest_node(const int polygon) const {
+    const auto& [n, items, segments] = skeleton_->side[polygon];
+    return *std::min_element(items.begin(), items.begin() + n);
+  }
+
+  /// The items of a side that hang together with one of them within the side.
+  grid::Items part_of_side(const int side, const int item) const {
+    const auto& [n, items, segments] = skeleton_->side[side];
+    grid::Items part = grid::Items(1) << item, before = 0;
+    while (part != before) {
+      before = part;
+      for (int i = 0; i < n; ++i) {
+        const grid::Items ends = grid::Items(1) << items[i] | grid::Items(1) << items[(i + 1) % n];
+        if ((blades_ >> segments[i] & 1) == 0 && (part & ends) != 0)
+          part |= ends;
+      }
+    }
+    return part;
+  }
+
+  /// The vertex of the cuts in a side, of the part that holds the item there.
+  std::uint32_t side_vertex(const int side, const int item, const CopyId copy) {
+    const grid::Items part = part_of_side(side, item);
+    if (side >= skeleton::first_triangle) {
+      const int triangle = side - skeleton::first_triangle;
+      const std::uint64_t key =
+        (std::uint64_t(cell_.value) * 24 + static_cast<unsigned>(triangle)) * 3 + place_of(side, part);
+      std::uint32_t& id = index_.in_skin.try_emplace(key, unset).first->second;
+      if (id == unset || known_ == Known::renewed)
+        set_centre(id, *solid_.cuts.inner_point(cell_, triangle), copy);
+      return id;
+    }
+    const int face = side / 2;
+    const bool is_full = (skeleton_->items >> skeleton::on_arc(face, 0) & 1) == 0;
+    const std::size_t i = is_full ? block(index_.first_face_vertex.at(faces_[face]), 4) +
+                                      static_cast<std::size_t>(place_in_face(face, std::countr_zero(part)))
+                                  : block(index_.first_inner_vertex.at(faces_[face]), 10) + place_in(face, part);
+    std::uint32_t& id = index_.face_vertices[i];
+    if (id == unset || known_ == Known::renewed)
+      set_in_face(id, face,
+                  is_full ? grid::face_point(solid_, faces_[face]) : *solid_.cuts.inner_point(faces_[face], side % 2),
+                  copy);
+    return id;
+  }
+
+  /// Of the first item of a side that is in a part.
+  unsigned place_of(const int side, const grid::Items part) const {
+    unsigned i = 0;
+    while ((part >> skeleton_->side[side].items[i] & 1) == 0)
+      ++i;
+    return i;
+  }
+
+  /// The same for both cells at a face: by the face's nodes, then lines, then arcs.
+  static std::size_t place_in(const int face, const grid::Items part) {
+    for (std::size_t i = 0; i < 4; ++i)
+      if (part >> cube::face_vertices[face][i] & 1)
+        return i;
+    for (std::size_t i = 0; i < 4; ++i)
+      if (part >> skeleton::on_line(cube::face_lines[face][i]) & 1)
+        return 4 + i;
+    return part >> skeleton::on_arc(face, 0) & 1 ? 8 : 9;
+  }
+
+  std::uint32_t edge_vertex_of(const std::uint32_t cut, const int line, const bool is_upper, const CopyId copy) {
+    std::uint32_t& id = index_.edge_vertices[2 * std::size_t(cut) + (is_upper ? 1 : 0)];
+    if (id == unset || known_ == Known::renewed)
+      set_edge_vertex(id, line, cut, copy);
+    return id;
+  }
+
+  std::uint32_t skin_centre(const int loop, const CopyId copy) {
+    std::uint32_t& first = index_.first_skin_centre.at(cell_);
+    if (first == unset) {
+      first = static_cast<std::uint32_t>(index_.skin_centres.size());
+      index_.skin_centres.resize(first + skeleton::max_loops, unset);
+    }
+    std::uint32_t& id = index_.skin_centres[first + static_cast<std::size_t>(loop)];
     if (id == unset || known_ == Known::renewed)
       set_centre(id, grid::cell_point(solid_, cell_), copy);
     return id;
+  }
+
+  /// Of the cuts at the skin.
+  std::uint32_t centre(const CopyId copy) {
+    std::uint32_t& id = index_.centres[copy];
+    if (id == unset || known_ == Known::renewed)
+      set_centre(id, *solid_.cuts.inner_point(cell_), copy);
+    return id;
+  }
+
+  void set_in_face(std::uint32_t& id, const int face, const Vec3& p, const CopyId copy) {
+    set(id, p, (p - node_position(cube::face_vertices[face][0])) / solid_.grid.h(), copy, cube::face_mask(face));
   }
 
   void set_centre(std::uint32_t& id, const Vec3& p, const CopyId copy) {
@@ -344,7 +441,7 @@ class Writer {
     return id;
   }
 
-  /// True for a vertex that is to be made, or to be renewed for the first time in this cell.
+  /// Is a vertex to be made, or to be renewed for the first time in this cell?
   bool is_wanted(const std::uint32_t id, const int vertex_of_cell) {
     const bool was_seen = seen_[vertex_of_cell];
     seen_[vertex_of_cell] = true;
@@ -393,8 +490,11 @@ class Writer {
   Index3 lower_{};
   std::array<std::uint32_t, 12> cut_; // by line: place in Cuts::all()
   std::array<CopyId, 8> copy_at_;
-  std::bitset<80> seen_;                  // 24 edge vertices, 48 face vertices, 8 centres
-  std::array<std::uint32_t, 80> in_cell_; // ids of seen ones, face vertices only
+  const grid::Skeleton* skeleton_ = nullptr; // where the skin passes through
+  grid::Segments blades_ = 0;
+  std::array<CopyId, skeleton::n_items> copy_of_; // of its items
+  std::bitset<80> seen_;                          // 24 edge vertices, 48 face vertices, 8 centres
+  std::array<std::uint32_t, 80> in_cell_;         // ids of seen ones, face vertices only
 };
 
 } // namespace kerf::surface

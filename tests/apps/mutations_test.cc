@@ -14,9 +14,9 @@ using support::Vandal;
 
 class Mutations : public Program, public testing::WithParamInterface<int> {
  protected:
-  /// Ends in a known way within some seconds, or is stopped: a number that makes a scene large is no mistake.
+  /// Ends in a known way within some seconds, or ends when it is told to: a number that makes a scene large is no mistake.
   void expect_known_end(const Words& arguments, const std::string& what) const {
-    const Result result = kerf(arguments, "set -- timeout -k 1 20 \"$0\" \"$@\" && exec \"$@\"");
+    const Result result = kerf(arguments, "set -- timeout -k 10 20 \"$0\" \"$@\" && exec \"$@\"");
     EXPECT_EQ(result.signal, 0) << what;
     if (result.exit_code == 0 || result.exit_code == 124 || result.exit_code == 137)
       return;

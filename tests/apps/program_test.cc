@@ -28,6 +28,8 @@ TEST_F(ProgramTest, RefusesArgumentsThatMeanNothing) {
   expect_error(kerf({"run"}), 1, {"a scene file must be given", "params/liver.prm"});
   expect_error(kerf({"run", "scene.prm", "--bogus"}), 1,
                {"'--bogus'", "is no option", "--set, --output, --threads, --force, --resume, and --jobs of run"});
+  for (const auto& [first, second] : {std::pair{"--force", "--resume"}, std::pair{"--resume", "--force"}})
+    expect_error(kerf({"run", "scene.prm", first, second}), 1, {"--force and --resume exclude each other"});
   expect_error(kerf({"check", "scene.prm", "--output", "out"}), 1, {"'--output'", "takes no such option"});
   expect_error(kerf({"run", "scene.prm", "--output"}), 1, {"--output", "needs a value"});
   expect_error(kerf({"check", "scene.prm", "other.prm"}), 1, {"'other.prm'", "only one scene"});

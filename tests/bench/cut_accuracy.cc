@@ -101,7 +101,7 @@ void print_planes() {
       const Vec3 normal = support::random_direction(random);
       const Vec3 through = 0.5 * (box.lower + box.upper) + 0.05 * support::random_vector(random);
       const support::Plane plane{normal, normal.dot(through)};
-      support::cut_through(body, support::plane_cuts(body, plane));
+      support::cut_through(body, support::cuts_of_plane(body, plane));
       const auto next = std::upper_bound(leans.begin() + 1, leans.end() - 1, lean(box, plane));
       study(errors[next - leans.begin() - 1], body, box, plane);
     }

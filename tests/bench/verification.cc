@@ -168,15 +168,16 @@ void cook_table() {
 
 void penny_row(const int n, const double half_width) {
   const PennyResult r = penny({.n_over_radius = n, .half_width = half_width}, hooke(1, 0.3));
-  std::printf("| %d | %g | %zu | %.1f | %.4f | %.3f | %.2f |\n", n, half_width, r.n_cells, 100 * r.opening_error,
-              r.volume, n * (1 - std::cbrt(r.volume)), r.cost.total());
+  std::printf("| %d | %g | %zu | %.1f | %.4f | %.3f | %.1f | %.2f |\n", n, half_width, r.n_cells, 100 * r.opening_error,
+              r.volume, n * (1 - std::cbrt(r.volume)), percent(r.release_rate), r.cost.total());
   std::fflush(stdout);
 }
 
 void penny_head() {
   std::printf(
     "\n| disc cut, cells a radius | half width / radius | cells | error of the opening [%%] | volume of the gap / "
-    "exact | missing radius / h | CPU [s] |\n|---|---|---|---|---|---|---|\n");
+    "exact | missing radius / h | error of the energy release rate [%%] | CPU [s] "
+    "|\n|---|---|---|---|---|---|---|---|\n");
 }
 
 void penny_table() {

@@ -1,5 +1,6 @@
 #include "tests/compare/grind.h"
 
+#include "cut/target.h"
 #include "grid/followed.h"
 #include "grid/locate.h"
 
@@ -27,6 +28,23 @@ std::vector<grid::EdgeId> edges_that_hold(const Body& body) {
           !body.solid.cuts.is_cut(e) && body.solid.grid.is_material(a) && body.solid.grid.is_material(b))
         edges.push_back(e);
   return edges;
+}
+
+/// Segments of the skin that join what belongs to different nodes, as they stand now.
+std::vector<cut::Segment> skin_that_holds(const Body& body) {
+  std::vector<cut::Segment> segments;
+  for (const grid::CellId c : ids<grid::CellId>(body.solid.grid.n_cells())) {
+    const grid::CellCuts cuts = grid::cuts_of(body.solid, c);
+    const grid::Skeleton& skeleton = cuts.skeleton();
+    if (!cuts.has_skin())
+      continue;
+    cut::SkinNow(body.solid, c).for_each_uncut([&](const int segment) {
+      const auto& ends = skeleton.segment[segment].ends;
+      if (skeleton.vertex[ends[0]] != skeleton.vertex[ends[1]])
+        segments.push_back(cut::SkinNow(body.solid, c).segment(segment, corners(body)));
+    });
+  }
+  return segments;
 }
 
 struct Sums {
@@ -73,22 +91,29 @@ void join_splinters(const grid::Solid& solid, std::vector<std::uint32_t>& corner
 
 class Grinder {
  public:
-  Grinder(const std::string& backend, const unsigned seed)
+  Grinder(const std::string& backend, const unsigned seed, const int most_strokes)
     : random_(seed), is_lattice_(backend == "lattice"), world_(free_cube(backend)) {
     set_in_motion(body(), Vec3(0.02, 0.01, -0.03), speed);
+    body().cutter = std::make_unique<cut::Cutter>(most_strokes); // else shavings would stay (cut/shreds.h)
+    body().cutter->begin(body().solid, corners(body()));
     at_first_ = sums(body());
   }
 
   Body& body() { return world_.bodies.at(0); }
 
-  /// A short stroke that crosses a random edge that still holds; false when there is none.
+  /// A short stroke that crosses a random edge that still holds, or where none does a segment of the skin; false when
+  /// there is none.
   bool aim() {
     const auto edges = edges_that_hold(body());
-    if (edges.empty())
+    const auto skin = edges.empty() ? skin_that_holds(body()) : std::vector<cut::Segment>();
+    if (edges.empty() && skin.empty())
       return false;
-    const auto [a, b] = body().solid.grid.ends(edges[random_() % edges.size()]);
-    const Vec3 from = corners(body())[body().solid.complex.real_corner[a].value],
-               to = corners(body())[body().solid.complex.real_corner[b].value];
+    const auto current = [&](const grid::EdgeId e) {
+      const auto [a, b] = body().solid.grid.ends(e);
+      return cut::Segment{corners(body())[body().solid.complex.real_corner[a].value],
+                          corners(body())[body().solid.complex.real_corner[b].value]};
+    };
+    const auto [from, to] = edges.empty() ? skin[random_() % skin.size()] : current(edges[random_() % edges.size()]);
     const Vec3 along = (to - from).normalized();
     Vec3 blade, way;
     do {
@@ -98,6 +123,7 @@ class Grinder {
     const Vec3 middle = from + uniform(0.2, 0.8) * (to - from);
     constexpr double reach = 0.02; // half a cube [m]
     cut::Blade& knife = world_.blades.at(0);
+    knife.label = next_label_++;
     knife.edge = {-reach * blade, reach * blade};
     knife.key_frames = {{time_, middle - reach * way}, {time_ + dt, middle + reach * way}};
     return true;
@@ -198,13 +224,14 @@ class Grinder {
   bool is_lattice_;
   World world_;
   double time_ = 0;
+  grid::CutLabel next_label_ = 1; ///< each stroke is a blade of its own
   Sums at_first_;
 };
 
 } // namespace
 
 Ground grind(const std::string& backend, const unsigned seed, const int most_strokes) {
-  Grinder grinder(backend, seed);
+  Grinder grinder(backend, seed, most_strokes);
   Ground ground;
   for (; ground.n_strokes < most_strokes && grinder.aim(); ++ground.n_strokes)
     grinder.step(ground);

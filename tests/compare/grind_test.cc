@@ -17,22 +17,21 @@ std::string name_of(const testing::TestParamInfo<std::string>& backend) {
 /// Symplectic Euler, which shape matching is, lets the energy swing by half of frequency times step, here 5 %; implicit
 /// Euler never adds. A later cut shifts the vertices of earlier ones in the same cells, and with them material from one
 /// copy to another: momentum goes with it, and where the other copy's corners had hardly any mass before and are fast
-/// or far away, a stroke adds energy: in 10^4 strokes 3 % of the first at most with elements, 8 % with shape matching,
+/// or far away, a stroke adds energy: in 10^4 strokes .1 % of the first at most with elements, 2 % with shape matching,
 /// whose splinters may go with another node then. Phyxels of a piece that lose their last bond get a weak one back, which
-/// may be stretched by then: 6 % at most. Two nodes whose edges are all cut, and that lie on one side of all cuts beside
-/// them, may still hang together by the skin, which no stroke can meet any more: one pair in four to eight cubes.
-/// A crumb weighs what its material does, which is not quite what its phyxels stand for: masses of points change by some
-/// per cent.
+/// may be stretched by then, and throws a phyxel away when the piece goes on to fall apart: 40 % in the worst stroke, though
+/// never more energy than at first. Strokes end in the skin too, and so many pieces of it are left without a node:
+/// up to three for each node. A crumb weighs what its material does, which is not quite what its phyxels stand for: masses
+/// of points change by up to 10 %.
 void expect_carried_on(const Ground& ground, const std::string& backend) {
   EXPECT_TRUE(ground.is_finite);
   EXPECT_LE(ground.most_energy, backend == "lattice" ? 1.1 : 1.0001);
-  EXPECT_LE(ground.most_work_of_cut, backend == "mass-spring" ? 0.01 : 0.1);
-  EXPECT_LE(ground.most_mass, backend == "pba" ? 0.05 : 1e-12);
-  EXPECT_LE(ground.most_momentum, backend == "pba" ? 0.04 : 0.02);
+  EXPECT_LE(ground.most_work_of_cut, backend == "mass-spring" ? 0.01 : backend == "pba" ? 0.5 : 0.1);
+  EXPECT_LE(ground.most_mass, backend == "pba" ? 0.12 : 1e-12);
+  EXPECT_LE(ground.most_momentum, backend == "pba" ? 0.3 : 0.02);
   EXPECT_LE(ground.most_drift, 1e-4);
-  EXPECT_LE(ground.n_pieces, ground.n_nodes);
-  EXPECT_GE(ground.n_pieces + 2, ground.n_nodes);
-  EXPECT_LT(ground.n_splinters, ground.n_nodes / 5);
+  EXPECT_EQ(ground.n_pieces, ground.n_nodes);
+  EXPECT_LT(ground.n_splinters, 3 * ground.n_nodes);
 }
 
 void print(const std::string& what, const std::string& backend, const Ground& g) {

@@ -1,7 +1,5 @@
-/// Cuts that cross each other below the skin, where an edge keeps the first of them; and where cuts alone part the
-/// skin.
+/// Cuts that cross each other, where a segment keeps the first of them.
 
-#include "cut/at_skin.h"
 #include "tests/cut/patient.h"
 
 #include <gtest/gtest.h>
@@ -14,39 +12,36 @@
 namespace kerf::cut {
 namespace {
 
-/// Arcs of the skin beside cuts whose ends lie on different sides of a plane that has cut, and yet are said to hang
-/// together; and the reverse.
-struct WrongArcs {
+/// Segments of the skin whose ends lie on different sides of a plane that has cut, and yet are whole; and the reverse.
+struct WrongSegments {
   int n = 0, whole = 0, parted = 0;
 };
 
-void count_arcs(const Patient& patient, const std::vector<support::Plane>& planes, WrongArcs& wrong) {
+void count_segments(const Patient& patient, const std::vector<support::Plane>& planes, WrongSegments& wrong) {
   const grid::Grid& grid = patient.body.grid;
   for (const auto c : ids<grid::CellId>(grid.n_cells())) {
     const grid::CellCuts cell = grid::cuts_of(patient.body, c);
-    const auto end = [&](const int line) { return grid::edge_skin_point(patient.body, grid.edges(c)[line]); };
-    for (int face = 0; face < grid::cube::n_faces; ++face)
-      for (const grid::SkinArc& arc : grid::skin_arcs(face, cell.material)) {
-        if ((cell.blades() & grid::CellCuts::beside(arc)) == 0)
-          continue;
-        const Vec3 p = end(arc.lines[0]), q = end(arc.lines[1]);
-        const bool is_parted = std::any_of(planes.begin(), planes.end(), [&](const support::Plane& plane) {
-          return (plane.height(p) < 0) != (plane.height(q) < 0);
-        });
-        ++wrong.n;
-        wrong.whole += is_parted && cell.is_whole(face, arc);
-        wrong.parted += !is_parted && !cell.is_whole(face, arc);
-      }
+    for (grid::Segments left = cell.skeleton().segments & ~grid::skeleton::lines; left != 0; left &= left - 1) {
+      const int segment = std::countr_zero(left);
+      const auto& ends = cell.skeleton().segment[segment].ends;
+      const Vec3 p = grid::item_point(patient.body, c, ends[0]), q = grid::item_point(patient.body, c, ends[1]);
+      const bool is_parted = std::any_of(planes.begin(), planes.end(), [&](const support::Plane& plane) {
+        return (plane.height(p) < 0) != (plane.height(q) < 0);
+      });
+      ++wrong.n;
+      wrong.whole += is_parted && !(cell.blades >> segment & 1);
+      wrong.parted += !is_parted && (cell.blades >> segment & 1);
+    }
   }
 }
 
 /// Two planes that cross in the box make four pieces, whichever comes first, as blades and at once; and splinters where
-/// the wedge between them is thinner at the skin than a cell, so that no edge holds it to the rest of its piece.
+/// the wedge between them is thinner at the skin than a cell, so that no segment holds it to the rest of its piece.
 TEST(AtSkin, TheOrderOfTwoCutsThatCrossDoesNotMatter) {
   Random random(108);
   double worst = 0, largest_splinter = 0;
   int n = 0, n_splinters = 0;
-  WrongArcs wrong;
+  WrongSegments wrong;
   for (int i = 0; i < 160; ++i) {
     const Body body = box_body(random);
     const Vec3 through = 0.5 * (box.lower + box.upper) + 0.05 * support::random_vector(random);
@@ -70,7 +65,7 @@ TEST(AtSkin, TheOrderOfTwoCutsThatCrossDoesNotMatter) {
     }
     const auto of_first = patients[0].volumes();
     for (const Patient& patient : patients) {
-      count_arcs(patient, planes, wrong);
+      count_segments(patient, planes, wrong);
       auto volumes = patient.volumes();
       ASSERT_GE(volumes.size(), 4u) << "a bridge, " << i;
       EXPECT_NEAR(total(volumes), box_volume, 1e-12 * box_volume);
@@ -83,7 +78,7 @@ TEST(AtSkin, TheOrderOfTwoCutsThatCrossDoesNotMatter) {
     }
   }
   std::cout << n << " bodies: the four pieces differ by at most " << worst << " h^3; " << n_splinters
-            << " splinters of at most " << largest_splinter << " h^3; " << wrong.n << " arcs\n";
+            << " splinters of at most " << largest_splinter << " h^3; " << wrong.n << " segments of the skin\n";
   EXPECT_LT(worst, 3);
   EXPECT_LT(largest_splinter, 1);
   EXPECT_LT(n_splinters, n / 3);
@@ -149,42 +144,6 @@ TEST(AtSkin, TheOrderOfThreeCutsLeavesTheSameNodesTogether) {
   }
   std::cout << n_bodies << " bodies, up to " << most_pieces << " pieces; " << n_other << " with other nodes together\n";
   EXPECT_EQ(n_other, 0);
-}
-
-/// Of edges cut at random, where no other surface has cut: the skin of an arc is parted by an odd number.
-TEST(PartSkin, GoesByParity) {
-  Random random(109);
-  int n_parted = 0, n_whole = 0;
-  for (int i = 0; i < 30; ++i) {
-    Body body = support::make_body({Vec3::Zero(), 1}, support::some_nodes(random, {4, 4, 4}, 0.7), support::midway);
-    std::vector<EdgeId> edges;
-    for (const auto e : ids<EdgeId>(body.grid.n_edges()))
-      if (body.cuts.can_be_cut(body.grid, e) && uniform(random, 0, 1) < 0.3) {
-        const double t = support::is_inner(body, e) ? 0.5 : body.grid.is_material(body.grid.ends(e)[0]) ? 0.2 : 0.8;
-        body.cuts.add(body.grid, {e, t, random_direction(random), 1});
-        edges.push_back(e);
-      }
-    const std::vector<EdgeId> given = edges;
-    part_skin(body, edges);
-    EXPECT_EQ(edges, given) << "no face is parted that has no new cut";
-    for (const auto c : ids<grid::CellId>(body.grid.n_cells())) {
-      const grid::CellCuts cell = grid::cuts_of(body, c);
-      for (int face = 0; face < grid::cube::n_faces; ++face) {
-        bool is_cut = false, is_odd = false;
-        for (const grid::SkinArc& arc : grid::skin_arcs(face, cell.material)) {
-          const unsigned lines = grid::CellCuts::beside(arc) & cell.blades();
-          is_cut |= lines != 0;
-          is_odd |= std::popcount(lines) % 2 != 0;
-        }
-        const grid::Seam expected = !is_cut ? grid::Seam::unsaid : is_odd ? grid::Seam::parted : grid::Seam::whole;
-        EXPECT_EQ(cell.seams[face], expected);
-        n_parted += is_odd;
-        n_whole += is_cut && !is_odd;
-      }
-    }
-  }
-  EXPECT_GT(n_parted, 500);
-  EXPECT_GT(n_whole, 200);
 }
 
 } // namespace

@@ -53,7 +53,7 @@ struct Patient {
     return cutter;
   }
 
-  void cut_through(const std::vector<EdgeCut>& cuts) { follow(cutter(1).cut(body, cuts, Front::none, x)); }
+  void cut_through(const std::vector<EdgeCut>& cuts) { follow(cutter(1).cut(body, {cuts, {}, 0})); }
   void cut_through(const Shape& shape, const grid::CutLabel label = 1) {
     follow(cutter(label).at_once(body, {"", shape, label}, x));
   }

@@ -4,6 +4,7 @@
 
 #include "grid/complex.h"
 #include "surface/placement.h"
+#include "tests/support/bodies.h"
 
 #include <Eigen/Geometry>
 
@@ -38,10 +39,12 @@ struct Interval {
 };
 
 struct Body : grid::Solid {
-  /// Adds cuts, places the vertices they make and numbers the copies anew.
+  /// Adds cuts, and what they part of the skin above; places the vertices they make and numbers the copies anew.
   void cut(const std::vector<grid::EdgeCut>& added) {
     for (const grid::EdgeCut& c : added)
       cuts.add(grid, c);
+    for (const grid::SkinCut& c : support::skin_cuts_above(*this))
+      cuts.add(c);
     surface::place(*this, {});
     complex = grid::build_complex(*this);
   }

@@ -38,7 +38,7 @@ TEST(Element, PartialCubeAgreesWithQuadratureInItsTetrahedra) {
     worst = std::max(
       worst, (K - stiffness(make_element(sample.moments, 0.3, rubber, {}), rubber)).norm() / K.norm());
   }
-  EXPECT_LT(worst, 1e-13);
+  EXPECT_LT(worst, 3e-13);
 }
 
 TEST(Element, IsSymmetricAndHasSixRigidModes) {
@@ -74,10 +74,10 @@ TEST(Element, MassIsDensityTimesShapeIntegrals) {
       double integral = 0;
       for (const auto& [x, weight] : sample.rule)
         integral += weight * shape(a, x);
-      EXPECT_NEAR(element.mass[a], rubber.density * h * h * h * integral, 1e-13);
+      EXPECT_NEAR(element.mass[a], rubber.density * h * h * h * integral, 1e-12);
       sum += element.mass[a];
     }
-    EXPECT_NEAR(sum, rubber.density * element.volume, 1e-13);
+    EXPECT_NEAR(sum, rubber.density * element.volume, 1e-12);
     EXPECT_NEAR(element.volume, h * h * h * sample.moments[0], 1e-17);
   }
 }
@@ -94,10 +94,10 @@ TEST(Element, GradientIsTheMeanOverTheMaterial) {
         integral += weight * shape_gradient(a, x) / h;
         volume += weight;
       }
-      EXPECT_LT((element.gradient[a] - integral / volume).norm(), 1e-13);
+      EXPECT_LT((element.gradient[a] - integral / volume).norm(), 1e-12);
       sum += element.gradient[a];
     }
-    EXPECT_LT(sum.norm(), 1e-13);
+    EXPECT_LT(sum.norm(), 1e-12);
   }
 }
 

@@ -282,8 +282,8 @@ TEST(Mass, OfVolumeFractionsIsTheOctants) {
   }
 }
 
-/// A velocity field linear in X has twice its kinetic energy in p^T M p, exact for every shape of the material, and rows
-/// sum to the lumped mass.
+/// A velocity field linear in X has twice its kinetic energy in p^T M p, exact for every shape of the material that is not
+/// folded (surface/fold.h), and rows sum to the lumped mass.
 TEST(Mass, ConsistentOneIntegratesLinearFields) {
   Draw draw(70);
   Body body = make_block({2, 2, 2}, 0.2, draw, {0.2, 0.8});
@@ -292,18 +292,25 @@ TEST(Mass, ConsistentOneIntegratesLinearFields) {
   const Mat3 A = draw.matrix();
   const Points rest = body.rest();
   double found = 0, expected = 0;
+  std::size_t n_folded = 0;
   for (std::size_t e = 0; e < model.n_elements(); ++e) {
     const grid::Copy& copy = body.complex.copies[grid::CopyId(e)];
-    const auto mass = consistent_mass(material_moments(body, copy), rubber.density * 0.008);
-    for (int a = 0; a < 8; ++a) {
+    const Moments moments = material_moments(body, copy);
+    const auto mass = consistent_mass(moments, rubber.density * 0.008);
+    for (int a = 0; a < 8; ++a)
+      EXPECT_NEAR(mass.row(a).sum() / model.element(e).mass[a], 1, 1e-10);
+    if (without_negative_squares(moments) != moments) {
+      ++n_folded;
+      continue;
+    }
+    for (int a = 0; a < 8; ++a)
       for (int b = 0; b < 8; ++b)
         found += mass(a, b) * (A * rest[copy.corners[a].value]).dot(A * rest[copy.corners[b].value]);
-      EXPECT_NEAR(mass.row(a).sum() / model.element(e).mass[a], 1, 1e-10);
-    }
     for (const auto& [x, weight] : material_rule(body, copy, 4))
       expected += rubber.density * 0.008 * weight * (A * (body.grid.origin(copy.cell) + 0.2 * x)).squaredNorm();
   }
   EXPECT_NEAR(found / expected, 1, 1e-12);
+  EXPECT_LT(n_folded, 0.05 * model.n_elements());
 }
 
 /// Lumped masses and their coupling, element by element against the matrices themselves; as a product and as entries; built

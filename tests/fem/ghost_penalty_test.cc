@@ -2,11 +2,10 @@
 
 #include "fem/ghost_penalty.h"
 
-#include "cut/at_skin.h"
 #include "dynamics/state.h"
 #include "surface/placement.h"
 #include "tests/fem/models.h"
-#include "tests/support/bodies.h"
+#include "tests/support/placed.h"
 
 #include <gtest/gtest.h>
 #include <Eigen/Cholesky>
@@ -167,8 +166,12 @@ support::Body shallow_block(const unsigned axes, const double depth) {
 void cut_by_plane(support::Body& body, const Vec3& direction, const Vec3& node, const double distance,
                   const grid::CutLabel label) {
   const Vec3 normal = direction.normalized();
-  for (const auto& cut : support::plane_cuts(body, {normal, normal.dot(node) + distance}, label))
+  const auto [edges, of_skin, n_double] =
+    support::cuts_of_plane(body, {normal, normal.dot(node) + distance}, label);
+  for (const auto& cut : edges)
     body.cuts.add(body.grid, cut);
+  for (const auto& cut : of_skin)
+    body.cuts.add(cut);
 }
 
 struct Family {
@@ -199,18 +202,21 @@ const std::vector<Family> families = {
      cut_by_plane(body, {1, 0.2, -0.1}, {2, 2, 2}, 0.5 * t, 1);
      cut_by_plane(body, {0.1, 1, 0.3}, {2, 2, 2}, -0.5 * t, 2);
      return body;
-   }},
+   },
+   0.3}, // at .5 a wedge of skin alone, of .02 cubes, hangs by its edge: 178
   {"rinds",
    [](const double t) { // under the skin a plane leaves a flap of rinds alone, 0.4 t thick, that hangs at one side
      auto body = support::block({4, 3, 3});
      const Vec3 normal = Vec3(0.02, 0.01, 1) / std::sqrt(1.0005);
-     std::vector<grid::EdgeId> edges;
-     for (const auto& cut : support::plane_cuts(body, {normal, normal.dot(Vec3(2, 2, 3.5)) - 0.4 * t - 1e-3}))
-       if (body.grid.position(body.grid.ends(cut.edge)[0])[0] < 2.5) {
+     const auto [edges, of_skin, n_double] =
+       support::cuts_of_plane(body, {normal, normal.dot(Vec3(2, 2, 3.5)) - 0.4 * t - 1e-3});
+     for (const auto& cut : edges)
+       if (body.grid.position(body.grid.ends(cut.edge)[0])[0] < 2.5)
          body.cuts.add(body.grid, cut);
-         edges.push_back(cut.edge);
-       }
-     cut::part_skin(body, edges);
+     for (const auto& cut : of_skin)
+       if ((cut.segment.face.valid() ? grid::centre(body.grid, cut.segment.face)
+                                     : grid::centre(body.grid, cut.segment.cell))[0] < 2.7)
+         body.cuts.add(cut);
      return body;
    },
    0.01}}; // a thicker flap bends as the plate that it is: softer than its stretching, the thinner it is

@@ -8,6 +8,7 @@
 #include "tests/support/placed.h"
 
 #include <algorithm>
+#include <bit>
 #include <numeric>
 #include <sstream>
 
@@ -27,6 +28,18 @@ Random generator(const std::uint32_t seed, const std::uint32_t number) {
   return Random(numbers);
 }
 
+void require_sound_cut(const std::string& what, const double t, const Vec3& normal) {
+  if (!(t >= 0 && t <= 1) || !(std::abs(normal.norm() - 1) < 1e-12))
+    throw Violation(what + " is cut at t = " + std::to_string(t) + " with a normal of length " +
+                    std::to_string(normal.norm()));
+}
+
+/// Does a cut of an edge of the skin lie between the node and the skin?
+bool is_up_to_skin(const support::Body& body, const grid::EdgeCut& cut) {
+  const double skin = body.cuts.find_outer(cut.edge)->t;
+  return body.grid.is_material(body.grid.ends(cut.edge)[0]) ? cut.t <= skin : cut.t >= skin;
+}
+
 /// What a sweep finds must be what its header promises.
 void require_sound_cuts(const Subject& subject, const cut::SweepCuts& found) {
   for (std::size_t i = 0; i < found.cuts.size(); ++i) {
@@ -35,30 +48,50 @@ void require_sound_cuts(const Subject& subject, const cut::SweepCuts& found) {
       throw Violation("cuts are not ordered by edge");
     const support::Body& body = subject.specimen.body; // its skin is that of the subject
     if (!subject.solid.cuts.can_be_cut(body.grid, cut.edge) ||
-        (!support::is_inner(body, cut.edge) && !support::is_below_skin(body, cut.edge, cut.t)))
+        (!support::is_inner(body, cut.edge) && !is_up_to_skin(body, cut)))
       throw Violation("an edge is cut again, or outside of the material");
-    if (!(cut.t >= 0 && cut.t <= 1) || !(std::abs(cut.normal.norm() - 1) < 1e-12))
-      throw Violation("edge " + std::to_string(cut.edge.value) + " is cut at t = " + std::to_string(cut.t) +
-                      " with a normal of length " + std::to_string(cut.normal.norm()));
+    require_sound_cut("edge " + std::to_string(cut.edge.value), cut.t, cut.normal);
+  }
+  const auto segments = grid::histories::skin_segments(subject.grid());
+  for (std::size_t i = 0; i < found.of_skin.size(); ++i) {
+    const grid::SkinCut& cut = found.of_skin[i];
+    if (i > 0 && !(found.of_skin[i - 1].segment < cut.segment))
+      throw Violation("cuts of the skin are not ordered");
+    if (!segments.contains(cut.segment) || subject.solid.cuts.is_cut(cut.segment))
+      throw Violation("a segment of the skin is cut that is not there, or is cut already");
+    require_sound_cut("a segment of the skin", cut.t, cut.normal);
   }
 }
 
-/// No hole: the edges round a face of the lattice are a closed line now, and cross a closed surface evenly.
-void require_no_hole(const Subject& subject, const std::vector<grid::EdgeCut>& found) {
-  const grid::Grid& grid = subject.grid();
-  Table<grid::EdgeId, std::uint8_t> crossed(grid.n_edges(), 0);
-  for (const auto& cut : found)
-    crossed[cut.edge] = 1;
-  for (const auto c : ids<grid::CellId>(grid.n_cells()))
-    for (const auto& lines : grid::cube::face_lines) {
-      int n_crossed = 0, n_cut = 0;
-      for (const int line : lines) {
-        n_crossed += crossed[grid.edges(c)[line]];
-        n_cut += subject.solid.cuts.is_cut(grid.edges(c)[line]);
-      }
-      if (n_cut == 0 && n_crossed % 2 != 0)
-        throw Violation("a closed surface cuts an odd number of edges of a face of cell " + std::to_string(c.value));
+/// Which segments of a cell a sweep crosses.
+grid::Segments crossed_in(const grid::Grid& grid, const grid::CellId c, const cut::SweepCuts& found) {
+  grid::Segments crossed = 0;
+  for (grid::Segments left = grid::skeleton_of(grid::material_of(grid, c)).segments; left != 0; left &= left - 1) {
+    const int s = std::countr_zero(left);
+    const bool is_crossed =
+      s < grid::skeleton::first_half
+        ? std::ranges::binary_search(found.cuts, grid.edges(c)[s], {}, &grid::EdgeCut::edge)
+        : std::ranges::binary_search(found.of_skin, grid::skin_segment(grid, c, s), {}, &grid::SkinCut::segment);
+    crossed |= grid::Segments(is_crossed) << s;
+  }
+  return crossed;
+}
+
+/// No hole: what bounds a side of a cell is a closed line now where nothing of it is cut, and crosses a closed surface
+/// evenly.
+void require_no_hole(const Subject& subject, const cut::SweepCuts& found) {
+  for (const auto c : ids<grid::CellId>(subject.grid().n_cells())) {
+    const grid::CellCuts cuts = grid::cuts_of(subject.solid, c);
+    const grid::Segments crossed = crossed_in(subject.grid(), c, found);
+    for (const auto& side : cuts.skeleton().side) {
+      grid::Segments border = 0;
+      for (int i = 0; i < side.n; ++i)
+        border |= grid::Segments(1) << side.segments[i];
+      if ((border & cuts.blades) == 0 && std::popcount(border & crossed) % 2 != 0)
+        throw Violation("a closed surface cuts " + std::to_string(std::popcount(border & crossed)) + " of " +
+                        std::to_string(side.n) + " segments of a side of cell " + std::to_string(c.value));
     }
+  }
 }
 
 double height(const cut::Plane& plane, const Vec3& p) { return plane.normal.dot(p - plane.point); }
@@ -74,27 +107,28 @@ void require_on_plane(const Subject& subject, const cut::Plane& plane, const std
   }
 }
 
-/// Where nothing had been cut before, a plane leaves nothing joined across it: not by edges, nor by the skin.
+/// Where nothing had been cut before, a plane leaves no nodes joined across it: not by edges, nor by the skin.
 void require_parted(const Subject& subject, const cut::Plane& plane) {
-  const grid::Grid& grid = subject.grid();
-  const Items items(subject.solid, subject.specimen.arcs);
-  std::vector<bool> is_above(items.n_names());
-  for (const auto n : ids<grid::NodeId>(grid.n_nodes()))
-    if (grid.is_material(n))
-      is_above[items.node(n)] = height(plane, subject.x[subject.solid.complex.real_corner[n].value]) >= 0;
-  for (const auto e : ids<grid::EdgeId>(grid.n_edges()))
-    if (items.has_rind(e)) {
-      const auto& [lower, upper] = grid.ends(e);
-      is_above[items.rind(e)] = !is_above[items.node(grid.is_material(lower) ? lower : upper)];
-    }
-  ItemLinks links;
-  for (const auto e : ids<grid::EdgeId>(grid.n_edges()))
-    items.add_links(e, links);
-  for (const auto f : ids<grid::FaceId>(grid.n_faces()))
-    items.add_links(f, links);
-  for (const auto& [a, b] : links)
-    if (is_above[a] != is_above[b])
-      throw Violation("a plane leaves material joined across it");
+  const Items& items = subject.specimen.items;
+  constexpr std::int8_t unknown = 0, above = 1, below = 2, both = 3;
+  std::vector<std::int8_t> side(items.n_names, unknown);
+  for (const auto c : ids<grid::CellId>(subject.grid().n_cells()))
+    for (int v = 0; v < grid::cube::n_vertices; ++v)
+      if (const Item item = items.name[c][v]; item != Items::none) {
+        const auto corner = subject.solid.complex.real_corner[subject.grid().nodes(c)[v]];
+        side[item] = height(plane, subject.x[corner.value]) >= 0 ? above : below;
+      }
+  const ItemLinks links = fuzz::links(subject.solid, items);
+  for (bool has_spread = true; has_spread;) {
+    has_spread = false;
+    for (const auto& [a, b] : links)
+      if (side[a] != side[b]) {
+        side[a] = side[b] = static_cast<std::int8_t>(side[a] | side[b]);
+        if (side[a] == both)
+          throw Violation("a plane leaves material joined across it");
+        has_spread = true;
+      }
+  }
 }
 
 class Run {
@@ -127,7 +161,7 @@ class Run {
       ++tally_.n_sweeps;
     }
     drain();
-    step({static_cast<grid::CutLabel>(1)}); // all blades are gone
+    tally_.n_left_whole += subject_.cutter.counts().n_left_whole;
     require_untouched_elsewhere();
     require_same_in_any_order();
     outcome_.digest = digest(subject_, outcome_.digest);
@@ -145,13 +179,14 @@ class Run {
     const auto found = meet(subject_, swept.sweep, label);
     require_sound_cuts(subject_, found);
     if (swept.extent == Extent::closed)
-      require_no_hole(subject_, found.cuts);
+      require_no_hole(subject_, found);
     const cut::Plane* const plane = plane_of(swept.sweep);
-    const bool is_first = subject_.solid.cuts.all().size() == subject_.specimen.body.cuts.all().size();
+    const bool is_first = subject_.solid.cuts.all().size() == subject_.specimen.body.cuts.all().size() &&
+                          subject_.solid.cuts.skin_cuts().empty();
     if (plane)
       require_on_plane(subject_, *plane, found.cuts);
     tally_.n_double_crossings += found.n_double_crossings;
-    tally_.n_idle_sweeps += found.cuts.empty();
+    tally_.n_idle_sweeps += found.cuts.empty() && found.of_skin.empty();
     last_ = swept;
     if (const auto* const surface = std::get_if<cut::CutSurface>(&swept.sweep)) {
       cut_at_once(*surface, label);
@@ -159,9 +194,9 @@ class Run {
         require_parted(subject_, *plane);
     } else {
       const Soup strip = strip_of(swept.sweep);
-      step({label, found, strip, strip});
+      step({label, found, strip});
       tally_.n_most_waiting = std::max(tally_.n_most_waiting, subject_.cutter.n_waiting());
-      now_ = {label, {}, strip, strip};
+      now_ = {label, {}, strip};
       if (release_ == Release::drained)
         drain();
     }
@@ -188,8 +223,6 @@ class Run {
     surface.label = label;
     cut(
       subject_, [&](Subject& s) { return s.cutter.at_once(s.solid, surface, s.x); }, tally_);
-    tally_.n_ended += cut(
-      subject_, [&](Subject& s) { return s.cutter.end(s.solid, surface, s.x); }, tally_);
   }
 
   /// One blade, while all others have gone.
@@ -197,10 +230,8 @@ class Run {
     std::vector<cut::Stroke> strokes = strokes_;
     if (!strokes.empty())
       strokes[stroke.label - 1] = stroke;
-    const bool none_can_be_cut = stroke.found.cuts.empty() && subject_.cutter.n_waiting() == 0;
-    const auto n = cut(
+    cut(
       subject_, [&](Subject& s) { return s.cutter.step(s.solid, strokes, s.x); }, tally_);
-    tally_.n_ended += none_can_be_cut ? n : 0;
   }
 
   void drain() {
@@ -219,17 +250,14 @@ class Run {
   }
 
   void require_same_in_any_order() {
-    const grid::Grid& grid = subject_.grid();
     grid::histories::Plan plan;
     for (const auto& cut : subject_.solid.cuts.all())
       if (cut.label != grid::skin_label)
         plan.cuts.push_back(cut);
-    for (const auto f : ids<grid::FaceId>(grid.n_faces()))
-      if (subject_.solid.cuts.seam(f) != grid::Seam::unsaid)
-        plan.seams[f] = subject_.solid.cuts.seam(f);
+    plan.of_skin.assign(subject_.solid.cuts.skin_cuts().begin(), subject_.solid.cuts.skin_cuts().end());
     Subject other = make_subject(subject_.specimen, tally_);
-    for (const auto& step : grid::histories::dealt(random_, subject_.specimen.body, plan, 1 + draw(random_, 6)))
-      if (!step.cuts.empty() || !step.seams.empty())
+    for (const auto& step : grid::histories::dealt(random_, plan, 1 + draw(random_, 6)))
+      if (!step.empty())
         cut(other, step, tally_);
     require_same(subject_.solid.complex, other.solid.complex);
   }

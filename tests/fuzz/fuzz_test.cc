@@ -78,16 +78,16 @@ void expect_same_bits(const Case& one, Tally& tally) {
 
 void print(const Tally& tally, const double seconds) {
   std::cout << tally.n_cases << " cases, " << tally.n_sweeps << " sweeps (" << tally.n_idle_sweeps << " cut nothing), "
-            << tally.n_releases << " releases, " << tally.n_cut_edges << " cut edges (" << tally.n_rinds
-            << " of the skin), " << tally.n_placed << " placed vertices (" << tally.n_clamped << " clamped), "
+            << tally.n_releases << " releases, " << tally.n_cut_edges << " cut edges (" << tally.n_below_skin
+            << " of the skin), " << tally.n_of_skin << " cut segments of the skin (" << tally.n_left_whole
+            << " cuts left whole), " << tally.n_placed << " placed vertices (" << tally.n_clamped << " clamped), "
             << tally.n_double_crossings << " double crossings, " << tally.n_masses << " corner masses, "
-            << tally.n_ended << " edges where a cut has come to its end, " << tally.n_thread_pairs
-            << " cases on 1 and 2 threads; at most " << tally.n_most_pieces << " pieces and " << tally.n_most_waiting
-            << " waiting cuts\nworst change of volume " << tally.worst_volume
+            << tally.n_thread_pairs << " cases on 1 and 2 threads; at most " << tally.n_most_pieces << " pieces and "
+            << tally.n_most_waiting << " waiting cuts\nworst change of volume " << tally.worst_volume
             << ", of volumes by tetrahedra and triangles " << tally.worst_disagreement
-            << " of the body; of a corner's mass " << tally.worst_mass
-            << " h^3; of the material in one cell of the skin " << tally.worst_skin_cell
-            << " h^3; least mass of a copy at a corner " << tally.least_mass << " h^3; " << seconds << " s\n";
+            << " of the body; of a corner's mass " << tally.worst_mass << " h^3; of the material in one cell "
+            << tally.worst_cell << " h^3; least mass of a copy at a corner " << tally.least_mass << " h^3, of a copy "
+            << tally.least_fill << " h^3, of a piece " << tally.least_piece << " h^3; " << seconds << " s\n";
 }
 
 /// Cases from `first_seed` on until that many sweeps are done; every hundredth is large, and run with 1 and 2 threads.
@@ -113,8 +113,9 @@ void fuzz(const std::uint32_t first_seed, const std::size_t n_sweeps) {
   }
   print(tally, seconds());
   EXPECT_GT(tally.n_cut_edges, n_sweeps);
-  EXPECT_GT(tally.n_rinds, n_sweeps);
-  EXPECT_GT(tally.n_ended, 0u);
+  EXPECT_GT(tally.n_below_skin, n_sweeps);
+  EXPECT_GT(tally.n_of_skin, n_sweeps);
+  EXPECT_GT(tally.n_left_whole, 0u);
   EXPECT_GT(tally.n_masses, n_sweeps);
   EXPECT_GT(tally.n_double_crossings, 0u);
   EXPECT_GT(tally.n_thread_pairs, 0u);
@@ -149,10 +150,10 @@ TEST(Fuzz, SkinCellsKeepTheirVolume) {
       EXPECT_EQ(run(whole_case(seed), one, tally).failure, std::nullopt) << "case " << seed;
     std::cout << "h = " << h << " R: " << tally.n_sweeps << " sweeps, " << tally.n_placed
               << " placed vertices; the volume of the skin changes by at most " << tally.worst_volume
-              << " of the body, that of one of its cells by " << tally.worst_skin_cell << " h^3\n";
+              << " of the body, that of one of its cells by " << tally.worst_cell << " h^3\n";
     EXPECT_GT(tally.n_placed, 1000u);
     EXPECT_LT(tally.worst_volume, 1e-12);
-    EXPECT_LT(tally.worst_skin_cell, 1e-12);
+    EXPECT_LT(tally.worst_cell, 1e-12);
   }
 }
 

@@ -22,6 +22,9 @@ using grid::NodeId;
 namespace {
 
 constexpr double tolerance = 1e-12; // of the body's volume, and of h^3 for masses
+/// Where the skin is so hollow that a cell's vertex does not see it from within, tetrahedra of skin that is cut off are
+/// counted negative (grid/material.h). So far is known what that may come to at a corner of a copy [h^3].
+constexpr double hollow = 0.1;
 
 using Labels = std::vector<std::uint32_t>;
 using Links = std::vector<std::array<std::uint32_t, 2>>;
@@ -83,27 +86,53 @@ std::size_t require_same_sets(const Labels& a, const Labels& b, const std::strin
   return n;
 }
 
-/// What a cell may hold: its material vertices, and its lines with a rind.
+/// An item of a cell.
 struct Held {
   Item item;
-  CopyId copy; ///< by the complex
+  CopyId copy; ///< by the complex; where that does not tell, by a flood within the cell
 };
+
+/// Points of the skin that no copy tells of are with the nodes that they hang on.
+void find_untold(std::vector<Held>& held, const ItemLinks& links) {
+  for (bool has_grown = true; has_grown;) {
+    has_grown = false;
+    for (const auto& [a, b] : links) {
+      Held &p = *std::ranges::find(held, a, &Held::item), &q = *std::ranges::find(held, b, &Held::item);
+      if (p.copy.valid() == q.copy.valid())
+        continue;
+      (p.copy.valid() ? q : p).copy = p.copy.valid() ? p.copy : q.copy;
+      has_grown = true;
+    }
+  }
+}
 
 std::vector<Held> held_by(const Items& items, const grid::Solid& solid, const CellId c) {
   std::vector<Held> all;
-  const auto add = [&](const bool is_item, const Item item, const CopyId copy) {
-    if (copy.valid() != is_item)
-      complain("a copy of cell " + std::to_string(c.value) + " holds a node or rind that is not there, or the reverse");
+  const bool is_told = is_cut_at_skin(solid, items, c);
+  bool has_untold = false;
+  for (int i = 0; i < grid::skeleton::n_items; ++i) {
+    const bool is_item = items.name[c][i] != Items::none, is_node = i < grid::skeleton::first_on_line;
+    const CopyId copy = solid.complex.copy_with(c, i);
+    if (copy.valid() != (is_item && (is_node || is_told)))
+      complain("a copy of cell " + std::to_string(c.value) + " holds an item that is not there, or the reverse");
+    if (is_node && solid.complex.copy_at(c, i) != copy)
+      complain("a node of cell " + std::to_string(c.value) + " is in two copies");
     if (is_item)
-      all.push_back({item, copy});
-  };
-  for (int v = 0; v < cube::n_vertices; ++v)
-    add(solid.grid.is_material(solid.grid.nodes(c)[v]), items.node(solid.grid.nodes(c)[v]),
-        solid.complex.copy_at(c, v));
-  for (int line = 0; line < cube::n_lines; ++line)
-    add(items.has_rind(solid.grid.edges(c)[line]), items.rind(solid.grid.edges(c)[line]),
-        solid.complex.copy_with_rind(c, line));
+      all.push_back({items.name[c][i], copy});
+    has_untold |= is_item && !copy.valid();
+  }
+  if (has_untold)
+    find_untold(all, links(solid, items, c));
   return all;
+}
+
+using HeldByCell = Table<CellId, std::vector<Held>>;
+
+HeldByCell all_held(const Items& items, const grid::Solid& solid) {
+  HeldByCell held;
+  for (const CellId c : ids<CellId>(solid.grid.n_cells()))
+    held.push_back(held_by(items, solid, c));
+  return held;
 }
 
 /// The place of an item among what a cell holds.
@@ -112,21 +141,16 @@ std::uint32_t place_of(const std::vector<Held>& held, const Item item) {
   return static_cast<std::uint32_t>(at - held.begin());
 }
 
-void require_sound_copies(const Items& items, const grid::Solid& solid) {
+void require_sound_copies(const Items& items, const grid::Solid& solid, const HeldByCell& held) {
   std::size_t n_copies = 0;
   for (const CellId c : ids<CellId>(solid.grid.n_cells())) {
-    const auto held = held_by(items, solid, c);
-    ItemLinks links;
-    for (const auto e : solid.grid.edges(c))
-      items.add_links(e, links);
-    for (const auto f : solid.grid.faces(c))
-      items.add_links(f, links);
+    ItemLinks links = fuzz::links(solid, items, c);
     for (auto& link : links)
-      link = {place_of(held, link[0]), place_of(held, link[1])};
+      link = {place_of(held[c], link[0]), place_of(held[c], link[1])};
     Labels copies;
-    for (const Held& one : held)
+    for (const Held& one : held[c])
       copies.push_back(one.copy.value);
-    n_copies += require_same_sets(flooded(held.size(), links), copies,
+    n_copies += require_same_sets(flooded(held[c].size(), links), copies,
                                   "the copies of cell " + std::to_string(c.value) + " are not its parts");
   }
   if (n_copies != solid.complex.n_copies())
@@ -152,37 +176,21 @@ void require_real_corners(const grid::Solid& solid) {
       complain("node " + std::to_string(node.value) + " has a real corner, but is not material, or the reverse");
 }
 
-void require_pieces(const Items& items, const grid::Solid& solid) {
-  ItemLinks links;
-  for (const auto e : ids<grid::EdgeId>(solid.grid.n_edges()))
-    items.add_links(e, links);
-  for (const auto f : ids<grid::FaceId>(solid.grid.n_faces()))
-    items.add_links(f, links);
-  const Labels component = flooded(items.n_names(), links);
+void require_pieces(const Items& items, const grid::Solid& solid, const HeldByCell& held) {
+  const Labels component = flooded(items.n_names, links(solid, items));
   const grid::Pieces pieces = grid::pieces(solid.complex);
   Labels by_items, by_copies;
-  for (const CopyId c : ids<CopyId>(solid.complex.n_copies())) {
-    const Copy& copy = solid.complex.copies[c];
-    const auto add = [&](const Item item) {
+  for (const auto& of_cell : held)
+    for (const auto& [item, copy] : of_cell) {
       by_items.push_back(component[item]);
-      by_copies.push_back(pieces.piece[c]);
-    };
-    for (int v = 0; v < cube::n_vertices; ++v)
-      if (copy.nodes >> v & 1)
-        add(items.node(solid.grid.nodes(copy.cell)[v]));
-    for (int line = 0; line < cube::n_lines; ++line)
-      if (copy.rinds >> line & 1)
-        add(items.rind(solid.grid.edges(copy.cell)[line]));
-  }
-  if (require_same_sets(by_items, by_copies, "pieces are not what edges and skin join") != pieces.n_pieces)
+      by_copies.push_back(pieces.piece[copy]);
+    }
+  if (require_same_sets(by_items, by_copies, "pieces are not what segments join") != pieces.n_pieces)
     complain("the number of pieces is wrong");
 }
 
-/// Item by item: the copies on both sides of a face that hold a node or a rind of it are one along the whole face.
-Links glued_slots(const Items& items, const grid::Solid& solid) {
-  Table<CellId, std::vector<Held>> held;
-  for (const CellId c : ids<CellId>(solid.grid.n_cells()))
-    held.push_back(held_by(items, solid, c));
+/// Item by item: the copies on both sides of a face that hold an item of it are one along the whole face.
+Links glued_slots(const grid::Solid& solid, const HeldByCell& held) {
   Links links;
   for (const CellId below : ids<CellId>(solid.grid.n_cells()))
     for (int axis = 0; axis < 3; ++axis) {
@@ -199,8 +207,8 @@ Links glued_slots(const Items& items, const grid::Solid& solid) {
   return links;
 }
 
-void require_gluing(const Items& items, const grid::Solid& solid) {
-  const Labels glued = flooded(8 * solid.complex.n_copies(), glued_slots(items, solid));
+void require_gluing(const grid::Solid& solid, const HeldByCell& held) {
+  const Labels glued = flooded(8 * solid.complex.n_copies(), glued_slots(solid, held));
   Labels corners;
   for (const Copy& copy : solid.complex.copies)
     for (const CornerId corner : copy.corners)
@@ -222,31 +230,33 @@ void add_mass(const grid::Tetrahedron& t, std::array<double, 8>& mass) {
     add(centre + (p - centre) / 3, 0.45 * volume);
 }
 
-/// For each node and rind of a copy, the copy before that had it; a rind that is new was under its node.
+unsigned material_of(const CellComplex& complex, const CellId cell) {
+  unsigned material = 0;
+  for (const CopyId c : complex.copies_of(cell))
+    material |= complex.copies[c].nodes;
+  return material;
+}
+
+/// For each item of a copy, the copy before that had it; a point of the skin that is new was with a node of its own.
 std::vector<CopyId> origins_of(const CellComplex& before, const Copy& copy) {
+  const auto& vertex = grid::skeleton_of(material_of(before, copy.cell)).vertex;
   std::vector<CopyId> origins;
-  for (int v = 0; v < cube::n_vertices; ++v)
-    if (copy.nodes >> v & 1)
-      origins.push_back(before.copy_at(copy.cell, v));
-  for (int line = 0; line < cube::n_lines; ++line)
-    if (copy.rinds >> line & 1) {
-      CopyId origin = before.copy_with_rind(copy.cell, line);
-      for (const int end : cube::line_vertices[line]) // one of them is empty
-        if (!origin.valid())
-          origin = before.copy_at(copy.cell, end);
-      origins.push_back(origin);
+  for (int i = 0; i < grid::skeleton::n_items; ++i)
+    if (copy.items() >> i & 1) {
+      const CopyId origin = before.copy_with(copy.cell, i);
+      origins.push_back(origin.valid() ? origin : before.copy_at(copy.cell, vertex[i]));
     }
   return origins;
 }
 
 } // namespace
 
-void require_sound_complex(const grid::Solid& solid, const FaceArcs& arcs) {
-  const Items items(solid, arcs);
-  require_sound_copies(items, solid);
+void require_sound_complex(const grid::Solid& solid, const Items& items) {
+  const HeldByCell held = all_held(items, solid);
+  require_sound_copies(items, solid, held);
   require_real_corners(solid);
-  require_pieces(items, solid);
-  require_gluing(items, solid);
+  require_pieces(items, solid, held);
+  require_gluing(solid, held);
 }
 
 void require_sound_parents(const CellComplex& before, const CellComplex& after,
@@ -275,7 +285,7 @@ void require_sound_change(const CellComplex& before, const CellComplex& after, c
   Table<CopyId, std::uint8_t> has_changed(after.n_copies(), 1); // new ones have
   for (const CopyId c : ids<CopyId>(before.n_copies())) {
     const Copy &was = before.copies[c], &is = after.copies[c];
-    has_changed[c] = was.nodes != is.nodes || was.rinds != is.rinds || was.corners != is.corners;
+    has_changed[c] = was.nodes != is.nodes || was.skin != is.skin || was.corners != is.corners;
   }
   for (std::size_t i = before.n_copies(); i < after.n_copies(); ++i)
     for (const CopyId origin : origins_of(before, after.copies[CopyId(i)]))
@@ -338,10 +348,10 @@ CellVolumes require_sound_volumes(const grid::Solid& solid, const CellId cell, T
                                [&](const grid::Tetrahedron& t, int) { add_mass(t, mass); });
     const double least = *std::min_element(mass.begin(), mass.end());
     tally.least_mass = std::min(tally.least_mass, least);
-    constexpr double hollow = 0.01; // where the skin is hollow, a rim on it lies a little deep (surface/fold.h)
     if (!(least > -hollow))
       complain("a copy of cell " + std::to_string(cell.value) + " has the mass " + number(least) + " h^3 at a corner");
     volumes.of_copies.push_back(std::accumulate(mass.begin(), mass.end(), 0.0));
+    tally.least_fill = std::min(tally.least_fill, volumes.of_copies.back());
   }
   return volumes;
 }
@@ -358,6 +368,7 @@ void require_kept_volumes(const Subject& subject, Tally& tally) {
   }
   const auto by_triangles = surface::piece_volumes(subject.surface, complex);
   for (std::size_t p = 0; p < by_tetrahedra.size(); ++p) {
+    tally.least_piece = std::min(tally.least_piece, by_tetrahedra[p] / cube);
     const double difference = std::abs(by_tetrahedra[p] - by_triangles[p]) / subject.volume;
     tally.worst_disagreement = std::max(tally.worst_disagreement, difference);
     if (!(difference < tolerance))
@@ -389,7 +400,7 @@ Table<CornerId, double> corner_masses(const grid::Solid& solid, const std::span<
 }
 
 void require_sound(const Subject& subject, Tally& tally) {
-  require_sound_complex(subject.solid, subject.specimen.arcs);
+  require_sound_complex(subject.solid, subject.specimen.items);
   require_closed(subject.surface);
   require_sound_weights(subject.solid, subject.surface);
   require_kept_volumes(subject, tally);

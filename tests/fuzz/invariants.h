@@ -19,12 +19,12 @@ class Violation : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Copies are the parts of their cells; each material node has one real corner; pieces are what uncut edges and the
-/// skin join of nodes and rinds; corners are the slots that gluing joins, no more and no fewer.
-void require_sound_complex(const grid::Solid& solid, const FaceArcs& arcs);
+/// Copies are the parts of their cells; each material node has one real corner; pieces are what uncut segments join;
+/// corners are the slots that gluing joins, no more and no fewer.
+void require_sound_complex(const grid::Solid& solid, const Items& items);
 
 /// Every corner has one parent, whatever copy is asked, an instance of the same node; real corners have real ones. A
-/// copy comes from that which had its nodes, its rinds, or the nodes under rinds that are new.
+/// copy comes from that which had its items, or the nodes under points of the skin that are new.
 void require_sound_parents(const grid::CellComplex& before, const grid::CellComplex& after,
                            const Table<grid::CornerId, grid::CornerId>& parents);
 
@@ -38,8 +38,8 @@ void require_closed(const surface::Surface& surface);
 /// Rows of W sum to 1 and take rest positions to rest positions.
 void require_sound_weights(const grid::Solid& solid, const surface::Surface& surface);
 
-/// Volumes in a cell. The octants of all its vertices have positive tetrahedra; below a curved skin a tetrahedron may
-/// be turned over, but no copy has less than no mass at any of its corners.
+/// Volumes in a cell. The octants of all its vertices have positive tetrahedra; below a hollow
+/// skin a tetrahedron may be turned over, and a copy have a negative mass at a corner, no further than is known.
 CellVolumes require_sound_volumes(const grid::Solid& solid, grid::CellId cell, Tally& tally);
 
 /// The tetrahedra of each piece enclose what its triangles enclose, and the pieces together the volume of the uncut

@@ -1,73 +1,120 @@
 #include "tests/fuzz/items.h"
 
-#include "tests/grid/slow_complex.h"
+#include "tests/grid/slow_parts.h"
 
 #include <algorithm>
+#include <bit>
+#include <map>
 
 namespace kerf::fuzz {
 
 namespace slow = grid::slow;
+namespace skeleton = grid::skeleton;
 using grid::CellId;
 using grid::EdgeId;
-using grid::FaceId;
-using grid::NodeId;
 
 namespace {
 
-Index3 half(const slow::Point& p) { return {p[0] / 2, p[1] / 2, p[2] / 2}; }
+class Finder {
+ public:
+  explicit Finder(const grid::Grid& grid) : grid_(grid) {
+    material_.is_material = [&grid](const slow::Point& p) {
+      const auto node = grid.find_node({p[0] / 2, p[1] / 2, p[2] / 2});
+      return node && grid.is_material(*node);
+    };
+    for (const auto c : ids<CellId>(grid.n_cells()))
+      add(c);
+    found.n_names = names_.size();
+  }
 
-NodeId node_at(const grid::Grid& grid, const slow::Point& p) { return grid.find_node(half(p)).value(); }
+  Items found;
 
-EdgeId edge_at(const grid::Grid& grid, const slow::Point& p) {
-  return grid.find_edge(half(p), slow::axis_of(p)).value();
-}
+ private:
+  Item name(const slow::Item& item) { return names_.emplace(item, static_cast<Item>(names_.size())).first->second; }
 
-FaceArc with_ids(const grid::Grid& grid, const slow::Arc& arc) {
-  FaceArc result{{edge_at(grid, arc.edges[0]), edge_at(grid, arc.edges[1])},
-                 {node_at(grid, arc.nodes[0]), node_at(grid, arc.nodes[1])},
-                 {}};
-  for (const slow::Point& p : arc.inner)
-    result.inner.push_back(edge_at(grid, p));
-  return result;
-}
+  void add(const CellId c) {
+    const Index3 cell = slow::lattice_cell(grid_, c);
+    const unsigned material = grid::material_of(grid_, c);
+    std::array<Item, skeleton::n_items> names;
+    for (int i = 0; i < skeleton::n_items; ++i)
+      names[i] = grid::skeleton_of(material).items >> i & 1 ? name(slow::named(material, i, cell)) : Items::none;
+    found.name.push_back(names);
+    const auto numbers = number_of_skin(c);
+    std::vector<std::uint32_t> of_cell;
+    for (const slow::Segment& walked : slow::segments(material_, slow::closure(slow::cell_centre(cell)))) {
+      const auto [at, is_new] = segments_.emplace(walked, static_cast<std::uint32_t>(found.all.size()));
+      if (is_new)
+        found.all.push_back(segment(walked, numbers));
+      of_cell.push_back(at->second);
+    }
+    found.of_cell.push_back(of_cell);
+  }
+
+  /// The numbers by which cuts name a cell's segments of the skin.
+  std::map<slow::Segment, grid::SkinSegment> number_of_skin(const CellId c) const {
+    std::map<slow::Segment, grid::SkinSegment> numbers;
+    for (auto left = grid::skeleton_of(grid::material_of(grid_, c)).segments & ~skeleton::lines; left != 0;
+         left &= left - 1) {
+      const auto number = grid::skin_segment(grid_, c, std::countr_zero(left));
+      numbers[slow::walked(material_, grid_, number)] = number;
+    }
+    return numbers;
+  }
+
+  /// The edge on which a segment lies: between two nodes, or of the point of the skin beside a node.
+  ItemSegment segment(const slow::Segment& walked, const std::map<slow::Segment, grid::SkinSegment>& numbers) {
+    const slow::Item &a = *walked.begin(), &b = *walked.rbegin();
+    ItemSegment result{{name(a), name(b)}, {}, {}};
+    if (slow::n_odd(a.at) > 0 && slow::n_odd(b.at) > 0) {
+      result.of_skin = numbers.at(walked);
+      return result;
+    }
+    slow::Point at = slow::n_odd(a.at) == 1 ? a.at : b.at;
+    if (slow::n_odd(at) == 0)
+      for (int axis = 0; axis < 3; ++axis)
+        at[axis] = (a.at[axis] + b.at[axis]) / 2;
+    result.edge = grid_.find_edge({at[0] / 2, at[1] / 2, at[2] / 2}, slow::axis_of(at)).value();
+    return result;
+  }
+
+  const grid::Grid& grid_;
+  slow::Material material_;
+  std::map<slow::Item, Item> names_;
+  std::map<slow::Segment, std::uint32_t> segments_;
+};
 
 } // namespace
 
-FaceArcs face_arcs(const grid::Grid& grid) {
-  slow::Material material;
-  material.is_material = [&](const slow::Point& p) {
-    const auto node = grid.find_node(half(p));
-    return node && grid.is_material(*node);
-  };
-  FaceArcs result(grid.n_faces());
-  for (const auto c : ids<CellId>(grid.n_cells()))
-    for (int face = 0; face < grid::cube::n_faces; ++face) {
-      auto& of_face = result[grid.faces(c)[face]];
-      if (!of_face.empty()) // of the cell before
-        continue;
-      for (const auto& arc : slow::arcs(material, slow::face_centre(slow::lattice_cell(grid, c), face)))
-        of_face.push_back(with_ids(grid, arc));
-    }
+Items items_of(const grid::Grid& grid) { return Finder(grid).found; }
+
+bool is_cut(const grid::Solid& solid, const ItemSegment& segment) {
+  if (!segment.edge.valid())
+    return solid.cuts.is_cut(segment.of_skin);
+  const auto& [lower, upper] = solid.grid.ends(segment.edge);
+  return solid.grid.is_material(lower) == solid.grid.is_material(upper) ? solid.cuts.is_cut(segment.edge)
+                                                                        : solid.cuts.is_cut_twice(segment.edge);
+}
+
+bool is_cut_at_skin(const grid::Solid& solid, const Items& items, const CellId cell) {
+  const auto nodes = solid.grid.nodes(cell);
+  return std::ranges::any_of(nodes, [&](const auto n) { return !solid.grid.is_material(n); }) &&
+         std::ranges::any_of(items.of_cell[cell], [&](const auto s) { return is_cut(solid, items.all[s]); });
+}
+
+ItemLinks links(const grid::Solid& solid, const Items& items) {
+  ItemLinks result;
+  for (const ItemSegment& segment : items.all)
+    if (!is_cut(solid, segment))
+      result.push_back(segment.ends);
   return result;
 }
 
-void Items::add_links(const EdgeId edge, ItemLinks& links) const {
-  const auto& [lower, upper] = solid_.grid.ends(edge);
-  if (solid_.grid.is_material(lower) && solid_.grid.is_material(upper) && !solid_.cuts.is_cut(edge))
-    links.push_back({node(lower), node(upper)});
-}
-
-void Items::add_links(const FaceId face, ItemLinks& links) const {
-  for (const FaceArc& arc : arcs_[face])
-    if (is_whole(face, arc))
-      links.push_back({under(arc, 0), under(arc, 1)});
-}
-
-bool Items::is_whole(const FaceId face, const FaceArc& arc) const {
-  const grid::Seam seam = solid_.cuts.seam(face);
-  if (seam != grid::Seam::unsaid)
-    return seam == grid::Seam::whole;
-  return std::ranges::none_of(arc.inner, [&](const EdgeId e) { return solid_.cuts.is_cut(e); });
+ItemLinks links(const grid::Solid& solid, const Items& items, const CellId cell) {
+  ItemLinks result;
+  for (const auto s : items.of_cell[cell])
+    if (!is_cut(solid, items.all[s]))
+      result.push_back(items.all[s].ends);
+  return result;
 }
 
 } // namespace kerf::fuzz

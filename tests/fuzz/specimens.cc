@@ -12,17 +12,17 @@ namespace kerf::fuzz {
 namespace {
 
 Specimen box(const std::string& name, const Vec3& size, const double h, const Vec3& offset) {
-  return {name, support::embedded(geometry::box_mesh(Vec3::Zero(), size), h, offset), Skin::plane};
+  return {name, support::embedded(geometry::box_mesh(Vec3::Zero(), size), h, offset)};
 }
 
 Specimen sphere(const std::string& name, const double h, const Vec3& offset) {
-  return {name, support::embedded(geometry::sphere_mesh(1, Vec3::Zero(), 3), h, offset), Skin::curved};
+  return {name, support::embedded(geometry::sphere_mesh(1, Vec3::Zero(), 3), h, offset)};
 }
 
 /// So that the mesh encloses about `n_cubes`.
 Specimen specimen(const std::string& name, const geometry::TriangleMesh& mesh, const double n_cubes) {
   const double h = std::cbrt(geometry::volume(mesh) / n_cubes);
-  return {name, support::embedded(mesh, h, {0.5, 0.3, 0.1}), Skin::curved};
+  return {name, support::embedded(mesh, h, {0.5, 0.3, 0.1})};
 }
 
 bool is_mesh(const std::filesystem::path& path) {
@@ -65,18 +65,18 @@ Specimens own_specimens() {
   all.small.push_back(box("rod", {0.9, 0.1, 0.1}, 0.1, Vec3::Constant(0.5)));
   all.small.push_back(sphere("sphere", 0.37, Vec3::Zero()));
   all.small.push_back(sphere("sphere off the lattice", 0.41, {0.2, 0.4, 0.9}));
-  all.small.push_back({"liver", support::embedded(liver, 0.032, {0.5, 0.3, 0.1}), Skin::curved});
-  all.small.push_back({"coarse liver", support::embedded(liver, 0.045, Vec3::Zero()), Skin::curved});
+  all.small.push_back({"liver", support::embedded(liver, 0.032, {0.5, 0.3, 0.1})});
+  all.small.push_back({"coarse liver", support::embedded(liver, 0.045, Vec3::Zero())});
   all.large.push_back(box("large box", {1.4, 1.3, 1.2}, 0.1, Vec3::Zero()));
   all.large.push_back(sphere("large sphere", 0.13, Vec3::Zero()));
-  all.large.push_back({"large liver", support::embedded(liver, 0.011, {0.5, 0.3, 0.1}), Skin::curved});
+  all.large.push_back({"large liver", support::embedded(liver, 0.011, {0.5, 0.3, 0.1})});
   add_meshes(KERF_SOURCE_DIR "/params/meshes", all);
   return all;
 }
 
 Specimen fine_sphere(const double h) {
   const auto mesh = geometry::sphere_mesh(1, Vec3::Zero(), 6);
-  return {"sphere, h = " + std::to_string(h) + " R", support::embedded(mesh, h, {0.2, 0.4, 0.9}), Skin::curved};
+  return {"sphere, h = " + std::to_string(h) + " R", support::embedded(mesh, h, {0.2, 0.4, 0.9})};
 }
 
 } // namespace kerf::fuzz

@@ -14,21 +14,22 @@ using grid::CornerId;
 
 namespace {
 
-/// Those whose heirs must share the mass corner by corner: a cell of one copy that a plane skin bounds, or none.
-std::vector<CellId> cells_that_keep_mass(const Subject& subject, const grid::CellComplex& complex,
-                                         std::vector<CellId> cells) {
-  std::erase_if(cells, [&](const CellId c) {
-    const bool one_copy = !complex.copies[complex.first_copy[c]].next.valid();
-    return !one_copy || (subject.specimen.skin == Skin::curved && support::is_skin_cell(subject.grid(), c));
-  });
+/// Those whose heirs must share the mass corner by corner: cells of one copy. Where a cell has several, a later cut may
+/// move the vertex that they share.
+std::vector<CellId> cells_that_keep_mass(const grid::CellComplex& complex, std::vector<CellId> cells) {
+  std::erase_if(cells, [&](const CellId c) { return complex.copies[complex.first_copy[c]].next.valid(); });
   return cells;
 }
 
-/// How much material a cell of the skin wins or loses is told.
-void measure_skin_cells(const Subject& subject, const std::vector<CellId>& cells, Tally& tally) {
-  for (const CellId c : cells)
-    tally.worst_skin_cell =
-      std::max(tally.worst_skin_cell, std::abs(subject.volumes[c].sum() - subject.first_volumes[c]));
+/// The skin stays where it is, and so every cell keeps its material.
+void require_kept_cells(const Subject& subject, const std::vector<CellId>& cells, Tally& tally) {
+  for (const CellId c : cells) {
+    const double change = std::abs(subject.volumes[c].sum() - subject.first_volumes[c]);
+    tally.worst_cell = std::max(tally.worst_cell, change);
+    if (!(change < 1e-12))
+      throw Violation("the material of cell " + std::to_string(c.value) + " changes by " +
+                      std::to_string(1e12 * change) + "e-12 h^3");
+  }
 }
 
 void require_inherited(const Table<CornerId, double>& before, const Table<CornerId, double>& after,
@@ -69,9 +70,10 @@ void require_as_built(const Subject& subject) {
 /// Lets all else follow what has become of the solid that was `before`.
 void follow_cut(Subject& subject, const grid::Solid& before, const grid::CutChange& change, Tally& tally) {
   grid::Solid& solid = subject.solid;
-  const auto keeping = cells_that_keep_mass(subject, before.complex, change.cells);
+  const auto keeping = cells_that_keep_mass(before.complex, change.cells);
   tally.n_cut_edges += solid.cuts.all().size() - before.cuts.all().size();
-  tally.n_rinds += solid.cuts.n_cut_twice() - before.cuts.n_cut_twice();
+  tally.n_below_skin += solid.cuts.n_cut_twice() - before.cuts.n_cut_twice();
+  tally.n_of_skin += solid.cuts.skin_cuts().size() - before.cuts.skin_cuts().size();
 
   const auto placed = surface::place(solid, change, {});
   const auto parents = all_parents(change);
@@ -83,7 +85,7 @@ void follow_cut(Subject& subject, const grid::Solid& before, const grid::CutChan
 
   for (const CellId c : change.cells)
     subject.volumes[c] = require_sound_volumes(solid, c, tally);
-  measure_skin_cells(subject, change.cells, tally);
+  require_kept_cells(subject, change.cells, tally);
   require_sound(subject, tally);
   require_inherited(corner_masses(before, keeping), corner_masses(solid, keeping), parents, tally);
 
@@ -91,15 +93,6 @@ void follow_cut(Subject& subject, const grid::Solid& before, const grid::CutChan
   tally.n_placed += placed.n_placed;
   tally.n_clamped += placed.n_clamped;
   tally.n_most_pieces = std::max<std::size_t>(tally.n_most_pieces, grid::n_pieces(solid.complex));
-}
-
-bool is_of_skin(const grid::Grid& grid, const grid::EdgeId e) {
-  const auto& [lower, upper] = grid.ends(e);
-  return grid.is_material(lower) != grid.is_material(upper);
-}
-
-bool is_cut_by_blade(const grid::Solid& solid, const grid::EdgeId e) {
-  return solid.cuts.is_cut_twice(e) || (solid.cuts.is_cut(e) && !is_of_skin(solid.grid, e));
 }
 
 class Fnv {
@@ -147,29 +140,17 @@ Subject make_subject(const Specimen& specimen, Tally& tally) {
   return subject;
 }
 
-std::size_t cut(Subject& subject, const std::function<grid::CutChange(Subject&)>& make, Tally& tally) {
+void cut(Subject& subject, const std::function<grid::CutChange(Subject&)>& make, Tally& tally) {
   const grid::Solid before = subject.solid;
   const grid::CutChange change = make(subject);
   if (change.any())
     follow_cut(subject, before, change, tally);
-  return change.edges.size();
 }
 
 void cut(Subject& subject, const grid::histories::Step& step, Tally& tally) {
   const auto make = [&](Subject& of) {
-    auto& [grid, cuts, complex, crumbs] = of.solid;
-    std::vector<grid::EdgeId> edges;
-    for (const auto& cut : step.cuts) {
-      cuts.add(grid, cut);
-      edges.push_back(cut.edge);
-    }
-    for (const auto& [face, seam] : step.seams) {
-      cuts.set_seam(face, seam);
-      for (const auto e : grid::histories::edges_of(grid, face))
-        if (seam == grid::Seam::parted && is_cut_by_blade(of.solid, e))
-          edges.push_back(e);
-    }
-    return grid::update_complex(of.solid, edges);
+    grid::histories::apply(step, of.solid);
+    return grid::update_complex(of.solid, step.edges(), step.segments());
   };
   cut(subject, make, tally);
 }
@@ -182,9 +163,17 @@ std::uint64_t digest(const Subject& subject, const std::uint64_t start) {
     sum.add(Points{cut.normal});
     sum.add(cut.label);
   }
+  for (const auto& cut : subject.solid.cuts.skin_cuts()) {
+    sum.add(cut.segment.face.value);
+    sum.add(cut.segment.cell.value);
+    sum.add(cut.segment.place);
+    sum.add(cut.t);
+    sum.add(Points{cut.normal});
+    sum.add(cut.label);
+  }
   for (const auto& copy : subject.solid.complex.copies) {
     sum.add(copy.nodes);
-    sum.add(copy.rinds);
+    sum.add(copy.skin);
     for (const auto corner : copy.corners)
       sum.add(corner.value);
   }

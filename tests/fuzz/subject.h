@@ -19,28 +19,25 @@ namespace kerf::fuzz {
 
 using support::Random;
 
-/// How well a skin keeps mass where a rim crosses it: a plane one without any change of shape, a curved one keeps the
-/// volume alone.
-enum class Skin { plane, curved };
-
 /// A body as it comes from the mesh, made once and copied by every case.
 struct Specimen {
   std::string name;
   support::Body body;
-  Skin skin = Skin::curved;
-  FaceArcs arcs = face_arcs(body.grid);
+  Items items = items_of(body.grid);
 };
 
 /// What the cases met, summed.
 struct Tally {
   std::size_t n_cases = 0, n_sweeps = 0, n_idle_sweeps = 0, n_cut_edges = 0, n_releases = 0, n_placed = 0;
   std::size_t n_clamped = 0, n_double_crossings = 0, n_masses = 0, n_most_pieces = 0, n_most_waiting = 0;
-  std::size_t n_thread_pairs = 0, n_rinds = 0, n_ended = 0;
+  std::size_t n_thread_pairs = 0, n_below_skin = 0, n_of_skin = 0, n_left_whole = 0;
   double worst_volume = 0;       ///< change of the rest volume, relative to the body [1]
   double worst_disagreement = 0; ///< of a piece's volumes by tetrahedra and by triangles, relative to the body [1]
   double worst_mass = 0;         ///< difference of a corner's mass and that of its heirs, in h^3 [1]
-  double worst_skin_cell = 0;    ///< change of the material in one cell of the skin, in h^3 [1]
+  double worst_cell = 0;         ///< change of the material in one cell, in h^3 [1]
   double least_mass = 1;         ///< of a copy at one of its corners, in h^3 [1]
+  double least_fill = 1;         ///< of a copy [1]
+  double least_piece = 1;        ///< volume, in h^3 [1]
 };
 
 /// Parts of h^3 in a cell [1].
@@ -70,11 +67,10 @@ struct Subject {
 /// At rest; every invariant is checked (invariants.h).
 Subject make_subject(const Specimen& specimen, Tally& tally);
 
-/// Lets the cutter cut, carries the corners over, and checks every invariant. Returns how many edges something has
-/// changed at. Throws Violation.
-std::size_t cut(Subject& subject, const std::function<grid::CutChange(Subject&)>& make, Tally& tally);
+/// Lets the cutter cut, carries the corners over, and checks every invariant. Throws Violation.
+void cut(Subject& subject, const std::function<grid::CutChange(Subject&)>& make, Tally& tally);
 
-/// The same with cuts and seams that are known: no further edges are cut.
+/// The same with cuts that are known: nothing else is cut.
 void cut(Subject& subject, const grid::histories::Step& step, Tally& tally);
 
 /// Adds the bits of positions, cuts, complex and surface to a number.

@@ -388,6 +388,9 @@ cut::SweepCuts meet(const Subject& subject, const Sweep& sweep, const grid::CutL
 bool is_same(const grid::EdgeCut& a, const grid::EdgeCut& b) {
   return a.edge == b.edge && a.t == b.t && a.normal == b.normal && a.label == b.label;
 }
+bool is_same_of_skin(const grid::SkinCut& a, const grid::SkinCut& b) {
+  return a.segment == b.segment && a.t == b.t && a.normal == b.normal && a.label == b.label;
+}
 
 } // namespace
 
@@ -397,11 +400,13 @@ cut::SweepCuts meet(Subject& subject, const Sweep& sweep, const grid::CutLabel l
   else
     subject.boxes.fit(subject.cutter.stands_at(), subject.x);
   const auto found = meet(subject, sweep, label, &subject.boxes), all = meet(subject, sweep, label, nullptr);
-  if (found.n_double_crossings != all.n_double_crossings ||
-      !std::equal(found.cuts.begin(), found.cuts.end(), all.cuts.begin(), all.cuts.end(), is_same))
-    throw Violation("among the boxes " + std::to_string(found.cuts.size()) + " edges are cut and " +
-                    std::to_string(found.n_double_crossings) + " crossed twice, among all edges " +
-                    std::to_string(all.cuts.size()) + " and " + std::to_string(all.n_double_crossings));
+  if (found.n_double_crossings != all.n_double_crossings || !std::ranges::equal(found.cuts, all.cuts, is_same) ||
+      !std::ranges::equal(found.of_skin, all.of_skin, is_same_of_skin))
+    throw Violation("among the boxes " + std::to_string(found.cuts.size()) + " edges and " +
+                    std::to_string(found.of_skin.size()) + " segments of the skin are cut and " +
+                    std::to_string(found.n_double_crossings) + " crossed twice, among all " +
+                    std::to_string(all.cuts.size()) + ", " + std::to_string(all.of_skin.size()) + " and " +
+                    std::to_string(all.n_double_crossings));
   return found;
 }
 

@@ -3,6 +3,7 @@
 #include "grid/crumbs.h"
 
 #include "grid/material.h"
+#include "tests/grid/histories.h"
 #include "tests/support/placed.h"
 
 #include <gtest/gtest.h>
@@ -72,7 +73,7 @@ TEST(Crumbs, OfWholeBodiesOnlyLoosePieces) {
   }
 }
 
-/// Random cuts, batch by batch, down to dust. Copies of rinds and skins of any shape are among them.
+/// Random cuts, batch by batch, down to dust. Copies of skin alone are among them.
 TEST(Crumbs, AfterCutsAreThePiecesThatTheDefinitionNames) {
   std::size_t n_crumbs = 0, n_left = 0;
   for (unsigned seed = 1; seed <= 6; ++seed) {
@@ -87,8 +88,8 @@ TEST(Crumbs, AfterCutsAreThePiecesThatTheDefinitionNames) {
       std::set<CopyId> before;
       for (const Crumb& crumb : body.crumbs.all)
         before.insert(crumb.copies.begin(), crumb.copies.end());
-      CutChange change =
-        cutter.cut(body, support::random_cuts(random, body, 0.2), cut::Front::possible, rest_positions(body));
+      const histories::Plan plan = histories::random_plan(random, body, 0.2, 0.2, 0.2);
+      CutChange change = cutter.cut(body, {plan.cuts, plan.of_skin, 0});
       surface::place(body, change, {});
       update_crumbs(body, change);
       EXPECT_TRUE(std::is_sorted(change.reshaped.begin(), change.reshaped.end()));
@@ -119,8 +120,7 @@ TEST(Crumbs, KeepTheirNamesUntilTheyAreCut) {
   std::set<std::uint32_t> names;
   for (int axis = 0; axis < 3; ++axis)
     for (const double at : {0.2, 0.4, 0.6}) {
-      CutChange change =
-        cutter.cut(body, support::plane_cuts(body, {Vec3::Unit(axis), at}), cut::Front::none, rest_positions(body));
+      CutChange change = cutter.cut(body, support::cuts_of_plane(body, {Vec3::Unit(axis), at}));
       surface::place(body, change, {});
       std::set<std::uint32_t> met;
       for (const Crumb& crumb : body.crumbs.all)

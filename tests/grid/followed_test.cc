@@ -9,7 +9,7 @@
 #include <bit>
 #include <map>
 #include <set>
-#include <tuple>
+#include <utility>
 
 namespace kerf::grid {
 namespace {
@@ -18,14 +18,14 @@ using support::Body;
 using support::Random;
 using support::uniform;
 
+/// The node below the first of the copy's points of the skin.
 NodeId cut_off_from(const Body& body, const Copy& copy) {
-  const EdgeId edge = body.grid.edges(copy.cell)[std::countr_zero(copy.rinds)];
-  const auto& [lower, upper] = body.grid.ends(edge);
-  return body.grid.is_material(lower) ? lower : upper;
+  const Skeleton& skeleton = skeleton_of(material_of(body.grid, copy.cell));
+  return body.grid.nodes(copy.cell)[skeleton.vertex[std::countr_zero(copy.items())]];
 }
 
 struct Nearest {
-  NodeId cut_off_from;    ///< the lowest node from which a rind of the copies that were reached was cut off
+  NodeId cut_off_from;    ///< the lowest node from which one of the copies that were reached was cut off
   std::set<NodeId> nodes; ///< of all nearest copies that have some
   int n_steps = 0;        ///< from copy to copy; two are one step apart when they have a corner in common
 };
@@ -51,7 +51,7 @@ Nearest nearest(const Body& body, const CopyId from) {
     }
   }
   for (const CopyId c : reached)
-    if (complex.copies[c].rinds != 0)
+    if (complex.copies[c].nodes == 0)
       result.cut_off_from = std::min(result.cut_off_from, cut_off_from(body, complex.copies[c]));
   return result;
 }
@@ -91,9 +91,10 @@ TEST(Followed, AreTheNodesOfTheNearestCopies) {
     auto nodes = support::some_nodes(random, {4, 3, 2}, uniform(random, 0.3, 1.2));
     nodes.push_back({1, 1, 1});
     const Body blank = support::make_body({}, nodes, support::midway);
-    const Body body = histories::applied(
-      histories::random_plan(random, blank, uniform(random, 0, 0.5), uniform(random, 0.2, 1), uniform(random, 0, 0.8)),
-      blank);
+    const Body body =
+      histories::applied(histories::random_plan(random, blank, uniform(random, 0, 0.5), uniform(random, 0.2, 1),
+                                                random() % 2 ? uniform(random, 0, 0.3) : uniform(random, 0, 1)),
+                         blank);
     expect_nearest(support::with_copies(body), tally);
     ASSERT_FALSE(HasFatalFailure()) << "random body " << i;
   }
@@ -102,11 +103,11 @@ TEST(Followed, AreTheNodesOfTheNearestCopies) {
 }
 
 /// The nodes by what the copies hold, not by their names.
-std::map<std::tuple<CellId, unsigned, unsigned>, NodeId> by_content(const Body& body) {
+std::map<std::pair<CellId, Items>, NodeId> by_content(const Body& body) {
   const CellComplex& complex = body.complex;
-  std::map<std::tuple<CellId, unsigned, unsigned>, NodeId> nodes;
+  std::map<std::pair<CellId, Items>, NodeId> nodes;
   for (const auto& [c, node] : followed_nodes(body))
-    nodes[{complex.copies[c].cell, complex.copies[c].nodes, complex.copies[c].rinds}] = node;
+    nodes[{complex.copies[c].cell, complex.copies[c].items()}] = node;
   return nodes;
 }
 
@@ -116,31 +117,28 @@ TEST(Followed, DoNotDependOnTheOrderOfCuts) {
     const Body blank = support::block({3, 2, 2});
     const histories::Plan plan = histories::random_plan(random, blank, 0.3, uniform(random, 0.5, 1), 0.7);
     Body body = support::with_copies(blank);
-    for (const histories::Step& step : histories::dealt(random, body, plan, 5)) {
+    for (const histories::Step& step : histories::dealt(random, plan, 5)) {
       histories::apply(step, body);
-      update_complex(body, step.edges);
+      update_complex(body, step.edges(), step.segments());
     }
     ASSERT_EQ(by_content(body), by_content(support::with_copies(body)));
   }
 }
 
-/// A slab whose upper skin a blade has cut off, all but at one end, or at none.
+/// A slab whose upper skin a plane has cut off, all but at one end, or at none.
 Body peeled(const int n_along, const bool at_both_ends) {
-  Body body = support::block({n_along, 1, 1});
-  for (int i = 1; i <= n_along; ++i)
-    body.cuts.add(body.grid, {*body.grid.find_edge({i, 1, 1}, 2), 0.2, Vec3::UnitZ(), 1});
-  for (const auto f : ids<FaceId>(body.grid.n_faces())) {
-    const auto edges = histories::edges_of(body.grid, f);
-    const bool is_first = std::ranges::find(edges, *body.grid.find_edge({1, 1, 1}, 2)) != edges.end();
-    const auto n_twice = std::ranges::count_if(edges, [&](const EdgeId e) { return body.cuts.is_cut_twice(e); });
-    const bool is_end = is_first && grid::centre(body.grid, f)[0] < 1;
-    if (n_twice == 1 && (at_both_ends || !is_end))
-      body.cuts.set_seam(f, Seam::parted);
-  }
-  return body;
+  const Body blank = support::block({n_along, 1, 1});
+  const support::Plane plane{Vec3::UnitZ(), 1.2};
+  histories::Plan plan{support::plane_cuts(blank, plane), support::plane_skin_cuts(blank, plane)};
+  if (!at_both_ends)
+    std::erase_if(plan.of_skin, [&](const SkinCut& cut) {
+      const SkinSegment& at = cut.segment;
+      return (at.face.valid() ? centre(blank.grid, at.face) : centre(blank.grid, at.cell))[0] < 1;
+    });
+  return histories::applied(plan, blank);
 }
 
-TEST(Followed, AreFoundAlongARind) {
+TEST(Followed, AreFoundAlongTheSkin) {
   const int n = 6;
   const Body body = support::with_copies(peeled(n, false));
   EXPECT_EQ(n_pieces(body.complex), 1u);
@@ -154,7 +152,7 @@ TEST(Followed, AreFoundAlongARind) {
   EXPECT_GE(tally.n_far, 2u * n - 4) << "several steps";
 }
 
-TEST(Followed, AreWhatRindsWereCutOffFrom) {
+TEST(Followed, AreWhatSkinWasCutOffFrom) {
   const int n = 4;
   const Body body = support::with_copies(peeled(n, true));
   EXPECT_EQ(n_pieces(body.complex), 2u);

@@ -1,13 +1,14 @@
 #pragma once
 
-/// Random cuts of a body, second cuts of skin edges and seams among them, and random orders in which they may come.
+/// Random cuts of a body, of edges of the skin and of the skin's own segments among them, and random orders in which
+/// they may come.
 
 #include "grid/cuts.h"
 #include "tests/support/bodies.h"
 
 #include <algorithm>
-#include <map>
-#include <utility>
+#include <bit>
+#include <set>
 #include <vector>
 
 namespace kerf::grid::histories {
@@ -16,28 +17,27 @@ using support::Body;
 using support::Random;
 using support::uniform;
 
-/// Cuts that a body gets, and what is said in the end of the seams of its faces.
+/// Cuts that a body gets; or that it gets at once, in one step.
 struct Plan {
   std::vector<EdgeCut> cuts;
-  std::map<FaceId, Seam> seams;
-};
+  std::vector<SkinCut> of_skin = {};
 
-struct Step {
-  std::vector<EdgeCut> cuts;
-  std::vector<std::pair<FaceId, Seam>> seams;
-  std::vector<EdgeId> edges; ///< what an update is told: those of the cuts, and one of each face whose skin is parted
+  bool empty() const { return cuts.empty() && of_skin.empty(); }
+  std::size_t size() const { return cuts.size() + of_skin.size(); }
+  std::vector<EdgeId> edges() const {
+    std::vector<EdgeId> result;
+    for (const EdgeCut& cut : cuts)
+      result.push_back(cut.edge);
+    return result;
+  }
+  std::vector<SkinSegment> segments() const {
+    std::vector<SkinSegment> result;
+    for (const SkinCut& cut : of_skin)
+      result.push_back(cut.segment);
+    return result;
+  }
 };
-
-inline std::array<EdgeId, 4> edges_of(const Grid& grid, const FaceId face) {
-  const auto& [below, above] = grid.cells(face);
-  const CellId cell = below.valid() ? below : above;
-  const auto faces = grid.faces(cell);
-  const auto local = std::find(faces.begin(), faces.end(), face) - faces.begin();
-  std::array<EdgeId, 4> edges;
-  for (int i = 0; i < 4; ++i)
-    edges[i] = grid.edges(cell)[cube::face_lines[local][i]];
-  return edges;
-}
+using Step = Plan;
 
 /// Second cuts between node and skin, each with a probability; one in four at the node or next to the skin.
 inline std::vector<EdgeCut> random_second_cuts(Random& random, const Body& body, const double probability) {
@@ -52,58 +52,57 @@ inline std::vector<EdgeCut> random_second_cuts(Random& random, const Body& body,
   return cuts;
 }
 
-/// A body with only its skin cut gets cuts and seams, each with its probability.
-inline Plan random_plan(Random& random, const Body& body, const double inner, const double second, const double seam) {
-  Plan plan{support::random_cuts(random, body, inner), {}};
-  const auto of_skin = random_second_cuts(random, body, second);
-  plan.cuts.insert(plan.cuts.end(), of_skin.begin(), of_skin.end());
-  for (const auto face : ids<FaceId>(body.grid.n_faces()))
-    if (uniform(random, 0, 1) < seam)
-      plan.seams[face] = random() % 2 ? Seam::whole : Seam::parted;
+/// All segments of the body's skin, ascending.
+inline std::set<SkinSegment> skin_segments(const Grid& grid) {
+  std::set<SkinSegment> all;
+  for (const auto c : ids<CellId>(grid.n_cells()))
+    for (Segments left = skeleton_of(material_of(grid, c)).segments & ~skeleton::lines; left != 0; left &= left - 1)
+      all.insert(skin_segment(grid, c, std::countr_zero(left)));
+  return all;
+}
+
+/// Segments of the skin that are not cut, each with a probability; one in four next to an end.
+inline std::vector<SkinCut> random_skin_cuts(Random& random, const Body& body, const double probability) {
+  std::vector<SkinCut> cuts;
+  for (const SkinSegment& segment : skin_segments(body.grid))
+    if (!body.cuts.is_cut(segment) && uniform(random, 0, 1) < probability) {
+      const double t = random() % 4 != 0 ? uniform(random, 0, 1) : random() % 2 ? -0.1 : 1.1;
+      cuts.push_back({segment, t, support::random_direction(random), 1});
+    }
+  return cuts;
+}
+
+/// A body with only its skin cut gets cuts of edges inside, of edges of the skin below it, and of the skin, each with
+/// its probability.
+inline Plan random_plan(Random& random, const Body& body, const double inner, const double second, const double skin) {
+  Plan plan{support::random_cuts(random, body, inner)};
+  const auto below_skin = random_second_cuts(random, body, second);
+  plan.cuts.insert(plan.cuts.end(), below_skin.begin(), below_skin.end());
+  plan.of_skin = random_skin_cuts(random, body, skin);
   return plan;
 }
 
-/// Deals a plan over steps. A face is said to be whole no later than an edge between its material nodes is cut, and to
-/// be parted, also after it has been whole, at any time.
-inline std::vector<Step> dealt(Random& random, const Body& body, Plan plan, const std::size_t n_steps) {
+/// Deals a plan over steps.
+inline std::vector<Step> dealt(Random& random, Plan plan, const std::size_t n_steps) {
   std::vector<Step> steps(n_steps);
-  std::map<EdgeId, std::size_t> step_of;
   std::shuffle(plan.cuts.begin(), plan.cuts.end(), random);
-  for (const EdgeCut& cut : plan.cuts) {
-    const std::size_t step = random() % n_steps;
-    step_of[cut.edge] = step;
-    steps[step].cuts.push_back(cut);
-    steps[step].edges.push_back(cut.edge);
-  }
-  for (const auto& [face, seam] : plan.seams) {
-    const auto edges = edges_of(body.grid, face);
-    std::size_t last = n_steps - 1;
-    for (const EdgeId e : edges)
-      if (support::is_inner(body, e) && step_of.contains(e))
-        last = std::min(last, step_of[e]);
-    const std::size_t whole = random() % (last + 1);
-    if (seam == Seam::whole || random() % 2)
-      steps[whole].seams.emplace_back(face, Seam::whole);
-    if (seam == Seam::parted) {
-      const std::size_t parted = whole + random() % (n_steps - whole);
-      steps[parted].seams.emplace_back(face, Seam::parted);
-      steps[parted].edges.push_back(edges[random() % 4]);
-    }
-  }
-  for (Step& step : steps)
-    std::shuffle(step.edges.begin(), step.edges.end(), random);
+  std::shuffle(plan.of_skin.begin(), plan.of_skin.end(), random);
+  for (const EdgeCut& cut : plan.cuts)
+    steps[random() % n_steps].cuts.push_back(cut);
+  for (const SkinCut& cut : plan.of_skin)
+    steps[random() % n_steps].of_skin.push_back(cut);
   return steps;
 }
 
 inline void apply(const Step& step, Body& body) {
   for (const EdgeCut& cut : step.cuts)
     body.cuts.add(body.grid, cut);
-  for (const auto& [face, seam] : step.seams)
-    body.cuts.set_seam(face, seam);
+  for (const SkinCut& cut : step.of_skin)
+    body.cuts.add(cut);
 }
 
 inline Body applied(const Plan& plan, Body body) {
-  apply({plan.cuts, {plan.seams.begin(), plan.seams.end()}, {}}, body);
+  apply(plan, body);
   return body;
 }
 

@@ -10,7 +10,8 @@ namespace kerf::grid::slow {
 /// A copy by its definition: a cell, by its lowest node, and the material of one part.
 struct SlowCopy {
   Index3 cell;
-  Items items;
+  Items items; ///< all of them
+  Items said;  ///< those that the copy tells of: without blades at the skin its nodes alone
 };
 
 struct SlowComplex {
@@ -19,24 +20,23 @@ struct SlowComplex {
   std::vector<int> piece;
 };
 
-inline Index3 lattice_cell(const Grid& grid, const CellId c) { return grid.index(grid.nodes(c)[0]); }
-
 inline std::vector<SlowCopy> slow_copies(const support::Body& body) {
   const Material material = material_of(body);
   std::vector<SlowCopy> copies;
   for (const auto c : ids<CellId>(body.grid.n_cells())) {
     const Index3 cell = lattice_cell(body.grid, c);
+    const bool with_skin = is_cut_at_skin(material, cell_centre(cell));
     for (const Items& items : parts(material, closure(cell_centre(cell))))
-      copies.push_back({cell, items});
+      copies.push_back({cell, items, with_skin ? items : nodes_of(items)});
   }
   return copies;
 }
 
 inline bool share(const Items& a, const Items& b) {
-  return std::ranges::any_of(a, [&](const Point& p) { return b.contains(p); });
+  return std::ranges::any_of(a, [&](const Item& item) { return b.contains(item); });
 }
 
-/// Copies above each other along an axis that share a node or a rind, which can only lie on the face between them.
+/// Copies above each other along an axis that share an item, which can only lie on the face between them.
 inline std::vector<std::pair<int, int>> glued_pairs(const std::vector<SlowCopy>& copies) {
   std::map<Index3, std::vector<int>> in_cell;
   for (int i = 0; i < static_cast<int>(copies.size()); ++i)
@@ -85,7 +85,7 @@ inline SlowComplex slow_complex(const support::Body& body) {
   return slow;
 }
 
-/// The material of each piece of a body: of all its nodes and rinds, joined by edges and by the skin of faces.
+/// The material of each piece of a body: of all its items, joined by the segments that are not cut.
 inline std::vector<Items> pieces_of(const support::Body& body) {
   Point upper{};
   for (const auto n : ids<NodeId>(body.grid.n_nodes()))

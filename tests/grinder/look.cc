@@ -121,7 +121,7 @@ std::string about_particle(const scene::Body& body, const std::size_t particle) 
     for (const grid::CornerId corner : copy.corners)
       if (corner.value == particle)
         words += " [" + std::to_string(std::popcount(copy.nodes)) + " nodes, " +
-                 std::to_string(std::popcount(copy.rinds)) + " rinds]";
+                 std::to_string(std::popcount(copy.skin)) + " points of the skin]";
   }
   const grid::CornerId real = body.solid.complex.real_corner[body.solid.complex.node[grid::CornerId(particle)]];
   return words + (real.value == particle ? ", real" : ", virtual");

@@ -119,7 +119,7 @@ TEST(Robustness, AFirstCutMovesNoMass) {
     cuts.push_back({e, draw(0.01, 0.99), draw.vector().normalized(), 1});
   body.cut(cuts);
   ASSERT_GT(body.complex.n_copies(), complex.n_copies() + 20);
-  const auto parents = support::parents(complex, body.complex);
+  const auto parents = support::parents(complex, body);
   state.x = inherited(state.x, parents);
   state.v = inherited(state.v, parents);
   const Matching model(body, matching_options({}, 1000, dt));
@@ -156,7 +156,7 @@ void expect_to_survive(const Mill& mill) {
     const double E = model->energy(state.x), T = kinetic();
     const grid::CellComplex before = body.complex;
     fem::cut_at_random(body, round < mill.n_rounds ? mill.part : 2, draw, {1e-9, 1});
-    const auto parents = support::parents(before, body.complex);
+    const auto parents = support::parents(before, body);
     state.x = inherited(state.x, parents);
     state.v = inherited(state.v, parents);
     model = make();

@@ -33,7 +33,8 @@ double shape_integral(const fem::Moments& m, const int a) {
   return sum;
 }
 
-/// Moments come from a quadrature of monomials; here it is products in barycentric coordinates.
+/// Moments come from a quadrature of monomials; here it is products in barycentric coordinates. Less than nothing, under a
+/// hollow skin (surface/fold.h), counts as nothing.
 TEST(Shares, CornersWeighTheIntegralsOfTheirShapeFunctions) {
   const Body body = rough_block(10, {0.02, 0.98});
   std::vector<double> mass(body.complex.n_corners(), 0.0), expected = mass;
@@ -41,8 +42,10 @@ TEST(Shares, CornersWeighTheIntegralsOfTheirShapeFunctions) {
     mass[share.corner.value] += share.mass;
   for (const grid::Copy& copy : body.complex.copies) {
     const auto moments = fem::material_moments(body, copy);
-    for (int a = 0; a < 8; ++a)
-      expected[copy.corners[a].value] += 1100 * 1e-3 * (copy.nodes == 0xff ? 1.0 / 8 : shape_integral(moments, a));
+    for (int a = 0; a < 8; ++a) {
+      const double integral = copy.nodes == 0xff ? 1.0 / 8 : shape_integral(moments, a);
+      expected[copy.corners[a].value] += 1100 * 1e-3 * std::max(integral, 0.0);
+    }
   }
   for (std::size_t c = 0; c < mass.size(); ++c)
     EXPECT_NEAR(mass[c], expected[c], 1e-12 * 1100 * 1e-3) << c;
@@ -72,8 +75,8 @@ TEST(Shares, MassAndCentreAreTheMaterials) {
     share_moment[piece[share.corner.value]] += share.mass * rest[share.corner.value];
   }
   for (std::uint32_t p = 0; p < pieces.n_pieces; ++p) {
-    EXPECT_NEAR(share_mass[p], mass[p], 1e-13 * density * h * h * h);
-    EXPECT_LT((share_moment[p] - moment[p]).norm(), 1e-13 * density * h * h * h);
+    EXPECT_NEAR(share_mass[p], mass[p], 1e-12 * density * h * h * h);
+    EXPECT_LT((share_moment[p] - moment[p]).norm(), 1e-12 * density * h * h * h);
   }
 }
 

@@ -122,7 +122,7 @@ TEST(RunFile, KeepsBodiesThroughAChangeOfTopology) {
   EXPECT_EQ(complex.corners, second.corners);
   EXPECT_EQ(complex.cells, second.cells);
   EXPECT_EQ(complex.nodes, second.nodes);
-  EXPECT_EQ(complex.rinds, second.rinds);
+  EXPECT_EQ(complex.skin, second.skin);
   EXPECT_EQ(complex.rest_positions, second.rest_positions);
   const auto back = reader.surface("liver", 0);
   EXPECT_EQ(back.triangles, surface.triangles);

@@ -48,7 +48,7 @@ inline Complex sample_complex(const std::size_t n, const std::size_t index) {
     complex.corners.push_back({8 * i, 8 * i + 1, 8 * i + 2, 8 * i + 3, 8 * i + 4, 8 * i + 5, 8 * i + 6, 8 * i + 7});
     complex.cells.push_back({static_cast<int>(i), -1, static_cast<int>(index)});
     complex.nodes.push_back(static_cast<std::uint8_t>(i + index));
-    complex.rinds.push_back(static_cast<std::uint16_t>(300 * i + index));
+    complex.skin.push_back(static_cast<std::uint32_t>(300 * i + index));
   }
   complex.rest_positions = sample_points(8 * n, index);
   return complex;

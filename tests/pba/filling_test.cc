@@ -132,7 +132,7 @@ TEST(Supports, RefuseWhatHoldsNoOther) {
 
 support::Body cut_ball() {
   support::Body body = support::with_placed_skin(support::ball(0.5, 0.13, Vec3(0.2, 0.4, 0.1)));
-  support::cut_through(body, support::plane_cuts(body, {Vec3(0.6, 0.8, 0), 0.11}));
+  support::cut_through(body, support::cuts_of_plane(body, {Vec3(0.6, 0.8, 0), 0.11}));
   return body;
 }
 

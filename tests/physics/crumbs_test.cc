@@ -25,7 +25,7 @@ struct Dust {
 
   grid::CutChange cut() { return cut(layer()); }
   grid::CutChange cut(const std::vector<grid::EdgeCut>& cuts) {
-    auto change = block.cutter.cut(block.body, cuts, cut::Front::none, block.rest());
+    auto change = block.cutter.cut(block.body, support::with_skin(block.body, cuts));
     surface::place(block.body, change, {});
     surface::update_surface(block.body, change, block.surface, block.index);
     grid::update_crumbs(block.body, change);

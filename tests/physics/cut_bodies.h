@@ -24,9 +24,9 @@ struct GrowingCut {
   CutBody seen() const { return {body, surface, 1000}; }
   Points rest() const { return grid::rest_positions(body); }
 
-  /// Cuts edges, and lets physics and state follow. Returns what has changed.
-  grid::CutChange cut(const std::vector<grid::EdgeCut>& cuts, Physics& physics, dynamics::State& state) {
-    const auto change = cutter.cut(body, cuts, cut::Front::possible, rest());
+  /// Cuts, and lets physics and state follow. Returns what has changed.
+  grid::CutChange cut(const cut::SweepCuts& cuts, Physics& physics, dynamics::State& state) {
+    const auto change = cutter.cut(body, cuts);
     surface::place(body, change, {});
     surface::update_surface(body, change, surface, index);
     physics.follow_cut(seen(), change, state);

@@ -23,7 +23,7 @@ void expect_as_made_anew(const Make& make, const typename Corners::IntegratorMak
   Corners physics(block.seen(), make, integrator);
   dynamics::State state = state_at_rest(physics);
   for (int batch = 0; batch < 6; ++batch) {
-    block.cut(support::random_cuts(random, block.body, 0.12), physics, state);
+    block.cut(support::with_skin(block.body, support::random_cuts(random, block.body, 0.12)), physics, state);
     const auto anew = make(block.seen());
     const std::size_t n = block.body.complex.n_corners();
     ASSERT_EQ(physics.rest(), grid::rest_positions(block.body));
@@ -81,7 +81,7 @@ TEST(OnCorners, NewCornersInheritAllThatTheirParentsHave) {
                    {"of all", random_points(2, random)}};
   state.numbers = {{"time step [s]", 0.1}};
   const dynamics::State before = state;
-  const auto change = block.cut(support::plane_cuts(block.body, {Vec3::UnitX(), 0.27}), physics, state);
+  const auto change = block.cut(support::cuts_of_plane(block.body, {Vec3::UnitX(), 0.27}), physics, state);
   ASSERT_GT(change.parents.size(), 10u);
   ASSERT_EQ(state.x.size(), block.body.complex.n_corners());
   for (std::size_t i = 0; i < state.x.size(); ++i) {
@@ -119,7 +119,7 @@ TEST(OnCorners, PiecesAreAskedForAsTheyAreNow) {
     });
   EXPECT_EQ(n_pieces, 1u);
   dynamics::State state = state_at_rest(physics);
-  block.cut(support::plane_cuts(block.body, {Vec3::UnitX(), 0.27}), physics, state);
+  block.cut(support::cuts_of_plane(block.body, {Vec3::UnitX(), 0.27}), physics, state);
   EXPECT_EQ(n_pieces, 2u);
   EXPECT_EQ(n_asked, 2u);
 }

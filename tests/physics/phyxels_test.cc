@@ -24,10 +24,15 @@ PhyxelsOptions options(const std::string& criterion = "extended visibility", con
   return o;
 }
 
-/// Edges that the plane crosses where z < most: a cut with a front.
-std::vector<grid::EdgeCut> cut_up_to(const support::Body& body, const support::Plane& plane, const double most) {
-  std::vector<grid::EdgeCut> cuts = support::plane_cuts(body, plane);
-  std::erase_if(cuts, [&](const grid::EdgeCut& c) { return body.grid.position(body.grid.ends(c.edge)[0])[2] > most; });
+/// What the plane crosses where z < most: a cut with a front.
+cut::SweepCuts cut_up_to(const support::Body& body, const support::Plane& plane, const double most) {
+  cut::SweepCuts cuts = support::cuts_of_plane(body, plane);
+  std::erase_if(cuts.cuts,
+                [&](const grid::EdgeCut& c) { return body.grid.position(body.grid.ends(c.edge)[0])[2] > most; });
+  std::erase_if(cuts.of_skin, [&](const grid::SkinCut& c) {
+    return (c.segment.face.valid() ? grid::centre(body.grid, c.segment.face)
+                                   : grid::centre(body.grid, c.segment.cell))[2] > most;
+  });
   return cuts;
 }
 
@@ -67,7 +72,7 @@ TEST(Phyxels, CarryForcesWithTheirSumAndTorque) {
     expect_forces_kept(block, physics, random);
     block.cut(cut_up_to(block.body, middle, 0.25), physics, state);
     expect_forces_kept(block, physics, random);
-    block.cut(support::plane_cuts(block.body, middle), physics, state);
+    block.cut(support::cuts_of_plane(block.body, middle), physics, state);
     ASSERT_EQ(grid::n_pieces(block.body.complex), 2u);
     expect_forces_kept(block, physics, random);
   }
@@ -80,7 +85,7 @@ TEST(Phyxels, CarryForcesWithTheirSumAfterAnyCuts) {
   Phyxels physics(block.seen(), options(), verlet);
   dynamics::State state = state_at_rest(physics);
   for (int batch = 0; batch < 5; ++batch) {
-    block.cut(support::random_cuts(random, block.body, 0.15), physics, state);
+    block.cut(support::with_skin(block.body, support::random_cuts(random, block.body, 0.15)), physics, state);
     const auto carried = physics.carry(block.surface.weights);
     for (std::size_t i = 0; i < carried.n_points(); ++i) {
       double weight = 0;
@@ -100,7 +105,7 @@ TEST(Phyxels, PiecesThatStayWholeKeepABond) {
   Phyxels physics(block.seen(), options(), verlet);
   dynamics::State state = state_at_rest(physics);
   for (int batch = 0; batch < 5; ++batch)
-    block.cut(support::random_cuts(random, block.body, 0.15), physics, state);
+    block.cut(support::with_skin(block.body, support::random_cuts(random, block.body, 0.15)), physics, state);
   const auto copies = grid::copies_around(block.body, physics.rest());
   const auto pieces = pba::phyxel_pieces(block.body.complex, copies);
   const pba::PhyxelModel& model = physics.model();
@@ -163,7 +168,7 @@ TEST(Phyxels, LinearMotionMovesCornersLinearly) {
   expect_linear();
   block.cut(cut_up_to(block.body, middle, 0.25), physics, state);
   expect_linear();
-  block.cut(support::plane_cuts(block.body, middle), physics, state);
+  block.cut(support::cuts_of_plane(block.body, middle), physics, state);
   expect_linear();
 }
 
@@ -173,7 +178,7 @@ TEST(Phyxels, PiecesPartAtOnce) {
   Phyxels physics(block.seen(), options("extended visibility", 1), verlet);
   dynamics::State state = state_at_rest(physics);
   EXPECT_EQ(physics.n_waiting(), 0u);
-  block.cut(support::plane_cuts(block.body, middle), physics, state);
+  block.cut(support::cuts_of_plane(block.body, middle), physics, state);
   EXPECT_GT(physics.n_waiting(), 100u);
   const auto piece = pba::phyxel_pieces(block.body.complex, grid::copies_around(block.body, physics.rest()));
   std::size_t n_across = 0, n_beside = 0;
@@ -245,7 +250,7 @@ TEST(Phyxels, ACutOnlyWeakens) {
     dynamics::State state = state_at_rest(physics);
     std::vector<double> before(physics.model().weights().begin(), physics.model().weights().end());
     for (const double most : {0.15, 0.25, 1.0}) {
-      std::vector<grid::EdgeCut> cuts = cut_up_to(block.body, middle, most);
+      const cut::SweepCuts cuts = cut_up_to(block.body, middle, most);
       block.cut(cuts, physics, state);
       double lost = 0;
       for (std::size_t p = 0; p < before.size(); ++p) {
@@ -267,7 +272,7 @@ TEST(Phyxels, StateOutlivesACut) {
   state.v = random_points(state.x.size(), random);
   state.history = {{"before", state.v}, {"acceleration", state.v}};
   const dynamics::State before = state;
-  block.cut(support::plane_cuts(block.body, middle), physics, state);
+  block.cut(support::cuts_of_plane(block.body, middle), physics, state);
   EXPECT_EQ(state.x, before.x);
   EXPECT_EQ(state.v, before.v);
   EXPECT_EQ(state.history.at("before"), before.v);

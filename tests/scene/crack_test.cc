@@ -162,7 +162,36 @@ TEST(Crack, RefusesWhatIsNoFront) {
   refuse(line + Keys{"Growth [1] = 1, 0, 0", "Inner radius [1] = 4"}, {"Outer radius [1]", "larger than Inner"});
   refuse(circle + Keys{"Outer radius [1] = 20"}, {"Outer radius [1]", "must be below the crack's radius"});
   refuse(circle + Keys{"First [m] = 0, 0, 0"}, {"First [m]", "does not read this key"});
+  refuse({"First [m] = 5, 0, 0", "Second [m] = 5, 1, 0", "Growth [1] = 1, 0, 0"},
+         {"Crack front tip", "no corner of the body"});
   refuse(circle, {"needs the stresses of finite elements"}, "mass-spring");
+}
+
+std::vector<std::string> warnings_of(const Keys& front, const std::string& held) {
+  const World world =
+    world_of(steps(1, 1) + section("Body bar", of_box({1, 0.2, 0.2}, 0.05, "0.3, 0.3, 0.3"),
+                                   material(1e4, 0.3) + free_statics() +
+                                     section("Support end", box("-9, -9, -9", "0.03, 9, 9") + Keys{"Hold = " + held}) +
+                                     section("Crack front tip", front)));
+  std::vector<std::string> warnings;
+  for (const std::string& said : world.composition)
+    if (said.starts_with("warning: body bar: crack front tip"))
+      warnings.push_back(said);
+  return warnings;
+}
+
+TEST(Crack, WarnsOfFrontsWhoseFiguresAreWrong) {
+  const auto front = [](const double x, const std::string& end) {
+    return Keys{"First [m] = " + to_text(x) + ", 0, 0.1", "Second [m] = " + to_text(x) + ", " + end + ", 0.1",
+                "Growth [1] = 1, 0, 0"};
+  };
+  EXPECT_TRUE(warnings_of(front(0.5, "0.2"), "all").empty());
+  const auto too_long = warnings_of(front(0.5, "2"), "all"), near_support = warnings_of(front(0.15, "0.2"), "all");
+  ASSERT_EQ(too_long.size(), 1u);
+  EXPECT_NE(too_long[0].find("is 2 m long"), std::string::npos) << too_long[0];
+  ASSERT_EQ(near_support.size(), 1u);
+  EXPECT_NE(near_support[0].find("support end holds corners in its outer tube"), std::string::npos) << near_support[0];
+  EXPECT_TRUE(warnings_of(front(0.15, "0.2"), "yz").empty()); // what slides along x does no work as the crack grows
 }
 
 } // namespace

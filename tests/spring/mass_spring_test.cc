@@ -381,7 +381,7 @@ TEST(MassSpring, DustCarriesOn) {
   for (int round = 0; round < 40; ++round) {
     const grid::CellComplex old = body.complex;
     fem::cut_at_random(body, round < 39 ? 1.0 / 12 : 2, draw, {1e-9, 1});
-    const auto parents = support::parents(old, body.complex);
+    const auto parents = support::parents(old, body);
     const dynamics::State whole = state;
     state.x.clear();
     state.v.clear();

@@ -4,6 +4,7 @@
 
 #include "grid/solid.h"
 
+#include <bit>
 #include <cmath>
 #include <random>
 #include <vector>
@@ -136,16 +137,69 @@ inline bool is_below_skin(const Body& body, const grid::EdgeId e, const double t
                                                      : t > skin + grid::min_edge_parameter;
 }
 
-/// The edges that a plane crosses in the material.
+/// The edges that a plane crosses in the material: those whose nodes, or node and point of the skin, it parts.
 inline std::vector<grid::EdgeCut> plane_cuts(const Body& body, const Plane& plane, const grid::CutLabel label = 1) {
   std::vector<grid::EdgeCut> cuts;
   for (const auto e : ids<grid::EdgeId>(body.grid.n_edges())) {
-    const auto& [lower, upper] = body.grid.ends(e);
-    const double a = plane.height(body.grid.position(lower)), b = plane.height(body.grid.position(upper));
-    if (!body.cuts.can_be_cut(body.grid, e) || (a < 0) == (b < 0))
+    if (!body.cuts.can_be_cut(body.grid, e))
       continue;
-    if (const double t = a / (a - b); is_inner(body, e) || is_below_skin(body, e, t))
-      cuts.push_back({e, t, plane.normal, label});
+    const auto [lower, upper] = body.grid.ends(e);
+    const auto end = [&](const grid::NodeId n) {
+      return body.grid.is_material(n) ? body.grid.position(n) : grid::edge_skin_point(body, e);
+    };
+    if ((plane.height(end(lower)) < 0) == (plane.height(end(upper)) < 0))
+      continue;
+    const double a = plane.height(body.grid.position(lower)), b = plane.height(body.grid.position(upper));
+    cuts.push_back({e, a / (a - b), plane.normal, label});
+  }
+  return cuts;
+}
+
+/// The segments of the skin that a plane crosses.
+inline std::vector<grid::SkinCut> plane_skin_cuts(const Body& body, const Plane& plane, const grid::CutLabel label = 1) {
+  std::vector<grid::SkinCut> cuts;
+  for (const auto c : ids<grid::CellId>(body.grid.n_cells())) {
+    if (!is_skin_cell(body.grid, c))
+      continue;
+    const grid::Skeleton& skeleton = grid::skeleton_of(grid::material_of(body.grid, c));
+    for (grid::Segments left = skeleton.segments & ~grid::skeleton::lines; left != 0; left &= left - 1) {
+      const int segment = std::countr_zero(left);
+      const grid::SkinSegment of_skin = grid::skin_segment(body.grid, c, segment);
+      const auto& ends = skeleton.segment[segment].ends;
+      const double a = plane.height(grid::item_point(body, c, ends[0])), b = plane.height(grid::item_point(body, c, ends[1]));
+      const bool is_own = !of_skin.face.valid() || !body.grid.cells(of_skin.face)[0].valid() || body.grid.cells(of_skin.face)[0] == c;
+      if (is_own && !body.cuts.is_cut(of_skin) && (a < 0) != (b < 0))
+        cuts.push_back({of_skin, a / (a - b), plane.normal, label});
+    }
+  }
+  return cuts;
+}
+
+/// Does a segment of a cell's skin join points above nodes that cut edges part: in the face of a half, in the cell?
+inline bool is_above_cut(const Body& body, const grid::CellId c, const grid::Skeleton& skeleton, const int segment) {
+  const auto& ends = skeleton.segment[segment].ends;
+  const int a = skeleton.vertex[ends[0]], b = skeleton.vertex[ends[1]];
+  const unsigned cut = body.cuts.configuration(body.grid, c);
+  const unsigned within =
+    segment < grid::skeleton::first_spoke ? grid::cube::face_mask((segment - grid::skeleton::first_half) / 4) : 0xffu;
+  return (grid::cube::reachable(a, cut, within) >> b & 1) == 0;
+}
+
+/// The segments of the skin that are to be cut too, so that it does not hold together what cut edges part.
+inline std::vector<grid::SkinCut> skin_cuts_above(const Body& body, const grid::CutLabel label = 1) {
+  std::vector<grid::SkinCut> cuts;
+  for (const auto c : ids<grid::CellId>(body.grid.n_cells())) {
+    if (!is_skin_cell(body.grid, c))
+      continue;
+    const grid::Skeleton& skeleton = grid::skeleton_of(grid::material_of(body.grid, c));
+    for (grid::Segments left = skeleton.segments & ~grid::skeleton::lines; left != 0; left &= left - 1) {
+      const int segment = std::countr_zero(left);
+      const grid::SkinSegment of_skin = grid::skin_segment(body.grid, c, segment);
+      const bool is_own = !of_skin.face.valid() || body.grid.cells(of_skin.face)[1] == c ||
+                          !body.grid.cells(of_skin.face)[1].valid();
+      if (is_own && !body.cuts.is_cut(of_skin) && is_above_cut(body, c, skeleton, segment))
+        cuts.push_back({of_skin, 0.5, Vec3::UnitX(), label});
+    }
   }
   return cuts;
 }

@@ -9,12 +9,9 @@
 
 namespace kerf::support {
 
-/// A point of the copy's material: one of its nodes, else in the middle of one of its rinds [m].
+/// A point of the copy's material: one of its nodes, else of its points of the skin [m].
 inline Vec3 point_in(const Body& body, const grid::Copy& copy) {
-  if (copy.nodes != 0)
-    return body.grid.position(body.grid.nodes(copy.cell)[std::countr_zero(copy.nodes)]);
-  const auto edge = body.grid.edges(copy.cell)[std::countr_zero(copy.rinds)];
-  return 0.5 * (grid::edge_point(body, edge) + grid::edge_skin_point(body, edge));
+  return grid::item_point(body, copy.cell, std::countr_zero(copy.items()));
 }
 
 /// Volume [m^3] on the lower side of a plane that has cut the body, from the triangles of the copies whose material

@@ -2,24 +2,21 @@
 
 /// Where the corners of a complex came from, for bodies whose complex is built anew instead of updated.
 
-#include "grid/complex.h"
+#include "grid/solid.h"
 
 #include <bit>
 
 namespace kerf::support {
 
-/// For each corner of `after`, the corner of `before` it came from. `after` must come from `before` by further cuts.
-inline Table<grid::CornerId, grid::CornerId> parents(const grid::CellComplex& before, const grid::CellComplex& after) {
+/// For each corner of the body, the corner of `before` it came from. Its complex must come from that by further cuts.
+inline Table<grid::CornerId, grid::CornerId> parents(const grid::CellComplex& before, const grid::Solid& body) {
+  const grid::CellComplex& after = body.complex;
   Table<grid::CornerId, grid::CornerId> parent(after.n_corners());
   for (const grid::Copy& copy : after.copies) {
-    grid::CopyId at_before = copy.nodes != 0 ? before.copy_at(copy.cell, std::countr_zero(copy.nodes)) : grid::CopyId();
-    if (copy.nodes == 0) { // its rind, or the node from which that was cut off
-      const int line = std::countr_zero(copy.rinds);
-      at_before = before.copy_with_rind(copy.cell, line);
-      for (const int end : grid::cube::line_vertices[line])
-        if (!at_before.valid())
-          at_before = before.copy_at(copy.cell, end);
-    }
+    const int item = std::countr_zero(copy.items());
+    grid::CopyId at_before = before.copy_with(copy.cell, item);
+    if (!at_before.valid()) // a point of the skin that was not cut yet: with the node below
+      at_before = before.copy_at(copy.cell, grid::skeleton_of(grid::material_of(body.grid, copy.cell)).vertex[item]);
     const grid::Copy& from = before.copies[at_before];
     for (int v = 0; v < 8; ++v)
       parent[copy.corners[v]] = from.corners[v];

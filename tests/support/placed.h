@@ -36,20 +36,34 @@ inline Body embedded(const geometry::TriangleMesh& mesh, const double h, const V
   return body;
 }
 
-/// All these edges in one step.
-inline surface::PlacementCounts cut(Body& body, const std::span<const grid::EdgeCut> cuts) {
+/// All these edges, and the skin above them.
+inline cut::SweepCuts with_skin(Body body, const std::span<const grid::EdgeCut> cuts) {
   for (const auto& cut : cuts)
     body.cuts.add(body.grid, cut);
+  return {{cuts.begin(), cuts.end()}, skin_cuts_above(body, cuts.empty() ? 1 : cuts.front().label), 0};
+}
+
+/// The same in one step.
+inline surface::PlacementCounts cut(Body& body, const std::span<const grid::EdgeCut> cuts) {
+  const auto [edges, of_skin, n] = with_skin(body, cuts);
+  for (const auto& cut : edges)
+    body.cuts.add(body.grid, cut);
+  for (const auto& cut : of_skin)
+    body.cuts.add(cut);
   return surface::place(body, {});
 }
 
-/// All that a surface without an end inside the body cuts.
-inline surface::PlacementCounts cut_through(Body& body, const std::span<const grid::EdgeCut> cuts) {
+/// All that a plane cuts.
+inline cut::SweepCuts cuts_of_plane(const Body& body, const Plane& plane, const grid::CutLabel label = 1) {
+  return {plane_cuts(body, plane, label), plane_skin_cuts(body, plane, label), 0};
+}
+
+/// Cuts that are known.
+inline surface::PlacementCounts cut_through(Body& body, const cut::SweepCuts& cuts) {
   body.complex = grid::build_complex(body);
-  const Points x = grid::rest_positions(body);
   cut::Cutter cutter(9);
-  cutter.begin(body, x);
-  return surface::place(body, cutter.cut(body, cuts, cut::Front::none, x), {});
+  cutter.begin(body, grid::rest_positions(body));
+  return surface::place(body, cutter.cut(body, cuts), {});
 }
 
 using grid::volume;

@@ -52,7 +52,7 @@ struct Enclosed {
 inline Enclosed cut_out(const RoundCut& round, const double h, const Vec3& offset) {
   Body body = with_copies(embedded(geometry::box_mesh(Vec3::Zero(), Vec3::Ones()), h, offset));
   const auto found = cut::cut_edges(cut::CutSurface{round.name, round.shape, 1}, body, grid::rest_positions(body));
-  cut_through(body, found.cuts);
+  cut_through(body, found);
   const auto surface = surface::build_surface(body);
   Enclosed result;
   for (std::size_t i = 0; i < surface.triangles.size(); ++i) {

@@ -45,7 +45,7 @@ inline std::optional<Renaming> renaming(const grid::CellComplex& a, const grid::
     auto i = a.copies_of(cell).begin(), j = b.copies_of(cell).begin();
     for (; (*i).valid() && (*j).valid(); ++i, ++j, ++n_found) {
       const grid::Copy &p = a.copies[*i], &q = b.copies[*j];
-      if (!copies.add(*i, *j) || p.cell != cell || q.cell != cell || p.nodes != q.nodes || p.rinds != q.rinds)
+      if (!copies.add(*i, *j) || p.cell != cell || q.cell != cell || p.nodes != q.nodes || p.skin != q.skin)
         return std::nullopt;
       for (int v = 0; v < 8; ++v)
         if (!corners.add(p.corners[v], q.corners[v]) || a.node[p.corners[v]] != b.node[q.corners[v]])

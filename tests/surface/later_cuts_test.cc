@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <iostream>
 #include <numbers>
 
@@ -15,7 +16,6 @@ namespace kerf::surface {
 namespace {
 
 using grid::CellId;
-using grid::EdgeCut;
 using support::Body;
 using support::Random;
 
@@ -29,15 +29,19 @@ struct Flatness {
   double worst = 0;                      ///< distance of a vertex that was on its plane, afterwards [h]
 };
 
-unsigned lines_cut_under(const Body& body, const CellId c, const grid::CutLabel label) {
-  unsigned lines = 0;
-  for (int line = 0; line < grid::cube::n_lines; ++line)
-    if (const EdgeCut* cut = body.cuts.find(body.grid.edges(c)[line]); cut && cut->label == label)
-      lines |= 1u << line;
-  return lines;
+grid::Segments cut_under(const Body& body, const CellId c, const grid::CutLabel label) {
+  grid::Segments result = 0;
+  for (grid::Segments left = grid::cuts_of(body, c).blades; left != 0; left &= left - 1) {
+    const int segment = std::countr_zero(left);
+    const grid::CutLabel of = segment < grid::skeleton::first_half
+                                ? body.cuts.find(body.grid.edges(c)[segment])->label
+                                : body.cuts.find(grid::skin_segment(body.grid, c, segment))->label;
+    result |= grid::Segments(of == label) << segment;
+  }
+  return result;
 }
 
-/// The distances [h] from the plane of all vertices in the faces and cells that hold an edge cut under the label.
+/// The distances [h] from the plane of all vertices in the sides and cells that hold a segment cut under the label.
 std::vector<double> heights(const Body& body, const grid::CutLabel label, const support::Plane& plane,
                             const Where where) {
   std::vector<double> result;
@@ -45,13 +49,21 @@ std::vector<double> heights(const Body& body, const grid::CutLabel label, const 
   for (const auto c : ids<CellId>(body.grid.n_cells())) {
     if (where == Where::inside && support::is_skin_cell(body.grid, c))
       continue;
-    const unsigned lines = lines_cut_under(body, c, label);
-    if (lines != 0)
-      add(grid::cell_point(body, c));
-    for (int face = 0; face < grid::cube::n_faces; ++face) {
-      const auto& of_face = grid::cube::face_lines[face];
-      if (std::any_of(of_face.begin(), of_face.end(), [&](const int line) { return (lines >> line & 1) != 0; }))
-        add(grid::face_point(body, body.grid.faces(c)[face]));
+    const grid::Segments cut = cut_under(body, c, label);
+    const auto& grid = body.grid;
+    const grid::Skeleton& skeleton = grid::skeleton_of(grid::material_of(grid, c));
+    const Vec3* const inner = body.cuts.inner_point(c);
+    if (cut != 0)
+      add(inner ? *inner : grid::cell_point(body, c));
+    for (grid::Sides left = skeleton.sides; left != 0; left &= left - 1) {
+      const int s = std::countr_zero(left), face = s / 2;
+      const auto& [n, items, segments] = skeleton.side[s];
+      if (!std::any_of(segments.begin(), segments.begin() + n, [&](const int i) { return (cut >> i & 1) != 0; }))
+        continue;
+      const Vec3* const p = s >= grid::skeleton::first_triangle
+                              ? body.cuts.inner_point(c, s - grid::skeleton::first_triangle)
+                              : body.cuts.inner_point(grid.faces(c)[face], s % 2);
+      add(p ? *p : grid::face_point(body, grid.faces(c)[face]));
     }
   }
   return result;
@@ -77,7 +89,7 @@ void cut_one_by_one(Body body, const std::vector<support::Plane>& planes, const 
     std::vector<std::vector<double>> before;
     for (grid::CutLabel i = 0; i < k; ++i)
       before.push_back(heights(body, i + 1, planes[i], where));
-    support::cut_through(body, support::plane_cuts(body, planes[k], k + 1));
+    support::cut_through(body, support::cuts_of_plane(body, planes[k], k + 1));
     for (grid::CutLabel i = 0; i < k; ++i) {
       compare(before[i], heights(body, i + 1, planes[i], where), result);
     }
@@ -164,7 +176,7 @@ TEST(LaterCuts, MeetWhereTheyCrossInsideTheCell) {
     const Points normals = {Vec3::UnitX(), Vec3(std::cos(angle), std::sin(angle), 0), Vec3(0.2, 0.1, 1).normalized()};
     Body body = support::with_placed_skin(support::block({7, 7, 7}));
     for (grid::CutLabel k = 1; k <= 3; ++k)
-      support::cut_through(body, support::plane_cuts(body, {normals[k - 1], normals[k - 1].dot(p)}, k));
+      support::cut_through(body, support::cuts_of_plane(body, {normals[k - 1], normals[k - 1].dot(p)}, k));
     const Vec3 q = grid::cell_point(body, *body.grid.find_cell({4, 4, 4}));
     for (const Vec3& n : normals)
       EXPECT_NEAR(n.dot(q - p), 0, 1e-13) << degrees << " degrees";

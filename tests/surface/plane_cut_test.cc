@@ -1,10 +1,6 @@
-/// A box cut by planes, against the exact volumes on both sides.
-///
-/// The total is exact for every plane. So are the pieces, but where the plane cuts a tip off a sharp edge of the box
-/// between the lattice's edges.
+/// Bodies cut by planes, against the exact volumes on both sides.
 
 #include "cut/pending.h"
-#include "grid/cube.h"
 #include "tests/support/cut_by_plane.h"
 
 #include <gtest/gtest.h>
@@ -16,9 +12,7 @@
 namespace kerf::surface {
 namespace {
 
-using grid::CellId;
 using grid::CopyId;
-using grid::EdgeCut;
 using support::Body;
 using support::Plane;
 using support::Random;
@@ -41,38 +35,6 @@ Points tilts() {
   while (normals.size() < 20)
     normals.push_back(support::random_direction(random));
   return normals;
-}
-
-/// Where a plane cannot be told from the lattice: it cuts the tip off the skin's line in a face, or off its fan in a
-/// cell, and no edge; or its rim bends at two sharp edges in one cell.
-std::size_t n_unresolved(const Body& body, const Plane& plane) {
-  const auto is_below = [&](const Vec3& p) { return plane.height(p) < 0; };
-  std::size_t n = 0;
-  for (const auto c : ids<CellId>(body.grid.n_cells())) {
-    const grid::CellCuts cell = grid::cuts_of(body, c);
-    const auto edges = body.grid.edges(c);
-    const auto faces = body.grid.faces(c);
-    const auto skin_at = [&](const int line) { return grid::edge_point(body, edges[line]); };
-    std::size_t n_ends = 0, n_below = 0, n_bends = 0;
-    for (int line = 0; line < 12; ++line)
-      if (cell.skin >> line & 1) {
-        ++n_ends;
-        n_below += is_below(skin_at(line));
-      }
-    for (int face = 0; face < 6; ++face)
-      for (const grid::SkinArc& arc : grid::skin_arcs(face, cell.material)) {
-        const bool tip = is_below(grid::face_point(body, faces[face]));
-        n += is_below(skin_at(arc.lines[0])) != tip && is_below(skin_at(arc.lines[1])) != tip;
-        ++n_ends;
-        n_below += tip;
-        if (arc.vertices[0] == arc.vertices[1])
-          n_bends += tip != is_below(grid::cell_point(body, c));
-      }
-    const bool tip = is_below(grid::cell_point(body, c));
-    n += n_bends > 1;
-    n += n_ends > 0 && n_below == (tip ? 0 : n_ends);
-  }
-  return n;
 }
 
 /// Volume of the pieces on the lower side of a plane that cut them all.
@@ -100,91 +62,92 @@ double total_volume(const Body& body) {
   return std::accumulate(volumes.begin(), volumes.end(), 0.0);
 }
 
-struct PlaneStudy {
-  std::size_t n_planes = 0, n_resolved = 0;
-  double worst_total = 0, worst_resolved = 0; ///< errors relative to the box
-  double worst_other = 0;                     ///< in cells a place that is not resolved
-};
-
-void study_plane(PlaneStudy& study, Body body, const Plane& plane) {
-  const double exact = support::volume_below(box, plane), whole = (box.upper - box.lower).prod();
-  const std::size_t unresolved = n_unresolved(body, plane);
-  support::cut_through(body, support::plane_cuts(body, plane));
-  const double error = std::abs(cut_volume_below(body, plane) - exact);
-  study.worst_total = std::max(study.worst_total, std::abs(total_volume(body) / whole - 1));
-  ++study.n_planes;
-  if (unresolved > 0) {
-    const double cells = std::pow(body.grid.h(), 3) * static_cast<double>(unresolved);
-    study.worst_other = std::max(study.worst_other, error / cells);
-    return;
-  }
-  ++study.n_resolved;
-  study.worst_resolved = std::max(study.worst_resolved, error / whole);
-}
-
-TEST(PlaneCut, GivesExactVolumesWhereTheLatticeResolvesIt) {
+/// Every plane, also where it cuts a tip off a sharp edge between the lattice's edges.
+TEST(PlaneCut, GivesExactVolumes) {
   Random random(35);
-  PlaneStudy along_axes, tilted;
   const Points normals = tilts();
+  const double whole = (box.upper - box.lower).prod();
+  std::size_t n_planes = 0;
+  double worst = 0, worst_total = 0;
   for (int i = 0; i < 50; ++i) {
     const Body body = support::embedded(geometry::box_mesh(box.lower, box.upper), 0.1, random_offset(random));
-    ASSERT_NEAR(support::surface_volume(body), (box.upper - box.lower).prod(), 1e-13);
-    for (std::size_t k = 0; k < normals.size(); ++k) {
+    ASSERT_NEAR(support::surface_volume(body), whole, 1e-13);
+    for (const Vec3& normal : normals) {
       const Vec3 through = 0.5 * (box.lower + box.upper) + 0.1 * (i - 24.5) / 50 * Vec3::Ones();
-      study_plane(k < 3 ? along_axes : tilted, body, {normals[k], normals[k].dot(through)});
+      const Plane plane{normal, normal.dot(through)};
+      Body cut = body;
+      support::cut_through(cut, support::cuts_of_plane(cut, plane));
+      worst = std::max(worst, std::abs(cut_volume_below(cut, plane) - support::volume_below(box, plane)) / whole);
+      worst_total = std::max(worst_total, std::abs(total_volume(cut) / whole - 1));
+      ++n_planes;
     }
   }
-  for (const auto& [name, s] : {std::pair("axes", along_axes), std::pair("tilted", tilted)})
-    std::cout << name << ": " << s.n_planes << " planes, " << s.n_resolved << " resolved, worst piece volume error "
-              << s.worst_resolved << "; others at most " << s.worst_other << " cells a lost tip; total volume within "
-              << s.worst_total << '\n';
-  EXPECT_EQ(along_axes.n_resolved, 150u);
-  EXPECT_LT(along_axes.worst_resolved, 1e-12);
-  EXPECT_LT(tilted.worst_resolved, 1e-12);
-  EXPECT_GT(tilted.n_resolved, 700u);
-  EXPECT_LT(tilted.worst_other, 0.5) << "where the lattice cannot tell the plane";
-  EXPECT_LT(std::max(along_axes.worst_total, tilted.worst_total), 1e-12);
+  std::cout << n_planes << " planes, worst error of a piece " << worst << ", of the total " << worst_total << '\n';
+  EXPECT_LT(worst, 1e-12);
+  EXPECT_LT(worst_total, 1e-12);
 }
 
-/// Mean error of the part below random planes, relative to the box.
-double mean_error(const double h, const int n_planes) {
-  Random random(37);
-  double sum = 0;
-  for (int i = 0; i < n_planes; ++i) {
-    Body body = support::embedded(geometry::box_mesh(box.lower, box.upper), h, random_offset(random));
+/// Volume below a plane of a body as its surface bounds it [m^3].
+double volume_below_in(const Surface& surface, const Plane& plane) {
+  const Vec3 on_plane = plane.offset * plane.normal;
+  double six_volumes = 0;
+  for (const auto& t : surface.triangles) {
+    std::vector<Vec3> below; // the triangle's part, from a point of the plane: what closes it has no volume
+    for (int k = 0; k < 3; ++k) {
+      const Vec3 p = surface.rest[t[k]] - on_plane, q = surface.rest[t[(k + 1) % 3]] - on_plane;
+      const double a = plane.normal.dot(p), b = plane.normal.dot(q);
+      if (a < 0)
+        below.push_back(p);
+      if ((a < 0) != (b < 0))
+        below.push_back(p + a / (a - b) * (q - p));
+    }
+    for (std::size_t k = 1; k + 1 < below.size(); ++k)
+      six_volumes += below[0].dot(below[k].cross(below[k + 1]));
+  }
+  return six_volumes / 6;
+}
+
+/// Any body: what is below the plane is what the plane leaves of the surface that the body had, but for hollow points of
+/// the skin that no material lies behind (cut/shreds.h), which the Cutter leaves whole.
+TEST(PlaneCut, OfAnyBodyGivesWhatLiesBelow) {
+  Random random(38);
+  const Body liver = support::embedded(support::liver_mesh(), 0.012, Vec3::Constant(0.4));
+  double worst = 0;
+  int n_exact = 0;
+  constexpr int n = 60;
+  for (int i = 0; i < n; ++i) {
+    Body body = i % 2 ? liver
+                      : support::embedded(geometry::sphere_mesh(0.4, Vec3::Zero(), 3), 0.1, random_offset(random));
     const Vec3 normal = support::random_direction(random);
-    const Vec3 through = 0.5 * (box.lower + box.upper) + 0.05 * support::random_vector(random);
-    const Plane plane{normal, normal.dot(through)};
-    support::cut_through(body, support::plane_cuts(body, plane));
-    sum += std::abs(support::volume_below(body, plane) - support::volume_below(box, plane));
+    const Vec3 through = body.grid.position(grid::NodeId(random() % body.grid.n_nodes()));
+    const Plane plane{normal, normal.dot(through) + 0.1 * body.grid.h()};
+    const double exact = volume_below_in(build_surface(support::with_copies(body)), plane);
+    support::cut_through(body, support::cuts_of_plane(body, plane));
+    const double error = std::abs(support::volume_below(body, plane) - exact) / std::pow(body.grid.h(), 3);
+    worst = std::max(worst, error);
+    n_exact += error < 1e-9;
   }
-  return sum / n_planes / (box.upper - box.lower).prod();
+  std::cout << n_exact << " of " << n << " exact, the others within " << worst << " h^3\n";
+  EXPECT_GE(n_exact, n * 9 / 10);
+  EXPECT_LT(worst, 0.02);
 }
 
-/// What the lattice loses is a tip of a part of h^3 where the plane passes an edge of the box, at a few places: third
-/// order.
-TEST(PlaneCut, LosesTipsOfSharpEdges) {
-  constexpr int n_planes = 150;
-  for (const double h : {0.1, 0.05, 0.025}) {
-    const double cube = h * h * h / (box.upper - box.lower).prod(), error = mean_error(h, n_planes);
-    std::cout << "h = " << h << ": mean error of a part " << error << " of the box, " << error / cube << " cells\n";
-    EXPECT_LT(error, 0.02 * cube);
-  }
-}
-
+/// In steps of two edges a cell: the skin at once, edges as they are released.
 TEST(PlaneCut, IsAsExactInManySteps) {
   Random random(36);
   double worst = 0;
   for (int i = 0; i < 20; ++i) {
     Body body = support::embedded(geometry::box_mesh(box.lower, box.upper), 0.1, random_offset(random));
     const Plane plane{Vec3::Unit(i % 3), uniform(random, 0.15, 0.4)};
-    auto cuts = support::plane_cuts(body, plane);
+    auto [cuts, of_skin, n_double] = support::cuts_of_plane(body, plane);
     std::shuffle(cuts.begin(), cuts.end(), random);
     cut::PendingCuts pending;
     pending.push(cuts);
     int n_steps = 0;
-    for (; pending.size() > 0; ++n_steps)
-      support::cut_through(body, pending.release(body));
+    for (; pending.size() > 0; ++n_steps) {
+      support::cut_through(body, {pending.release(body), of_skin, 0});
+      of_skin.clear();
+    }
     EXPECT_GT(n_steps, 1);
     worst = std::max(worst, std::abs(cut_volume_below(body, plane) - support::volume_below(box, plane)));
   }

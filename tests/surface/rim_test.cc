@@ -1,6 +1,6 @@
-/// Where cuts meet the skin: lines and fans in closed form; and that the skin of whole bodies stays where it is.
+/// Where cuts meet the skin: the skin of whole bodies stays where it is, and the cuts end on it.
 
-#include "surface/rim.h"
+#include "surface/below_skin.h"
 
 #include "geometry/triangle.h"
 #include "tests/support/placed.h"
@@ -11,6 +11,7 @@
 #include <iostream>
 #include <limits>
 #include <map>
+#include <numbers>
 
 namespace kerf::surface {
 namespace {
@@ -21,64 +22,7 @@ using support::random_direction;
 using support::random_offset;
 using support::random_vector;
 
-double height(const Plane& plane, const Vec3& p) { return plane.normal.dot(p - plane.point); }
-
-double distance_to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
-  const double t = std::clamp((p - a).dot(b - a) / (b - a).squaredNorm(), 0.0, 1.0);
-  return (p - a - t * (b - a)).norm();
-}
-
-TEST(Rim, MeetsEitherPartOfALine) {
-  const Vec3 first(0, 0, 0), corner(1, 0, 0), second(1, 2, 0);
-  const auto in_first = meet_line({{0.25, 7, 0}, Vec3::UnitX()}, first, corner, second);
-  EXPECT_TRUE(in_first.is_met);
-  EXPECT_EQ(in_first.p, Vec3(0.25, 0, 0));
-  EXPECT_EQ(in_first.side_of_corner, 1) << "the corner is on the side of the second end";
-  const auto in_second = meet_line({{0, 1.5, 3}, -Vec3::UnitY()}, first, corner, second);
-  EXPECT_TRUE(in_second.is_met);
-  EXPECT_EQ(in_second.p, Vec3(1, 1.5, 0));
-  EXPECT_EQ(in_second.side_of_corner, 0);
-}
-
-TEST(Rim, GivesTheNearestPointOfALineThatIsNotMet) {
-  const Vec3 first(0, 0, 0), corner(1, 0, 0), second(1, 2, 0);
-  const auto near = [&](const Vec3& point, const Vec3& normal) {
-    const RimPoint rim = meet_line({point, normal}, first, corner, second);
-    EXPECT_FALSE(rim.is_met);
-    return rim.p;
-  };
-  EXPECT_EQ(near({-0.1, 0, 0}, Vec3::UnitX()), first);
-  EXPECT_EQ(near({0, 2.1, 0}, Vec3::UnitY()), second);
-  EXPECT_EQ(near(Vec3(1.1, -0.1, 0), Vec3(1, -1, 0).normalized()), corner);
-}
-
-/// On the plane, on the line, and between the corner and the end on the plane's other side.
-TEST(Rim, LiesOnPlaneAndLine) {
-  Random random(91);
-  int n_met = 0;
-  for (int i = 0; i < 2000; ++i) {
-    const std::array line = {random_vector(random), random_vector(random), random_vector(random)};
-    const Plane plane{0.5 * random_vector(random), random_direction(random)};
-    const RimPoint rim = meet_line(plane, line[0], line[1], line[2]);
-    std::array<double, 3> heights{};
-    for (int k = 0; k < 3; ++k)
-      heights[k] = height(plane, line[k]);
-    const bool crosses_first = heights[0] * heights[1] < 0, crosses_second = heights[1] * heights[2] < 0;
-    EXPECT_EQ(rim.is_met, crosses_first || crosses_second);
-    const int end = 2 * (1 - rim.side_of_corner); // the one that the corner is parted from
-    if (rim.is_met) {
-      EXPECT_NEAR(height(plane, rim.p), 0, 1e-14);
-      EXPECT_LT(distance_to_segment(rim.p, line[1], line[end]), 1e-14);
-      EXPECT_LT(heights[1] * heights[end], 0);
-      ++n_met;
-    } else
-      for (const Vec3& p : line)
-        EXPECT_LE(std::abs(height(plane, rim.p)), std::abs(height(plane, p)));
-  }
-  EXPECT_GT(n_met, 800);
-}
-
-TEST(Rim, PartOfAWayBeforeALine) {
+TEST(BelowSkin, PartOfAWayBeforeALine) {
   const Vec3 first(1, -1, 0), corner(1, 1, 0), second(-1, 1, 0); // in the plane z = 0
   EXPECT_DOUBLE_EQ(part_before_line({0, 0, 0}, {2, 0, 0}, first, corner, second, 2), 0.5);
   EXPECT_DOUBLE_EQ(part_before_line({0, 0, 0}, {0, 4, 0}, first, corner, second, 2), 0.25);
@@ -99,33 +43,13 @@ TEST(Rim, PartOfAWayBeforeALine) {
   }
 }
 
-TEST(Rim, PartOfAWayBeforeATriangle) {
+TEST(BelowSkin, PartOfAWayBeforeATriangle) {
   const std::array<Vec3, 3> triangle = {Vec3(0, 0, 1), Vec3(3, 0, 1), Vec3(0, 3, 1)};
   EXPECT_DOUBLE_EQ(part_before({1, 1, 0}, {1, 1, 4}, triangle), 0.25);
   EXPECT_DOUBLE_EQ(part_before({1, 1, 0}, {1, 1, 0.5}, triangle), 1);
   EXPECT_DOUBLE_EQ(part_before({1, 1, 0}, {1, 1, -4}, triangle), 1);
   EXPECT_DOUBLE_EQ(part_before({2, 2, 0}, {2, 2, 4}, triangle), 1);
   EXPECT_DOUBLE_EQ(part_before({1, 1, 0}, {2, 1, 0}, triangle), 1) << "along it";
-}
-
-/// Four spokes to the middles of the sides of a square [-1, 1]^2, whose centre is lifted.
-Vec3 rim_of_tent(const double lift, const Plane& plane, const std::array<Vec3, 2>& rim) {
-  const std::vector<Vec3> ends = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}};
-  return rim_in_fan(plane, rim[0], rim[1], {0, 0, lift}, ends);
-}
-
-TEST(Rim, IsStraightInAFlatFan) {
-  const Vec3 p = rim_of_tent(0, {{0.5, 0, 0}, Vec3::UnitX()}, {Vec3{0.5, -1, 0}, {0.5, 1, 0}});
-  EXPECT_LT((p - Vec3(0.5, 0, 0)).norm(), 1e-15);
-}
-
-TEST(Rim, BendsWhereItCrossesASpoke) {
-  const Vec3 on_spoke = rim_of_tent(0.8, {{0.25, 0, 0}, Vec3::UnitX()}, {Vec3{0.25, -1, 0}, {0.25, 1, 0}});
-  EXPECT_LT((on_spoke - Vec3(0.25, 0, 0.6)).norm(), 1e-15);
-  // Two spokes are crossed: (0.8, 0) at height 0.2 * lift and (0, 0.4) at 0.6 * lift, which is farther from the chord.
-  const Vec3 n = Vec3(1, 2, 0).normalized();
-  const Vec3 higher = rim_of_tent(0.8, {{0.8, 0, 0}, n}, {Vec3{1, -0.1, 0}, {-0.4, 0.6, 0}});
-  EXPECT_LT((higher - Vec3(0, 0.4, 0.48)).norm(), 1e-15);
 }
 
 using TrianglesOfCells = std::map<std::uint32_t, std::vector<std::array<Vec3, 3>>>;
@@ -160,24 +84,13 @@ double distance(const std::array<Vec3, 3>& triangle, const std::vector<std::arra
   return worst;
 }
 
-/// From each cell's skin to the skin that it had before [m].
-struct Moved {
-  double vertices = 0, triangles = 0;
-  std::size_t n = 0, n_off = 0; ///< triangles; those that do not lie in the skin
-};
-
-Moved moved(const Skin& now, const Skin& before) {
-  Moved result;
+/// The largest distance from each cell's skin to the skin that it had before [m].
+double moved(const Skin& now, const Skin& before) {
+  double worst = 0;
   for (const auto& [cell, triangles] : now.of_skin)
-    for (const auto& triangle : triangles) {
-      for (const Vec3& p : triangle)
-        result.vertices = std::max(result.vertices, distance({p, p, p}, before.of_skin.at(cell)));
-      const double off = distance(triangle, before.of_skin.at(cell));
-      result.triangles = std::max(result.triangles, off);
-      ++result.n;
-      result.n_off += off > 1e-12;
-    }
-  return result;
+    for (const auto& triangle : triangles)
+      worst = std::max(worst, distance(triangle, before.of_skin.at(cell)));
+  return worst;
 }
 
 /// The sum of all triangles' shadows on the coordinate planes [m^2].
@@ -189,86 +102,103 @@ Vec3 area(const TrianglesOfCells& all) {
   return sum;
 }
 
-/// On a flat skin with sharp edges every triangle of the skin lies in the skin that was there, and there is as much
-/// of it. Where several cuts cross within a cell at a sharp edge of the box, a few walls between them run across the
-/// edge.
-TEST(Rim, TheSkinOfABoxStaysWhereItIs) {
+const Box box{{0, 0, 0}, {0.73, 0.61, 0.52}};
+
+/// Flat with sharp edges, curved, and a liver.
+std::vector<Body> bodies(Random& random) {
+  return {support::embedded(geometry::box_mesh(box.lower, box.upper), 0.1, random_offset(random)),
+          support::embedded(geometry::sphere_mesh(0.41, Vec3::Zero(), 4), 0.1, random_offset(random)),
+          support::embedded(support::liver_mesh(), 0.016, random_offset(random))};
+}
+
+/// Some point of it.
+Vec3 point_in(Random& random, const Body& body) {
+  return body.grid.position(grid::NodeId(random() % body.grid.n_nodes())) + 0.3 * body.grid.h() * random_vector(random);
+}
+
+/// Every triangle of the skin lies in the skin that was there, and there is as much of it: after one cut and after
+/// three.
+TEST(Rim, TheSkinStaysWhereItIs) {
   Random random(92);
-  const Box box{{0, 0, 0}, {0.73, 0.61, 0.52}};
-  Moved by_one, by_more;
-  for (int i = 0; i < 40; ++i) {
-    Body body = support::embedded(geometry::box_mesh(box.lower, box.upper), 0.1, random_offset(random));
-    const Skin before = skin_of(body);
-    for (grid::CutLabel label = 1; label <= 3; ++label) {
-      const Vec3 normal = random_direction(random);
-      const double offset = normal.dot(0.5 * (box.lower + box.upper) + 0.05 * random_vector(random));
-      support::cut_through(body, support::plane_cuts(body, {normal, offset}, label));
-      const Skin now = skin_of(body);
-      const Moved step = moved(now, before);
-      Moved& all = label == 1 ? by_one : by_more;
-      all.vertices = std::max(all.vertices, step.vertices);
-      all.triangles = std::max(all.triangles, step.triangles);
-      all.n += step.n;
-      all.n_off += step.n_off;
-      EXPECT_TRUE(label > 1 || (area(now.of_skin) - area(before.of_skin)).norm() < 1e-12);
-    }
-  }
-  std::cout << "one cut: the skin moves by " << by_one.triangles << " m; more cuts: vertices by " << by_more.vertices
-            << " m, " << by_more.n_off << " of " << by_more.n << " triangles across an edge, by at most "
-            << by_more.triangles / 0.1 << " h\n";
-  EXPECT_LT(by_one.triangles, 1e-12);
-  EXPECT_LT(by_more.vertices, 1e-12);
-  EXPECT_LT(static_cast<double>(by_more.n_off), 1e-3 * static_cast<double>(by_more.n));
-}
-
-/// On a curved skin a rim keeps its cell's volume, at the price of a move along the cut: of second order in h.
-TEST(Rim, TheSkinOfABallMovesToSecondOrder) {
-  constexpr double radius = 0.41;
-  std::vector<double> worsts;
-  for (const double h : {0.1, 0.05, 0.025}) {
-    Random random(93);
-    double worst = 0;
-    for (int i = 0; i < 6; ++i) {
-      Body body = support::embedded(geometry::sphere_mesh(radius, Vec3::Zero(), 5), h, random_offset(random));
+  double worst = 0;
+  for (int i = 0; i < 15; ++i)
+    for (Body& body : bodies(random)) {
       const Skin before = skin_of(body);
-      const Vec3 normal = random_direction(random);
-      support::cut_through(body, support::plane_cuts(body, {normal, 0.1 * normal.dot(random_vector(random))}));
-      worst = std::max(worst, moved(skin_of(body), before).triangles);
+      for (grid::CutLabel label = 1; label <= 3; ++label) {
+        const Vec3 normal = random_direction(random);
+        support::cut_through(body, support::cuts_of_plane(body, {normal, normal.dot(point_in(random, body))}, label));
+        const Skin now = skin_of(body);
+        worst = std::max(worst, moved(now, before) / body.grid.h());
+        EXPECT_LT((area(now.of_skin) - area(before.of_skin)).norm(), 1e-12 * area(before.of_skin).norm());
+      }
     }
-    worsts.push_back(worst);
-    std::cout << "h " << h << " m: the skin moves by at most " << worst / h << " h, " << worst / (h * h / radius)
-              << " h^2 / R\n";
-    EXPECT_LT(worst, 0.1 * h * h / radius);
-  }
-  EXPECT_GT(0.5 * std::log2(worsts.front() / worsts.back()), 1.7);
+  EXPECT_LT(worst, 1e-12);
 }
 
-/// The cut of a plane lies in the plane, walls included; but for walls to a sharp edge of the skin, in cells where no
-/// vertex on the rim would keep the volume.
+/// All vertices of a plane's cut lie in the plane, and those at the skin, its rim, on the skin.
 TEST(Rim, CutsLieInTheirPlane) {
   Random random(94);
-  const Box box{{0, 0, 0}, {0.73, 0.61, 0.52}};
-  std::size_t n = 0, n_off = 0;
+  std::size_t n = 0;
   double worst = 0;
-  for (int i = 0; i < 60; ++i) {
-    Body body = support::embedded(geometry::box_mesh(box.lower, box.upper), 0.1, random_offset(random));
-    const Vec3 normal = random_direction(random);
-    const double offset = normal.dot(0.5 * (box.lower + box.upper) + 0.05 * random_vector(random));
-    support::cut_through(body, support::plane_cuts(body, {normal, offset}));
-    for (const auto& [cell, triangles] : skin_of(body).of_cuts)
-      for (const auto& triangle : triangles) {
-        double off = 0;
-        for (const Vec3& p : triangle)
-          off = std::max(off, std::abs(normal.dot(p) - offset));
-        ++n;
-        n_off += off > 1e-12;
-        worst = std::max(worst, off);
-      }
-  }
-  std::cout << n_off << " of " << n << " triangles of cuts off their plane, by at most " << worst / 0.1 << " h\n";
+  for (int i = 0; i < 20; ++i)
+    for (Body& body : bodies(random)) {
+      const Vec3 normal = random_direction(random);
+      const double offset = normal.dot(point_in(random, body));
+      support::cut_through(body, support::cuts_of_plane(body, {normal, offset}));
+      for (const auto& [cell, triangles] : skin_of(body).of_cuts)
+        for (const auto& triangle : triangles)
+          for (const Vec3& p : triangle) {
+            worst = std::max(worst, std::abs(normal.dot(p) - offset) / body.grid.h());
+            ++n;
+          }
+    }
   EXPECT_GT(n, 30000u);
-  EXPECT_LT(static_cast<double>(n_off), 5e-3 * static_cast<double>(n));
-  EXPECT_LT(worst, 0.1);
+  EXPECT_LT(worst, 1e-11);
+}
+
+struct Quality {
+  std::size_t n = 0, n_needles = 0, n_flat = 0;
+  double longest = 0; ///< [h]
+};
+
+/// Of triangles that have a vertex on the rim.
+Quality quality_of_cuts(const Body& cut) {
+  const Body body = support::with_copies(cut);
+  const Surface s = build_surface(body);
+  Quality quality;
+  for (std::size_t t = 0; t < s.triangles.size(); ++t) {
+    if (s.labels[t] == grid::skin_label)
+      continue;
+    const auto& [a, b, c] = s.triangles[t];
+    const std::array<Vec3, 3> sides = {s.rest[b] - s.rest[a], s.rest[c] - s.rest[b], s.rest[a] - s.rest[c]};
+    double least = 4;
+    for (int i = 0; i < 3; ++i) {
+      const Vec3 u = sides[i], v = -sides[(i + 2) % 3];
+      least = std::min(least, std::atan2(u.cross(v).norm(), u.dot(v)));
+      quality.longest = std::max(quality.longest, u.norm() / body.grid.h());
+    }
+    ++quality.n;
+    quality.n_needles += least < std::numbers::pi / 180;
+    quality.n_flat += !(sides[0].cross(sides[1]).norm() > 0);
+  }
+  return quality;
+}
+
+TEST(Rim, TrianglesOfCutsAreShortAndHaveArea) {
+  Random random(95);
+  Quality all;
+  for (int i = 0; i < 20; ++i)
+    for (Body& body : bodies(random)) {
+      const Vec3 normal = random_direction(random);
+      support::cut_through(body, support::cuts_of_plane(body, {normal, normal.dot(point_in(random, body))}));
+      const Quality of_body = quality_of_cuts(body);
+      all = {all.n + of_body.n, all.n_needles + of_body.n_needles, all.n_flat + of_body.n_flat,
+             std::max(all.longest, of_body.longest)};
+    }
+  std::cout << all.n << " triangles, " << all.n_needles << " needles (below 1 degree), the longest side " << all.longest
+            << " h\n";
+  EXPECT_EQ(all.n_flat, 0u);
+  EXPECT_LT(all.longest, 2);
 }
 
 } // namespace

@@ -65,8 +65,8 @@ struct DoubleCantilever {
   int n_over_arm = 4;
   double front = 0.01; ///< in (0, 1) [1]
 };
-/// The arms pulled apart by P, spread evenly over each arm's end: energy release rate by central differences of the
-/// compliance over 2 h, over 12 P^2 c^2/(E b^2 arm^3) (1 + 0.673 arm/c)^2 with c = a + front h (Foote and Buchwald
+/// The arms pulled apart by P, spread evenly over each arm's end: the elements' energy release rate, in tubes of a / 2 and
+/// .9 a around the front, over 12 P^2 c^2/(E b^2 arm^3) (1 + 0.673 arm/c)^2 with c = a + front h (Foote and Buchwald
 /// 1985, Int. J. Fracture 29, 125-134; here without their terms for a force that acts at a point). Elements of degree
 /// 7, in layers that shrink by 0.3 towards the front, give 0.6732 for c / arm = 2 and 4: the formula is good to 2e-4.
 BeamResult double_cantilever(const DoubleCantilever& beam, const BeamModel& model);

@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
+#include <bit>
 #include <stdexcept>
 
 namespace kerf::verification {
@@ -76,18 +77,23 @@ Body box(const Box& box, const double h, const Vec3& offset) {
 Body ball(const double radius, const double h, const Vec3& offset) { return placed(support::ball(radius, h, offset)); }
 
 void cut(Body& body, const support::Plane& plane, const std::function<bool(const Vec3&)>& is_cut) {
-  std::vector<grid::EdgeCut> added;
-  for (const auto e : ids<grid::EdgeId>(body.grid.n_edges())) {
-    const auto& [lower, upper] = body.grid.ends(e);
-    if (!body.grid.is_material(lower) || !body.grid.is_material(upper) || body.cuts.is_cut(e))
-      continue;
+  for (const grid::EdgeCut& one : support::plane_cuts(body, plane)) {
+    const auto& [lower, upper] = body.grid.ends(one.edge);
     const Vec3 p = body.grid.position(lower), q = body.grid.position(upper);
-    const double a = plane.height(p), b = plane.height(q), t = a / (a - b);
-    if ((a < 0) != (b < 0) && is_cut(p + t * (q - p)))
-      added.push_back({e, t, plane.normal, 1});
+    if (is_cut(p + one.t * (q - p)))
+      body.cuts.add(body.grid, one);
   }
-  for (const auto& one : added)
-    body.cuts.add(body.grid, one);
+  for (const grid::SkinCut& one : support::plane_skin_cuts(body, plane)) {
+    const grid::CellId c = one.segment.face.valid() ? body.grid.cells(one.segment.face)[0] : one.segment.cell;
+    const grid::Skeleton& skeleton = grid::skeleton_of(grid::material_of(body.grid, c));
+    for (grid::Segments left = skeleton.segments & ~grid::skeleton::lines; left != 0; left &= left - 1)
+      if (const int segment = std::countr_zero(left); grid::skin_segment(body.grid, c, segment) == one.segment) {
+        const auto& ends = skeleton.segment[segment].ends;
+        const Vec3 p = grid::item_point(body, c, ends[0]), q = grid::item_point(body, c, ends[1]);
+        if (is_cut(p + one.t * (q - p)))
+          body.cuts.add(one);
+      }
+  }
   place(body);
 }
 

@@ -1,5 +1,7 @@
 #include "tests/verification/plates.h"
 
+#include "fem/energy_release.h"
+
 #include <Eigen/Dense>
 
 #include <cmath>
@@ -100,6 +102,12 @@ void compare(const Body& body, const Points& u, const Vec3& centre, PennyResult&
   result.n_cells = body.complex.n_copies();
 }
 
+double release_rate(const Body& body, const fem::Hexahedra& model, const Points& u, const Vec3& centre) {
+  const double nu = 0.3, exact = 4 * (1 - nu * nu) / std::numbers::pi;
+  const fem::CircleFront front{centre, Vec3::UnitZ(), 1};
+  return fem::energy_release_rate(model, body.rest(), deformed(body, u), front, {0.5, 0.95}) / exact;
+}
+
 } // namespace
 
 PennyResult penny(const Penny& problem, const fem::HexahedraOptions& options) {
@@ -121,6 +129,7 @@ PennyResult penny(const Penny& problem, const fem::HexahedraOptions& options) {
   const Points u = displacements(body, *model, f, hold_corners(rest, R), LinearSolver::conjugate_gradients);
   PennyResult result;
   compare(body, u, centre, result);
+  result.release_rate = release_rate(body, *model, u, centre);
   result.cost = cost;
   result.cost.solution = timer.seconds();
   return result;

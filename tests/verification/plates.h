@@ -37,6 +37,7 @@ struct Penny {
 struct PennyResult {
   double opening_error = 0; ///< root mean square over the cut edges in the disc, over that of the exact opening [1]
   double volume = 0;        ///< of the gap, over the exact one, 16 (1 - nu^2) sigma r^3 / (3 E) [1]
+  double release_rate = 0;  ///< of the elements, in tubes of r / 2 and .95 r, over 4 (1 - nu^2) sigma^2 r / (pi E) [1]
   std::size_t n_cells = 0;
   Cost cost;
 };

@@ -45,7 +45,10 @@ TEST(PennyShapedCut, OpensMoreAndMoreAsItShould) {
   EXPECT_LT(fine.opening_error, 0.75 * coarse.opening_error);
   EXPECT_LT(1 - std::cbrt(fine.volume), 0.65 * (1 - std::cbrt(coarse.volume))); // of the radius
   EXPECT_LT(fine.volume, 1);
+  EXPECT_LT(1 - fine.release_rate, 0.65 * (1 - coarse.release_rate));
+  EXPECT_LT(fine.release_rate, 1);
   testing::Test::RecordProperty("volume_fine", std::to_string(fine.volume));
+  testing::Test::RecordProperty("release_rate_fine", std::to_string(fine.release_rate));
 }
 
 /// As the solvers see it, scaled by blocks: the ghost penalty keeps it where it is without slivers.

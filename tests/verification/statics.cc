@@ -49,6 +49,13 @@ Points displacements(const Body& body, fem::Hexahedra& model, Points forces, std
   return state.x;
 }
 
+Points deformed(const Body& body, const Points& u) {
+  Points x = body.rest();
+  for (std::size_t c = 0; c < x.size(); ++c)
+    x[c] += u[c];
+  return x;
+}
+
 std::vector<dynamics::Support> hold_rigid_motion(const Points& rest) {
   const auto farthest = [&](const auto& distance) {
     std::uint32_t best = 0;

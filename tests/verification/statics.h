@@ -62,6 +62,9 @@ using dynamics::LinearSolver;
 Points displacements(const Body& body, fem::Hexahedra& model, Points forces, std::vector<dynamics::Support> supports,
                      LinearSolver solver);
 
+/// Where the corners are.
+Points deformed(const Body& body, const Points& u);
+
 /// Holds three corners in six directions, against rigid motion and no more.
 std::vector<dynamics::Support> hold_rigid_motion(const Points& rest);
 

@@ -1,0 +1,24 @@
+#pragma once
+
+/// What a cut would part from the body, and the grid cannot show: it stays where it hangs.
+///
+/// Tips are points of the skin that bound no material: where a blade passes along the skin, or the skin is so hollow that
+/// a point of it lies on a blade's other side than its neighbours, though the material there is not parted. They stay
+/// with all their neighbours across the blade.
+///
+/// Shavings are a few nodes, or points of the skin, between cuts of one blade on both sides that are less than a tenth of
+/// a cube apart: where it comes back through a body that has moved, beside where it was before. They stay by that one of
+/// the new cuts that comes nearest to them. What different blades part is parted, however thin.
+
+#include "grid/solid.h"
+
+#include <vector>
+
+namespace kerf::cut {
+
+/// Takes back new cuts that part tips and shavings from the body. `edges` and `segments`, ascending, are what
+/// `solid.cuts` holds and `solid.complex` does not; what is taken back leaves them. Returns how many.
+std::size_t leave_shreds(grid::Solid& solid, std::vector<grid::EdgeId>& edges,
+                         std::vector<grid::SkinSegment>& segments);
+
+} // namespace kerf::cut

@@ -1,0 +1,18 @@
+#pragma once
+
+/// What exact Boolean operations on the skin say of planes that cut a solid.
+
+#include "geometry/triangle_mesh.h"
+#include "tests/support/bodies.h"
+
+#include <optional>
+#include <vector>
+
+namespace kerf::cut {
+
+/// Volumes of what planes leave of a solid whose skin is closed, ascending [m^3]: by corefinement with each plane in turn.
+/// Nothing where the skin intersects itself at a plane.
+std::optional<std::vector<double>> volumes_between(const geometry::TriangleMesh& skin,
+                                                   const std::vector<support::Plane>& planes);
+
+} // namespace kerf::cut
