@@ -49,15 +49,6 @@ void check_size(const PixelBox& box) {
                                    .remedy = "Check the unit, or take a coarser picture"});
 }
 
-/// How far apart the outlines lie in the picture once a map has been applied, seen from both [pixels].
-warp::Gap gap_after(const warp::LatticeMap& map, const warp::Curve& section, const warp::Curve& picture) {
-  warp::Curve there;
-  for (const Vec2& p : section)
-    there.push_back(map(p));
-  const warp::Gap a = warp::gap(there, picture), b = warp::gap(picture, there);
-  return {std::max(a.mean, b.mean), std::max(a.largest, b.largest)};
-}
-
 /// Fills colours and what is shown: chart pixel (c, r) shows the picture at to_picture(c, r).
 template <class ToPicture>
 void paint(const image::Image& picture, const Grey& mask, const ToPicture& to_picture, Chart& chart) {
@@ -146,16 +137,11 @@ Chart make_chart(const Exemplar& exemplar, const geometry::TriangleMesh& body,
       exemplar.picture, mask, [&](const Vec2& p) { return Vec2(p + box.lower); }, chart);
     return chart;
   }
-  Outlines outlines = outlines_of(chart.inside, mask);
-  for (Vec2& p : outlines.section)
-    p += box.lower;
+  const Outlines outlines = outlines_of(chart.inside, mask);
   const auto inside = exemplar.fit == Fit::rigid ? warp::Regularity::rigid : warp::Regularity::jacobian;
-  used = known ? *known
-               : warp::fit(outlines.section, outlines.picture, outlines.within, box.lower,
-                           box.lower + Vec2(chart.inside.width - 1, chart.inside.height - 1), {.inside = inside});
-  chart.fit_error = gap_after(*used, outlines.section, outlines.picture);
-  paint(
-    exemplar.picture, mask, [&](const Vec2& p) { return (*used)(p + box.lower); }, chart);
+  used = known ? *known : fitted(outlines, {.inside = inside});
+  chart.fit_error = gap_after(*used, outlines);
+  paint(exemplar.picture, mask, *used, chart);
   return chart;
 }
 

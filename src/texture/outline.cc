@@ -3,6 +3,7 @@
 #include "image/distance.h"
 #include "image/filters.h"
 #include "texture/mask.h"
+#include "texture/slice.h"
 
 #include <array>
 #include <cmath>
@@ -83,6 +84,52 @@ Whole whole(const Grey& mask, const double part) {
   return {std::move(largest), share};
 }
 
+/// The mean of a mask's pixels.
+Vec2 middle(const Grey& mask) {
+  Vec2 sum = Vec2::Zero();
+  double n = 0;
+  for (int r = 0; r < mask.height; ++r)
+    for (int c = 0; c < mask.width; ++c)
+      if (mask(c, r) > 0.5f) {
+        sum += Vec2(c, r);
+        ++n;
+      }
+  return sum / std::max(n, 1.0);
+}
+
+/// How far a mask reaches in each direction.
+struct Star {
+  Vec2 middle;
+  warp::Curve ends;
+  double other; ///< what lies between and is not section, or is section and lies elsewhere, over the area [1]
+};
+
+/// Rays leave the middle in directions that `linear` has turned.
+Star star_of(const Grey& mask, const warp::Curve& outline, const Mat2& linear) {
+  constexpr int n_directions = 256;
+  const Grey largest = largest_component(mask);
+  const Grey smooth = image::blurred(largest, 1); // takes the steps of the pixels away
+  Star star{middle(largest), {}, 0};
+  for (int k = 0; k < n_directions; ++k) {
+    const Vec2 along = (linear * direction(k, n_directions)).normalized();
+    star.ends.push_back(star.middle + reach(smooth, star.middle, along) * along);
+  }
+  const double area = std::abs(warp::area_of(outline));
+  star.other = (std::abs(warp::area_of(star.ends)) - area + sum_of(mask) - sum_of(largest)) / area;
+  return star;
+}
+
+/// Empty if one is no star.
+std::vector<warp::Pin> by_rays(const Star& from, const Star& to) {
+  constexpr double most = 0.005;
+  if (std::max(from.other, to.other) > most)
+    return {};
+  std::vector<warp::Pin> pairs = {{from.middle, to.middle}};
+  for (std::size_t k = 0; k < from.ends.size(); ++k)
+    pairs.push_back({from.ends[k], to.ends[k]});
+  return pairs;
+}
+
 } // namespace
 
 warp::Curve outline_of(const Grey& mask) {
@@ -103,15 +150,36 @@ warp::Curve outline_of(const Grey& mask) {
 }
 
 Outlines outlines_of(const Grey& section, const Grey& picture) {
+  warp::Curve from = outline_of(section), to = outline_of(picture);
+  const Mat2 linear = warp::affine_between(from, to).linear;
+  std::vector<warp::Pin> rays = by_rays(star_of(section, from, Mat2::Identity()), star_of(picture, to, linear));
+  if (!rays.empty())
+    return {std::move(from), std::move(to), largest_component(section), std::move(rays)};
   constexpr double least = 0.05, most = 0.2, enough = 0.9;
   for (double part = least; part <= most; part *= 1.5) {
     Whole a = whole(section, part);
     const Whole b = whole(picture, part);
     if (std::min(a.share, b.share) >= enough)
-      return {outline_of(a.mask), outline_of(b.mask), std::move(a.mask)};
+      return {outline_of(a.mask), outline_of(b.mask), std::move(a.mask), {}};
   }
   Whole a = whole(section, least);
-  return {outline_of(a.mask), outline_of(whole(picture, least).mask), std::move(a.mask)};
+  return {outline_of(a.mask), outline_of(whole(picture, least).mask), std::move(a.mask), {}};
+}
+
+warp::Gap gap_after(const warp::LatticeMap& map, const Outlines& outlines) {
+  warp::Curve there;
+  for (const Vec2& p : outlines.section)
+    there.push_back(map(p));
+  const warp::Gap a = warp::gap(there, outlines.picture), b = warp::gap(outlines.picture, there);
+  return {std::max(a.mean, b.mean), std::max(a.largest, b.largest)};
+}
+
+warp::LatticeMap fitted(const Outlines& outlines, const warp::FitOptions& options) {
+  const Vec2 lower = Vec2::Zero(), upper(outlines.within.width - 1, outlines.within.height - 1);
+  return outlines.by_rays.empty()
+           ? warp::fit(outlines.section, outlines.picture, outlines.within, lower, upper, options)
+           : warp::fit(outlines.by_rays, warp::affine_between(outlines.section, outlines.picture), lower, upper,
+                       options);
 }
 
 } // namespace kerf::texture

@@ -23,12 +23,12 @@ double length_of(const Curve& curve) {
   return length;
 }
 
-/// Unit vectors along a curve at its points.
+/// Unit vectors along a curve at its points, over a part of its length that the steps of pixels do not turn.
 Curve directions(const Curve& curve) {
   Curve result;
-  const std::size_t n = curve.size();
+  const std::size_t n = curve.size(), reach = std::max<std::size_t>(1, n / 32);
   for (std::size_t i = 0; i < n; ++i)
-    result.push_back((curve[(i + 1) % n] - curve[(i + n - 1) % n]).normalized());
+    result.push_back((curve[(i + reach) % n] - curve[(i + n - reach) % n]).normalized());
   return result;
 }
 
@@ -105,6 +105,23 @@ double area_of(const Curve& curve) {
     twice += a[0] * b[1] - a[1] * b[0];
   }
   return 0.5 * twice;
+}
+
+Moments moments_of(const Curve& curve) {
+  // Sums over the triangles from the first point to each side.
+  const Vec2 origin = curve.front();
+  double twice = 0;
+  Vec2 first = Vec2::Zero();
+  Mat2 second = Mat2::Zero();
+  for (std::size_t i = 0; i < curve.size(); ++i) {
+    const Vec2 a = curve[i] - origin, b = curve[(i + 1) % curve.size()] - origin, c = a + b;
+    const double cross = a[0] * b[1] - a[1] * b[0];
+    twice += cross;
+    first += cross / 3 * c;
+    second += cross / 12 * (a * a.transpose() + b * b.transpose() + c * c.transpose());
+  }
+  const Vec2 mean = first / twice;
+  return {origin + mean, second / twice - mean * mean.transpose()};
 }
 
 Curve equally_spaced(const Curve& curve, const int n) {

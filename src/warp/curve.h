@@ -14,6 +14,13 @@ using Curve = std::vector<Vec2>;
 /// Positive where the curve turns from the first axis to the second.
 double area_of(const Curve& curve);
 
+/// Of what a curve bounds: its middle, and the mean square of what lies how far from it, direction by direction.
+struct Moments {
+  Vec2 mean;
+  Mat2 spread; ///< mean of (p - mean)(p - mean)^T
+};
+Moments moments_of(const Curve& curve);
+
 /// n points at equal steps along a curve, the first of them its first.
 Curve equally_spaced(const Curve& curve, int n);
 

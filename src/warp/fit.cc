@@ -13,115 +13,103 @@ namespace kerf::warp {
 
 namespace {
 
-constexpr int n_points = 256;
-constexpr int finer = 4; ///< points of the second curve by one of the first
-
-Vec2 mean_of(const Curve& curve) {
-  Vec2 sum = Vec2::Zero();
+template <class Map>
+Curve images(const Curve& curve, const Map& map) {
+  Curve result;
   for (const Vec2& p : curve)
-    sum += p;
-  return sum / static_cast<double>(curve.size());
+    result.push_back(map(p));
+  return result;
 }
 
-/// Root of the second moments about the mean: where a curve reaches, in each direction.
-Mat2 spread_of(const Curve& curve) {
-  const Vec2 mean = mean_of(curve);
-  Mat2 sum = Mat2::Zero();
-  for (const Vec2& p : curve)
-    sum += (p - mean) * (p - mean).transpose();
-  return Eigen::SelfAdjointEigenSolver<Mat2>(sum / static_cast<double>(curve.size())).operatorSqrt();
+/// The same curve from the point farthest from the middle of what it bounds: the same however a picture is stored.
+Curve from_farthest(Curve curve) {
+  const Vec2 middle = moments_of(curve).mean;
+  const auto farther = [&](const Vec2& a, const Vec2& b) { return (a - middle).norm() < (b - middle).norm(); };
+  std::rotate(curve.begin(), std::max_element(curve.begin(), curve.end(), farther), curve.end());
+  return curve;
 }
 
-/// Two curves, and their partners under a map.
-struct Matched {
-  Curve from, to, partners;
+/// What goes where, asked anew as a map comes closer.
+using PinsOf = std::function<std::vector<Pin>(const LatticeMap&)>;
 
-  template <class Map>
-  void find_partners(const Map& map) {
-    Curve there;
-    for (const Vec2& p : from)
-      there.push_back(map(p));
-    partners.clear();
-    for (const int j : warp::partners(there, to))
-      partners.push_back(to[j]);
-  }
-  std::vector<Pin> pins() const {
-    std::vector<Pin> pins;
-    for (std::size_t i = 0; i < from.size(); ++i)
-      pins.push_back({from[i], partners[i]});
-    return pins;
-  }
-};
-
-/// The affine map between two curves, from moments, then point by point. One that would crush the section is not taken.
-Affine affine_between(Matched& curves) {
-  const Mat2 linear = spread_of(curves.to) * spread_of(curves.from).inverse();
-  Affine affine{linear, mean_of(curves.to) - linear * mean_of(curves.from)};
-  for (int i = 0; i < 4; ++i) {
-    curves.find_partners(affine);
-    const Affine next = best_affine(curves.from, curves.partners);
-    if (!(next.linear.determinant() > 0.3 * linear.determinant()))
-      break;
-    affine = next;
-  }
-  return affine;
-}
-
-/// The map from a start to the least energy.
-LatticeMap relaxed(const LatticeMap& start, const std::vector<Pin>& pins, const EnergyOptions& options,
-                   const Mat2& global) {
-  Energy energy(start, nullptr, pins, options);
-  energy.take_out(global);
-  Eigen::VectorXd x = to_unknowns(start);
-  minimise(std::cref(energy), x, {.n_iterations = 300, .relative_fall = 1e-7});
-  LatticeMap map = start;
-  from_unknowns(x, map);
-  return map;
-}
-
-} // namespace
-
-Affine best_affine(const Curve& from, const Curve& to) {
-  const Vec2 from_mean = mean_of(from), to_mean = mean_of(to);
-  Mat2 covariance = Mat2::Zero(), spread = Mat2::Zero();
-  for (std::size_t i = 0; i < from.size(); ++i) {
-    covariance += (to[i] - to_mean) * (from[i] - from_mean).transpose();
-    spread += (from[i] - from_mean) * (from[i] - from_mean).transpose();
-  }
-  const Mat2 linear = covariance * spread.inverse();
-  return {linear, to_mean - linear * from_mean};
-}
-
-LatticeMap fit(const Curve& from, const Curve& to, const image::Grey& section, const Vec2& lower, const Vec2& upper,
-               const FitOptions& options) {
-  Matched curves{equally_spaced(from, n_points), equally_spaced(to, finer * n_points), {}};
-  const Affine start = affine_between(curves);
-  const Vec2 size = upper - lower;
+EnergyOptions energy_options(const FitOptions& options, const Affine& start, const Vec2& size) {
   EnergyOptions energy;
   energy.regularity = options.inside;
   energy.border = Border::free;
   energy.barrier = options.barrier;
   energy.pin_weight = 1;
   energy.pin_unit = 0.01 * (start.linear * size).norm();
-  energy.section = &section;
+  return energy;
+}
+
+/// `map` becomes that of least energy.
+void relax(LatticeMap& map, const PinsOf& pins, const EnergyOptions& options, const Mat2& global) {
+  Energy energy(map, nullptr, pins(map), options);
+  energy.take_out(global);
+  Eigen::VectorXd x = to_unknowns(map);
+  minimise(std::cref(energy), x, {.n_iterations = 300, .relative_fall = 1e-7});
+  from_unknowns(x, map);
+}
+
+LatticeMap coarse_to_fine(const Affine& start, const PinsOf& pins, const Vec2& lower, const Vec2& upper,
+                          const FitOptions& options, EnergyOptions energy) {
+  const Vec2 size = upper - lower;
   LatticeMap map = lattice_of(start, lower, upper, 2, 2);
   for (int n = std::max(2, options.n_cells / 8); n <= options.n_cells; n *= 2) {
     const auto along = [&](const double length) {
       return std::max(2, static_cast<int>(std::lround(n * length / size.maxCoeff())));
     };
-    LatticeMap denser = lattice_of(map, lower, upper, along(size[0]) + 1, along(size[1]) + 1);
-    if (smallest_determinant(denser, start.linear) > 0)
-      map = std::move(denser);
-    // A coarse lattice cannot follow the curve and must not be crushed by trying to.
+    LatticeMap finer = lattice_of(map, lower, upper, along(size[0]) + 1, along(size[1]) + 1);
+    if (smallest_determinant(finer, start.linear) > 0)
+      map = std::move(finer);
+    // A coarse lattice cannot follow the boundary and must not be crushed by trying to.
     energy.stiffness = options.stiffness * std::pow(options.n_cells / n, 2);
-    map = relaxed(map, curves.pins(), energy, start.linear);
-    curves.find_partners(map);
+    relax(map, pins, energy, start.linear);
   }
-  constexpr double hardest = 30;
-  for (int round = 1; round <= options.n_rounds; ++round) {
-    energy.pin_weight = std::pow(hardest, static_cast<double>(round) / options.n_rounds);
-    map = relaxed(map, curves.pins(), energy, start.linear);
-    curves.find_partners(map);
+  return map;
+}
+
+} // namespace
+
+Affine affine_between(const Curve& from, const Curve& to) {
+  const Moments a = moments_of(from), b = moments_of(to);
+  const Eigen::SelfAdjointEigenSolver<Mat2> spread(a.spread);
+  const Mat2 root = spread.operatorSqrt(), back = spread.operatorInverseSqrt();
+  const Mat2 linear = back * Eigen::SelfAdjointEigenSolver<Mat2>(root * b.spread * root).operatorSqrt() * back;
+  return {linear, b.mean - linear * a.mean};
+}
+
+LatticeMap fit(const std::vector<Pin>& pairs, const Affine& start, const Vec2& lower, const Vec2& upper,
+               const FitOptions& options) {
+  const auto pins = [&](const LatticeMap&) { return pairs; };
+  return coarse_to_fine(start, pins, lower, upper, options, energy_options(options, start, upper - lower));
+}
+
+LatticeMap fit(const Curve& from, const Curve& to, const image::Grey& section, const Vec2& lower, const Vec2& upper,
+               const FitOptions& options) {
+  constexpr int n_points = 256, denser = 4;
+  constexpr double softer = 0.3, hardest = 10; // what is no star has more to bend
+  constexpr int n_rounds = 3;
+  const Affine start = affine_between(from, to);
+  // At equal steps where they lie beside each other, so that an affine map changes no pace.
+  const Curve points = images(equally_spaced(from_farthest(images(from, start)), n_points), start.inverse());
+  const Curve targets = equally_spaced(from_farthest(to), denser * n_points);
+  const auto pins = [&](const LatticeMap& map) {
+    std::vector<Pin> result;
+    const std::vector<int> found = partners(images(points, map), targets);
+    for (int i = 0; i < n_points; ++i)
+      result.push_back({points[i], targets[found[i]]});
+    return result;
+  };
+  FitOptions soft = options;
+  soft.stiffness *= softer;
+  EnergyOptions energy = energy_options(soft, start, upper - lower);
+  energy.section = &section;
+  LatticeMap map = coarse_to_fine(start, pins, lower, upper, soft, energy);
+  energy.stiffness = soft.stiffness;
+  for (int round = 1; round <= n_rounds; ++round) {
+    energy.pin_weight = std::pow(hardest, static_cast<double>(round) / n_rounds);
+    relax(map, pins, energy, start.linear);
   }
   return map;
 }

@@ -131,7 +131,38 @@ Curve outline_of(const int n, const double wobble, const Vec2& middle, const dou
   return curve;
 }
 
-TEST(Fit, TakesABoundaryToABoundaryWithoutAFold) {
+TEST(Fit, TakesPointsOfABoundaryToABoundaryWithoutAFold) {
+  for (const auto inside : {Regularity::rigid, Regularity::jacobian})
+    for (const double wobble : {0.0, 0.15, 0.25}) {
+      std::vector<Pin> pairs;
+      for (int i = 0; i < 256; ++i) {
+        const double angle = 2 * M_PI * i / 256;
+        pairs.push_back({outline(angle, 0), Vec2(300, 200) + 100 * outline(angle, wobble)});
+      }
+      const Affine start{100 * Mat2::Identity(), Vec2(300, 200)};
+      const LatticeMap map = fit(pairs, start, Vec2(-1.1, -1.1), Vec2(1.1, 1.1), {.inside = inside});
+      EXPECT_GT(smallest_determinant(map), 0);
+      double mean = 0;
+      for (const Pin& pair : pairs)
+        mean += (map(pair.from) - pair.to).norm() / 256;
+      EXPECT_LT(mean, 1) << wobble; // of a radius of 100
+    }
+}
+
+TEST(Fit, FindsTheAffineMapBetweenCurves) {
+  Mat2 linear;
+  linear << 1.3, 0.2, 0.2, 0.8;
+  const Curve from = outline_of(700, 0.25, Vec2(3, -8), 90);
+  Curve to;
+  for (const Vec2& p : from)
+    to.push_back(Vec2(5, 7) + linear * p);
+  std::rotate(to.begin(), to.begin() + 123, to.end());
+  const Affine found = affine_between(from, to);
+  EXPECT_LT((found.linear - linear).norm(), 1e-9);
+  EXPECT_LT((found.shift - Vec2(5, 7)).norm(), 1e-7);
+}
+
+TEST(Fit, TakesACurveToACurveWithoutAFold) {
   const Grey section = [] {
     Grey mask(111, 111, 0);
     for (int r = 0; r < 111; ++r)
