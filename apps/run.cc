@@ -109,7 +109,12 @@ int run(const Arguments& arguments) {
     set_n_threads(parsed.n_threads);
   const scene::SceneText text = scene::read_scene_text(parsed.scene, parsed.overrides);
   output::require_claimable(parsed.output, parsed.earlier);
+  const auto source = [&] {
+    return scene::Source{run_info("run", arguments), scene::standalone_text(text, scene::grammar()),
+                         scene::hashes_of_inputs(text, scene::grammar())};
+  };
   if (parsed.earlier == output::Earlier::resume && scene::is_complete(parsed.output)) {
+    scene::require_same(parsed.output, source());
     std::printf("%s holds a complete run: nothing is left to resume\n", parsed.output.c_str());
     return 0;
   }
@@ -118,9 +123,7 @@ int run(const Arguments& arguments) {
     std::printf("%s\n", line.c_str());
   std::fflush(stdout);
 
-  const scene::Source source{run_info("run", arguments), scene::standalone_text(text, scene::grammar()),
-                             scene::hashes_of_inputs(text, scene::grammar())};
-  scene::Recorder recorder(parsed.output, world, source, parsed.earlier);
+  scene::Recorder recorder(parsed.output, world, source(), parsed.earlier);
   scene::Progress progress(world.n_steps, world.n_steps * world.time_step, scene::progress_style(stdout), stdout);
   const Timings seconds = scene::run(world, recorder, progress);
   print_summary(world, seconds, parsed);

@@ -17,10 +17,10 @@ std::string trimmed(const std::string& text) {
 }
 
 /// "a, b," has three parts, the last one empty.
-std::vector<std::string> split(const std::string& text, const char separator) {
+std::vector<std::string> split(const std::string& text, const std::string& separators) {
   std::vector<std::string> parts;
   std::size_t begin = 0;
-  for (std::size_t end; (end = text.find(separator, begin)) != std::string::npos; begin = end + 1)
+  for (std::size_t end; (end = text.find_first_of(separators, begin)) != std::string::npos; begin = end + 1)
     parts.push_back(trimmed(text.substr(begin, end - begin)));
   parts.push_back(trimmed(text.substr(begin)));
   return parts;
@@ -28,16 +28,51 @@ std::vector<std::string> split(const std::string& text, const char separator) {
 
 /// The whole text must be one number.
 template <class T>
-std::optional<T> parse_whole(const std::string& value) {
+std::errc read_whole(const std::string& value, T& number) {
   std::string text = trimmed(value);
   if (text.size() > 1 && text[0] == '+' && text[1] != '-')
     text.erase(0, 1);
-  T number{};
   const char* const end = text.data() + text.size();
   const auto result = std::from_chars(text.data(), end, number);
-  if (result.ec != std::errc() || result.ptr != end)
-    return std::nullopt;
-  return number;
+  return result.ec == std::errc() && result.ptr != end ? std::errc::invalid_argument : result.ec;
+}
+
+template <class T>
+std::optional<T> parse_whole(const std::string& value) {
+  T number{};
+  return read_whole(value, number) == std::errc() ? std::optional(number) : std::nullopt;
+}
+
+bool has_decimal_comma(std::string text) {
+  const auto comma = text.find(',');
+  return comma != std::string::npos && parse_whole<double>(text.replace(comma, 1, ".")).has_value();
+}
+
+/// Why a text cannot be one number, whatever the rule; empty where it can.
+template <class T>
+std::string fault_of(const std::string& value) {
+  T number{};
+  const std::errc error = read_whole(value, number);
+  if (trimmed(value).empty())
+    return "is empty";
+  if (error == std::errc::result_out_of_range)
+    return "is beyond what numbers can be";
+  if (error != std::errc())
+    return std::is_integral_v<T>      ? "is not written as a whole number"
+           : has_decimal_comma(value) ? "is no number, as decimals begin with a point"
+                                      : "is no number";
+  return std::isfinite(static_cast<double>(number)) ? "" : "is no finite number";
+}
+
+/// The same of the first number of a list that has one.
+std::string fault_of_list(const std::string& value) {
+  constexpr std::size_t most = 40; // letters that are repeated
+  if (trimmed(value).empty())
+    return "is empty";
+  for (const auto& part : split(value, ",;"))
+    if (const std::string fault = fault_of<double>(part); !fault.empty())
+      return (part.empty() || part.size() > most ? "one of them" : "'" + part + "'") + " " + fault;
+  return "";
 }
 
 std::optional<double> parse_number(const std::string& value, const Range& range) {
@@ -58,7 +93,7 @@ std::optional<std::vector<double>> parse_numbers(const std::string& value, const
   std::vector<double> numbers;
   if (trimmed(value).empty())
     return numbers;
-  for (const auto& part : split(value, ',')) {
+  for (const auto& part : split(value, ",")) {
     const auto number = parse_number(part, range);
     if (!number)
       return std::nullopt;
@@ -78,7 +113,7 @@ std::optional<Points> parse_points(const std::string& value) {
   Points points;
   if (trimmed(value).empty())
     return points;
-  for (const auto& part : split(value, ';')) {
+  for (const auto& part : split(value, ";")) {
     const auto point = parse_vector(part);
     if (!point)
       return std::nullopt;
@@ -134,17 +169,21 @@ std::string to_text(const double value) {
 
 template <class T, class Parse>
 Parameter& Parameters::add(const std::string& name, T& field, const std::string& fallback, const std::string& rule,
-                           const std::string& text, const Parse& parse) {
+                           const std::string& text, const Parse& parse, const Fault fault) {
+  const auto wrong = [rule, fault](const std::string& value) {
+    const std::string first = fault ? fault(value) : "";
+    return first + (first.empty() ? "" : "; ") + rule;
+  };
   Parameter parameter;
   parameter.name = name;
   parameter.fallback = fallback;
   parameter.rule = rule;
   parameter.text = text;
-  parameter.check = [parse, rule](const std::string& value) { return parse(value) ? std::string() : rule; };
-  parameter.assign = [parse, rule, &field](const std::string& value) {
+  parameter.check = [parse, wrong](const std::string& value) { return parse(value) ? std::string() : wrong(value); };
+  parameter.assign = [parse, wrong, &field](const std::string& value) {
     const auto parsed = parse(value);
     if (!parsed)
-      return rule;
+      return wrong(value);
     field = *parsed;
     return std::string();
   };
@@ -153,17 +192,20 @@ Parameter& Parameters::add(const std::string& name, T& field, const std::string&
 }
 
 void Parameters::number(const std::string& name, double& field, const Range& range, const std::string& text) {
-  add(name, field, to_text(field), range.rule(), text,
-      [range](const std::string& v) { return parse_number(v, range); });
+  add(
+    name, field, to_text(field), range.rule(), text, [range](const std::string& v) { return parse_number(v, range); },
+    fault_of<double>);
 }
 
 void Parameters::integer(const std::string& name, int& field, const Range& range, const std::string& text) {
   const std::string bounds = bounds_text(range);
-  add(name, field, std::to_string(field), "must be a whole number" + (bounds.empty() ? "" : " " + bounds), text,
-      [range](const std::string& v) {
-        const auto number = parse_whole<int>(v);
-        return number && range.contains(*number) ? number : std::nullopt;
-      });
+  add(
+    name, field, std::to_string(field), "must be a whole number" + (bounds.empty() ? "" : " " + bounds), text,
+    [range](const std::string& v) {
+      const auto number = parse_whole<int>(v);
+      return number && range.contains(*number) ? number : std::nullopt;
+    },
+    fault_of<int>);
 }
 
 void Parameters::boolean(const std::string& name, bool& field, const std::string& text) {
@@ -191,19 +233,21 @@ void Parameters::choice(const std::string& name, std::string& field, const std::
 }
 
 void Parameters::vector(const std::string& name, Vec3& field, const std::string& text) {
-  add(name, field, vector_text(field), "must be three numbers x, y, z, all finite", text, parse_vector);
+  add(name, field, vector_text(field), "must be three numbers x, y, z, all finite", text, parse_vector, fault_of_list);
 }
 
 void Parameters::points(const std::string& name, Points& field, const std::string& text) {
-  add(name, field, joined(field, "; ", vector_text), "must be points x, y, z; x, y, z, all finite", text, parse_points);
+  add(name, field, joined(field, "; ", vector_text), "must be points x, y, z; x, y, z, all finite", text, parse_points,
+      fault_of_list);
 }
 
 void Parameters::numbers(const std::string& name, std::vector<double>& field, const Range& range,
                          const std::string& text) {
   const std::string bounds = bounds_text(range);
-  add(name, field, joined(field, ", ", to_text),
-      "must be numbers separated by commas" + (bounds.empty() ? "" : ", each " + bounds), text,
-      [range](const std::string& v) { return parse_numbers(v, range); });
+  add(
+    name, field, joined(field, ", ", to_text),
+    "must be numbers separated by commas" + (bounds.empty() ? "" : ", each " + bounds), text,
+    [range](const std::string& v) { return parse_numbers(v, range); }, fault_of_list);
 }
 
 } // namespace kerf

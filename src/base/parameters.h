@@ -76,10 +76,12 @@ class Parameters {
   const std::vector<Parameter>& list() const { return list_; }
 
  private:
-  /// `parse` turns a text into a T or into nothing, in which case `rule` is broken.
+  using Fault = std::string (*)(const std::string& value);
+  /// `parse` turns a text into a T or into nothing, in which case `rule` is broken. `fault` says more of such a text, or
+  /// nothing: "is no number".
   template <class T, class Parse>
   Parameter& add(const std::string& name, T& field, const std::string& fallback, const std::string& rule,
-                 const std::string& text, const Parse& parse);
+                 const std::string& text, const Parse& parse, Fault fault = nullptr);
 
   std::vector<Parameter> list_;
 };

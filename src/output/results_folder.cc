@@ -170,18 +170,24 @@ ResultsFolder::ResultsFolder(fs::path folder, const Earlier earlier, const Names
 }
 
 ResultsFolder::~ResultsFolder() {
-  write_list(names_, nobody);
+  try {
+    write_list(names_, nobody);
+  } catch (const DataError&) {
+    // the lock ends all the same, and the names are those that stand there
+  }
   close(descriptor_);
 }
 
-/// Failing to write it is no reason to stop: at worst the next run asks.
 void ResultsFolder::write_list(const Names& names, const std::string& holder) const {
   std::string text = title + holder + "\n";
   for (const std::string& name : names)
     text += name + "\n";
-  if (pwrite(descriptor_, text.data(), text.size(), 0) == static_cast<ssize_t>(text.size()) &&
+  errno = ENOSPC; // of a write that takes a part
+  if (pwrite(descriptor_, text.data(), text.size(), 0) != static_cast<ssize_t>(text.size()) ||
       ftruncate(descriptor_, static_cast<off_t>(text.size())) != 0)
-    errno = 0;
+    throw DataError(Complaint{.file = (folder_ / list_name).string(),
+                              .rule = "cannot be written: " + std::generic_category().message(errno),
+                              .remedy = "Free disk space or raise the quota, or choose another folder with --output"});
 }
 
 } // namespace kerf::output

@@ -51,6 +51,7 @@ void write_stability_file(const std::filesystem::path& path, const StabilityTabl
       write_info(root, info);
       h5::set_attribute(root, "title", table.title);
       h5::set_attribute(root, "outcome", to_string(table.outcome));
+      h5::set_attribute(root, "made_of", table.made_of);
       h5::create_group(root, "/stability");
       h5::write_text(root, "/stability/text", table.text);
       h5::create_group(root, group);
@@ -62,8 +63,11 @@ void write_stability_file(const std::filesystem::path& path, const StabilityTabl
 
 StabilityTable read_stability_file(const std::filesystem::path& path) {
   const h5::Object root = h5::open_read_only(path);
-  StabilityTable table{
-    h5::text_attribute(root, "title"), h5::read_text(root, "/stability/text"), read_outcome(root), {}};
+  StabilityTable table{h5::text_attribute(root, "title"),
+                       h5::read_text(root, "/stability/text"),
+                       read_outcome(root),
+                       {},
+                       h5::text_attribute(root, "made_of")};
   table.rows.resize(h5::n_rows(h5::open_dataset(root, column_path(group, "dt"))));
   for_each_column([&](const auto& column) { read_column(root, group, column, table.rows); });
   return table;

@@ -1,7 +1,7 @@
 #pragma once
 
 /// The table of a study of stability, in HDF5 (table_columns.h): /stability/rows/..., one entry a run;
-/// /stability/text is the study as written.
+/// /stability/text is the study, with what --set changed and absolute file names.
 
 #include "output/records.h"
 
@@ -29,6 +29,7 @@ struct StabilityTable {
   std::string title, text;
   Outcome outcome = Outcome::running;
   std::vector<StabilityRow> rows;
+  std::string made_of = {}; ///< a hash of all that the rows depend on (study/resumed.h)
 };
 
 /// Writes the file, or replaces it. Throws DataError when it cannot be written.

@@ -57,6 +57,7 @@ void write_study_file(const std::filesystem::path& path, const StudyTable& table
       write_info(root, info);
       h5::set_attribute(root, "title", table.title);
       h5::set_attribute(root, "outcome", to_string(table.outcome));
+      h5::set_attribute(root, "made_of", table.made_of);
       h5::create_group(root, "/study");
       h5::write_text(root, "/study/text", table.text);
       write_rows(root, table);
@@ -72,7 +73,8 @@ StudyTable read_study_file(const std::filesystem::path& path) {
                    h5::text_attribute(h5::open_dataset(root, column_path(group, "value")), "unit"),
                    h5::text_attribute(h5::open_group(root, group), "answer"),
                    read_outcome(root),
-                   {}};
+                   {},
+                   h5::text_attribute(root, "made_of")};
   table.rows.resize(h5::n_rows(h5::open_dataset(root, column_path(group, "value"))));
   for_each_column(table.unit, [&](const auto& column) { read_column(root, group, column, table.rows); });
   return table;

@@ -2,8 +2,8 @@
 
 /// The table of a study, in HDF5: one column a dataset, all of the same length, one entry a run.
 ///
-///     /                attributes as of a run's file, and title, outcome (running, completed)
-///     /study/text      the study as written
+///     /                attributes as of a run's file, and title, outcome (running, completed, interrupted, failed), made_of
+///     /study/text      the study, with what --set changed and absolute file names
 ///     /study/rows/...  the columns; attributes unit and description
 /// Numbers that are not known (the value of a run that failed, an error without a reference) are NaN.
 
@@ -29,6 +29,7 @@ struct StudyTable {
   std::string answer; ///< what the value is, in words
   Outcome outcome = Outcome::running;
   std::vector<StudyRow> rows;
+  std::string made_of = {}; ///< a hash of all that the rows depend on (study/resumed.h)
 };
 
 /// Writes the file, or replaces it: beside the old one, which it then takes the place of. Throws DataError when it cannot be written.

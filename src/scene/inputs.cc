@@ -126,15 +126,22 @@ class Editor {
 
 std::string standalone_text(const SceneText& scene, const Kinds& grammar) { return Editor(scene, grammar).edited(); }
 
-std::vector<std::string> hashes_of_inputs(const SceneText& scene, const Kinds& grammar) {
-  std::vector<std::string> lines;
+std::vector<std::string> input_files(const SceneText& scene, const Kinds& grammar) {
+  std::vector<std::string> paths;
   for_each_key(scene.root, grammar, [&](const WrittenKey& key, const SectionKind& kind) {
     if (!names_file(key, kind))
       return;
-    const std::string path = absolute(key.value, scene), line = sha256_of_file(path) + "  " + path;
-    if (std::find(lines.begin(), lines.end(), line) == lines.end())
-      lines.push_back(line);
+    const std::string path = absolute(key.value, scene);
+    if (std::find(paths.begin(), paths.end(), path) == paths.end())
+      paths.push_back(path);
   });
+  return paths;
+}
+
+std::vector<std::string> hashes_of_inputs(const SceneText& scene, const Kinds& grammar) {
+  std::vector<std::string> lines;
+  for (const std::string& path : input_files(scene, grammar))
+    lines.push_back(sha256_of_file(path) + "  " + path);
   return lines;
 }
 

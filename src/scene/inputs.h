@@ -14,6 +14,9 @@ namespace kerf::scene {
 /// but for those that change. Read again, from anywhere, it is the same scene. `grammar` says which keys name files.
 std::string standalone_text(const SceneText& scene, const std::vector<SectionKind>& grammar);
 
+/// Absolute paths of the files that the scene reads, in the scene's order, each once.
+std::vector<std::string> input_files(const SceneText& scene, const std::vector<SectionKind>& grammar);
+
 /// A line for each file that the scene reads, in the scene's order, as `sha256sum` prints it: hash, two blanks, absolute
 /// path. Throws DataError for one that cannot be read.
 std::vector<std::string> hashes_of_inputs(const SceneText& scene, const std::vector<SectionKind>& grammar);

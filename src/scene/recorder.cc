@@ -102,18 +102,11 @@ std::chrono::steady_clock::duration seconds_of(const double seconds) {
     std::chrono::duration<double>(std::min(seconds, 1e8)));
 }
 
-/// Whether a run's file can be gone on with. Throws ParameterError where it is of another scene or other inputs.
-bool can_go_on(const std::filesystem::path& file, const Source& source) {
-  if (!has_begun(file))
+/// Whether a folder's run can be gone on with. Throws as require_same().
+bool can_go_on(const std::filesystem::path& folder, const Source& source) {
+  if (!has_begun(folder / run_name))
     return false;
-  const output::Reader reader(file);
-  const bool same_scene = reader.scene() == source.scene;
-  if (!same_scene || reader.inputs() != source.inputs)
-    throw ParameterError(Complaint{
-      .file = file.string(),
-      .rule =
-        std::string("cannot be resumed: it is a run of ") + (same_scene ? "other meshes or pictures" : "another scene"),
-      .remedy = "Give the scene, its --set and its files as they were, or start again with --force"});
+  require_same(folder, source);
   return true;
 }
 
@@ -133,10 +126,22 @@ bool is_complete(const std::filesystem::path& folder) {
   return has_begun(folder / run_name) && output::Reader(folder / run_name).outcome() == output::Outcome::completed;
 }
 
+void require_same(const std::filesystem::path& folder, const Source& source) {
+  const std::filesystem::path file = folder / run_name;
+  const output::Reader reader(file);
+  const bool same_scene = reader.scene() == source.scene;
+  if (!same_scene || reader.inputs() != source.inputs)
+    throw ParameterError(Complaint{
+      .file = file.string(),
+      .rule =
+        std::string("cannot be resumed: it is a run of ") + (same_scene ? "other meshes or pictures" : "another scene"),
+      .remedy = "Give the scene, its --set and its files as they were, or start again with --force"});
+}
+
 Recorder::Recorder(const std::filesystem::path& folder, const World& world, const Source& source,
                    const output::Earlier earlier)
   : folder_(folder, earlier, names_of(world)),
-    goes_on_(earlier == output::Earlier::resume && can_go_on(folder / run_name, source)),
+    goes_on_(earlier == output::Earlier::resume && can_go_on(folder, source)),
     run_file_(goes_on_ ? output::RunFile(folder / run_name)
                        : output::RunFile(folder / run_name, source.info, make_schema(world))),
     bodies_(world.bodies.size()),

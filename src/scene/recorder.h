@@ -85,6 +85,8 @@ std::filesystem::path checkpoint_file(const std::filesystem::path& folder);
 
 /// Whether a folder holds a run that has come to its end: nothing of it can be resumed.
 bool is_complete(const std::filesystem::path& folder);
+/// Throws ParameterError where the run that a folder holds is of another scene or other inputs.
+void require_same(const std::filesystem::path& folder, const Source& source);
 
 /// The stages that a run's seconds are divided into.
 const std::vector<std::string>& stages();

@@ -23,15 +23,17 @@ std::string without_unit(const std::string& name) {
 
 int edit_distance(const std::string& a, const std::string& b) {
   const std::string s = lower(a), t = lower(b);
-  std::vector<int> row(t.size() + 1); // distances of s[0..i) to every t[0..j)
+  std::vector<int> row(t.size() + 1), before = row, two_before = row; // distances of s[0..i) to every t[0..j)
   std::iota(row.begin(), row.end(), 0);
   for (std::size_t i = 1; i <= s.size(); ++i) {
-    int diagonal = row[0];
+    two_before.swap(before);
+    before.swap(row);
     row[0] = static_cast<int>(i);
     for (std::size_t j = 1; j <= t.size(); ++j) {
-      const int substituted = diagonal + (s[i - 1] == t[j - 1] ? 0 : 1);
-      diagonal = row[j];
-      row[j] = std::min({substituted, row[j] + 1, row[j - 1] + 1});
+      const int substituted = before[j - 1] + (s[i - 1] == t[j - 1] ? 0 : 1);
+      row[j] = std::min({substituted, before[j] + 1, row[j - 1] + 1});
+      if (i > 1 && j > 1 && s[i - 1] == t[j - 2] && s[i - 2] == t[j - 1])
+        row[j] = std::min(row[j], two_before[j - 2] + 1);
     }
   }
   return row.back();

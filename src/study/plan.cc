@@ -2,6 +2,7 @@
 
 #include "scene/composing.h"
 #include "scene/grammar.h"
+#include "scene/inputs.h"
 #include "study/choices.h"
 
 #include <algorithm>
@@ -47,7 +48,7 @@ Plan make_plan(const scene::SceneText& text) {
   require_change(study, parameters, axes);
   root.require_all_read();
 
-  Plan plan{parameters, study, text.text, scene::resolved(parameters.scene, study), {}};
+  Plan plan{parameters, study, scene::standalone_text(text, grammar()), scene::resolved(parameters.scene, study), {}};
   std::vector<std::size_t> at(axes.size(), 0);
   do {
     std::vector<const Choice*> choices;

@@ -27,7 +27,7 @@ struct PlannedRow {
 struct Plan {
   StudyParameters parameters;
   scene::Section study; ///< the section `Study`, for complaints
-  std::string text;     ///< of the study, as written
+  std::string text;     ///< of the study, standalone
   std::string scene;    ///< path of the scene
   std::vector<PlannedRow> rows;
 };

@@ -6,8 +6,10 @@
 #include "output/checkpoint_file.h"
 #include "scene/compose.h"
 #include "scene/run.h"
+#include "study/resumed.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <ctime>
 #include <limits>
@@ -74,6 +76,8 @@ void step_through(scene::World& world, const StabilityCase& one, const int n_ste
   const Vec3 momentum = momentum_of(body);
   Timings seconds;
   for (int step = 1; step <= n_steps; ++step) {
+    if (const int signal = wish_to_end(); signal != 0)
+      throw Interrupted(signal, ". --resume goes on with the row that was under way");
     scene::advance(world, step, seconds);
     if (step == 1)
       see_start(body, one, momentum, seen);
@@ -105,6 +109,8 @@ Seen run(const StabilityCase& one, const int n_steps) {
     body.accounts = std::make_unique<scene::Accounts>();
     body.accounts->open(*body.physics, body.loads, body.state);
     step_through(world, one, n_steps, seen);
+  } catch (const Interrupted&) {
+    throw;
   } catch (const ParameterError& error) {
     end(Seen::End::refused, error);
   } catch (const std::exception& error) {
@@ -238,17 +244,11 @@ output::StabilityRow watch(const StabilityCase& one, const int n_steps) {
 
 namespace {
 
-/// The rows of an earlier run of the same study, to be taken as they are.
-std::vector<output::StabilityRow> earlier_rows(const StabilityPlan& plan, const std::filesystem::path& file) {
-  std::error_code error;
-  if (!std::filesystem::exists(file, error))
-    return {};
-  const output::StabilityTable table = output::read_stability_file(file);
-  if (table.text != plan.text || table.rows.size() > plan.cases.size())
-    throw ParameterError(Complaint{.file = file.string(),
-                                   .rule = "cannot be resumed: it is of another study",
-                                   .remedy = "Give the study as it was, or start again with --force"});
-  return table.rows;
+std::vector<const scene::SceneText*> scenes_of(const StabilityPlan& plan) {
+  std::vector<const scene::SceneText*> scenes;
+  for (const StabilityCase& one : plan.cases)
+    scenes.push_back(&one.scene);
+  return scenes;
 }
 
 } // namespace
@@ -256,23 +256,31 @@ std::vector<output::StabilityRow> earlier_rows(const StabilityPlan& plan, const 
 output::StabilityTable run_stability_study(const StabilityPlan& plan, const std::filesystem::path& folder,
                                            const output::RunInfo& info, const output::Earlier earlier,
                                            const std::function<void(const output::StabilityRow&)>& done) {
-  constexpr std::size_t every = 20; // rows between two times that the file is written
+  using Clock = std::chrono::steady_clock;
+  constexpr auto every = std::chrono::seconds(1); // at most so often the file is written
   const output::ResultsFolder claimed(folder, earlier, {file_name, output::name_beside(file_name).string()});
   output::StabilityTable table{plan.parameters.title, plan.text, {}, {}};
   const auto write = [&](const output::Outcome outcome) {
     table.outcome = outcome;
     output::write_stability_file(folder / file_name, table, info);
   };
+  table.made_of = made_of(info, plan.text, scenes_of(plan));
   if (earlier == output::Earlier::resume)
-    table.rows = earlier_rows(plan, folder / file_name);
+    table.rows = earlier_rows(folder / file_name, output::read_stability_file, table.made_of);
+  for (const output::StabilityRow& row : table.rows)
+    done(row);
+  auto next = Clock::now();
   for (std::size_t r = table.rows.size(); r < plan.cases.size(); ++r) {
-    if (const int signal = wish_to_end(); signal != 0) {
+    try {
+      table.rows.push_back(watch(plan.cases[r], plan.parameters.n_steps));
+    } catch (const Interrupted&) {
       write(output::Outcome::interrupted);
-      throw Interrupted(signal, " after row " + std::to_string(r) + " of " + std::to_string(plan.cases.size()));
+      throw;
     }
-    table.rows.push_back(watch(plan.cases[r], plan.parameters.n_steps));
-    if (table.rows.size() % every == 0)
+    if (Clock::now() >= next) {
       write(output::Outcome::running);
+      next = Clock::now() + every;
+    }
     done(table.rows.back());
   }
   write(output::Outcome::completed);

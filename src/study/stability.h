@@ -22,10 +22,10 @@
 
 namespace kerf::study {
 
-/// One row. Nothing that a run may throw gets out.
+/// One row. Nothing that a run may throw gets out but Interrupted.
 output::StabilityRow watch(const StabilityCase& one, int n_steps);
 
-/// Runs all rows; FOLDER/stability.h5 holds those so far; `done` is told each row. Those that it holds are
+/// Runs all rows; FOLDER/stability.h5 holds those so far, but for the last second's; `done` is told each row. Those that it holds are
 /// not run again where the study is resumed.
 output::StabilityTable run_stability_study(const StabilityPlan& plan, const std::filesystem::path& folder,
                                            const output::RunInfo& info, output::Earlier earlier,

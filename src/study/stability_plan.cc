@@ -2,6 +2,7 @@
 
 #include "scene/composing.h"
 #include "scene/grammar.h"
+#include "scene/inputs.h"
 #include "study/choices.h"
 
 #include <algorithm>
@@ -88,7 +89,7 @@ void add_cases(const Section& section, const std::vector<Axis>& all, StabilityPl
 
 void StabilityParameters::describe(Parameters& p) {
   p.text("Title", title, "What is asked, in a sentence.");
-  p.text("Scene", scene, "The scene that all rows run, relative to this file. Its first body is watched.");
+  p.file("Scene", scene, "The scene that all rows run, relative to this file. Its first body is watched.");
   p.require_last();
   p.integer("Steps [1]", n_steps, {.min = 1, .max = 1e6}, "Of every row, whatever their length.");
 }
@@ -109,7 +110,7 @@ bool is_stability_study(const scene::SceneText& text) {
 StabilityPlan make_stability_plan(const scene::SceneText& text) {
   const Section root = scene::parse_scene(text, stability_grammar());
   const Section& study = root.require("Stability");
-  StabilityPlan plan{study.read<StabilityParameters>(), text.text, {}};
+  StabilityPlan plan{study.read<StabilityParameters>(), scene::standalone_text(text, stability_grammar()), {}};
   plan.parameters.scene = scene::resolved(plan.parameters.scene, study);
   const std::vector<Axis> axes = read_axes(root);
   root.require("Sweep");

@@ -35,7 +35,7 @@ struct StabilityCase {
 
 struct StabilityPlan {
   StabilityParameters parameters;
-  std::string text; ///< of the study, as written
+  std::string text; ///< of the study, standalone
   std::vector<StabilityCase> cases;
 };
 

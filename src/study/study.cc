@@ -3,11 +3,11 @@
 #include "base/interrupt.h"
 #include "output/checkpoint_file.h"
 #include "study/measure.h"
+#include "study/resumed.h"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <system_error>
 
 namespace kerf::study {
 
@@ -26,21 +26,11 @@ std::string folder_name(std::string name) {
   return name;
 }
 
-/// The rows of an earlier run of the same study, to be taken as they are.
-std::vector<output::StudyRow> earlier_rows(const Plan& plan, const std::filesystem::path& file) {
-  std::error_code error;
-  if (!std::filesystem::exists(file, error))
-    return {};
-  const output::StudyTable table = output::read_study_file(file);
-  const auto is_planned = [&](const output::StudyRow& row, const PlannedRow& planned) {
-    return row.name == planned.name;
-  };
-  if (table.text != plan.text || table.rows.size() > plan.rows.size() ||
-      !std::equal(table.rows.begin(), table.rows.end(), plan.rows.begin(), is_planned))
-    throw ParameterError(Complaint{.file = file.string(),
-                                   .rule = "cannot be resumed: it is of another study",
-                                   .remedy = "Give the study as it was, or start again with --force"});
-  return table.rows;
+std::vector<const scene::SceneText*> scenes_of(const Plan& plan) {
+  std::vector<const scene::SceneText*> scenes;
+  for (const PlannedRow& row : plan.rows)
+    scenes.push_back(&row.scene);
+  return scenes;
 }
 
 } // namespace
@@ -65,8 +55,9 @@ output::StudyTable run_study(const Plan& plan, const std::filesystem::path& fold
     output::write_study_file(folder / study_name, table, info);
   };
   output::StudyTable table{plan.parameters.title, plan.text, plan.parameters.unit, in_words(plan.parameters), {}, {}};
+  table.made_of = made_of(info, plan.text, scenes_of(plan));
   if (earlier == output::Earlier::resume)
-    table.rows = earlier_rows(plan, folder / study_name);
+    table.rows = earlier_rows(folder / study_name, output::read_study_file, table.made_of);
   for (const output::StudyRow& row : table.rows)
     done(row);
   for (std::size_t r = table.rows.size(); r < plan.rows.size(); ++r) {

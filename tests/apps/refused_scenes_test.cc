@@ -44,7 +44,8 @@ TEST_F(RefusedScene, ValueOutOfItsRange) {
   const std::vector<Bad> bad = {
     {"Young's modulus [Pa] = 1e4", "Body cube/Material/Young's modulus [Pa]", "0", "must be > 0"},
     {"Young's modulus [Pa] = 1e4", "Body cube/Material/Young's modulus [Pa]", "-5", "must be > 0"},
-    {"Young's modulus [Pa] = 1e4", "Body cube/Material/Young's modulus [Pa]", "stiff", "must be > 0"},
+    {"Young's modulus [Pa] = 1e4", "Body cube/Material/Young's modulus [Pa]", "stiff", "is no number; must be > 0"},
+    {"Young's modulus [Pa] = 1e4", "Body cube/Material/Young's modulus [Pa]", "1e", "is no number; must be > 0"},
     {"Poisson's ratio [1]  = 0.3", "Body cube/Material/Poisson's ratio [1]", "0.5", "must be > -1 and < 0.5"},
     {"Poisson's ratio [1]  = 0.3", "Body cube/Material/Poisson's ratio [1]", "0.7", "must be > -1 and < 0.5"},
     {"Time step [s] = 0.01", "Time/Time step [s]", "0", "must be > 0"},

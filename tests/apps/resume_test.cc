@@ -3,6 +3,7 @@
 #include "output/checkpoint_file.h"
 #include "output/h5_array.h"
 #include "output/reader.h"
+#include "output/stability_file.h"
 #include "output/study_file.h"
 #include "tests/apps/program.h"
 
@@ -244,6 +245,8 @@ TEST_F(Resume, ASecondRunLeavesTheFirstWhole) {
   const Result again = kerf({"run", "scene.prm", "--output", "out", "--resume"});
   EXPECT_EQ(again.exit_code, 0);
   EXPECT_NE(again.out.find("nothing is left to resume"), std::string::npos) << again.out;
+  const Result other = kerf({"run", "scene.prm", "--output", "out", "--resume", "--set", "Time/End time [s]=0.2"});
+  expect_error(other, 1, {"run.h5", "cannot be resumed", "another scene"}); // complete, but not what is asked for now
 }
 
 TEST_F(Resume, RefusesAnotherScene) {
@@ -268,7 +271,8 @@ TEST_F(Resume, StudiesGoOnToo) {
   write("scene.prm", scene);
   write("study.prm",
         "subsection Study\n  set Title = t\n  set Scene = scene.prm\n  set Answer = elastic energy\n"
-        "  set Unit = J\nend\nsubsection Variant one\nend\n"
+        "  set Unit = J\n  set Reference = 1e-3\n  set Reference source = none\nend\n"
+        "subsection Variant one\nend\n"
         "subsection Variant two\n  set Set = Body cube/Material/Poisson's ratio [1]=0.2\nend\n"
         "subsection Variant three\n  set Set = Body cube/Element=enhanced\nend\n");
   const auto start = std::chrono::steady_clock::now();
@@ -276,12 +280,19 @@ TEST_F(Resume, StudiesGoOnToo) {
   const auto took = std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::steady_clock::now() - start);
   std::mt19937 random(5);
   const Words resumed = {"study", "study.prm", "--output", "out", "--resume"};
+  const auto file = folder / "out/study.h5";
+  int n_ended = 0;
   for (int i = 0; i < 10; ++i) {
     const int signal = i % 2 == 0 ? SIGKILL : SIGTERM;
     const int status = disturbed(resumed, signal, 50 + static_cast<int>(random() % (took.count() / 3 + 1)));
     EXPECT_TRUE(WIFSIGNALED(status) || WEXITSTATUS(status) == 128 + signal || WEXITSTATUS(status) == 0)
       << read_text(folder / "stderr");
+    n_ended += WIFSIGNALED(status) || WEXITSTATUS(status) != 0 ? 1 : 0;
+    if (std::filesystem::exists(file)) { // then it can be read, at any moment
+      EXPECT_NO_THROW(output::read_study_file(file));
+    }
   }
+  EXPECT_GT(n_ended, 2);
   const Result last = kerf(resumed);
   ASSERT_EQ(last.exit_code, 0) << last.err;
   const auto a = output::read_study_file(folder / "whole/study.h5"),
@@ -291,8 +302,60 @@ TEST_F(Resume, StudiesGoOnToo) {
   for (std::size_t i = 0; i < a.rows.size(); ++i) {
     EXPECT_EQ(a.rows[i].name, b.rows[i].name);
     EXPECT_EQ(a.rows[i].value, b.rows[i].value);
+    EXPECT_EQ(a.rows[i].reference, b.rows[i].reference);
+    EXPECT_EQ(a.rows[i].error, b.rows[i].error);
     EXPECT_EQ(a.rows[i].n_steps, b.rows[i].n_steps);
+    EXPECT_EQ(a.rows[i].n_dof, b.rows[i].n_dof);
+    EXPECT_EQ(a.rows[i].n_iterations, b.rows[i].n_iterations);
     EXPECT_EQ(b.rows[i].outcome, "completed");
+  }
+  Words other = resumed;
+  other.insert(other.end(), {"--set", "Study/Take=maximum"});
+  expect_error(kerf(other), 1, {"study.h5", "cannot be resumed", "--force"});
+  write("scene.prm", scene + "# a comment more\n");
+  expect_error(kerf(resumed), 1, {"study.h5", "cannot be resumed", "--force"});
+}
+
+/// The same of a study of stability: all of its rows but their times.
+TEST_F(Resume, StudiesOfStabilityGoOnToo) {
+  write("scene.prm", cube_scene());
+  write("study.prm", "subsection Stability\n  set Scene = scene.prm\n  set Steps [1] = 30\nend\n"
+                     "subsection Variant fem\nend\n"
+                     "subsection Variant springs\n  set Set = Body cube/Backend=mass-spring\nend\n"
+                     "subsection Change start\n  subsection Case pulled\n"
+                     "    set Set = Body cube/Initial state/Displacement [m]=0.2*x; 0; 0\n  end\nend\n"
+                     "subsection Change step\n  subsection Case short\n    set Set = Time/Time step [s]=0.001\n  end\n"
+                     "  subsection Case long\n    set Set = Time/Time step [s]=0.1\n  end\nend\n"
+                     "subsection Change soft\n  subsection Case no\n  end\n"
+                     "  subsection Case yes\n    set Set = Body cube/Material/Young's modulus [Pa]=100\n  end\nend\n"
+                     "subsection Sweep all\n  set Changes = step, soft\nend\n");
+  const auto start = std::chrono::steady_clock::now();
+  ASSERT_EQ(kerf({"study", "study.prm", "--output", "whole"}).exit_code, 0) << read_text(folder / "stderr");
+  const auto took = std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::steady_clock::now() - start);
+  const Words resumed = {"study", "study.prm", "--output", "out", "--resume"};
+  std::mt19937 random(6);
+  int n_ended = 0;
+  for (int i = 0; i < 10; ++i) {
+    const int signal = i % 2 == 0 ? SIGTERM : SIGKILL;
+    const int status = disturbed(resumed, signal, 20 + static_cast<int>(random() % (took.count() / 3 + 1)));
+    n_ended += WIFSIGNALED(status) || WEXITSTATUS(status) == 128 + signal ? 1 : 0;
+    if (std::filesystem::exists(folder / "out/stability.h5")) {
+      EXPECT_NO_THROW(output::read_stability_file(folder / "out/stability.h5"));
+    }
+  }
+  EXPECT_GT(n_ended, 0);
+  ASSERT_EQ(kerf(resumed).exit_code, 0) << read_text(folder / "stderr");
+  const auto a = output::read_stability_file(folder / "whole/stability.h5"),
+             b = output::read_stability_file(folder / "out/stability.h5");
+  EXPECT_EQ(b.outcome, output::Outcome::completed);
+  ASSERT_EQ(a.rows.size(), 8u);
+  ASSERT_EQ(b.rows.size(), 8u);
+  for (std::size_t i = 0; i < 8; ++i) {
+    EXPECT_EQ(a.rows[i].changes, b.rows[i].changes);
+    EXPECT_EQ(a.rows[i].outcome, b.rows[i].outcome);
+    EXPECT_EQ(a.rows[i].last_energy, b.rows[i].last_energy);
+    EXPECT_EQ(a.rows[i].momentum, b.rows[i].momentum);
+    EXPECT_EQ(a.rows[i].n_iterations, b.rows[i].n_iterations);
   }
 }
 

@@ -51,6 +51,13 @@ TEST_F(StudyProgram, TakesChangesOfTheStudyItself) {
   const Result result = study(study_text(), {"--set", "Study/Title=Something else", "--threads", "1"});
   EXPECT_EQ(result.exit_code, 0) << result.err;
   EXPECT_NE(result.out.find("\nSomething else\n"), std::string::npos) << result.out;
+  const auto table = output::read_study_file(folder / "out/study.h5"); // which holds the study with its changes
+  std::filesystem::create_directory(folder / "elsewhere");
+  write("elsewhere/stored.prm", table.text);
+  ASSERT_EQ(kerf({"study", "elsewhere/stored.prm", "--output", "again"}).exit_code, 0) << read_text(folder / "stderr");
+  const auto again = output::read_study_file(folder / "again/study.h5");
+  EXPECT_EQ(again.title, "Something else");
+  EXPECT_EQ(again.rows[1].value, table.rows[1].value);
 }
 
 TEST_F(StudyProgram, RefusesBadStudiesBeforeAnythingIsWritten) {

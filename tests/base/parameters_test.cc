@@ -96,13 +96,44 @@ TEST_F(ParametersTest, ValuesAreAssigned) {
 }
 
 TEST_F(ParametersTest, BadNumbersBreakTheirRule) {
-  for (const std::string value :
-       {"0", "-1", "", "abc", "1 2", "1,5", "5e4Pa", "nan", "inf", "1e999", "0x10", "+-1", "--1"})
+  for (const std::string value : {"0", "-1", "-1e300"})
     EXPECT_EQ(assign("Stiffness [Pa]", value), "must be > 0") << value;
-  for (const std::string value : {"0", "101", "1.5", "1e1", "", "99999999999", "one"})
+  for (const std::string value : {"0", "101", "-7"})
     EXPECT_EQ(assign("Steps", value), "must be a whole number >= 1 and <= 100") << value;
   EXPECT_EQ(fields.stiffness, 5e4);
   EXPECT_EQ(fields.n_steps, 10);
+}
+
+TEST_F(ParametersTest, WhatIsNoNumberIsToldAsSuch) {
+  const auto expect = [&](const std::string& name, const std::string& value, const std::string& fault) {
+    EXPECT_EQ(assign(name, value), fault + "; " + key(name).rule) << value;
+    EXPECT_EQ(key(name).check(value), fault + "; " + key(name).rule) << value;
+  };
+  for (const std::string value : {"abc", "1e", "1 2", "5e4Pa", "0x10", "+-1", "--1", "1,2,3"})
+    expect("Stiffness [Pa]", value, "is no number");
+  expect("Stiffness [Pa]", "1,5", "is no number, as decimals begin with a point");
+  expect("Stiffness [Pa]", " ", "is empty");
+  for (const std::string value : {"nan", "inf", "-inf"})
+    expect("Stiffness [Pa]", value, "is no finite number");
+  for (const std::string value : {"1e999", "1e-999"})
+    expect("Stiffness [Pa]", value, "is beyond what numbers can be");
+  for (const std::string value : {"3.5", "1e1", "one", "1,5"})
+    expect("Steps", value, "is not written as a whole number");
+  expect("Steps", "", "is empty");
+  expect("Steps", "99999999999", "is beyond what numbers can be");
+  EXPECT_EQ(fields.stiffness, 5e4);
+  EXPECT_EQ(fields.n_steps, 10);
+}
+
+TEST_F(ParametersTest, ListsSayWhichPartIsNoNumber) {
+  const std::string vector = "must be three numbers x, y, z, all finite", one = "one of them ";
+  for (const auto& [value, fault] : std::vector<std::pair<std::string, std::string>>{
+         {"", "is empty"}, {"1 2 3", "'1 2 3' is no number"}, {"1, 2, nan", "'nan' is no finite number"},
+         {"1, 2, ", one + "is empty"}, {"1, " + std::string(41, 'a'), one + "is no number"}})
+    EXPECT_EQ(assign("Force [N]", value), fault + "; " + vector) << value;
+  EXPECT_EQ(assign("Path [m]", "1, 2, 3;"), one + "is empty; must be points x, y, z; x, y, z, all finite");
+  EXPECT_EQ(assign("Ratios [1]", "0.5, half"),
+            "'half' is no number; must be numbers separated by commas, each > 0 and <= 1");
 }
 
 TEST_F(ParametersTest, BadWordsAndListsBreakTheirRule) {
@@ -110,11 +141,11 @@ TEST_F(ParametersTest, BadWordsAndListsBreakTheirRule) {
     EXPECT_EQ(assign("Gravity", value), "must be yes or no") << value;
   for (const std::string value : {"", "octant", "full", "octants, full cube"})
     EXPECT_EQ(assign("Volume", value), "must be one of octants, full cube") << value;
-  for (const std::string value : {"", "1, 2", "1, 2, 3, 4", "1 2 3", "1, 2, nan", "1, 2, "})
+  for (const std::string value : {"1, 2", "1, 2, 3, 4"})
     EXPECT_EQ(assign("Force [N]", value), "must be three numbers x, y, z, all finite") << value;
-  for (const std::string value : {"1, 2", "1, 2, 3;", "1, 2, 3; 4, 5", ";"})
+  for (const std::string value : {"1, 2", "1, 2, 3; 4, 5"})
     EXPECT_EQ(assign("Path [m]", value), "must be points x, y, z; x, y, z, all finite") << value;
-  for (const std::string value : {"0", "0.5, 1.1", "0.5;0.6", ","})
+  for (const std::string value : {"0", "0.5, 1.1"})
     EXPECT_EQ(assign("Ratios [1]", value), "must be numbers separated by commas, each > 0 and <= 1") << value;
   EXPECT_EQ(fields.force, Vec3(0, 0, -9.81));
   EXPECT_EQ(fields.path.size(), 2u);

@@ -8,6 +8,8 @@
 
 #include <gtest/gtest.h>
 
+#include <sys/resource.h>
+#include <csignal>
 #include <fstream>
 
 namespace kerf::output {
@@ -66,6 +68,23 @@ TEST(ResultsFolder, AsksBeforeItReplaces) {
   EXPECT_FALSE(fs::exists(out / "run.h5"));
   EXPECT_TRUE(fs::exists(out / "frames/montage.png"));
   EXPECT_TRUE(fs::exists(out / "notes.txt"));
+}
+
+/// Else its own files would be strangers to the next run.
+TEST(ResultsFolder, IsNotTakenWhereItsListCannotBeWritten) {
+  const TemporaryFolder folder;
+  const auto out = folder / "out";
+  std::signal(SIGXFSZ, SIG_IGN);
+  rlimit before{};
+  getrlimit(RLIMIT_FSIZE, &before);
+  const rlimit small{20, before.rlim_max}; // bytes, as of a disk that is full
+  setrlimit(RLIMIT_FSIZE, &small);
+  const std::string error = error_of(out, Earlier::refuse, names);
+  setrlimit(RLIMIT_FSIZE, &before);
+  EXPECT_NE(error.find(".kerf: cannot be written: "), std::string::npos) << error;
+  EXPECT_NE(error.find("Free disk space"), std::string::npos) << error;
+  EXPECT_EQ(error_of(out, Earlier::resume, names), "");
+  EXPECT_EQ(error_of(out, Earlier::refuse, names), "");
 }
 
 TEST(ResultsFolder, LeavesWhatItDoesNotKnow) {

@@ -188,7 +188,10 @@ TEST(ParameterFile, BadValues) {
   expect_complaint(complaint_of("subsection Time\n  set Step [s] = 0\nend\n"), 2, "Time/Step [s]", "0", "must be > 0",
                    "Time between two states. (default 0.01)");
   expect_complaint(complaint_of("subsection Time\n  set Steps = 1.5\nend\n"), 2, "Time/Steps", "1.5",
-                   "must be a whole number >= 1 and <= 1e6", "How many steps.");
+                   "is not written as a whole number; must be a whole number >= 1 and <= 1e6", "How many steps.");
+  for (const std::string value : {"abc", "1e"})
+    expect_complaint(complaint_of("subsection Time\n  set Step [s] = " + value + "\nend\n"), 2, "Time/Step [s]", value,
+                     "is no number; must be > 0", "Time between two states. (default 0.01)");
   expect_complaint(complaint_of("subsection Time\n  set Method = Newmarc\nend\n"), 2, "Time/Method", "Newmarc",
                    "must be one of implicit Euler, Newmark", "Did you mean 'Newmark'?");
   expect_complaint(complaint_of("subsection Time\n  set Gravity [m/s^2] = 0, \\\n 1\nend\n"), 2, "Time/Gravity [m/s^2]",
@@ -384,6 +387,10 @@ TEST(Nearest, FindsWhatWasMeant) {
   EXPECT_EQ(edit_distance("kitten", "sitting"), 3);
   EXPECT_EQ(edit_distance("", "abc"), 3);
   EXPECT_EQ(edit_distance("ABC", "abc"), 0);
+  EXPECT_EQ(edit_distance("Mehs", "Mesh"), 1) << "neighbours exchanged";
+  EXPECT_EQ(edit_distance("ca", "abc"), 3) << "nothing between those that were exchanged";
+  EXPECT_EQ(edit_distance("badc", "abcd"), 2);
+  EXPECT_EQ(nearest("Mehs", {"Mass", "Mesh"}), "Mesh");
   EXPECT_EQ(nearest("Densty", {"Damping", "Density [kg/m^3]"}), "Density [kg/m^3]");
   EXPECT_EQ(nearest("Edge [mm]", {"Edge [1]", "Edge [m]"}), "Edge [m]");
   EXPECT_EQ(nearest("xy", {"ab"}), std::nullopt);
