@@ -163,6 +163,8 @@ TEST(Outline, FitsBrainsAndFruitToTheLiverTheBrainAndTheApple) {
          {"fruit/lemon", "apple", {-0.0376, 0.041, -0.0418}, {0.0002, 0, 0}, {0, 0, 0.0002}},
          {"fruit/orange_whole", "apple", {-0.02632, 0.014, -0.02926}, {0.00014, 0, 0}, {0, 0, 0.00014}}}) {
     const Chart chart = fitted(exemplar_of(c), body_of(c));
+    std::printf("%s in %s: %.2f on average, %.2f at most\n", c.picture.c_str(), c.body.c_str(), chart.fit_error.mean,
+                chart.fit_error.largest);
     EXPECT_LT(chart.fit_error.mean, 0.5) << c.picture << " " << c.body << " " << c.origin.transpose();
     EXPECT_LT(chart.fit_error.largest, 4) << c.picture << " " << c.body << " " << c.origin.transpose();
   }
