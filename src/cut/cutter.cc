@@ -55,7 +55,8 @@ CutChange Cutter::take(Solid& solid, const std::span<const Stroke> strokes, cons
   SweepCuts cuts = queue(solid, strokes, x);
   if (release_ == Release::queued)
     cuts.cuts = pending_.release(solid);
-  x_before_ = x; // not after the cut: where corners jump then, the blade meets them on their way
+  if (strokes.empty() || boxes_->moves())
+    x_before_ = x; // not after the cut: where corners jump then, the blade meets them on their way
   return cut(solid, cuts);
 }
 

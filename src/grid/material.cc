@@ -134,7 +134,9 @@ class LocalSkeleton {
 
   Vec3 centre() const {
     const Vec3* const p = solid_.cuts.inner_point(cell_);
-    return p ? local(*p) : mean_cut(blades_);
+    if (p)
+      return local(*p);
+    return blades_ != 0 ? mean_cut(blades_) : local(cell_point(solid_, cell_));
   }
 
  private:
