@@ -119,6 +119,14 @@ Grey resized(const Grey& grey, const int width, const int height) {
   return result;
 }
 
+Grey padded(const Grey& grey, const int n) {
+  Grey result(grey.width + 2 * n, grey.height + 2 * n, 0);
+  for (int r = 0; r < grey.height; ++r)
+    for (int c = 0; c < grey.width; ++c)
+      result(c + n, r + n) = grey(c, r);
+  return result;
+}
+
 Grey edge_strength(const Colours& colours) {
   Grey edges(colours.width, colours.height, 0);
   for (int r = 0; r < colours.height; ++r)

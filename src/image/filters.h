@@ -25,6 +25,9 @@ std::vector<Grey> pyramid(const Grey& grey, int n_levels);
 /// The value between pixels for another size: pixel (c, r) of the result lies at the same part of the width and height.
 Grey resized(const Grey& grey, int width, int height);
 
+/// With n pixels of nothing around it.
+Grey padded(const Grey& grey, int n);
+
 /// How fast the colour changes [1/pixel]: the largest singular value of the gradients of the three channels (Di Zenzo,
 /// A note on the gradient of a multi-image, 1986), by central differences.
 Grey edge_strength(const Colours& colours);

@@ -148,7 +148,7 @@ void say_fits(const InteriorInput& input, const texture::Interior& inside, std::
     std::string said = line("exemplar ", input.exemplars[i].name, ": shows ", std::lround(100 * chart.shown_share),
                             " % of the body's section");
     if (input.exemplars[i].fit != texture::Fit::none)
-      said += line(", drawn to it to ", to_text(std::round(100 * chart.fit_error) / 100), " pixels on average");
+      said += line(", drawn to it to ", to_text(std::round(100 * chart.fit_error.mean) / 100), " pixels on average");
     else if (chart.shown_share < 0.995)
       said += "; what lacks goes on from its border, as it is not fitted (key Fit)";
     composition.push_back(said);

@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "image/filters.h"
 #include "image/spline.h"
+#include "texture/outline.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,7 +15,6 @@ namespace {
 
 using image::Grey;
 
-constexpr int n_directions = 256;
 constexpr double margin = 3; ///< pixels around the section
 
 /// The box of the body's section, in pixels of the picture.
@@ -47,39 +47,6 @@ void check_size(const PixelBox& box) {
     throw ParameterError(Complaint{.path = "Column [m]",
                                    .rule = "pixels are so small that the body's section spans more than 8192 of them",
                                    .remedy = "Check the unit, or take a coarser picture"});
-}
-
-/// The mean of a mask's pixels.
-Vec2 middle(const Grey& mask) {
-  Vec2 sum = Vec2::Zero();
-  double n = 0;
-  for (int r = 0; r < mask.height; ++r)
-    for (int c = 0; c < mask.width; ++c)
-      if (mask(c, r) > 0.5f) {
-        sum += Vec2(c, r);
-        ++n;
-      }
-  return sum / std::max(n, 1.0);
-}
-
-/// Boundary points of the section and of the mask that lie in the same direction from their middles [pixels].
-std::vector<warp::Pin> boundary_pairs(const Grey& inside, const Vec2& offset, const Grey& mask) {
-  // A blur takes the steps of the pixels away.
-  const Grey section = image::blurred(largest_component(inside), 1), shown = image::blurred(largest_component(mask), 1);
-  const Vec2 from = middle(section), to = middle(shown);
-  std::vector<warp::Pin> pairs = {{from + offset, to}};
-  for (int k = 0; k < n_directions; ++k) {
-    const Vec2 along = direction(k, n_directions);
-    pairs.push_back({from + offset + reach(section, from, along) * along, to + reach(shown, to, along) * along});
-  }
-  return pairs;
-}
-
-double mean_error(const warp::LatticeMap& map, const std::vector<warp::Pin>& pairs) {
-  double sum = 0;
-  for (const warp::Pin& pair : pairs)
-    sum += (map(pair.from) - pair.to).norm();
-  return sum / static_cast<double>(pairs.size());
 }
 
 /// Fills colours and what is shown: chart pixel (c, r) shows the picture at to_picture(c, r).
@@ -157,7 +124,7 @@ Chart make_chart(const Exemplar& exemplar, const geometry::TriangleMesh& body,
               inside_of(shifted, static_cast<int>(size[0]) + 1, static_cast<int>(size[1]) + 1),
               {},
               1,
-              0,
+              {},
               axes_of(body)};
   chart.outline = slice(body, frame_of(chart.plane));
   used.reset();
@@ -170,12 +137,11 @@ Chart make_chart(const Exemplar& exemplar, const geometry::TriangleMesh& body,
       exemplar.picture, mask, [&](const Vec2& p) { return Vec2(p + box.lower); }, chart);
     return chart;
   }
-  const auto pairs = boundary_pairs(chart.inside, box.lower, mask);
+  const Outlines outlines = outlines_of(chart.inside, mask);
   const auto inside = exemplar.fit == Fit::rigid ? warp::Regularity::rigid : warp::Regularity::jacobian;
-  used = known ? *known : warp::fit(pairs, box.lower, box.upper, {.inside = inside});
-  chart.fit_error = mean_error(*used, pairs);
-  paint(
-    exemplar.picture, mask, [&](const Vec2& p) { return (*used)(p + box.lower); }, chart);
+  used = known ? *known : fitted(outlines, {.inside = inside});
+  chart.fit_error = gap_after(*used, outlines);
+  paint(exemplar.picture, mask, *used, chart);
   return chart;
 }
 

@@ -52,7 +52,7 @@ struct Chart {
   image::Grey inside;                    ///< 1 where the body's own section is
   std::vector<Segment> outline;          ///< of the body's section, local coordinates [m]
   double shown_share = 1;                ///< of the body's own section, what the picture shows
-  double fit_error = 0;                  ///< mean distance of the fitted boundary [pixels]; 0 without a fit
+  warp::Gap fit_error;                   ///< between the fitted outlines [pixels of the picture]; 0 without a fit
   Mat3 body_axes = Mat3::Identity();     ///< columns: axes that turn along with the body
 };
 

@@ -59,6 +59,7 @@ Mat2 nearest_rotation(const Mat2& m) {
 Energy::Energy(const LatticeMap& rest, const FeatureLevel* features, std::vector<Pin> pins,
                const EnergyOptions& options)
   : rest_(rest), features_(features), pins_(std::move(pins)), options_(options) {
+  cells_ = stiffness_of_cells();
   for (const Pin& pin : pins_)
     pin_feet_.push_back(foot(pin.from));
   if (!features_)
@@ -78,6 +79,23 @@ Energy::Foot Energy::foot(const Vec2& p) const {
   const int first = r * rest_.n_columns + c;
   return {{first, first + 1, first + rest_.n_columns, first + rest_.n_columns + 1},
           {(1 - u) * (1 - v), u * (1 - v), (1 - u) * v, u * v}};
+}
+
+std::vector<double> Energy::stiffness_of_cells() const {
+  const int nx = rest_.n_columns - 1, ny = rest_.n_rows - 1;
+  std::vector<double> weights(nx * ny, options_.section ? options_.outside : 1.0);
+  if (!options_.section)
+    return weights;
+  const image::Grey& section = *options_.section;
+  for (int r = 0; r < section.height; ++r)
+    for (int c = 0; c < section.width; ++c)
+      if (section(c, r) > 0.5f) {
+        // A pixel on a line between cells counts for both.
+        for (const int row : {r * ny / (section.height - 1), std::max(0, r * ny - 1) / (section.height - 1)})
+          for (const int column : {c * nx / (section.width - 1), std::max(0, c * nx - 1) / (section.width - 1)})
+            weights[std::min(ny - 1, row) * nx + std::min(nx - 1, column)] = 1;
+      }
+  return weights;
 }
 
 double Energy::operator()(const VectorXd& x, VectorXd& gradient) const {
@@ -119,13 +137,13 @@ double Energy::add_features(const VectorXd& x, VectorXd& gradient) const {
 }
 
 /// One triangle's cost; `derivative` is by its gradient j.
-double Energy::triangle(const Mat2& j, const double share, Mat2& derivative) const {
+double Energy::triangle(const Mat2& j, const double share, const double stiffness, Mat2& derivative) const {
   const double d = j.determinant();
   if (!(d > 0))
     return std::numeric_limits<double>::infinity();
   const Mat2 away = j - (options_.regularity == Regularity::rigid ? nearest_rotation(j) : Mat2(Mat2::Identity()));
-  double value = share * options_.stiffness * away.squaredNorm();
-  derivative = 2 * share * options_.stiffness * away;
+  double value = share * stiffness * away.squaredNorm();
+  derivative = 2 * share * stiffness * away;
   if (d < 0.5) {
     const double weight = share * options_.barrier, gap = d - 0.5, logarithm = std::log(2 * d);
     value -= weight * gap * gap * logarithm;
@@ -143,13 +161,14 @@ double Energy::add_triangles(const VectorXd& x, VectorXd& gradient) const {
   for (int r = 0; r + 1 < rest_.n_rows; ++r)
     for (int c = 0; c + 1 < rest_.n_columns; ++c) {
       const int first = r * rest_.n_columns + c;
+      const double stiffness = options_.stiffness * cells_[r * (rest_.n_columns - 1) + c];
       for (const int dr : {0, 1})
         for (const int dc : {0, 1}) {
           const int left = first + dr * rest_.n_columns, top = first + dc;
           Mat2 j, derivative;
           j.col(0) = (node(x, left + 1) - node(x, left)) / h[0];
           j.col(1) = (node(x, top + rest_.n_columns) - node(x, top)) / h[1];
-          const double value = triangle(global_inverse_ * j, share, derivative);
+          const double value = triangle(global_inverse_ * j, share, stiffness, derivative);
           if (!std::isfinite(value))
             return value;
           sum += value;

@@ -45,6 +45,10 @@ struct EnergyOptions {
   double barrier = 0.1;
   double pin_weight = 10;
   double pin_unit = 1; ///< in units of the target
+  /// A mask whose pixels span the rectangle: cells without any of it are softer by the factor `outside`, though flipped
+  /// as little as others. Null: all are alike. Must live while the energy is built.
+  const image::Grey* section = nullptr;
+  double outside = 0.02;
 };
 
 /// A lattice of unknowns: x, y of each node, row by row.
@@ -64,7 +68,7 @@ class Energy {
   double add_features(const Eigen::VectorXd& x, Eigen::VectorXd& gradient) const;
   double add_triangles(const Eigen::VectorXd& x, Eigen::VectorXd& gradient) const;
   double add_pins(const Eigen::VectorXd& x, Eigen::VectorXd& gradient) const;
-  double triangle(const Mat2& j, double share, Mat2& derivative) const;
+  double triangle(const Mat2& j, double share, double stiffness, Mat2& derivative) const;
   void hold_border(Eigen::VectorXd& gradient) const;
 
   /// The four nodes around a point and their shares.
@@ -73,12 +77,14 @@ class Energy {
     std::array<double, 4> shares;
   };
   Foot foot(const Vec2& p) const;
+  std::vector<double> stiffness_of_cells() const;
 
   LatticeMap rest_;
   const FeatureLevel* features_;
   std::vector<Pin> pins_;
   EnergyOptions options_;
   Mat2 global_inverse_ = Mat2::Identity();
+  std::vector<double> cells_; ///< how stiff, over the options' stiffness [1]
   std::vector<Foot> pixels_, pin_feet_;
 };
 

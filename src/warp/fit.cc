@@ -2,39 +2,58 @@
 
 #include "warp/minimise.h"
 
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
 
 namespace kerf::warp {
 
-Affine best_similarity(const std::vector<Pin>& pairs) {
-  Vec2 from = Vec2::Zero(), to = Vec2::Zero();
-  for (const Pin& pair : pairs) {
-    from += pair.from / static_cast<double>(pairs.size());
-    to += pair.to / static_cast<double>(pairs.size());
-  }
-  Mat2 covariance = Mat2::Zero();
-  double spread = 0;
-  for (const Pin& pair : pairs) {
-    covariance += (pair.to - to) * (pair.from - from).transpose();
-    spread += (pair.from - from).squaredNorm();
-  }
-  const Mat2 rotation = nearest_rotation(covariance);
-  const double scale = (rotation.transpose() * covariance).trace() / spread;
-  const Mat2 linear = scale * rotation;
-  return {linear, to - linear * from};
+namespace {
+
+template <class Map>
+Curve images(const Curve& curve, const Map& map) {
+  Curve result;
+  for (const Vec2& p : curve)
+    result.push_back(map(p));
+  return result;
 }
 
-LatticeMap fit(const std::vector<Pin>& pairs, const Vec2& lower, const Vec2& upper, const FitOptions& options) {
-  const Affine start = best_similarity(pairs);
+/// The same curve from the point farthest from the middle of what it bounds: the same however a picture is stored.
+Curve from_farthest(Curve curve) {
+  const Vec2 middle = moments_of(curve).mean;
+  const auto farther = [&](const Vec2& a, const Vec2& b) { return (a - middle).norm() < (b - middle).norm(); };
+  std::rotate(curve.begin(), std::max_element(curve.begin(), curve.end(), farther), curve.end());
+  return curve;
+}
+
+/// What goes where, asked anew as a map comes closer.
+using PinsOf = std::function<std::vector<Pin>(const LatticeMap&)>;
+
+EnergyOptions energy_options(const FitOptions& options, const Affine& start, const Vec2& size) {
+  EnergyOptions energy;
+  energy.regularity = options.inside;
+  energy.border = Border::free;
+  energy.barrier = options.barrier;
+  energy.pin_weight = 1;
+  energy.pin_unit = 0.01 * (start.linear * size).norm();
+  return energy;
+}
+
+/// `map` becomes that of least energy.
+void relax(LatticeMap& map, const PinsOf& pins, const EnergyOptions& options, const Mat2& global) {
+  Energy energy(map, nullptr, pins(map), options);
+  energy.take_out(global);
+  Eigen::VectorXd x = to_unknowns(map);
+  minimise(std::cref(energy), x, {.n_iterations = 300, .relative_fall = 1e-7});
+  from_unknowns(x, map);
+}
+
+LatticeMap coarse_to_fine(const Affine& start, const PinsOf& pins, const Vec2& lower, const Vec2& upper,
+                          const FitOptions& options, EnergyOptions energy) {
   const Vec2 size = upper - lower;
-  EnergyOptions energy_options;
-  energy_options.regularity = options.inside;
-  energy_options.border = Border::free;
-  energy_options.barrier = options.barrier;
-  energy_options.pin_weight = 1;
-  energy_options.pin_unit = 0.01 * (start.linear * size).norm();
   LatticeMap map = lattice_of(start, lower, upper, 2, 2);
   for (int n = std::max(2, options.n_cells / 8); n <= options.n_cells; n *= 2) {
     const auto along = [&](const double length) {
@@ -44,12 +63,53 @@ LatticeMap fit(const std::vector<Pin>& pairs, const Vec2& lower, const Vec2& upp
     if (smallest_determinant(finer, start.linear) > 0)
       map = std::move(finer);
     // A coarse lattice cannot follow the boundary and must not be crushed by trying to.
-    energy_options.stiffness = options.stiffness * std::pow(options.n_cells / n, 2);
-    Energy energy(map, nullptr, pairs, energy_options);
-    energy.take_out(start.linear);
-    Eigen::VectorXd x = to_unknowns(map);
-    minimise(std::cref(energy), x, {.n_iterations = 300, .relative_fall = 1e-7});
-    from_unknowns(x, map);
+    energy.stiffness = options.stiffness * std::pow(options.n_cells / n, 2);
+    relax(map, pins, energy, start.linear);
+  }
+  return map;
+}
+
+} // namespace
+
+Affine affine_between(const Curve& from, const Curve& to) {
+  const Moments a = moments_of(from), b = moments_of(to);
+  const Eigen::SelfAdjointEigenSolver<Mat2> spread(a.spread);
+  const Mat2 root = spread.operatorSqrt(), back = spread.operatorInverseSqrt();
+  const Mat2 linear = back * Eigen::SelfAdjointEigenSolver<Mat2>(root * b.spread * root).operatorSqrt() * back;
+  return {linear, b.mean - linear * a.mean};
+}
+
+LatticeMap fit(const std::vector<Pin>& pairs, const Affine& start, const Vec2& lower, const Vec2& upper,
+               const FitOptions& options) {
+  const auto pins = [&](const LatticeMap&) { return pairs; };
+  return coarse_to_fine(start, pins, lower, upper, options, energy_options(options, start, upper - lower));
+}
+
+LatticeMap fit(const Curve& from, const Curve& to, const image::Grey& section, const Vec2& lower, const Vec2& upper,
+               const FitOptions& options) {
+  constexpr int n_points = 256, denser = 4;
+  constexpr double softer = 0.3, hardest = 10; // what is no star has more to bend
+  constexpr int n_rounds = 3;
+  const Affine start = affine_between(from, to);
+  // At equal steps where they lie beside each other, so that an affine map changes no pace.
+  const Curve points = images(equally_spaced(from_farthest(images(from, start)), n_points), start.inverse());
+  const Curve targets = equally_spaced(from_farthest(to), denser * n_points);
+  const auto pins = [&](const LatticeMap& map) {
+    std::vector<Pin> result;
+    const std::vector<int> found = partners(images(points, map), targets);
+    for (int i = 0; i < n_points; ++i)
+      result.push_back({points[i], targets[found[i]]});
+    return result;
+  };
+  FitOptions soft = options;
+  soft.stiffness *= softer;
+  EnergyOptions energy = energy_options(soft, start, upper - lower);
+  energy.section = &section;
+  LatticeMap map = coarse_to_fine(start, pins, lower, upper, soft, energy);
+  energy.stiffness = soft.stiffness;
+  for (int round = 1; round <= n_rounds; ++round) {
+    energy.pin_weight = std::pow(hardest, static_cast<double>(round) / n_rounds);
+    relax(map, pins, energy, start.linear);
   }
   return map;
 }

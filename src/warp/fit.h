@@ -1,8 +1,9 @@
 #pragma once
 
-/// A map that takes given points to given points and relaxes between them, without a fold: how a photographed section
-/// is drawn to the outline of another (thesis §3.4.2.3).
+/// Maps that take given points to given points, or a closed curve to another, and relax elsewhere, without a fold: how a
+/// photographed section is drawn to the outline of another (thesis §3.4.2.3).
 
+#include "warp/curve.h"
 #include "warp/energy.h"
 
 namespace kerf::warp {
@@ -17,11 +18,18 @@ struct FitOptions {
   double barrier = 3;
 };
 
-/// The similarity, without reflection, that takes `from` to `to` best in the least squares sense. At least two
-/// different points.
-Affine best_similarity(const std::vector<Pin>& pairs);
+/// The affine map that neither turns nor mirrors (its linear part is symmetric and positive) and takes the moments of
+/// what one curve bounds to those of the other.
+Affine affine_between(const Curve& from, const Curve& to);
 
-/// The map of a rectangle, from the best similarity coarse to fine. No triangle of its lattice is flipped.
-LatticeMap fit(const std::vector<Pin>& pairs, const Vec2& lower, const Vec2& upper, const FitOptions& options);
+/// The map of a rectangle, coarse to fine from an affine map, which costs nothing. No triangle of its lattice is flipped.
+LatticeMap fit(const std::vector<Pin>& pairs, const Affine& start, const Vec2& lower, const Vec2& upper,
+               const FitOptions& options);
+
+/// The same for two curves, from the affine map between them. As the map comes closer, points look for their partners
+/// anew, so that they may slide along the curve. Both turn in the same sense and lie much as they will. `section` spans
+/// the rectangle by its pixels and says what the first curve bounds: outside of it the map is soft, and bays may close.
+LatticeMap fit(const Curve& from, const Curve& to, const image::Grey& section, const Vec2& lower, const Vec2& upper,
+               const FitOptions& options);
 
 } // namespace kerf::warp

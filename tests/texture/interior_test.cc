@@ -253,7 +253,7 @@ TEST(Fit, DrawsAPartialPictureToTheSection) {
     exemplars[0].fit = fit;
     const Interior inside(exemplars, ball(3), {});
     EXPECT_GT(inside.smallest_determinant(), 0);
-    EXPECT_LT(inside.charts()[0].fit_error, 0.5); // pixels
+    EXPECT_LT(inside.charts()[0].fit_error.mean, 0.5); // pixels
   }
 }
 

@@ -5,10 +5,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace kerf::warp {
 namespace {
+
+using image::Grey;
 
 /// A few soft blobs on grey, where `where` says each pixel's point is.
 template <class Where>
@@ -121,7 +124,14 @@ Vec2 outline(const double angle, const double wobble) {
   return (1 + wobble * std::cos(5 * angle)) * Vec2(std::cos(angle), std::sin(angle));
 }
 
-TEST(Fit, TakesABoundaryToABoundaryWithoutAFold) {
+Curve outline_of(const int n, const double wobble, const Vec2& middle, const double radius) {
+  Curve curve;
+  for (int i = 0; i < n; ++i)
+    curve.push_back(middle + radius * outline(2 * M_PI * i / n, wobble));
+  return curve;
+}
+
+TEST(Fit, TakesPointsOfABoundaryToABoundaryWithoutAFold) {
   for (const auto inside : {Regularity::rigid, Regularity::jacobian})
     for (const double wobble : {0.0, 0.15, 0.25}) {
       std::vector<Pin> pairs;
@@ -129,13 +139,70 @@ TEST(Fit, TakesABoundaryToABoundaryWithoutAFold) {
         const double angle = 2 * M_PI * i / 256;
         pairs.push_back({outline(angle, 0), Vec2(300, 200) + 100 * outline(angle, wobble)});
       }
-      const LatticeMap map = fit(pairs, Vec2(-1.1, -1.1), Vec2(1.1, 1.1), {.inside = inside});
+      const Affine start{100 * Mat2::Identity(), Vec2(300, 200)};
+      const LatticeMap map = fit(pairs, start, Vec2(-1.1, -1.1), Vec2(1.1, 1.1), {.inside = inside});
       EXPECT_GT(smallest_determinant(map), 0);
       double mean = 0;
       for (const Pin& pair : pairs)
         mean += (map(pair.from) - pair.to).norm() / 256;
       EXPECT_LT(mean, 1) << wobble; // of a radius of 100
     }
+}
+
+TEST(Fit, FindsTheAffineMapBetweenCurves) {
+  Mat2 linear;
+  linear << 1.3, 0.2, 0.2, 0.8;
+  const Curve from = outline_of(700, 0.25, Vec2(3, -8), 90);
+  Curve to;
+  for (const Vec2& p : from)
+    to.push_back(Vec2(5, 7) + linear * p);
+  std::rotate(to.begin(), to.begin() + 123, to.end());
+  const Affine found = affine_between(from, to);
+  EXPECT_LT((found.linear - linear).norm(), 1e-9);
+  EXPECT_LT((found.shift - Vec2(5, 7)).norm(), 1e-7);
+}
+
+TEST(Fit, TakesACurveToACurveWithoutAFold) {
+  const Grey section = [] {
+    Grey mask(111, 111, 0);
+    for (int r = 0; r < 111; ++r)
+      for (int c = 0; c < 111; ++c)
+        mask(c, r) = Vec2(c - 55, r - 55).norm() < 50 ? 1.0f : 0.0f;
+    return mask;
+  }();
+  for (const auto inside : {Regularity::rigid, Regularity::jacobian})
+    for (const double wobble : {0.0, 0.15, 0.25}) {
+      const Curve from = outline_of(600, 0, Vec2::Zero(), 1), to = outline_of(700, wobble, Vec2(300, 200), 100);
+      const LatticeMap map = fit(from, to, section, Vec2(-1.1, -1.1), Vec2(1.1, 1.1), {.inside = inside});
+      EXPECT_GT(smallest_determinant(map), 0);
+      Curve there;
+      for (const Vec2& p : from)
+        there.push_back(map(p));
+      EXPECT_LT(gap(there, to).mean, 0.5) << wobble; // of a radius of 100
+      EXPECT_LT(gap(to, there).largest, 2) << wobble;
+    }
+}
+
+TEST(Partners, AreThePointsThemselvesWhereverACurveBegins) {
+  const Curve curve = equally_spaced(outline_of(900, 0.2, Vec2::Zero(), 100), 256);
+  Curve later = equally_spaced(curve, 1024);
+  std::rotate(later.begin(), later.begin() + 300, later.end());
+  const std::vector<int> found = partners(curve, later);
+  for (int i = 0; i < 256; ++i)
+    EXPECT_LT((later[found[i]] - curve[i]).norm(), 2) << i; // points of `later` are 0.8 apart
+}
+
+TEST(Partners, GoOnceAroundForwards) {
+  const Curve from = equally_spaced(outline_of(900, 0.3, Vec2(3, 5), 90), 256);
+  const Curve to = equally_spaced(outline_of(900, -0.2, Vec2::Zero(), 100), 1024);
+  const std::vector<int> found = partners(from, to);
+  int once = 0;
+  for (int i = 0; i < 256; ++i) {
+    const int step = (found[(i + 1) % 256] - found[i] + 1024) % 1024;
+    EXPECT_LE(step, 16);
+    once += step;
+  }
+  EXPECT_EQ(once, 1024);
 }
 
 } // namespace
