@@ -74,7 +74,7 @@ void print_cutting(const scene::World& world) {
   if (n_double + n_waiting > 0)
     std::printf("  %zu edges crossed twice by one cut and left whole, %zu cuts still waiting\n", n_double, n_waiting);
   if (n_left_whole > 0)
-    std::printf("  %zu edges left whole: behind them is a shaving thinner than a tenth of a cube, or no material\n", n_left_whole);
+    std::printf("  %zu edges left whole: behind them are shavings with less material than a cube, or none\n", n_left_whole);
   if (n_crumbs > 0)
     std::printf("  %zu crumbs, pieces that the grid cannot deform: they moved as rigid bodies\n", n_crumbs);
   if (n_passed > 0)

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <limits>
 #include <map>
 #include <optional>
 #include <set>
@@ -21,13 +20,14 @@ using grid::EdgeId;
 using grid::Items;
 using grid::SkinSegment;
 
-constexpr double no_volume = 1e-9;                     // of a cube
-constexpr double thin = 0.1;                           // of a cube's edge
-constexpr std::size_t most_nodes = 8, most_cells = 64; // of a shred
+constexpr double no_volume = 1e-9, little = 1;           // of a cube
+constexpr std::size_t most_nodes = 16, most_cells = 128; // of a shred
+
+using ItemsOfCells = std::map<CellId, Items>;
 
 /// Nodes and points of the skin that hang together, and with nothing else.
 struct Shred {
-  std::map<CellId, Items> items;
+  ItemsOfCells items;
   std::set<grid::NodeId> nodes;
 };
 
@@ -35,7 +35,7 @@ struct Shred {
 struct Bound {
   EdgeId edge; ///< invalid for a segment of the skin
   SkinSegment segment;
-  Vec3 point, normal; ///< [m], rest frame
+  Vec3 outward; ///< the cut's normal, away from the shred
   grid::CutLabel label;
   double distance; ///< from the segment's end in the shred [m]
 };
@@ -87,8 +87,17 @@ void for_each_sharing(const grid::Grid& grid, const CellId c, const int item, co
     f(grid.neighbour(c, 2 * axis + (item >> axis & 1)), item ^ 1 << axis);
 }
 
-/// All that hangs together with an item of a cell; nothing where that is more than a shred.
-std::optional<Shred> shred_at(const grid::Solid& solid, const CellId cell, const int item) {
+void add(ItemsOfCells& all, const ItemsOfCells& more) {
+  for (const auto& [cell, items] : more)
+    all[cell] |= items;
+}
+bool holds(const ItemsOfCells& all, const CellId cell, const Items items) {
+  const auto known = all.find(cell);
+  return known != all.end() && (known->second & items) != 0;
+}
+
+/// All that hangs together with an item of a cell; nothing where that is more than a shred, which joins `large`.
+std::optional<Shred> shred_at(const grid::Solid& solid, const CellId cell, const int item, ItemsOfCells& large) {
   Shred shred;
   std::vector<std::pair<CellId, int>> open = {{cell, item}};
   while (!open.empty()) {
@@ -104,8 +113,10 @@ std::optional<Shred> shred_at(const grid::Solid& solid, const CellId cell, const
     for (int v = 0; v < cube::n_vertices; ++v)
       if (found >> v & 1)
         shred.nodes.insert(nodes[v]);
-    if (shred.nodes.size() > most_nodes || shred.items.size() > most_cells)
+    if (shred.nodes.size() > most_nodes || shred.items.size() > most_cells || holds(large, c, found)) {
+      add(large, shred.items);
       return std::nullopt;
+    }
     for (Items left = found; left != 0; left &= left - 1)
       for_each_sharing(solid.grid, c, std::countr_zero(left),
                        [&](const CellId other, const int its) { open.emplace_back(other, its); });
@@ -115,16 +126,17 @@ std::optional<Shred> shred_at(const grid::Solid& solid, const CellId cell, const
 
 Bound bound_at(const grid::Solid& solid, const CellId c, const grid::CellCuts& cuts, const int segment,
                const int inner_end) {
-  const Vec3 point = grid::segment_point(solid, c, cuts.skeleton(), segment);
-  const double distance = (point - grid::item_point(solid, c, inner_end)).norm();
+  const Vec3 to_cut =
+    grid::segment_point(solid, c, cuts.skeleton(), segment) - grid::item_point(solid, c, inner_end);
+  const auto outward = [&](const Vec3& normal) -> Vec3 { return normal.dot(to_cut) < 0 ? Vec3(-normal) : normal; };
   if (segment < cube::n_lines) {
     const EdgeId edge = solid.grid.edges(c)[segment];
     const grid::EdgeCut& cut = *solid.cuts.find(edge);
-    return {edge, {}, point, cut.normal, cut.label, distance};
+    return {edge, {}, outward(cut.normal), cut.label, to_cut.norm()};
   }
   const SkinSegment of_skin = grid::skin_segment(solid.grid, c, segment);
   const grid::SkinCut& cut = *solid.cuts.find(of_skin);
-  return {EdgeId(), of_skin, point, cut.normal, cut.label, distance};
+  return {EdgeId(), of_skin, outward(cut.normal), cut.label, to_cut.norm()};
 }
 
 /// What the cells share comes once from each.
@@ -151,40 +163,22 @@ double volume(const grid::Solid& solid, const Shred& shred) {
   return sum;
 }
 
-Points nodes_or_points_of_skin(const grid::Solid& solid, const Shred& shred) {
-  Points points;
-  for (const grid::NodeId node : shred.nodes)
-    points.push_back(solid.grid.position(node));
-  if (points.empty())
-    for (const auto& [c, items] : shred.items)
-      for (Items left = items; left != 0; left &= left - 1)
-        points.push_back(grid::item_point(solid, c, std::countr_zero(left)));
-  return points;
-}
-
-/// Do all cuts, of one blade, lie within a thin slice along the normal of one of them, with the shred in between?
-bool is_shaving(const grid::Solid& solid, const Shred& shred, const std::vector<Bound>& bounds) {
-  if (std::ranges::any_of(bounds, [&](const Bound& bound) { return bound.label != bounds.front().label; }))
-    return false;
-  const Points points = nodes_or_points_of_skin(solid, shred);
-  return std::ranges::any_of(bounds, [&](const Bound& one) {
-    double lower = std::numeric_limits<double>::infinity(), upper = -lower;
-    for (const Bound& bound : bounds) {
-      lower = std::min(lower, one.normal.dot(bound.point));
-      upper = std::max(upper, one.normal.dot(bound.point));
-    }
-    return upper - lower < thin * solid.grid.h() && std::ranges::all_of(points, [&](const Vec3& p) {
-             const double height = one.normal.dot(p);
-             return lower < height && height < upper;
-           });
+/// Do cuts of one blade bound the shred, and on opposite sides?
+bool is_between_passes(const std::vector<Bound>& bounds) {
+  constexpr double opposite = -0.5;
+  return std::ranges::all_of(bounds, [&](const Bound& a) {
+           return a.label == bounds.front().label;
+         }) && std::ranges::any_of(bounds, [&](const Bound& a) {
+    return std::ranges::any_of(bounds, [&](const Bound& b) { return a.outward.dot(b.outward) < opposite; });
   });
 }
 
 /// Of a tip all new cuts of the blade that comes nearest: it may hang on both sides of another one.
 void leave(const grid::Solid& solid, const Shred& shred, const NewCuts& new_cuts, TakenBack& back) {
   const std::vector<Bound> bounds = bounds_of(solid, shred);
-  const bool is_tip = shred.nodes.empty() && volume(solid, shred) <= no_volume;
-  if (!is_tip && !is_shaving(solid, shred, bounds))
+  const double material = volume(solid, shred);
+  const bool is_tip = shred.nodes.empty() && material <= no_volume;
+  if (!is_tip && !(material < little && is_between_passes(bounds)))
     return;
   const Bound* nearest = nullptr;
   for (const Bound& bound : bounds)
@@ -208,24 +202,33 @@ std::size_t take_back(grid::Cuts& cuts, std::vector<Key>& from, std::vector<Key>
   return back.size();
 }
 
-} // namespace
-
-std::size_t leave_shreds(grid::Solid& solid, std::vector<EdgeId>& edges, std::vector<SkinSegment>& segments) {
-  const NewCuts new_cuts{edges, segments};
+/// Of all shreds at the new cuts.
+TakenBack cuts_to_leave(const grid::Solid& solid, const NewCuts& new_cuts) {
   TakenBack back;
-  std::map<CellId, Items> seen; // of shreds
-  for (const CellId c : grid::touched_cells(solid.grid, edges, segments))
+  ItemsOfCells seen, large; // of shreds, and of what is more
+  for (const CellId c : grid::touched_cells(solid.grid, new_cuts.edges, new_cuts.segments))
     for (const grid::Part& part : whole_parts_of(grid::cuts_of(solid, c))) {
-      const int item = std::countr_zero(part.items());
-      if (const auto known = seen.find(c); known != seen.end() && (known->second >> item & 1) != 0)
+      if (holds(seen, c, part.items()) || holds(large, c, part.items()))
         continue;
-      if (const auto shred = shred_at(solid, c, item)) {
-        for (const auto& [cell, items] : shred->items)
-          seen[cell] |= items;
+      if (const auto shred = shred_at(solid, c, std::countr_zero(part.items()), large)) {
+        add(seen, shred->items);
         leave(solid, *shred, new_cuts, back);
       }
     }
-  return take_back(solid.cuts, edges, back.edges) + take_back(solid.cuts, segments, back.segments);
+  return back;
+}
+
+} // namespace
+
+std::size_t leave_shreds(grid::Solid& solid, std::vector<EdgeId>& edges, std::vector<SkinSegment>& segments) {
+  std::size_t n = 0;
+  for (;;) { // what stays may be a shred still, with one beside it
+    TakenBack back = cuts_to_leave(solid, {edges, segments});
+    const std::size_t n_now = take_back(solid.cuts, edges, back.edges) + take_back(solid.cuts, segments, back.segments);
+    if (n_now == 0)
+      return n;
+    n += n_now;
+  }
 }
 
 } // namespace kerf::cut

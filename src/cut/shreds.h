@@ -6,9 +6,10 @@
 /// a point of it lies on a blade's other side than its neighbours, though the material there is not parted. They stay
 /// with all their neighbours across the blade.
 ///
-/// Shavings are a few nodes, or points of the skin, between cuts of one blade on both sides that are less than a tenth of
-/// a cube apart: where it comes back through a body that has moved, beside where it was before. They stay by that one of
-/// the new cuts that comes nearest to them. What different blades part is parted, however thin.
+/// Shavings are a few nodes, or points of the skin, between cuts of one blade on opposite sides, with less material than
+/// a cube: where a blade comes back through a body that has moved, beside where it was before. The grid has nodes here
+/// and there in what lies between, and would show crumbs. They stay by that one of the new cuts that comes nearest to
+/// them. What different blades part is parted, however thin, and so is what one blade cuts off from one side.
 
 #include "grid/solid.h"
 

@@ -137,12 +137,12 @@ void Target::judge(const grid::EdgeId edge, const grid::CutLabel label, const Ju
 /// In a face the cell below it judges, where there is one. `near` is null where all are judged.
 void Target::judge_skin(const grid::CellId cell, const Nearness* const near, const grid::CutLabel label,
                         const Judge& judge, SweepCuts& result) const {
-  const SkinNow skin(solid_, cell);
   if (near) {
-    const Box box = skin.box(x_before_, x_);
+    const Box box = box_around_copies(cell);
     if (!geometry::overlap(box, near->reach) || !near->may_meet(box))
       return;
   }
+  const SkinNow skin(solid_, cell);
   skin.for_each_uncut([&](const int segment) {
     const Segment before = skin.segment(segment, x_before_), now = skin.segment(segment, x_);
     if (near && !geometry::overlap(room(before, now), near->reach))
@@ -154,6 +154,18 @@ void Target::judge_skin(const grid::CellId cell, const Nearness* const near, con
     else if (verdict.n_crossings > 0)
       ++result.n_double_crossings;
   });
+}
+
+Box Target::box_around_copies(const grid::CellId cell) const {
+  Box box{Vec3::Constant(std::numeric_limits<double>::infinity()), {}};
+  box.upper = -box.lower;
+  for (const grid::CopyId c : solid_.complex.copies_of(cell))
+    for (const grid::CornerId corner : solid_.complex.copies[c].corners) {
+      const Vec3 &before = x_before_[corner.value], &now = x_[corner.value];
+      box.lower = box.lower.cwiseMin(before).cwiseMin(now);
+      box.upper = box.upper.cwiseMax(before).cwiseMax(now);
+    }
+  return box;
 }
 
 EdgeEnds ends_of(const grid::Solid& solid, const grid::EdgeId edge) {
@@ -202,18 +214,6 @@ Vec3 pulled_back(const grid::Solid& solid, const Points& x, const grid::EdgeId e
 
 SkinNow::SkinNow(const grid::Solid& solid, const grid::CellId cell)
   : solid_(solid), cell_(cell), cuts_(grid::cuts_of(solid, cell)), skeleton_(cuts_.skeleton()) {}
-
-Box SkinNow::box(const Points& x_before, const Points& x) const {
-  Box box{Vec3::Constant(std::numeric_limits<double>::infinity()), {}};
-  box.upper = -box.lower;
-  for (const grid::CopyId c : solid_.complex.copies_of(cell_))
-    for (const grid::CornerId corner : solid_.complex.copies[c].corners)
-      for (const Vec3& p : {x_before[corner.value], x[corner.value]}) {
-        box.lower = box.lower.cwiseMin(p);
-        box.upper = box.upper.cwiseMax(p);
-      }
-  return box;
-}
 
 const grid::Copy& SkinNow::copy_with(const int item) const {
   const auto& complex = solid_.complex;

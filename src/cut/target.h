@@ -72,8 +72,6 @@ class SkinNow {
   /// The solid must outlive it.
   SkinNow(const grid::Solid& solid, grid::CellId cell);
 
-  /// Around all corners of the cell's copies, before and now [m].
-  Box box(const Points& x_before, const Points& x) const;
   /// Calls f(segment) for each segment of the skin that is not cut: spokes, and halves in those faces that have no cell
   /// below, or below which this one lies.
   template <class Function>
@@ -123,6 +121,7 @@ class Target {
   void judge_skin(grid::CellId cell, const Nearness* near, grid::CutLabel label, const Judge& judge,
                   SweepCuts& result) const;
   void judge(grid::EdgeId edge, grid::CutLabel label, const Judge& judge, SweepCuts& result) const;
+  Box box_around_copies(grid::CellId cell) const; // before and now
   double longest() const { return std::max(boxes_->longest(), solid_.grid.h()); }
 
   const grid::Solid& solid_;

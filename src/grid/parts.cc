@@ -25,6 +25,12 @@ Parts parts_of_nodes(const unsigned material, const unsigned cut) {
   return result;
 }
 
+SkinSegment skin_segment(const std::array<FaceId, 6>& faces, const CellId c, const int segment) {
+  const int of_faces = segment - skeleton::first_half;
+  return segment < skeleton::first_spoke ? SkinSegment::half(faces[of_faces / 4], of_faces % 4)
+                                         : SkinSegment::spoke(c, segment - skeleton::first_spoke);
+}
+
 /// Of a cell with skin: what blades have cut of its lines, and of its skin.
 Segments cut_by_blades(const Solid& solid, const CellId c, const unsigned cut_lines, const Skeleton& skeleton) {
   const Cuts& cuts = solid.cuts;
@@ -34,10 +40,12 @@ Segments cut_by_blades(const Solid& solid, const CellId c, const unsigned cut_li
     for (int line = 0; line < cube::n_lines; ++line)
       blades |= Segments((skeleton.items >> skeleton::on_line(line) & 1) != 0 && cuts.is_cut_twice(edges[line]))
                 << line;
-  if (!cuts.skin_cuts().empty())
-    for (Segments left = skeleton.segments & ~skeleton::lines; left != 0; left &= left - 1)
-      if (const int segment = std::countr_zero(left); cuts.is_cut(skin_segment(solid.grid, c, segment)))
-        blades |= Segments(1) << segment;
+  if (cuts.skin_cuts().empty())
+    return blades;
+  const auto faces = solid.grid.faces(c);
+  for (Segments left = skeleton.segments & ~skeleton::lines; left != 0; left &= left - 1)
+    if (const int segment = std::countr_zero(left); cuts.is_cut(skin_segment(faces, c, segment)))
+      blades |= Segments(1) << segment;
   return blades;
 }
 
@@ -52,13 +60,22 @@ unsigned material_of(const Grid& grid, const CellId c) {
 }
 
 SkinSegment skin_segment(const Grid& grid, const CellId c, const int segment) {
-  const int of_faces = segment - skeleton::first_half;
-  return segment < skeleton::first_spoke ? SkinSegment::half(grid.faces(c)[of_faces / 4], of_faces % 4)
-                                         : SkinSegment::spoke(c, segment - skeleton::first_spoke);
+  return skin_segment(grid.faces(c), c, segment);
 }
 
 CellCuts cuts_of(const Solid& solid, const CellId c) {
   return cuts_of(solid, c, solid.cuts.configuration(solid.grid, c));
+}
+
+CellCuts with(CellCuts cell, const Segments ahead) {
+  cell.cut |= static_cast<unsigned>(ahead & skeleton::lines & ~Segments(skin_lines[cell.material]));
+  cell.blades |= ahead;
+  return cell;
+}
+
+CellCuts cuts_of_copies(const Solid& solid, const CellId c) {
+  const Front* const front = solid.cuts.front(c);
+  return front ? with(cuts_of(solid, c), front->ahead) : cuts_of(solid, c);
 }
 
 CellCuts cuts_of(const Solid& solid, const CellId c, const unsigned cut_lines) {

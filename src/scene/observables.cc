@@ -302,8 +302,8 @@ const std::vector<Observable>& body_observables() {
     {"thin gaps", "1", "grid edges through gaps of the mesh between two material nodes, which are filled",
      [](const Body& b) { return count(b.n_thin_gaps); }},
     {"left whole", "1",
-     "grid edges and segments of the skin that were crossed and left uncut: behind them are shavings thinner than a tenth "
-     "of a cube, or no material (cut/shreds.h)",
+     "grid edges and segments of the skin that were crossed and left uncut: behind them are shavings of one blade with "
+     "less material than a cube, or no material (cut/shreds.h)",
      [](const Body& b) { return b.cutter ? count(b.cutter->counts().n_left_whole) : 0.0; }},
     {"cells passed uncut", "1",
      "cells whose material a blade passed through without cutting anything in them, so far (cut/passed.h)",

@@ -185,12 +185,15 @@ std::array<double, 2> bytes_a_cell(const std::vector<Memory>& sizes) {
 
 int main(const int argc, char** const argv) {
   const int n_runs = argc > 1 ? std::max(1, std::atoi(argv[1])) : 7;
+  const int largest = argc > 2 ? std::atoi(argv[2]) : 100;
   set_n_threads(1);
-  std::printf("%d runs (first argument); microseconds of one thread a touched cell\n", n_runs);
+  std::printf("%d runs (first argument), up to %d cells along an axis (second one); microseconds of one thread a touched cell\n", n_runs, largest);
   std::printf("%8s %6s %8s %7s %7s %7s %7s %7s %9s %11s %9s\n", "cells", "body", "touched", "edges", "cut", "place",
               "surface", "total", "total s", "cells/s", "fit ns/co");
   std::vector<Memory> sizes;
   for (const int n : {17, 28, 46, 64, 80, 100}) {
+    if (n > largest)
+      break;
     const Body body = make_body(n);
     print(body, best(n, Motion::none, n_runs), "rests");
     print(body, best(n, Motion::drift, n_runs), "moves");

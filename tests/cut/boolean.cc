@@ -57,6 +57,15 @@ std::vector<double> volumes_between(const Mesh& skin, const std::vector<support:
 
 } // namespace
 
+std::optional<double> volume_below(const geometry::TriangleMesh& skin, const support::Plane& plane) {
+  try {
+    const auto& [n, offset] = plane;
+    return CGAL::to_double(processing::volume(on_lower_side(mesh_of(skin), {n[0], n[1], n[2], -offset})));
+  } catch (const processing::Corefinement::Self_intersection_exception&) {
+    return std::nullopt;
+  }
+}
+
 std::optional<std::vector<double>> volumes_between(const geometry::TriangleMesh& skin,
                                                    const std::vector<support::Plane>& planes) {
   try {

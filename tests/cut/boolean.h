@@ -15,4 +15,7 @@ namespace kerf::cut {
 std::optional<std::vector<double>> volumes_between(const geometry::TriangleMesh& skin,
                                                    const std::vector<support::Plane>& planes);
 
+/// Volume of a solid where the plane's height is negative [m^3]; nothing where its skin intersects itself at the plane.
+std::optional<double> volume_below(const geometry::TriangleMesh& skin, const support::Plane& plane);
+
 } // namespace kerf::cut

@@ -3,43 +3,16 @@
 ///
 ///   KERF_STROKE_MESHES=folder ./kerf test -L long -R Strokes
 
-#include "geometry/box_tree.h"
-#include "geometry/solid.h"
 #include "tests/cut/boolean.h"
 #include "tests/cut/patient.h"
+#include "tests/cut/unit_solids.h"
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-#include <filesystem>
 #include <iostream>
 
 namespace kerf::cut {
 namespace {
-
-std::vector<std::filesystem::path> meshes(const std::filesystem::path& folder) {
-  std::vector<std::filesystem::path> found;
-  for (const auto& entry : std::filesystem::directory_iterator(folder))
-    if (entry.path().extension() == ".off")
-      found.push_back(entry.path());
-  std::sort(found.begin(), found.end());
-  return found;
-}
-
-/// The mesh in the unit cube; nothing where it is not the skin of a solid.
-std::optional<geometry::TriangleMesh> unit_mesh(const std::filesystem::path& path) {
-  geometry::TriangleMesh mesh = geometry::read_mesh(path, 1);
-  try {
-    mesh = geometry::require_solid(std::move(mesh), path);
-  } catch (const DataError&) {
-    return std::nullopt;
-  }
-  const Box around = geometry::box_around(mesh.vertices);
-  const double length = (around.upper - around.lower).maxCoeff();
-  for (Vec3& v : mesh.vertices)
-    v = (v - around.lower) / length;
-  return mesh;
-}
 
 geometry::TriangleMesh skin_of(const Patient& patient) {
   const surface::Surface surface = surface::build_surface(patient.body);
@@ -121,10 +94,7 @@ void stroke(const geometry::TriangleMesh& mesh, const std::string& name, const u
 
 Counted strokes(const std::filesystem::path& folder, const unsigned n) {
   Counted counted;
-  std::vector<std::pair<std::string, geometry::TriangleMesh>> solids;
-  for (const auto& path : meshes(folder))
-    if (auto mesh = unit_mesh(path))
-      solids.emplace_back(path.stem(), std::move(*mesh));
+  const auto solids = unit_solids(folder);
   for (unsigned seed = 0; seed < n; ++seed) {
     const auto& [name, mesh] = solids[seed % solids.size()];
     stroke(mesh, name, seed, counted);
@@ -138,8 +108,7 @@ Counted strokes(const std::filesystem::path& folder, const unsigned n) {
 class Strokes : public testing::TestWithParam<unsigned> {};
 
 TEST_P(Strokes, LeaveThePiecesOfTheBoolean) {
-  const char* const folder = std::getenv("KERF_STROKE_MESHES");
-  const Counted counted = strokes(folder ? folder : KERF_SOURCE_DIR "/params/meshes", GetParam());
+  const Counted counted = strokes(folder_of_meshes(), GetParam());
   EXPECT_GT(counted.n_strokes, 0.6 * GetParam());
   EXPECT_GT(counted.n_pieces, 2 * counted.n_strokes);
   EXPECT_EQ(counted.n_fewer, 0);

@@ -1,0 +1,106 @@
+/// Surfaces of bodies that planes have cut, above all where the cuts meet the skin: vertices of a cut lie on its plane, no
+/// triangle is without area, none is long, no vertex holds two fans of triangles together; needles are few. The long test
+/// takes all closed meshes of the folder that KERF_STROKE_MESHES names:
+///
+///   KERF_STROKE_MESHES=folder ./kerf test -L long -R Rims
+
+#include "tests/cut/unit_solids.h"
+#include "tests/support/cut_by_plane.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <iostream>
+#include <map>
+#include <numbers>
+
+namespace kerf::cut {
+namespace {
+
+struct Tally {
+  std::size_t n_triangles = 0, n_needles = 0, n_flat = 0, n_long = 0; ///< at rims
+  std::size_t n_two_fans = 0;                                         ///< vertices
+  double off_plane = 0;                                               ///< of vertices of the cuts [h]
+};
+
+double smallest_angle(const std::array<Vec3, 3>& p) {
+  double least = std::numbers::pi;
+  for (int i = 0; i < 3; ++i) {
+    const Vec3 u = p[(i + 1) % 3] - p[i], v = p[(i + 2) % 3] - p[i];
+    least = std::min(least, std::atan2(u.cross(v).norm(), u.dot(v)));
+  }
+  return least;
+}
+
+/// Vertices whose triangles do not all follow each other, side by side.
+std::size_t n_with_two_fans(const surface::Surface& surface) {
+  std::vector<std::map<std::uint32_t, std::uint32_t>> next(surface.rest.size()); // around each vertex
+  for (const auto& triangle : surface.triangles)
+    for (int i = 0; i < 3; ++i)
+      next[triangle[i]][triangle[(i + 1) % 3]] = triangle[(i + 2) % 3];
+  return static_cast<std::size_t>(std::ranges::count_if(next, [](const auto& around) {
+    std::size_t n = 0;
+    if (!around.empty())
+      for (std::uint32_t v = around.begin()->first; n == 0 || v != around.begin()->first; ++n)
+        v = around.at(v);
+    return n != around.size();
+  }));
+}
+
+void add(Tally& tally, const surface::Surface& surface, const support::Plane& plane, const double h) {
+  std::vector<std::uint8_t> is_of_skin(surface.rest.size(), 0), is_of_cut = is_of_skin;
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t)
+    for (const auto v : surface.triangles[t])
+      (surface.labels[t] == grid::skin_label ? is_of_skin : is_of_cut)[v] = 1;
+  for (std::size_t v = 0; v < surface.rest.size(); ++v)
+    if (is_of_cut[v])
+      tally.off_plane = std::max(tally.off_plane, std::abs(plane.height(surface.rest[v])) / h);
+  for (const auto& triangle : surface.triangles) {
+    if (std::ranges::none_of(triangle, [&](const auto v) { return is_of_skin[v] && is_of_cut[v]; }))
+      continue;
+    const std::array<Vec3, 3> p = {surface.rest[triangle[0]], surface.rest[triangle[1]], surface.rest[triangle[2]]};
+    const double angle = smallest_angle(p);
+    ++tally.n_triangles;
+    tally.n_needles += angle < std::numbers::pi / 180;
+    tally.n_flat += (p[1] - p[0]).cross(p[2] - p[0]).norm() == 0;
+    tally.n_long += std::max({(p[1] - p[0]).norm(), (p[2] - p[1]).norm(), (p[0] - p[2]).norm()}) > 2 * h;
+  }
+  tally.n_two_fans += n_with_two_fans(surface);
+}
+
+class Rims : public testing::TestWithParam<int> {};
+
+TEST_P(Rims, OfUnseenBodies) {
+  Tally all;
+  int n_bodies = 0;
+  for (const auto& [name, mesh] : unit_solids(folder_of_meshes()))
+    for (int i = 0; i < GetParam(); ++i, ++n_bodies) {
+      support::Random random(static_cast<unsigned>(i));
+      const double h = 1 / support::uniform(random, 8, 16);
+      support::Body body = support::embedded(mesh, h, support::random_offset(random));
+      const Vec3 normal = support::random_direction(random);
+      const support::Plane plane{normal, normal.dot(mesh.vertices[random() % mesh.vertices.size()] * 0.6 +
+                                                    mesh.vertices[random() % mesh.vertices.size()] * 0.4)};
+      support::cut_through(body, support::cuts_of_plane(body, plane));
+      const std::size_t before = all.n_two_fans, n_flat = all.n_flat, n_long = all.n_long;
+      const double off_plane = all.off_plane;
+      add(all, surface::build_surface(support::with_copies(std::move(body))), plane, h);
+      if (all.n_two_fans > before || all.n_flat > n_flat || all.n_long > n_long || all.off_plane > std::max(off_plane, 1e-9))
+        std::cout << name << ", " << i << ": " << all.n_two_fans - before << " vertices with two fans, "
+                  << all.n_flat - n_flat << " triangles without area, " << all.n_long - n_long
+                  << " long ones; vertices off the plane by " << all.off_plane << " h" << std::endl;
+    }
+  std::cout << n_bodies << " bodies; " << all.n_triangles << " triangles at rims, " << all.n_needles
+            << " needles; vertices off their plane by " << all.off_plane << " h\n";
+  EXPECT_GT(all.n_triangles, 100u * n_bodies);
+  EXPECT_LT(all.n_needles, 0.03 * all.n_triangles);
+  EXPECT_EQ(all.n_flat, 0u);
+  EXPECT_EQ(all.n_long, 0u);
+  EXPECT_EQ(all.n_two_fans, 0u);
+  EXPECT_LT(all.off_plane, 1e-6);
+}
+INSTANTIATE_TEST_SUITE_P(Short, Rims, testing::Values(3));
+INSTANTIATE_TEST_SUITE_P(Long, Rims, testing::Values(5));
+
+} // namespace
+} // namespace kerf::cut

@@ -1,0 +1,164 @@
+/// A blade that saws its way through a body that sags and swings leaves no crumb that the stroke, pulled back to rest, did
+/// not cut free, and parts the body as that does. The long test takes more bodies, and all closed meshes of the folder
+/// that KERF_STROKE_MESHES names:
+///
+///   KERF_STROKE_MESHES=folder ./kerf test -L long -R Swing
+
+#include "tests/cut/patient.h"
+#include "tests/cut/unit_solids.h"
+#include "tests/support/fine_material.h"
+
+#include <gtest/gtest.h>
+
+#include <iostream>
+#include <map>
+#include <numbers>
+
+namespace kerf::cut {
+namespace {
+
+constexpr int n_strokes = 6, n_steps = 40 * n_strokes;
+
+/// Turns to and fro, and bends: time from 0 to 1.
+struct Swing {
+  Vec3 middle, axis, along, sag;
+  double angle, frequency, phase;
+
+  Vec3 operator()(const Vec3& p, const double time) const {
+    const double wave = std::sin(2 * std::numbers::pi * frequency * time + phase), arm = along.dot(p - middle);
+    return middle + Eigen::AngleAxisd(angle * wave, axis) * (p - middle) + arm * arm * (time + 0.5 * wave) * sag;
+  }
+};
+
+Swing random_swing(Random& random, const double h) {
+  Swing swing{Vec3::Constant(0.5), random_direction(random), random_direction(random), {}, {}, {}, {}};
+  swing.angle = uniform(random, 0, 2 * h);
+  swing.sag = uniform(random, 0, 2 * h) * random_direction(random);
+  swing.frequency = uniform(random, 1, 12);
+  swing.phase = uniform(random, 0, 6);
+  return swing;
+}
+
+/// Saws forth and back in a plane through the middle, deeper each time, with an edge that stands up from its tip.
+Blade saw(const Vec3& middle, const Frame& frame) {
+  Blade blade{.name = "saw", .edge = {Vec3::Zero(), -2.5 * frame.v - 0.4 * frame.u}, .key_frames = {}};
+  for (int k = 0; k <= n_strokes; ++k) {
+    const double side = k % 2 == 0 ? -1.2 : 1.2, depth = -0.9 + 1.9 * k / n_strokes;
+    blade.key_frames.push_back({double(k) / n_strokes, middle + side * frame.u + depth * frame.v, Vec3::Zero()});
+  }
+  check(blade);
+  return blade;
+}
+
+/// Of pieces [cubes], and what the fine material says of them.
+struct Pieces {
+  std::vector<double> grid, fine; ///< ascending
+  int n_crumbs = 0;               ///< of the grid, below a cube, above what the fine material can tell
+  int n_tiny = 0;                 ///< below that
+  int n_not_free = 0;             ///< crumbs that the stroke did not cut free
+};
+
+/// A crumb is free if most of it lies in fine pieces that lie mostly in it.
+Pieces compared(const Patient& patient, const support::FineMaterial& fine) {
+  const auto of_point = fine.pieces();
+  const grid::Pieces of_copy = grid::pieces(patient.body.complex);
+  std::map<std::uint32_t, std::size_t> n_of_fine;
+  const double bulk = 10 / fine.volume();
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> n_common; // by piece of the grid, fine piece
+  for (std::size_t i = 0; i < fine.size(); ++i) {
+    ++n_of_fine[of_point[i]];
+    ++n_common[{of_copy.piece[fine.copy(i)], of_point[i]}];
+  }
+  std::vector<std::size_t> n_points(of_copy.n_pieces, 0), n_free = n_points;
+  for (const auto& [pair, n] : n_common) {
+    n_points[pair.first] += n;
+    if (static_cast<double>(n_of_fine[pair.second]) < bulk)
+      n_free[pair.first] += n;
+  }
+  Pieces result;
+  const double cube = std::pow(patient.body.grid.h(), 3);
+  const auto volumes = surface::piece_volumes(surface::build_surface(patient.body), patient.body.complex);
+  for (std::size_t k = 0; k < volumes.size(); ++k) {
+    result.grid.push_back(volumes[k] / cube);
+    if (volumes[k] > cube)
+      continue;
+    const bool is_tiny = n_points[k] < 2;
+    (is_tiny ? result.n_tiny : result.n_crumbs) += 1;
+    result.n_not_free += !is_tiny && 2 * n_free[k] <= n_points[k];
+  }
+  for (const auto& [name, n] : n_of_fine)
+    result.fine.push_back(static_cast<double>(n) * fine.volume());
+  std::sort(result.grid.begin(), result.grid.end());
+  std::sort(result.fine.begin(), result.fine.end());
+  return result;
+}
+
+std::optional<Pieces> sawn(const geometry::TriangleMesh& mesh, const unsigned seed) {
+  Random random(seed);
+  const double h = 1 / uniform(random, 7, 10);
+  Patient patient(support::embedded(mesh, h, random_offset(random)));
+  if (grid::n_pieces(patient.body.complex) != 1)
+    return std::nullopt;
+  support::FineMaterial fine(patient.body, 6);
+  const Swing swing = random_swing(random, h);
+  const Vec3 through = Vec3::Constant(0.5) + 0.15 * random_direction(random);
+  const Blade blade = saw(through, across(random_direction(random), 0));
+  const auto stand = [&](const double time) {
+    for (const auto c : ids<grid::CornerId>(patient.body.complex.n_corners()))
+      patient.x[c.value] = swing(patient.body.grid.position(patient.body.complex.node[c]), time);
+  };
+  stand(0);
+  Cutter cutter = patient.cutter(1);
+  for (int k = 0; k <= n_steps || cutter.n_waiting() > 0; ++k) {
+    const double t0 = double(k) / n_steps, t1 = double(k + 1) / n_steps;
+    stand(t1);
+    fine.cut(patient.body, paths(blade, t0, t1), cutter.stands_at(), patient.x);
+    const grid::CutChange change = cutter.step(patient.body, std::span(&blade, 1), t0, t1, patient.x);
+    patient.follow(change);
+    fine.follow(patient.body, change);
+  }
+  return compared(patient, fine);
+}
+
+std::ptrdiff_t n_above(const std::vector<double>& volumes, const double least) {
+  return volumes.end() - std::upper_bound(volumes.begin(), volumes.end(), least);
+}
+
+class Swings : public testing::TestWithParam<unsigned> {};
+
+TEST_P(Swings, LeaveNoCrumbThatTheStrokeDidNotCutFree) {
+  const auto solids = unit_solids(folder_of_meshes());
+  int n_bodies = 0, n_parted = 0, n_crumbs = 0, n_tiny = 0, n_not_free = 0, n_other = 0;
+  for (unsigned seed = 0; seed < GetParam(); ++seed) {
+    const auto& [name, mesh] = solids[seed % solids.size()];
+    const auto pieces = sawn(mesh, seed);
+    if (!pieces)
+      continue;
+    ++n_bodies;
+    n_parted += n_above(pieces->grid, 1) > 1;
+    n_crumbs += pieces->n_crumbs;
+    n_tiny += pieces->n_tiny;
+    n_not_free += pieces->n_not_free;
+    const bool is_other =
+      n_above(pieces->grid, 10) > n_above(pieces->fine, 8) || n_above(pieces->fine, 10) > n_above(pieces->grid, 8);
+    n_other += is_other;
+    if (pieces->n_crumbs + pieces->n_tiny == 0 && !is_other)
+      continue;
+    std::cout << name << ", seed " << seed << ": " << pieces->n_crumbs << " crumbs, " << pieces->n_not_free
+              << " of them not cut free, " << pieces->n_tiny << " too small to tell; pieces [cubes]";
+    for (const auto* volumes : {&pieces->grid, &pieces->fine})
+      for (std::size_t i = 0; i < std::min<std::size_t>(6, volumes->size()); ++i)
+        std::cout << (i == 0 ? " | " : " ") << volumes->rbegin()[i];
+    std::cout << std::endl;
+  }
+  std::cout << n_bodies << " bodies, " << n_parted << " parted; " << n_crumbs << " crumbs, " << n_not_free
+            << " not cut free; " << n_tiny << " too small to tell; other pieces in " << n_other << '\n';
+  EXPECT_GT(n_parted, n_bodies / 2);
+  EXPECT_EQ(n_not_free, 0);
+  EXPECT_LE(n_other, n_bodies / 50); // a slab far thinner than a cube may stay on one side
+}
+INSTANTIATE_TEST_SUITE_P(Short, Swings, testing::Values(10));
+INSTANTIATE_TEST_SUITE_P(Long, Swings, testing::Values(100));
+
+} // namespace
+} // namespace kerf::cut
