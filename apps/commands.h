@@ -17,4 +17,8 @@ int params(const Arguments& arguments);
 int texture(const Arguments& arguments);
 int table(const Arguments& arguments);
 
+/// Becomes the Python package's command of that name (python/main.py): report, export, inspect. Returns only by throwing
+/// DataError, where the package or Python is not there.
+[[noreturn]] void become_python(const std::string& command, const Arguments& arguments);
+
 } // namespace kerf::apps

@@ -24,6 +24,9 @@ constexpr const char* usage = R"(usage:
   kerf weights WEIGHTS.prm [--set ...] [--output DIR]     weights of points near cuts, as images and a table
   kerf texture SCENE.prm --plane "x, y, z; normal x, y, z" [--pixel M] [--output FILE.png] [--set ...] [--threads N]
                                                           the inside of its first body that has one, on any plane
+  kerf report FILE.h5|FOLDER... [--output DIR] [--force]  one page about runs and studies, and figures for a paper
+  kerf export --volume RUN [--body NAME] [--output FILE]  a run's cells with fields over time, for ParaView
+  kerf inspect FILE...                                    what is in a file of ours
   kerf params [study]                                     every section and key of a scene, or of a study
   kerf table --output FILE.h5                             the Splitting Cubes table as a file
   kerf --version                                          version, commit, compiler, libraries
@@ -45,6 +48,8 @@ int dispatch(const kerf::apps::Arguments& arguments) {
                                                    {"study", kerf::apps::study},   {"weights", kerf::apps::weights},
                                                    {"params", kerf::apps::params}, {"texture", kerf::apps::texture},
                                                    {"table", kerf::apps::table}};
+  if (!arguments.empty() && (arguments[0] == "report" || arguments[0] == "export" || arguments[0] == "inspect"))
+    kerf::apps::become_python(arguments[0], {arguments.begin() + 1, arguments.end()});
   const auto asks_for_help = [](const std::string& word) { return word == "--help" || word == "-h"; };
   if (arguments.empty() || arguments[0] == "help" || std::any_of(arguments.begin(), arguments.end(), asks_for_help)) {
     std::printf("%s", usage);

@@ -1,5 +1,6 @@
 #include "cut/cutter.h"
 
+#include "cut/fronts.h"
 #include "cut/shreds.h"
 
 #include <algorithm>
@@ -25,8 +26,8 @@ std::array<grid::CellId, 2> cells_of(const grid::Grid& grid, const grid::SkinSeg
 
 } // namespace
 
-Cutter::Cutter(const std::size_t n_labels, const Release release)
-  : release_(release), passed_(n_labels), counts_{std::vector<std::size_t>(n_labels, 0)} {}
+Cutter::Cutter(const std::size_t n_labels, const Release release, const Fronts fronts)
+  : release_(release), fronts_(fronts), passed_(n_labels), counts_{std::vector<std::size_t>(n_labels, 0)} {}
 
 void Cutter::begin(const Solid& solid, const Points& x) {
   boxes_.emplace(solid);
@@ -63,11 +64,21 @@ CutChange Cutter::at_once(Solid& solid, const CutSurface& surface, const Points&
   boxes_->fit(x);
   const SweepCuts found = cut_edges(surface, solid, x, &*boxes_);
   counts_.n_double_crossings += found.n_double_crossings;
-  return cut(solid, found);
+  const Added added = add(solid, found);
+  std::vector<grid::CellId> cells;
+  if (fronts_ == Fronts::inside_cells)
+    for (const grid::Front& front : find_fronts(surface, solid, x)) {
+      solid.cuts.set(front);
+      cells.push_back(front.cell);
+    }
+  return part(solid, added, cells);
 }
 
-CutChange Cutter::cut(Solid& solid, const SweepCuts& cuts) {
-  std::vector<EdgeId> edges;
+CutChange Cutter::cut(Solid& solid, const SweepCuts& cuts) { return part(solid, add(solid, cuts), {}); }
+
+Cutter::Added Cutter::add(Solid& solid, const SweepCuts& cuts) {
+  Added added;
+  auto& [edges, segments] = added;
   for (const EdgeCut& cut : cuts.cuts) {
     if (!solid.cuts.can_be_cut(solid.grid, cut.edge))
       continue; // by another of the same step
@@ -75,7 +86,6 @@ CutChange Cutter::cut(Solid& solid, const SweepCuts& cuts) {
     edges.push_back(cut.edge);
     passed_[cut.label - 1].remove(solid.grid.cells(cut.edge));
   }
-  std::vector<grid::SkinSegment> segments;
   for (const grid::SkinCut& cut : cuts.of_skin) {
     if (solid.cuts.is_cut(cut.segment))
       continue;
@@ -88,9 +98,13 @@ CutChange Cutter::cut(Solid& solid, const SweepCuts& cuts) {
   counts_.n_left_whole += leave_shreds(solid, edges, segments);
   for (const EdgeId e : edges)
     ++counts_.n_cut_edges[solid.cuts.find(e)->label - 1];
-  if (edges.empty() && segments.empty())
+  return added;
+}
+
+CutChange Cutter::part(Solid& solid, const Added& added, const std::span<const grid::CellId> fronts) {
+  if (added.edges.empty() && added.segments.empty() && fronts.empty())
     return {};
-  CutChange change = grid::update_complex(solid, std::move(edges), std::move(segments));
+  CutChange change = grid::update_complex(solid, added.edges, added.segments, fronts);
   grid::inherit(change, x_before_);
   return change;
 }

@@ -38,9 +38,15 @@ struct CutCounts {
 /// skin is always cut at once.
 enum class Release { queued, at_once };
 
+/// Where a surface that cuts at once may end (fronts.h).
+enum class Fronts {
+  at_faces,    ///< with the last cell that it parts
+  inside_cells ///< wherever it does, in cells whose copies are tied: for a physics that knows ties (grid/fronts.h)
+};
+
 class Cutter {
  public:
-  explicit Cutter(std::size_t n_labels, Release release = Release::queued);
+  explicit Cutter(std::size_t n_labels, Release release = Release::queued, Fronts fronts = Fronts::at_faces);
 
   /// Before the first cut, with the corners at x [m, world frame; so below].
   void begin(const grid::Solid& solid, const Points& x);
@@ -76,9 +82,17 @@ class Cutter {
  private:
   Stroke stroke(const grid::Solid& solid, const Blade& blade, double t0, double t1, const Points& x) const;
   grid::CutChange take(grid::Solid& solid, std::span<const Stroke> strokes, const Points& x);
+  /// What is cut now.
+  struct Added {
+    std::vector<grid::EdgeId> edges;
+    std::vector<grid::SkinSegment> segments;
+  };
+  Added add(grid::Solid& solid, const SweepCuts& cuts);
+  grid::CutChange part(grid::Solid& solid, const Added& added, std::span<const grid::CellId> fronts);
   SweepCuts queue(const grid::Solid& solid, std::span<const Stroke> strokes, const Points& x);
 
   Release release_;
+  Fronts fronts_;
   PendingCuts pending_;
   std::optional<EdgeBoxes> boxes_;  // around the edges; there from begin() on
   std::vector<PassedCells> passed_; // by label, from 1

@@ -37,7 +37,7 @@ void ElementTable::update(const grid::Solid& solid, const std::span<const grid::
 
 bool ElementTable::is_partial(const grid::Solid& solid, const grid::Copy& copy) const {
   return options_.boundary != Boundary::full_cube && copy.nodes != 0xff &&
-         solid.cuts.configuration(solid.grid, copy.cell) != 0;
+         (solid.cuts.configuration(solid.grid, copy.cell) != 0 || solid.cuts.front(copy.cell) != nullptr);
 }
 
 Moments ElementTable::moments(const grid::Solid& solid, const grid::CopyId copy) const {

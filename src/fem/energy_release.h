@@ -6,8 +6,8 @@
 /// (W I - F^T P) : grad q (Eshelby 1951, 1975). In equilibrium, with q along the crack and along the skin, and zero where loads
 /// and supports act, that is what the whole body's energy changes by: so minus the integral, over the area by which the crack
 /// grows, is the energy release rate G (Li, Shih and Needleman 1985, A comparison of methods for calculating energy release
-/// rates, Eng. Fract. Mech. 21). q is constant in a tube around the front, where fields are singular and where cells
-/// that hold the front are whole, and falls to zero in a wider one. Any law, any rotation.
+/// rates, Eng. Fract. Mech. 21). q is constant in a tube around the front, where fields are singular and where copies
+/// are tied (grid/fronts.h), and falls to zero in a wider one. Any law, any rotation.
 ///
 /// In place of F stands F - F_0, F_0 its mean over the domain: virtual work of F_0 q is zero in equilibrium, and P : grad q is of
 /// lower order in the strain than what is looked for.

@@ -91,6 +91,7 @@ void Hexahedra::follow(const grid::Solid& solid, const std::span<const grid::Cop
   sum_mass(corners);
   ghost_penalty_.update( // to which a crumb's copies are as good as full
     solid, changed, [this](const std::size_t copy) { return incidence_.is_used(copy) ? fill(copy) : 1; }, mass_);
+  ties_.update(solid, material_);
   if (consistent_mass_)
     consistent_mass_->update(solid, changed, mass_, lumped_mass());
 }
@@ -197,7 +198,7 @@ double Hexahedra::energy(const Points& x) const {
                        std::visit([&](const auto& law) { return law.energy(gradient_of(turns, lane)); }, law_);
     });
   });
-  return std::accumulate(energies.begin(), energies.end(), ghost_penalty_.energy(x));
+  return std::accumulate(energies.begin(), energies.end(), ghost_penalty_.energy(x) + ties_.energy(x));
 }
 
 void Hexahedra::force(const Points& x, Points& forces) const {
@@ -222,6 +223,7 @@ void Hexahedra::force(const Points& x, Points& forces) const {
   forces.resize(mass_.size());
   write(sums.data(), dynamics::flat(forces));
   ghost_penalty_.add_force(x, forces);
+  ties_.add_force(x, forces);
 }
 
 void Hexahedra::linearise(const Points& x) {
@@ -253,11 +255,13 @@ void Hexahedra::apply_stiffness(const std::span<const double> p, const std::span
   add_product(batching_, batched_, rows.data(), sums.data());
   write(sums.data(), y);
   ghost_penalty_.add_product(p, y);
+  ties_.add_product(p, y);
 }
 
 void Hexahedra::stiffness_diagonal(std::vector<Mat3>& blocks) const {
   blocks.resize(mass_.size());
-  const std::vector<double> penalty = ghost_penalty_.diagonal(mass_.size());
+  std::vector<double> penalty = ghost_penalty_.diagonal(mass_.size());
+  ties_.add_diagonal(penalty);
   Rows sums = scratch_.borrow(2 * batching_.n_rows());
   clear(sums.data(), 2 * batching_.n_rows());
   add_diagonal(batching_, batched_, sums.data());
@@ -317,6 +321,7 @@ Matrix24 Hexahedra::element_matrix(const std::size_t copy, const Points& x, cons
 Eigen::SparseMatrix<double> Hexahedra::stiffness_matrix(const Points& x, const dynamics::Tangent kind) const {
   std::vector<Eigen::Triplet<double>> penalty;
   ghost_penalty_.add_entries(penalty);
+  ties_.add_entries(penalty);
   const auto n = static_cast<Eigen::Index>(3 * mass_.size());
   Eigen::SparseMatrix<double> K(n, n);
   K.setFromTriplets(penalty.begin(), penalty.end());

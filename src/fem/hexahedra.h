@@ -30,6 +30,7 @@
 #include "fem/incidence.h"
 #include "fem/multigrid.h"
 #include "fem/scratch.h"
+#include "fem/ties.h"
 #include "fem/turned.h"
 #include "material/laws.h"
 
@@ -129,6 +130,7 @@ class Hexahedra : public dynamics::ElasticModel, public dynamics::StiffnessMatri
   Batching batching_;
   BatchedElements<double> batched_; // rotations and tangents at the linearisation point
   GhostPenalty ghost_penalty_;
+  Ties ties_;
   std::vector<double> mass_;
   std::unique_ptr<ConsistentMass> consistent_mass_; // none where mass is lumped
   std::vector<Index3> places_;                      // of the copies' cells

@@ -4,6 +4,7 @@
 #include "base/union_find.h"
 #include "grid/corner_classes.h"
 #include "grid/cube.h"
+#include "grid/fronts.h"
 #include "grid/solid.h"
 #include "grid/touched.h"
 
@@ -37,7 +38,7 @@ int vertex_at(const int item) {
 /// Parts come in this order.
 int rank(const Copy& copy) { return std::countr_zero(copy.items()); }
 
-/// The cells with a cut edge, ascending.
+/// The cells with a cut edge, or with a front, ascending.
 std::vector<CutCell> find_cut_cells(const Solid& solid) {
   std::vector<EdgeId> edges;
   edges.reserve(solid.cuts.all().size());
@@ -45,7 +46,11 @@ std::vector<CutCell> find_cut_cells(const Solid& solid) {
     edges.push_back(cut.edge);
   std::vector<CutCell> cells;
   for (const TouchedCell& touched : touched_cells(solid.grid, edges)) // by which lines is its configuration
-    cells.push_back({touched.cell, parts_of(cuts_of(solid, touched.cell, touched.lines))});
+    if (solid.cuts.front(touched.cell) == nullptr)
+      cells.push_back({touched.cell, parts_of(cuts_of(solid, touched.cell, touched.lines))});
+  for (const Front& front : solid.cuts.fronts())
+    cells.push_back({front.cell, parts_of(cuts_of_copies(solid, front.cell))});
+  std::ranges::sort(cells, {}, &CutCell::cell);
   return cells;
 }
 
@@ -144,9 +149,10 @@ void make_corners(const Grid& grid, const std::vector<CutCell>& cut_cells, CellC
     worth);
 }
 
-void sort_unique(std::vector<CopyId>& copies) {
-  std::sort(copies.begin(), copies.end());
-  copies.erase(std::unique(copies.begin(), copies.end()), copies.end());
+template <class T>
+void sort_unique(std::vector<T>& all) {
+  std::sort(all.begin(), all.end());
+  all.erase(std::unique(all.begin(), all.end()), all.end());
 }
 
 /// Splits copies and renames corners around new cut edges.
@@ -157,10 +163,13 @@ class Update {
     change_.n_corners_before = solid.complex.n_corners();
   }
 
-  CutChange run(std::vector<EdgeId> new_edges, std::vector<SkinSegment> new_segments) {
+  CutChange run(std::vector<EdgeId> new_edges, std::vector<SkinSegment> new_segments,
+                const std::span<const CellId> new_fronts) {
     change_.edges = std::move(new_edges);
     change_.segments = std::move(new_segments);
     change_.cells = touched_cells(solid_.grid, change_.edges, change_.segments);
+    change_.cells.insert(change_.cells.end(), new_fronts.begin(), new_fronts.end());
+    sort_unique(change_.cells);
     for (const CellId cell : change_.cells)
       split(cell);
     std::sort(slots_.begin(), slots_.end());
@@ -190,7 +199,7 @@ class Update {
   };
 
   void split(const CellId cell) {
-    const CellCuts cell_cuts = cuts_of(solid_, cell);
+    const CellCuts cell_cuts = cuts_of_copies(solid_, cell);
     const Parts parts = parts_of(cell_cuts), before = unsaid_parts(cell, cell_cuts);
     bool splits = false;
     for (CopyId c = solid_.complex.first_copy[cell]; c.valid();) {
@@ -325,11 +334,15 @@ CellComplex build_complex(const Solid& solid) {
   const auto cut_cells = find_cut_cells(solid);
   make_copies(solid.grid, cut_cells, complex);
   make_corners(solid.grid, cut_cells, complex);
+  complex.tied = tied_copies(solid, complex);
   return complex;
 }
 
-CutChange update_complex(Solid& solid, std::vector<EdgeId> new_edges, std::vector<SkinSegment> new_segments) {
-  return Update(solid).run(std::move(new_edges), std::move(new_segments));
+CutChange update_complex(Solid& solid, std::vector<EdgeId> new_edges, std::vector<SkinSegment> new_segments,
+                         const std::span<const CellId> new_fronts) {
+  CutChange change = Update(solid).run(std::move(new_edges), std::move(new_segments), new_fronts);
+  solid.complex.tied = tied_copies(solid, solid.complex);
+  return change;
 }
 
 Pieces pieces(const CellComplex& complex) {
@@ -339,6 +352,8 @@ Pieces pieces(const CellComplex& complex) {
   for (const Copy& copy : complex.copies)
     for (Items left = copy.items(); left != 0; left &= left - 1)
       corners.unite(first(copy), copy.corners[vertex_at(std::countr_zero(left))].value);
+  for (const auto& [c, d] : complex.tied)
+    corners.unite(first(complex.copies[c]), first(complex.copies[d]));
   Pieces result;
   Table<CornerId, std::uint32_t> number(complex.n_corners(), none);
   result.piece.reserve(complex.n_copies());

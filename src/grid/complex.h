@@ -56,9 +56,10 @@ class CopiesOfCell {
 
 struct CellComplex {
   Table<CopyId, Copy> copies;
-  Table<CellId, CopyId> first_copy;    ///< the copy with the cell's lowest material vertex
-  Table<CornerId, NodeId> node;        ///< which node a corner is an instance of
-  Table<NodeId, CornerId> real_corner; ///< the one corner that holds a material node; invalid for empty nodes
+  Table<CellId, CopyId> first_copy;        ///< the copy with the cell's lowest material vertex
+  Table<CornerId, NodeId> node;            ///< which node a corner is an instance of
+  Table<NodeId, CornerId> real_corner;     ///< the one corner that holds a material node; invalid for empty nodes
+  std::vector<std::array<CopyId, 2>> tied; ///< of one cell, held together ahead of a front (fronts.h)
 
   std::size_t n_copies() const { return copies.size(); }
   std::size_t n_corners() const { return node.size(); }
@@ -70,7 +71,7 @@ struct CellComplex {
   CopyId copy_with(CellId cell, int item) const;
   /// Memory of all tables [B].
   std::size_t n_bytes() const;
-  void archive(Archive& a) { a(copies, first_copy, node, real_corner); }
+  void archive(Archive& a) { a(copies, first_copy, node, real_corner, tied); }
 };
 
 /// Of what is cut. Copies are ordered by cell, then as their parts are (parts.h); corners by node.
@@ -80,7 +81,7 @@ CellComplex build_complex(const Solid& solid);
 struct CutChange {
   std::vector<EdgeId> edges;         ///< that are cut now
   std::vector<SkinSegment> segments; ///< of the skin, that are cut now
-  std::vector<CellId> cells;         ///< around them; ascending
+  std::vector<CellId> cells;         ///< around them, and with fronts that are new; ascending
   std::size_t n_copies_before = 0, n_corners_before = 0;
   std::vector<CopyId> copies;    ///< new, or divided, or with other items or corners than before; ascending
   std::vector<CopyId> reshaped;  ///< these, and all whose material has another shape: those in the cells; ascending
@@ -90,9 +91,10 @@ struct CutChange {
   bool any() const { return !cells.empty(); }
 };
 
-/// Brings the complex up to date with edges and segments of the skin that are cut, but were not when it was built or
-/// updated last. What it costs depends on these alone.
-CutChange update_complex(Solid& solid, std::vector<EdgeId> new_edges, std::vector<SkinSegment> new_segments = {});
+/// Brings the complex up to date with edges and segments of the skin that are cut, and with cells that have fronts, but
+/// were and had not when it was built or updated last. What it costs depends on these alone.
+CutChange update_complex(Solid& solid, std::vector<EdgeId> new_edges, std::vector<SkinSegment> new_segments = {},
+                         std::span<const CellId> new_fronts = {});
 
 /// Appends for each new corner what its parent has.
 template <class T>
@@ -101,7 +103,7 @@ void inherit(const CutChange& change, std::vector<T>& of_corners) {
     of_corners.push_back(T(of_corners[parent.value]));
 }
 
-/// The connected components of the copies. Found from scratch whenever asked for, linear in the copies.
+/// The connected components of the copies; tied ones are connected. Found from scratch whenever asked for, linear in the copies.
 struct Pieces {
   Table<CopyId, std::uint32_t> piece; ///< of each copy, numbered from 0 in the order of their first copies
   std::uint32_t n_pieces = 0;

@@ -13,6 +13,7 @@ Cuts::Cuts(const Grid& grid)
     outer_cut_(grid.n_edges()),
     face_point_(grid.n_faces()),
     cell_point_(grid.n_cells()),
+    front_of_cell_(grid.n_cells()),
     skin_of_face_(grid.n_faces()),
     skin_of_cell_(grid.n_cells()) {}
 
@@ -35,6 +36,15 @@ void Cuts::add(const Grid& grid, EdgeCut cut) {
   }
   index = static_cast<std::uint32_t>(cuts_.size());
   cuts_.push_back(cut);
+}
+
+void Cuts::set(const Front& front) {
+  std::uint32_t& index = front_of_cell_.at(front.cell);
+  if (index == none) {
+    index = static_cast<std::uint32_t>(fronts_.size());
+    fronts_.push_back(front);
+  } else
+    fronts_[index] = front;
 }
 
 std::uint32_t Cuts::index(const SkinSegment& segment) const {

@@ -59,6 +59,19 @@ struct SkinCut {
   void archive(Archive& a) { a(segment, t, normal, label); }
 };
 
+/// A cell in which a cut ends, or would by fronts.h: the copies are parted as if it went on through the cell in a plane,
+/// and tied together as far as it has not come.
+struct Front {
+  CellId cell;
+  Segments ahead = 0; ///< of the cell's segments those that the plane meets, but not the cut
+  Vec3 point = Vec3::Zero(), normal = Vec3::UnitX(); ///< of the plane, rest frame [m], unit
+  double area = 0;                                   ///< of the plane in the cell [m^2]
+  double passed = 1;                                 ///< the part of it that the cut has come to, in (0, 1] [1]
+  CutLabel label = 1;
+
+  void archive(Archive& a) { a(cell, ahead, point, normal, area, passed, label); }
+};
+
 class Cuts {
  public:
   explicit Cuts(const Grid& grid);
@@ -107,6 +120,16 @@ class Cuts {
   void take_back(std::span<const EdgeId> edges);
   void take_back(std::span<const SkinSegment> segments);
 
+  /// Null in cells where no cut ends.
+  const Front* front(const CellId c) const {
+    const std::uint32_t i = front_of_cell_[c];
+    return i == none ? nullptr : &fronts_[i];
+  }
+  /// In the order in which they were set first.
+  std::span<const Front> fronts() const { return fronts_; }
+  /// In place of the cell's earlier one.
+  void set(const Front& front);
+
   /// What has been cut since settle() was called last: its vertices are yet to be placed.
   bool is_new(EdgeId e) const { return edge_cut_[e] != none && edge_cut_[e] >= n_settled_; }
   bool is_new(const SkinSegment& segment) const { return is_cut(segment) && index(segment) >= n_settled_of_skin_; }
@@ -141,6 +164,7 @@ class Cuts {
   void archive(Archive& a) {
     a(edge_cut_, outer_cut_, face_point_, cell_point_, skin_of_face_, skin_of_cell_, faces_, cells_);
     a(cuts_, skin_cuts_, n_cut_twice_, n_settled_, n_settled_of_skin_, points_);
+    a(front_of_cell_, fronts_);
   }
 
  private:
@@ -166,10 +190,12 @@ class Cuts {
   SparseIndex<EdgeId> edge_cut_, outer_cut_; // the second only of edges that are cut twice
   SparseIndex<FaceId> face_point_;
   SparseIndex<CellId> cell_point_;
+  SparseIndex<CellId> front_of_cell_; // into fronts_
   SparseIndex<FaceId> skin_of_face_; // into faces_
   SparseIndex<CellId> skin_of_cell_; // into cells_
   std::vector<FaceEntries> faces_;
   std::vector<CellEntries> cells_;
+  std::vector<Front> fronts_;
   std::vector<EdgeCut> cuts_;
   std::vector<SkinCut> skin_cuts_;
   std::size_t n_cut_twice_ = 0, n_settled_ = 0, n_settled_of_skin_ = 0;

@@ -4,22 +4,77 @@
 
 #include <Eigen/Geometry>
 
+#include <algorithm>
 #include <bit>
+#include <span>
 
 namespace kerf::grid {
 
+namespace {
+
+/// Where the material of a cell is divided: on its lines, in its faces, in it. Ahead of a front where its plane is.
+class Divisions {
+ public:
+  Divisions(const Solid& solid, const CellId c)
+    : solid_(solid), front_(solid.cuts.front(c)), cell_(c), edges_(solid.grid.edges(c)), faces_(solid.grid.faces(c)) {}
+
+  Vec3 on_line(const int line) const {
+    const Vec3 p = edge_point(solid_, edges_[line]);
+    if (!is_ahead(line))
+      return p;
+    Vec3 q = solid_.grid.position(solid_.grid.ends(edges_[line])[0]);
+    const int axis = cube::line_axis(line);
+    const double t = front_->normal.dot(front_->point - q) / (front_->normal[axis] * solid_.grid.h());
+    q[axis] += solid_.grid.h() * std::clamp(t, min_edge_parameter, 1 - min_edge_parameter);
+    return q;
+  }
+  Vec3 in_face(const int face) const {
+    if (front_ == nullptr || solid_.cuts.point(faces_[face]) != nullptr)
+      return face_point(solid_, faces_[face]);
+    return mean(cube::face_lines[face], face_point(solid_, faces_[face]));
+  }
+  Vec3 centre() const {
+    static constexpr std::array<int, 12> all = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11};
+    if (front_ == nullptr || solid_.cuts.point(cell_) != nullptr)
+      return cell_point(solid_, cell_);
+    return mean(all, cell_point(solid_, cell_));
+  }
+
+ private:
+  bool is_ahead(const int line) const { return front_ != nullptr && (front_->ahead >> line & 1) != 0; }
+
+  /// Of the divisions on lines that are cut, or ahead of the front.
+  Vec3 mean(const std::span<const int> lines, const Vec3& if_none) const {
+    Vec3 sum = Vec3::Zero();
+    int n = 0;
+    for (const int line : lines)
+      if (is_ahead(line) || solid_.cuts.is_cut(edges_[line])) {
+        sum += on_line(line);
+        ++n;
+      }
+    return n == 0 ? if_none : Vec3(sum / n);
+  }
+
+  const Solid& solid_;
+  const Front* front_; // none in most cells
+  CellId cell_;
+  std::array<EdgeId, 12> edges_;
+  std::array<FaceId, 6> faces_;
+};
+
+} // namespace
+
 std::array<Tetrahedron, 6> octant(const Solid& solid, const CellId c, const int vertex) {
   const Vec3 origin = solid.grid.origin(c);
-  const auto edges = solid.grid.edges(c);
-  const auto faces = solid.grid.faces(c);
+  const Divisions at(solid, c);
   const auto local = [&](const Vec3& p) -> Vec3 { return (p - origin) / solid.grid.h(); };
   const Vec3 node(vertex & 1, vertex >> 1 & 1, vertex >> 2 & 1);
-  const Vec3 middle = local(cell_point(solid, c));
+  const Vec3 middle = local(at.centre());
   std::array<Vec3, 3> on_edge, in_face;  // by the edge's direction, by the face's normal
   for (int axis = 0; axis < 3; ++axis) { // right on the edge and in the face: round-off may not turn a thin octant over
     on_edge[axis] = node;
-    on_edge[axis][axis] = local(edge_point(solid, edges[cube::line_at(vertex, axis)]))[axis];
-    in_face[axis] = local(face_point(solid, faces[cube::face_at(vertex, axis)]));
+    on_edge[axis][axis] = local(at.on_line(cube::line_at(vertex, axis)))[axis];
+    in_face[axis] = local(at.in_face(cube::face_at(vertex, axis)));
     in_face[axis][axis] = node[axis];
   }
   std::array<Tetrahedron, 6> tetrahedra;
@@ -44,8 +99,8 @@ class LocalSkeleton {
     : solid_(solid),
       cell_(c),
       skeleton_(skeleton_of(material_of(solid.grid, c))),
-      blades_(cuts_of(solid, c).blades),
-      edges_(solid.grid.edges(c)),
+      blades_(cuts_of_copies(solid, c).blades),
+      divisions_(solid, c),
       faces_(solid.grid.faces(c)),
       origin_(solid.grid.origin(c)) {
     for (Items left = skeleton_.items; left != 0; left &= left - 1)
@@ -60,15 +115,16 @@ class LocalSkeleton {
     if ((blades_ >> segment & 1) == 0)
       return 0.5 * (items_[a] + items_[b]);
     if (segment < skeleton::first_half)
-      return on_line(segment, local(edge_point(solid_, edges_[segment])));
-    return items_[a] + solid_.cuts.find(skin_segment(solid_.grid, cell_, segment))->t * (items_[b] - items_[a]);
+      return on_line(segment, local(divisions_.on_line(segment)));
+    const SkinCut* const of_skin = solid_.cuts.find(skin_segment(solid_.grid, cell_, segment));
+    return items_[a] + (of_skin ? of_skin->t : 0.5) * (items_[b] - items_[a]);
   }
 
   Vec3 in_side(const int side) const {
     if (side < skeleton::first_triangle) {
       const FaceId f = faces_[side / 2];
       if (skeleton_.side[side].n == 4 && (skeleton_.items >> skeleton::on_arc(side / 2, 0) & 1) == 0)
-        return in_face(side / 2, local(face_point(solid_, f)));
+        return in_face(side / 2, local(divisions_.in_face(side / 2)));
       const Vec3* const p = solid_.cuts.inner_point(f, side % 2);
       return p ? in_face(side / 2, local(*p)) : middle_of(side);
     }
@@ -129,7 +185,7 @@ class LocalSkeleton {
   CellId cell_;
   const Skeleton& skeleton_;
   Segments blades_;
-  std::array<EdgeId, 12> edges_;
+  Divisions divisions_;
   std::array<FaceId, 6> faces_;
   Vec3 origin_;
   std::array<Vec3, skeleton::n_items> items_;

@@ -42,7 +42,7 @@ double fill(const Solid& solid, const Copy& copy);
 
 template <class Function>
 void for_each_tetrahedron(const Solid& solid, const Copy& copy, const Function& f) {
-  if (copy.skin != 0 || (copy.nodes != 0xff && cuts_of(solid, copy.cell).is_cut_at_skin())) {
+  if (copy.skin != 0 || (copy.nodes != 0xff && cuts_of_copies(solid, copy.cell).is_cut_at_skin())) {
     for (const auto& [t, vertex] : pieces_of(solid, copy.cell, copy.items()))
       f(t, vertex);
     return;

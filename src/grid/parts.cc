@@ -67,6 +67,17 @@ CellCuts cuts_of(const Solid& solid, const CellId c) {
   return cuts_of(solid, c, solid.cuts.configuration(solid.grid, c));
 }
 
+CellCuts with(CellCuts cell, const Segments ahead) {
+  cell.cut |= static_cast<unsigned>(ahead & skeleton::lines & ~Segments(skin_lines[cell.material]));
+  cell.blades |= ahead;
+  return cell;
+}
+
+CellCuts cuts_of_copies(const Solid& solid, const CellId c) {
+  const Front* const front = solid.cuts.front(c);
+  return front ? with(cuts_of(solid, c), front->ahead) : cuts_of(solid, c);
+}
+
 CellCuts cuts_of(const Solid& solid, const CellId c, const unsigned cut_lines) {
   CellCuts result{material_of(solid.grid, c), cut_lines, cut_lines};
   if (result.has_skin())

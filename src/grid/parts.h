@@ -24,6 +24,11 @@ CellCuts cuts_of(const Solid& solid, CellId c);
 /// The same for a cell whose cut lines are known.
 CellCuts cuts_of(const Solid& solid, CellId c, unsigned cut_lines);
 
+/// As if blades had cut these segments too.
+CellCuts with(CellCuts cell, Segments ahead);
+/// What the cell's copies follow: where a cut ends in it, what is ahead of the front too.
+CellCuts cuts_of_copies(const Solid& solid, CellId c);
+
 /// The segment of the skin that a segment of a cell is, from skeleton::first_half on.
 SkinSegment skin_segment(const Grid& grid, CellId c, int segment);
 

@@ -112,6 +112,11 @@ std::string describe_physics(const Section& section, const BodyParameters& param
               mass, parameters.integrator);
 }
 
+/// Elements and springs know ties.
+cut::Fronts fronts_of(const std::string& backend) {
+  return backend == "fem" || backend == "mass-spring" ? cut::Fronts::inside_cells : cut::Fronts::at_faces;
+}
+
 /// Which parts of the mesh the grid takes for pieces of their own, too thin to be deformed.
 std::string describe_crumbs(const Body& body) {
   constexpr std::size_t most = 5;
@@ -153,7 +158,7 @@ Body compose_body(const Section& section, const GravityParameters* gravity, cons
   compose_loads(section, floors, body);
   body.fronts = compose_crack_fronts(section, parameters.cube_edge, parameters.backend);
   if (const std::size_t n_cuts = world.blades.size() + world.cut_surfaces.size(); n_cuts > 0)
-    body.cutter = std::make_unique<cut::Cutter>(n_cuts);
+    body.cutter = std::make_unique<cut::Cutter>(n_cuts, cut::Release::queued, fronts_of(parameters.backend));
   start(body, mesh, physics_maker(section, parameters, world.time_step), world.setup_seconds);
   if (const Section* initial = section.find("Initial state")) {
     body.initial = compose_initial_state(*initial);

@@ -37,10 +37,8 @@ void CrackFrontParameters::describe(Parameters& p) {
     p.number("Radius [m]", radius, positive, "Circle: its radius.");
     require_of_a_form();
   }
-  p.number(
-    "Inner radius [1]", inner, positive,
-    "Of the tube around the front in which nothing is summed, in cube edges: the fields are singular there, and the "
-    "front of a cut is up to a cube's edge behind where it was cut.");
+  p.number("Inner radius [1]", inner, positive,
+           "Of the tube around the front in which nothing is summed, in cube edges: the fields are singular there.");
   p.number("Outer radius [1]", outer, positive,
            "Of the tube to which the sum goes, in cube edges: inside of it there must be neither loads nor supports.");
 }
@@ -50,9 +48,9 @@ SectionKind crack_front_kind() {
     "Crack front",
     Occurrence::named,
     "The front of a crack, as it lies at rest; see the observables energy release rates and stress intensities. For "
-    "statics. The front of a cut is up to a cube behind where it was cut: the stress intensity is 14 % low with 8 "
-    "cubes "
-    "along a crack from the side, 7 % with 16.",
+    "statics. Discs and rectangles that cut at once end where they are cut, in cells or between them: the stress "
+    "intensity is 1 % low with 4 cubes along a crack from the side. What blades and meshes cut may end up to a cube "
+    "earlier.",
     keys_of<CrackFormParameters, CrackFrontParameters>(),
     {}};
 }

@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/parameters.h"
+#include "grid/fronts.h"
 #include "grid/material.h"
 
 #include <Eigen/Geometry>
@@ -57,12 +58,14 @@ MassSpring::MassSpring(const grid::Solid& solid, const MassSpringOptions& option
   for (const auto c : ids<grid::CopyId>(solid.complex.n_copies()))
     for (const auto corner : solid.complex.copies[c].corners)
       mass_[corner.value] += fill[c.value] * eighth;
-  add_springs(solid.complex, fill, solid.grid.h(), options);
+  add_springs(solid, fill, options);
   find_users();
 }
 
-void MassSpring::add_springs(const grid::CellComplex& complex, const std::vector<double>& fill, const double h,
+void MassSpring::add_springs(const grid::Solid& solid, const std::vector<double>& fill,
                              const MassSpringOptions& options) {
+  const grid::CellComplex& complex = solid.complex;
+  const double h = solid.grid.h(), modulus = options.youngs_modulus / (1 - poissons_ratio * poissons_ratio);
   const double edge = options.youngs_modulus * h / 10, diagonal = options.youngs_modulus * h / 5;
   const auto pairs = pairs_of_cube();
   std::vector<Spring> all;
@@ -75,6 +78,8 @@ void MassSpring::add_springs(const grid::CellComplex& complex, const std::vector
       all.push_back({std::min(a, b), std::max(a, b), fill[c.value] * (pair.is_edge ? edge : diagonal),
                      pair.is_edge ? h : std::sqrt(2.0) * h});
     }
+  for (const grid::Tie& tie : grid::ties(solid))
+    all.push_back({std::min(tie.a, tie.b).value, std::max(tie.a, tie.b).value, modulus * tie.length, 0});
   std::stable_sort(all.begin(), all.end(),
                    [](const Spring& s, const Spring& t) { return s.a != t.a ? s.a < t.a : s.b < t.b; });
   for (const Spring& spring : all) { // sums in the order of the copies

@@ -3,7 +3,7 @@
 /// Masses and springs on the corners of a cut body, the cheap baseline (thesis §2.1.5).
 ///
 /// Springs join the corners of a copy along the cube's 12 edges and 12 face diagonals; copies that share two corners
-/// share the spring. A spring of rest length L and stiffness K has the energy K/2 (l - L)^2 at length l, which is the
+/// share the spring, and where a cut ends between copies springs of no length tie them (grid/fronts.h). A spring of rest length L and stiffness K has the energy K/2 (l - L)^2 at length l, which is the
 /// force of (2.21). Damping (2.22) is the load's beta: a force -beta K v along each spring, K_d = beta K.
 ///
 /// A full cube of edge h gets K = E h / 10 along edges and E h / 5 along face diagonals: then uniform strain has the
@@ -64,8 +64,7 @@ class MassSpring : public dynamics::ElasticModel, public dynamics::StiffnessMatr
   };
   static Direction direction(const Spring& spring, const Points& x, dynamics::Tangent kind);
 
-  void add_springs(const grid::CellComplex& complex, const std::vector<double>& fill, double h,
-                   const MassSpringOptions& options);
+  void add_springs(const grid::Solid& solid, const std::vector<double>& fill, const MassSpringOptions& options);
   void find_users();
   /// y_c = sum of what springs do to corner c: plus at a, minus at b.
   void gather(const Points& of_springs, double* y) const;

@@ -5,6 +5,7 @@
 #include "grid/cube.h"
 #include "grid/shape.h"
 #include "grid/touched.h"
+#include "surface/places.h"
 #include "surface/surface.h"
 #include "surface/table.h"
 
@@ -27,30 +28,11 @@ using grid::NodeId;
 using grid::Solid;
 
 inline constexpr std::uint32_t unset = Id<void>::no_value;
-inline constexpr std::size_t triangles_per_end = 8; // two in each of the four cells around an edge
-
-/// Which of the four cells around a cell's line the cell is: the lattice offsets of the line across its axis.
-inline constexpr std::array<int, 12> place_around_line = [] {
-  std::array<int, 12> place{};
-  for (int line = 0; line < cube::n_lines; ++line) {
-    const int axis = cube::line_axis(line), lower = cube::line_vertices[line][0];
-    place[line] = (lower >> (axis + 1) % 3 & 1) | (lower >> (axis + 2) % 3 & 1) << 1;
-  }
-  return place;
-}();
-
-/// The place of a vertex among those of its face.
-constexpr int place_in_face(const int face, const int vertex) {
-  int place = 0;
-  for (int i = 1; i < 4; ++i)
-    if (cube::face_vertices[face][i] == vertex)
-      place = i;
-  return place;
-}
-
 enum class Known { kept, renewed }; ///< what a writer does with a vertex that is there already
 
-/// Writes the vertices and triangles of cells. What cells share comes from its edge or face alone: the same bits.
+/// Writes the vertices and triangles of cells. What cells share comes from its edge or face alone: the same bits. A vertex
+/// that belongs to several items follows the copy of the lowest: of one alone but in cells with fronts (grid/fronts.h),
+/// where the surface closes before the front.
 class Writer {
  public:
   Writer(const Solid& solid, Surface& surface, SurfaceIndex& index, const Known known)
@@ -132,9 +114,9 @@ class Writer {
   void write(const Quad& quad) {
     const CopyId copy = copy_at_[quad.end];
     const auto& vertices = quad.vertices;
-    const std::uint32_t edge = edge_vertex(copy, vertices[0]), first = face_vertex(copy, vertices[1]),
-                        middle = skeleton_ ? skin_centre(skeleton_->loop[quad.line], copy) : centre(copy, vertices[2]),
-                        second = face_vertex(copy, vertices[3]);
+    const std::uint32_t edge = edge_vertex(copy, vertices[0]), first = face_vertex(vertices[1]),
+                        middle = skeleton_ ? skin_centre(skeleton_->loop[quad.line], copy) : centre(vertices[2]),
+                        second = face_vertex(vertices[3]);
     const auto& [lower, upper] = cube::line_vertices[quad.line];
     put(quad, cut_[quad.line], quad.end == upper && copy_at_[lower].valid(), {edge, first, middle, second}, copy);
   }
@@ -168,9 +150,9 @@ class Writer {
     const auto& [ends, sides] = skeleton_->segment[segment];
     for (const int end : {0, 1}) {
       const CopyId copy = copy_of_[ends[end]];
-      const std::uint32_t cut = cut_vertex(segment, end, copy), middle = centre(copy);
+      const std::uint32_t cut = cut_vertex(segment, end, copy), middle = centre(ends[end]);
       for (const int way : {0, 1}) {
-        const std::uint32_t in_side = side_vertex(sides[way], ends[end], copy);
+        const std::uint32_t in_side = side_vertex(sides[way], ends[end]);
         put(triangle_of_cut(segment, end, way),
             way == end ? Triangle{cut, middle, in_side} : Triangle{cut, in_side, middle}, copy);
       }
@@ -214,23 +196,20 @@ class Writer {
        blades_) != 0;
     if (!is_cut) {
       const CopyId copy = copy_of_[items[0]];
-      put(triangle_of_skin(triangle, 0),
-          {item_vertex(items[0], copy), item_vertex(items[1], copy), item_vertex(items[2], copy)}, copy);
+      put(triangle_of_skin(triangle, 0), {item_vertex(items[0]), item_vertex(items[1]), item_vertex(items[2])}, copy);
       return;
     }
     for (int i = 0; i < n; ++i) {
       const int a = items[i], b = items[(i + 1) % n], segment = segments[i];
       const CopyId of_a = copy_of_[a], of_b = copy_of_[b];
       if ((blades_ >> segment & 1) == 0) {
-        put(triangle_of_skin(triangle, i), {item_vertex(a, of_a), item_vertex(b, of_a), side_vertex(side, a, of_a)},
-            of_a);
+        put(triangle_of_skin(triangle, i), {item_vertex(a), item_vertex(b), side_vertex(side, a)}, of_a);
         continue;
       }
       const int end = skeleton_->segment[segment].ends[0] == a ? 0 : 1;
-      put(triangle_of_skin(triangle, i),
-          {item_vertex(a, of_a), cut_vertex(segment, end, of_a), side_vertex(side, a, of_a)}, of_a);
-      put(triangle_of_skin(triangle, n + i),
-          {cut_vertex(segment, 1 - end, of_b), item_vertex(b, of_b), side_vertex(side, b, of_b)}, of_b);
+      put(triangle_of_skin(triangle, i), {item_vertex(a), cut_vertex(segment, end, of_a), side_vertex(side, a)}, of_a);
+      put(triangle_of_skin(triangle, n + i), {cut_vertex(segment, 1 - end, of_b), item_vertex(b), side_vertex(side, b)},
+          of_b);
     }
   }
 
@@ -268,7 +247,8 @@ class Writer {
     return id;
   }
 
-  std::uint32_t item_vertex(const int item, const CopyId copy) {
+  std::uint32_t item_vertex(const int item) {
+    const CopyId copy = copy_of_[lowest_beside(item)];
     if (item < skeleton::first_on_arc) {
       const int line = item - skeleton::first_on_line;
       const bool is_upper = skeleton_->vertex[item] == cube::line_vertices[line][1];
@@ -282,6 +262,15 @@ class Writer {
     if (id == unset || known_ == Known::renewed)
       set_in_face(id, face, grid::face_point(solid_, faces_[face]), copy);
     return id;
+  }
+
+  /// Of the items that hang together with a point of the skin on its line or in the polygon at its arc.
+  int lowest_beside(const int item) const {
+    if (item >= skeleton::first_middle)
+      return item;
+    if (item >= skeleton::first_on_arc)
+      return std::countr_zero(part_of_side(item - skeleton::first_on_arc, item));
+    return (blades_ >> (item - skeleton::first_on_line) & 1) ? item : skeleton_->vertex[item];
   }
 
   /// Of the nodes of a polygon beside an arc.
@@ -306,8 +295,9 @@ class Writer {
   }
 
   /// The vertex of the cuts in a side, of the part that holds the item there.
-  std::uint32_t side_vertex(const int side, const int item, const CopyId copy) {
+  std::uint32_t side_vertex(const int side, const int item) {
     const grid::Items part = part_of_side(side, item);
+    const CopyId copy = copy_of_[std::countr_zero(part)];
     if (side >= skeleton::first_triangle) {
       const int triangle = side - skeleton::first_triangle;
       const std::uint64_t key =
@@ -356,7 +346,9 @@ class Writer {
     return id;
   }
 
-  std::uint32_t skin_centre(const int loop, const CopyId copy) {
+  std::uint32_t skin_centre(const int loop, CopyId copy) {
+    if (solid_.cuts.front(cell_) != nullptr)
+      copy = solid_.complex.copy_with(cell_, skeleton::middle(loop));
     std::uint32_t& first = index_.first_skin_centre.at(cell_);
     if (first == unset) {
       first = static_cast<std::uint32_t>(index_.skin_centres.size());
@@ -369,7 +361,8 @@ class Writer {
   }
 
   /// Of the cuts at the skin.
-  std::uint32_t centre(const CopyId copy) {
+  std::uint32_t centre(const int item) {
+    const CopyId copy = copy_of_[std::countr_zero(skeleton_->reachable(grid::Items(1) << item, blades_))];
     std::uint32_t& id = index_.centres[copy];
     if (id == unset || known_ == Known::renewed)
       set_centre(id, *solid_.cuts.inner_point(cell_), copy);
@@ -418,7 +411,7 @@ class Writer {
     set(id, p, xi, copy, (1u << lower) | (1u << upper));
   }
 
-  std::uint32_t face_vertex(const CopyId copy, const TableVertex& v) {
+  std::uint32_t face_vertex(const TableVertex& v) {
     const int place = 24 + 8 * v.index + v.side;
     if (seen_[place])
       return in_cell_[place];
@@ -426,13 +419,14 @@ class Writer {
     std::uint32_t& id = index_.face_vertices[first + place_in_face(v.index, v.side)];
     if (is_wanted(id, place)) {
       const Vec3 p = grid::face_point(solid_, faces_[v.index]);
-      set(id, p, (p - node_position(cube::face_vertices[v.index][0])) / solid_.grid.h(), copy,
+      set(id, p, (p - node_position(cube::face_vertices[v.index][0])) / solid_.grid.h(), copy_at_[v.side],
           cube::face_mask(v.index));
     }
     return in_cell_[place] = id;
   }
 
-  std::uint32_t centre(const CopyId copy, const TableVertex& v) {
+  std::uint32_t centre(const TableVertex& v) {
+    const CopyId copy = copy_at_[v.side];
     std::uint32_t& id = index_.centres[copy];
     if (is_wanted(id, 72 + v.side)) {
       const Vec3 p = grid::cell_point(solid_, cell_);

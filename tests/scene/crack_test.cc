@@ -74,14 +74,13 @@ double edge_crack(const int n, const double inner, const double outer) {
   return plate.last("stress intensity tip") / K - 1;
 }
 
-/// A front is up to a cube behind where it was cut, so K is of first order: -24.8, -13.6, -7.3 % with 4, 8, 16 cubes along the
-/// crack. Which tubes are taken makes no difference.
+/// -1.0, -.5 % with 4, 8 cubes along the crack. Which tubes are taken makes no difference.
 TEST(Crack, AnEdgeCrackHasItsStressIntensity) {
   const double coarse = edge_crack(10, 2, 4), fine = edge_crack(20, 2, 4);
   say("edge_crack_4", coarse);
   say("edge_crack_8", fine);
-  EXPECT_LT(std::abs(fine), 0.15);
-  EXPECT_LT(std::abs(fine), 0.6 * std::abs(coarse));
+  EXPECT_LT(std::abs(coarse), 0.03);
+  EXPECT_LT(std::abs(fine), 0.015);
   EXPECT_NEAR(edge_crack(20, 2, 3), fine, 1e-3);
 }
 
@@ -108,8 +107,8 @@ TEST(Crack, ASplitBeamHasItsEnergyReleaseRate) {
   const double coarse = split_beam(3), fine = split_beam(4);
   say("split_beam_3", coarse);
   say("split_beam_4", fine);
-  EXPECT_LT(std::abs(coarse), 0.06);
-  EXPECT_LT(std::abs(fine), 0.03);
+  EXPECT_LT(std::abs(coarse), 0.04);
+  EXPECT_LT(std::abs(fine), 0.015);
 }
 
 /// A penny-shaped crack under tension in a body without end (Sneddon 1946): G = 4 (1 - nu^2) sigma^2 a / (pi E), opening in the
@@ -127,19 +126,20 @@ void penny(const int n) {
                                                   "Normal [1] = 0, 0, 1", "Radius [m] = 1"}) +
                     observe(all_of_cuts));
   const double k = (1 - nu * nu) * sigma / E;
-  const auto expect = [&](const std::string& name, const double exact, const double of_edge) {
-    const double error = block.last(name) / exact - 1;
+  const auto expect = [&](const std::string& name, const double exact, const double wide, const double tolerance) {
+    const double error = block.last(name) / (exact * (1 + wide / 27)) - 1;
     say(name + " " + std::to_string(n), error);
-    EXPECT_LT(std::abs(error), of_edge * h) << name;
+    EXPECT_LT(std::abs(error), tolerance) << name;
   };
-  expect("energy release rate rim", 4 * k * sigma / pi, 1.7);
-  expect("cut opening crack", 8 * k / pi, 1.1);
-  expect("cut volume crack", 16 * k / 3, 2.6);
-  expect("cut area crack", pi, 0.15);
+  expect("energy release rate rim", 4 * k * sigma / pi, 1.94, 0.05);
+  expect("cut opening crack", 8 * k / pi, 0.54, 0.04);
+  expect("cut volume crack", 16 * k / 3, 0.96, 0.04);
+  expect("cut area crack", pi, 0, 0.03);
   EXPECT_NEAR(block.last("cut extent crack y"), 2, 2 * h);
 }
 
-/// All of first order in h over the radius 1.
+/// The block is three radii wide on each side, which lets the crack open further: the volume and G as measured in
+/// tests/verification/plates_test.cc, the opening as with 14 cubes a radius in params/compare/penny.prm.
 TEST(Crack, APennyHasItsEnergyReleaseRateAndOpening) { penny(5); }
 
 TEST(Crack, RefusesWhatIsNoFront) {

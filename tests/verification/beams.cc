@@ -226,12 +226,13 @@ struct SplitArms {
   BeamResult result;
 };
 
-SplitArms split_arms(const DoubleCantilever& beam, const Tractions& tractions, const BeamModel& model) {
+SplitArms split_arms(const DoubleCantilever& beam, const cut::Fronts fronts, const Tractions& tractions,
+                     const BeamModel& model) {
   const double h = beam.arm / beam.n_over_arm, c = beam.a + beam.front * h;
   const Strip strip{beam.a + 4 * beam.arm, 2 * beam.arm, h};
   const auto make = [&] {
     Body body = box(strip.box(), h, Vec3(0, 0, 0.5));
-    cut(body, {Vec3::UnitZ(), beam.arm}, [&](const Vec3& X) { return X[0] < c; });
+    cut_at_once(body, cut::Rectangle{Vec3(0, h, beam.arm), Vec3(2 * c, 0, 0), Vec3(0, 4 * h, 0)}, fronts);
     return body;
   };
   Built built = build(make, options_of(model, 1, 0));
@@ -252,7 +253,7 @@ BeamResult double_cantilever(const DoubleCantilever& beam, const BeamModel& mode
       return Vec3::Zero();
     return {0, 0, p.position[2] > beam.arm ? traction : -traction};
   };
-  SplitArms arms = split_arms(beam, pull, model);
+  SplitArms arms = split_arms(beam, cut::Fronts::inside_cells, pull, model);
   const fem::LineFront front{Vec3(c, 0, beam.arm), Vec3(c, b, beam.arm), Vec3::UnitX()};
   const double G = fem::energy_release_rate(*arms.built.model, arms.built.body.rest(),
                                             deformed(arms.built.body, arms.u), front, {0.5 * beam.a, 0.9 * beam.a});
@@ -266,7 +267,7 @@ BeamResult pressed_arms(const DoubleCantilever& beam, const BeamModel& model) {
     const bool is_pressed = p.label != grid::skin_label && p.position[0] < beam.a;
     return is_pressed ? Vec3(-p.normal) : Vec3(Vec3::Zero());
   };
-  SplitArms arms = split_arms(beam, press, model);
+  SplitArms arms = split_arms(beam, cut::Fronts::at_faces, press, model);
   const auto at = [&](const double z) {
     return value_at(arms.built.body, arms.u, Vec3(1e-9 * h, h * (1 + 1e-9), z))[2];
   };

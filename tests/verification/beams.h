@@ -55,11 +55,8 @@ using fem::MassMatrix;
 /// 2001 compares coefficients), axial with Love's lateral inertia, torsion by Saint-Venant with J = 0.140577 t^4.
 BeamResult frequency(Vibration kind, double slenderness, int n_over_thickness, MassMatrix mass, const BeamModel& model);
 
-/// Two arms of height `arm` at the end x = 0 of a beam, clamped at its other end, nu = 0, nodes midway above the cut.
-/// The
-/// front of the cut lies `front` h beyond the last nodes that it passes, those at x = a. The cell that holds the front
-/// is
-/// one element: the arms end at x = a, whatever `front` is.
+/// Two arms of height `arm` at the end x = 0 of a beam, clamped at its other end, nu = 0, nodes midway above the cut. The
+/// front of the cut lies `front` h beyond the last nodes that it passes, those at x = a.
 struct DoubleCantilever {
   double a = 4, arm = 1; ///< multiples of the cube edge [m]
   int n_over_arm = 4;
@@ -71,7 +68,7 @@ struct DoubleCantilever {
 /// 7, in layers that shrink by 0.3 towards the front, give 0.6732 for c / arm = 2 and 4: the formula is good to 2e-4.
 BeamResult double_cantilever(const DoubleCantilever& beam, const BeamModel& model);
 /// The arms pushed apart by a pressure of 1 Pa on the faces of the cut, E = 1 Pa: opening at x = 0 between the middles
-/// of the arms [m].
+/// of the arms [m]. The cell that holds the front is one element, as in a mesh that is fitted to x = a.
 BeamResult pressed_arms(const DoubleCantilever& beam, const BeamModel& model);
 
 } // namespace kerf::verification

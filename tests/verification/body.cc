@@ -97,6 +97,12 @@ void cut(Body& body, const support::Plane& plane, const std::function<bool(const
   place(body);
 }
 
+void cut_at_once(Body& body, const cut::Shape& shape, const cut::Fronts fronts) {
+  cut::Cutter cutter(1, cut::Release::queued, fronts);
+  cutter.begin(body, body.rest());
+  surface::place(body, cutter.at_once(body, {"cut", shape, 1}, body.rest()), {});
+}
+
 Points traction_forces(const Body& body, const std::function<Vec3(const SurfacePoint&)>& traction) {
   static const auto rule = fem::triangle_rule(5);
   const auto skin = surface::build_surface(body);

@@ -7,6 +7,7 @@
 /// cells that are full (to grid::min_edge_parameter), without slivers beyond its faces. What no node lies in is
 /// missing.
 
+#include "cut/cutter.h"
 #include "dynamics/state.h"
 #include "fem/hexahedra.h"
 #include "surface/surface.h"
@@ -32,6 +33,9 @@ Body ball(double radius, double h, const Vec3& offset);
 
 /// Cuts the body where it crosses the plane and `is_cut` accepts the crossing.
 void cut(Body& body, const support::Plane& plane, const std::function<bool(const Vec3& crossing)>& is_cut);
+
+/// Cuts the body with a surface, as scenes do for elements.
+void cut_at_once(Body& body, const cut::Shape& shape, cut::Fronts fronts = cut::Fronts::inside_cells);
 
 /// A surface triangle as it is integrated over.
 struct SurfacePoint {

@@ -1,0 +1,19 @@
+#pragma once
+
+/// Where surfaces end inside cells (grid/fronts.h): the cells that a disc or a rectangle passes in part, and how far.
+///
+/// Of each cell that the shape's plane meets, and that has one copy, the plane's section is clipped with the shape; the
+/// part that is left of it is how far the cut has come. The shape is taken larger by the lag of fronts, as elements are
+/// too stiff there.
+///
+/// Limits: only shapes that are flat and have an end; a mesh and moving blades end with the last cell that they part.
+
+#include "cut/cut_surface.h"
+
+namespace kerf::cut {
+
+/// Ascending; with the corners at `x` [m]. What the surface cuts must be cut. Cells whose fronts it only moves on are among
+/// them.
+std::vector<grid::Front> find_fronts(const CutSurface& surface, const grid::Solid& solid, const Points& x);
+
+} // namespace kerf::cut

@@ -1,0 +1,63 @@
+#include "fem/ties.h"
+
+namespace kerf::fem {
+
+namespace {
+
+Eigen::Map<const Vec3> at(const std::span<const double> values, const std::uint32_t corner) {
+  return Eigen::Map<const Vec3>(values.data() + 3 * std::size_t(corner));
+}
+Eigen::Map<Vec3> at(const std::span<double> values, const std::uint32_t corner) {
+  return Eigen::Map<Vec3>(values.data() + 3 * std::size_t(corner));
+}
+
+} // namespace
+
+void Ties::update(const grid::Solid& solid, const material::Elastic& material) {
+  const double nu = material.poissons_ratio, modulus = material.youngs_modulus / (1 - nu * nu);
+  ties_.clear();
+  for (const grid::Tie& tie : grid::ties(solid))
+    ties_.push_back({tie.a.value, tie.b.value, modulus * tie.length});
+}
+
+double Ties::energy(const Points& x) const {
+  double sum = 0;
+  for (const auto& [a, b, k] : ties_)
+    sum += 0.5 * k * (x[a] - x[b]).squaredNorm();
+  return sum;
+}
+
+void Ties::add_force(const Points& x, Points& forces) const {
+  for (const auto& [a, b, k] : ties_) {
+    const Vec3 f = k * (x[a] - x[b]);
+    forces[a] -= f;
+    forces[b] += f;
+  }
+}
+
+void Ties::add_product(const std::span<const double> p, const std::span<double> y) const {
+  for (const auto& [a, b, k] : ties_) {
+    const Vec3 f = k * (at(p, a) - at(p, b));
+    at(y, a) += f;
+    at(y, b) -= f;
+  }
+}
+
+void Ties::add_diagonal(const std::span<double> diagonal) const {
+  for (const auto& [a, b, k] : ties_) {
+    diagonal[a] += k;
+    diagonal[b] += k;
+  }
+}
+
+void Ties::add_entries(std::vector<Eigen::Triplet<double>>& entries) const {
+  for (const auto& [a, b, stiffness] : ties_)
+    for (int k = 0; k < 3; ++k) {
+      entries.emplace_back(3 * a + k, 3 * a + k, stiffness);
+      entries.emplace_back(3 * b + k, 3 * b + k, stiffness);
+      entries.emplace_back(3 * a + k, 3 * b + k, -stiffness);
+      entries.emplace_back(3 * b + k, 3 * a + k, -stiffness);
+    }
+}
+
+} // namespace kerf::fem

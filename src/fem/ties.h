@@ -1,0 +1,37 @@
+#pragma once
+
+/// The springs that hold copies together where a cut ends between them (grid/fronts.h): E = sum of k/2 |x_a - x_b|^2.
+
+#include "grid/fronts.h"
+#include "material/elastic.h"
+
+#include <Eigen/SparseCore>
+
+#include <span>
+
+namespace kerf::fem {
+
+class Ties {
+ public:
+  /// Takes over all of them.
+  void update(const grid::Solid& solid, const material::Elastic& material);
+
+  std::size_t size() const { return ties_.size(); }
+  double energy(const Points& x) const;
+  /// forces -= dE/dx [N].
+  void add_force(const Points& x, Points& forces) const;
+  /// y += K p [N] for p [m].
+  void add_product(std::span<const double> p, std::span<double> y) const;
+  /// K is a number times the identity for each pair of corners: adds the diagonal ones [N/m].
+  void add_diagonal(std::span<double> diagonal) const;
+  void add_entries(std::vector<Eigen::Triplet<double>>& entries) const;
+
+ private:
+  struct Tie {
+    std::uint32_t a, b; ///< corners
+    double stiffness;   ///< [N/m]
+  };
+  std::vector<Tie> ties_;
+};
+
+} // namespace kerf::fem

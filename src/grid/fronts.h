@@ -1,0 +1,44 @@
+#pragma once
+
+/// Fronts inside cells: what ties the copies of a cell in which a cut ends (Front, cuts.h).
+///
+/// Copies are parted cell by cell, so a cut could only be some whole cubes long. Where it ends inside a cell its copies
+/// are parted all the same, as with phantom nodes (Rabczuk, Zi, Gerstenberger and Wall 2008, A new crack tip element for
+/// the phantom-node method, Int. J. Numer. Meth. Engng 75), and the jump ends at the next cell, which is whole. What the
+/// cut has not come to yet, a part 1 - f of the plane in the cell, is made up for by springs of no length between the
+/// corners of two copies at one node. Seen from the front the cell is one spring of stiffness k_0 against opening, and to open by a
+/// part f of what the open cell does, k_0 + k has to be k_0 / f. So
+///
+///     sum of k over the copies' n pairs = c E / (1 - nu^2)  A / h  (1 - f) / f,
+///
+/// A the area of the plane in the cell. The compliance of the body then grows linearly with what the cut passes, and a
+/// front that moves on gives and takes no energy at once. c is measured: at .12 the stiffness of a double cantilever
+/// tells where its front is to .03 h, wherever that is in a cell.
+///
+/// Departs from the source, in which the jump vanishes at the front by the shape functions of the element: these need the
+/// front's shape in the cell, and another integration for each.
+///
+/// Elements cannot follow the root in which displacement ends at a front, and so are too stiff there, as if the cut were
+/// shorter: by `lag` times the 1-norm of the plane's normal in cubes, measured on discs of any tilt. Who finds fronts lets
+/// the cut go on by that (cut/fronts.h).
+
+#include "grid/solid.h"
+
+namespace kerf::grid {
+
+/// [1]
+constexpr double front_lag = 0.2;
+
+/// Between two corners at one node.
+struct Tie {
+  CornerId a, b;
+  double length; ///< its spring's stiffness over E / (1 - nu^2) [m]
+};
+
+/// The copies that fronts alone part: none in cells through which cuts have come meanwhile.
+std::vector<std::array<CopyId, 2>> tied_copies(const Solid& solid, const CellComplex& complex);
+
+/// Between them, in their order.
+std::vector<Tie> ties(const Solid& solid);
+
+} // namespace kerf::grid

@@ -1,0 +1,94 @@
+#include "fem/ties.h"
+
+#include "cut/cutter.h"
+#include "dynamics/state.h"
+#include "fem/hexahedra.h"
+#include "tests/support/placed.h"
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+namespace kerf::fem {
+namespace {
+
+/// A block with a disc in it whose front lies inside cells.
+support::Body cracked(const double radius) {
+  support::Body body = support::with_copies(support::with_placed_skin(support::block({6, 6, 6})));
+  cut::Cutter cutter(1, cut::Release::queued, cut::Fronts::inside_cells);
+  cutter.begin(body, grid::rest_positions(body));
+  const cut::Disc disc{Vec3(3.6, 3.4, 3.3), Vec3(0.1, 0.2, 1).normalized(), radius};
+  surface::place(body, cutter.at_once(body, {"cut", disc, 1}, grid::rest_positions(body)), {});
+  return body;
+}
+
+Points moved(const Points& rest, const double by) {
+  support::Random random(5);
+  Points x = rest;
+  for (Vec3& p : x)
+    p += by * support::random_vector(random);
+  return x;
+}
+
+TEST(Ties, PullByTheGradientOfTheirEnergy) {
+  const support::Body body = cracked(1.9);
+  Ties ties;
+  ties.update(body, {});
+  ASSERT_GT(ties.size(), 20u);
+  const Points x = moved(grid::rest_positions(body), 0.1), way = moved(Points(x.size(), Vec3::Zero()), 1);
+  Points forces(x.size(), Vec3::Zero()), product(x.size(), Vec3::Zero());
+  ties.add_force(x, forces);
+  ties.add_product(dynamics::flat(way), dynamics::flat(product));
+  const double step = 1e-4;
+  const auto at = [&](const double s) {
+    Points y = x;
+    for (std::size_t c = 0; c < y.size(); ++c)
+      y[c] += s * way[c];
+    return ties.energy(y);
+  };
+  double power = 0, curvature = 0;
+  for (std::size_t c = 0; c < x.size(); ++c) {
+    power += forces[c].dot(way[c]);
+    curvature += product[c].dot(way[c]);
+  }
+  EXPECT_NEAR((at(step) - at(-step)) / (2 * step), -power, 1e-6 * std::abs(power));
+  EXPECT_NEAR((at(step) - 2 * at(0) + at(-step)) / (step * step), curvature, 1e-3 * curvature);
+  std::vector<double> diagonal(x.size(), 0.0);
+  ties.add_diagonal(diagonal);
+  std::vector<Eigen::Triplet<double>> entries;
+  ties.add_entries(entries);
+  double trace = 0, sum = 0;
+  for (const auto& entry : entries) {
+    trace += entry.row() == entry.col() ? entry.value() : 0;
+    sum += entry.value();
+  }
+  EXPECT_NEAR(trace, 3 * std::accumulate(diagonal.begin(), diagonal.end(), 0.0), 1e-12 * trace);
+  EXPECT_NEAR(sum, 0, 1e-12 * trace); // rigid translations cost nothing
+}
+
+/// A body that has not opened exerts no force, and neither does one that was moved affinely and as one.
+TEST(Ties, RestWhereTheCutIsClosed) {
+  const support::Body body = cracked(1.9);
+  const Hexahedra model(body, {});
+  const Points rest = grid::rest_positions(body);
+  Points forces;
+  model.force(rest, forces);
+  for (const Vec3& f : forces)
+    EXPECT_LT(f.norm(), 1e-9 * model.material().youngs_modulus);
+}
+
+/// A cut that comes through the cells of its front leaves no ties there.
+TEST(Ties, GoWithTheCut) {
+  support::Body body = cracked(1.9);
+  cut::Cutter cutter(1, cut::Release::queued, cut::Fronts::inside_cells);
+  cutter.begin(body, grid::rest_positions(body));
+  const cut::Plane plane{Vec3(3.6, 3.4, 3.3), Vec3(0.1, 0.2, 1).normalized()};
+  cutter.at_once(body, {"cut", plane, 1}, grid::rest_positions(body));
+  Ties ties;
+  ties.update(body, {});
+  EXPECT_EQ(ties.size(), 0u);
+  EXPECT_EQ(grid::n_pieces(body.complex), 2u);
+}
+
+} // namespace
+} // namespace kerf::fem
