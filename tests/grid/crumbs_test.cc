@@ -118,9 +118,10 @@ TEST(Crumbs, KeepTheirNamesUntilTheyAreCut) {
   const Points x = rest_positions(body);
   cutter.begin(body, x);
   std::set<std::uint32_t> names;
+  CutLabel label = 0;
   for (int axis = 0; axis < 3; ++axis)
     for (const double at : {0.2, 0.4, 0.6}) {
-      CutChange change = cutter.cut(body, support::cuts_of_plane(body, {Vec3::Unit(axis), at}));
+      CutChange change = cutter.cut(body, support::cuts_of_plane(body, {Vec3::Unit(axis), at}, ++label));
       surface::place(body, change, {});
       std::set<std::uint32_t> met;
       for (const Crumb& crumb : body.crumbs.all)
