@@ -108,7 +108,8 @@ class CellFitter {
 
   /// After all its faces, also those done from the cells below.
   void fit_centre() {
-    if (lies_on_mesh(*solid_.cuts.point(cell_)))
+    const Vec3* const p = solid_.cuts.point(cell_); // none where no vertex has been placed
+    if (!p || lies_on_mesh(*p))
       return;
     Vec3 sum = Vec3::Zero();
     int n = 0;
