@@ -13,7 +13,7 @@
 ///
 /// A the area of the plane in the cell. The compliance of the body then grows linearly with what the cut passes, and a
 /// front that moves on gives and takes no energy at once. c is measured: at .12 the stiffness of a double cantilever
-/// tells where its front is to .05 h, wherever that is in a cell.
+/// tells where its front is to .07 h, wherever that is in a cell.
 ///
 /// Departs from the source, in which the jump vanishes at the front by the shape functions of the element: these need the
 /// front's shape in the cell, and another integration for each.
