@@ -14,7 +14,7 @@ def main():
         remedy = f"Install {package}, or name a Python with KERF_PYTHON"
         sys.stderr.write(f"kerf: {error.name} is missing for {sys.executable}. {remedy}.\n")
         return 2
-    return commands.run(sys.argv[1:])
+    return commands.run_guarded(sys.argv[1:])
 
 
 if __name__ == "__main__":

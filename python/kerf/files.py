@@ -49,10 +49,12 @@ def find(path):
 
 @contextlib.contextmanager
 def told(path):
-    """Turns what h5py throws while the file is read into a complaint about it."""
+    """Turns what is thrown while the file is read into a complaint: broken bytes can make h5py and NumPy throw anything."""
     try:
         yield
-    except (OSError, KeyError, RuntimeError, ValueError, TypeError, IndexError, AttributeError) as error:
+    except (Complaint, ImportError, BrokenPipeError):
+        raise
+    except Exception as error:
         reason = " ".join(str(error).split())
         raise complaint(path, f"is damaged, or not whole ({reason})", "Make it again, or give another") from error
 

@@ -5,10 +5,12 @@ import io
 import os
 import pathlib
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
 import unittest
+import unittest.mock
 from typing import NamedTuple
 
 from support import FILES, PROGRAM, SOURCES
@@ -24,13 +26,13 @@ class Done(NamedTuple):
     stderr: str
 
 
-def kerf(*arguments, folder="."):
+def kerf(*arguments, folder=".", run=commands.run):
     """Runs a command in this process, in a folder; test_installed runs them by the program."""
     before, out, err = os.getcwd(), io.StringIO(), io.StringIO()
     os.chdir(folder)
     try:
         with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
-            code = commands.run(list(map(str, arguments)))
+            code = run(list(map(str, arguments)))
     finally:
         os.chdir(before)
     return Done(code, out.getvalue(), err.getvalue())
@@ -110,8 +112,26 @@ class Refused(unittest.TestCase):
             for at in random.integers(0, len(whole), 200):
                 content[at] ^= 1 << random.integers(8)
             path.write_bytes(content)
-            done = kerf("inspect", path)
+            done = kerf("inspect", path, run=commands.run_guarded)
             self.assertIn(done.returncode, (0, 2), done.stderr)
+
+    def test_a_dataset_larger_than_any_memory(self):
+        path = self.copy()
+        with h5py.File(path, "r+") as file:
+            attributes = dict(file["observables/bar pieces"].attrs)
+            del file["observables/bar pieces"]
+            file.create_dataset("observables/bar pieces", shape=(2**54,), dtype="f8", chunks=(2**20,))
+            file["observables/bar pieces"].attrs.update(attributes)
+        self.all_readers("is damaged, or not whole", path)
+
+    def test_a_crash_of_the_library_is_told(self):
+        def crash(path):
+            os.kill(os.getpid(), signal.SIGSEGV)
+
+        with unittest.mock.patch("kerf.inspect_file.described", crash):
+            done = kerf("inspect", "run.h5", run=commands.run_guarded)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("run.h5: a file is damaged: reading it crashed (SIGSEGV)", done.stderr)
 
     def test_files_of_another_kind(self):
         self.refused(
