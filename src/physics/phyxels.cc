@@ -20,6 +20,22 @@ bool looks_for_ways_around(const std::string& criterion) {
   return criterion == "diffraction" || criterion == "transparency";
 }
 
+enum class Part { skin, cuts };
+
+/// The corners of each face in one order: both sides of a cut are one face.
+std::vector<visibility::Face> faces_of(const surface::Surface& surface, const Part part) {
+  std::vector<visibility::Face> faces;
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+    if ((surface.labels[t] == 0) != (part == Part::skin))
+      continue;
+    visibility::Face& face = faces.emplace_back();
+    for (int k = 0; k < 3; ++k)
+      face[k] = surface.rest[surface.triangles[t][k]];
+    std::sort(face.begin(), face.end(), comes_before);
+  }
+  return faces;
+}
+
 /// Pseudo-inverse of a symmetric matrix whose small eigenvalues say nothing.
 Mat3 inverse_where_known(const Mat3& A) {
   constexpr double smallest = 1e-6;
@@ -83,27 +99,21 @@ dynamics::StepReport Phyxels::step(dynamics::State& state, const dynamics::Loads
 }
 
 void Phyxels::begin_to_look(const surface::Surface& surface) {
-  sights_.emplace(visibility::make_criterion(options_.visibility.choice));
+  const std::vector<Face> skin = faces_of(surface, Part::skin);
+  sights_.emplace(visibility::make_criterion(options_.visibility.choice, skin));
   const auto& neighbours = model_.neighbours();
   sights_->watch(visibility::PairId(0), pairs_of(rest(), rest(), neighbours.pairs, neighbours.support));
   sights_->watch(visibility::PairId(static_cast<std::uint32_t>(neighbours.pairs.size())),
                  pairs_of(node_pairs_.rest, rest(), node_pairs_.pairs, node_pairs_.support));
   if (looks_for_ways_around(options_.visibility.choice.criterion))
-    add_faces(surface, true);
+    add_faces(skin);
 }
 
-void Phyxels::add_faces(const surface::Surface& surface, const bool of_skin) {
+void Phyxels::add_faces(const std::vector<Face>& faces) {
   std::vector<Face> fresh;
-  for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
-    if ((surface.labels[t] == 0) != of_skin)
-      continue;
-    Face face;
-    for (int k = 0; k < 3; ++k)
-      face[k] = surface.rest[surface.triangles[t][k]];
-    std::sort(face.begin(), face.end(), comes_before); // both sides of a cut are one face
+  for (const Face& face : faces)
     if (faces_.insert(face).second)
       fresh.push_back(face);
-  }
   sights_->add_faces(fresh);
 }
 
@@ -184,7 +194,7 @@ void Phyxels::follow_crumbs(const CutBody& body, const std::function<Motion()>& 
 void Phyxels::follow_cut(const CutBody& body, const grid::CutChange& change, dynamics::State& state) {
   if (!sights_)
     begin_to_look(body.surface);
-  add_faces(body.surface, false);
+  add_faces(faces_of(body.surface, Part::cuts));
   find_pieces(body);
   follow_crumbs(
     body,

@@ -14,7 +14,7 @@
 ///
 /// The faces are those of the surface that cuts have revealed, in the rest configuration, each once; where a later cut
 /// moves a vertex, the moved faces come beside the earlier ones. Criteria that look for ways around a cut see the skin
-/// too.
+/// too; to extended visibility it tells which part of a disk is in the body.
 
 #include "pba/corners.h"
 #include "pba/model.h"
@@ -70,8 +70,11 @@ class Phyxels : public Physics {
   std::size_t n_waiting() const { return sights_ ? sights_->n_waiting() : 0; }
 
  private:
+  using Face = visibility::Face;
+
   void begin_to_look(const surface::Surface& surface);
-  void add_faces(const surface::Surface& surface, bool of_skin);
+  /// Those that are new come between the pairs.
+  void add_faces(const std::vector<Face>& faces);
   void find_pieces(const CutBody& body);
   /// Gives back the shortest bonds that join parts of a piece which no bond joins whose direction the model knows; says
   /// whether there were any.
@@ -84,7 +87,6 @@ class Phyxels : public Physics {
   void add_row(std::uint32_t row, const Vec3& point, double factor, std::vector<std::uint32_t>& phyxels,
                std::vector<double>& weights) const;
 
-  using Face = visibility::Face;
   struct ByCoordinates {
     bool operator()(const Face& a, const Face& b) const;
   };

@@ -60,7 +60,7 @@ void CriterionChoice::describe(Parameters& p) {
   p.choice("Masks by", masks_by, rasterisers, "Who fills the masks; OpenGL is the way of thesis §2.6.3, and slower.");
 }
 
-std::unique_ptr<Criterion> make_criterion(const CriterionChoice& choice) {
+std::unique_ptr<Criterion> make_criterion(const CriterionChoice& choice, const std::span<const Face> skin) {
   require_word("Criterion", choice.criterion, criteria());
   if (choice.criterion == "visibility")
     return std::make_unique<LineOfSight>();
@@ -71,7 +71,7 @@ std::unique_ptr<Criterion> make_criterion(const CriterionChoice& choice) {
     return std::make_unique<Transparency>(
       require_number("Transparency exponent [1]", choice.transparency_exponent, at_least_2));
   const MaskShape shape(choice.mask_resolution, choice.disk_radius);
-  return std::make_unique<ExtendedVisibility>(shape, make_rasteriser(choice.masks_by));
+  return std::make_unique<ExtendedVisibility>(shape, make_rasteriser(choice.masks_by), skin);
 }
 
 } // namespace kerf::visibility

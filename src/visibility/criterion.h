@@ -57,8 +57,9 @@ struct CriterionChoice {
 /// The names of all criteria.
 const std::vector<std::string>& criteria();
 
-/// Throws ParameterError for an unknown name or a number out of range, DataError when the masks shall be made by OpenGL
-/// and there is none. No GL context is made otherwise.
-std::unique_ptr<Criterion> make_criterion(const CriterionChoice& choice);
+/// `skin`: the faces around the body, none for a body without end; extended visibility reads it. Throws ParameterError
+/// for an unknown name or a number out of range, DataError when the masks shall be made by OpenGL and there is none. No
+/// GL context is made otherwise.
+std::unique_ptr<Criterion> make_criterion(const CriterionChoice& choice, std::span<const Face> skin = {});
 
 } // namespace kerf::visibility

@@ -142,6 +142,25 @@ void penny(const int n) {
 /// tests/verification/plates_test.cc, the opening as with 14 cubes a radius in params/compare/penny.prm.
 TEST(Crack, APennyHasItsEnergyReleaseRateAndOpening) { penny(5); }
 
+/// How far the mouth of a crack from the side of a plate opens by points that see each other by a criterion, with 14 cubes
+/// over the width, 2 through the thickness: the scene of the study.
+double mouth_of_points(const std::string& criterion) {
+  std::ifstream scene(std::string(KERF_SOURCE_DIR) + "/params/compare/edge_crack.prm");
+  const Trial plate({std::istreambuf_iterator<char>(scene), {}},
+                    {"Body plate/Backend=pba", "Body plate/Integrator=quasi-static", "Time/Time step [s]=1",
+                     "Time/End time [s]=1", "Body plate/Cube edge [m]=0.0714285714285714",
+                     "Body plate/Visibility/Criterion=" + criterion});
+  return plate.last("probe above z") - plate.last("probe below z");
+}
+
+/// What of a disk lies out of the body binds nothing: counted, it keeps the crack three quarters closed.
+TEST(Crack, ExtendedVisibilityOpensAnEdgeCrackAsVisibilityDoes) {
+  const double opening = mouth_of_points("extended visibility") / mouth_of_points("visibility");
+  say("extended over plain visibility", opening);
+  EXPECT_GT(opening, 0.8);
+  EXPECT_LT(opening, 1);
+}
+
 TEST(Crack, RefusesWhatIsNoFront) {
   const auto refuse = [](const Keys& keys, const Keys& words, const std::string& backend = "fem") {
     try {

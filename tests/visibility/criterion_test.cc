@@ -22,8 +22,9 @@ CriterionChoice choice(const std::string& name) {
   return c;
 }
 
-pba::Sight sight(const CriterionChoice& c, const Pair& pair, const std::vector<Face>& faces) {
-  PairSights sights(make_criterion(c));
+pba::Sight sight(const CriterionChoice& c, const Pair& pair, const std::vector<Face>& faces,
+                 const std::vector<Face>& skin = {}) {
+  PairSights sights(make_criterion(c, skin));
   sights.watch(PairId(0), {&pair, 1});
   sights.add_faces(faces);
   sights.update(1);
@@ -205,6 +206,88 @@ TEST(Extended, IsSymmetric) {
     EXPECT_NEAR(sight(choice("extended visibility"), pair, faces).factor,
                 sight(choice("extended visibility"), reversed, faces).factor, 0.03);
   }
+}
+
+/// The six sides of a box.
+std::vector<Face> skin_of(const Box& box) {
+  std::vector<Face> faces;
+  for (int axis = 0; axis < 3; ++axis)
+    for (const Vec3& from : {box.lower, box.upper}) {
+      const Vec3 sides = box.upper - box.lower;
+      Vec3 u = Vec3::Zero(), v = Vec3::Zero();
+      const double sign = from == box.lower ? 1 : -1;
+      u[(axis + 1) % 3] = sign * sides[(axis + 1) % 3];
+      v[(axis + 2) % 3] = sign * sides[(axis + 2) % 3];
+      faces.push_back({from, from + u, from + u + v});
+      faces.push_back({from, from + u + v, from + v});
+    }
+  return faces;
+}
+
+/// The texels of a disk inside of a box, and those of them that faces occlude, by their definitions.
+std::pair<int, int> inside_and_occluded(const Pair& pair, const Box& box, const std::vector<Face>& faces) {
+  const MaskShape shape(32, 0.5);
+  std::vector<std::uint32_t> occluded = ray_tested(pair, shape, faces);
+  const Disk disk = make_disk(pair, shape);
+  int n = 0;
+  for (int y = 0; y < 32; ++y)
+    for (int x = 0; x < 32; ++x)
+      if (shape.disk()[y] >> x & 1 && box.contains(texel_middle(disk, shape, x, y)))
+        ++n;
+      else
+        occluded[y] &= ~(1u << x);
+  return {n, count(occluded)};
+}
+
+/// A cut that ends inside of a thin plate, random pairs: the share of what is inside.
+TEST(Extended, CountsOnlyTexelsInTheBody) {
+  const Box plate{Vec3(-1, 0, -1), Vec3(1, 0.2, 1)};
+  const std::vector<Face> skin = skin_of(plate), cut = strip(-1, 0.02, 0.3, 0);
+  Random random(6);
+  int n_out = 0, n_changed = 0;
+  for (int i = 0; i < 300; ++i) {
+    Pair pair{Vec3::Zero(), Vec3::Zero(), 1};
+    for (Vec3* const p : {&pair.a, &pair.b})
+      *p = Vec3(0.2 * random.number() - 0.1, 0.2 * random.number(), 0.4 * random.number() - 0.2);
+    const auto [n_inside, n_occluded] = inside_and_occluded(pair, plate, cut);
+    const double factor = sight(choice("extended visibility"), pair, cut, skin).factor;
+    EXPECT_NEAR(factor, 1 - n_occluded / double(n_inside), 4. / n_inside);
+    n_out += n_inside < MaskShape(32, 0.5).n_texels();
+    n_changed += factor < 0.99;
+  }
+  EXPECT_GT(n_out, 100);
+  EXPECT_GT(n_changed, 100);
+}
+
+/// However near the skin: what the cut parts wherever there is a body has no bond, which the whole disk would keep.
+TEST(Extended, ACutUpToTheSkinLeavesNothing) {
+  const Box plate{Vec3(-1, 0, -1), Vec3(1, 0.2, 1)};
+  const std::vector<Face> skin = skin_of(plate);
+  std::vector<Face> cut = strip(-1, 1, 0.1, 0);
+  for (Face& face : cut)
+    for (Vec3& corner : face)
+      corner[1] += 0.1;
+  for (const double y : {0.001, 0.03, 0.1, 0.17})
+    for (const std::string by : {"CPU", "OpenGL"}) {
+      const Pair pair{Vec3(-0.95, y, 0.11), Vec3(-0.9, y + 0.02, -0.12), 1};
+      CriterionChoice c = choice("extended visibility");
+      c.masks_by = by;
+      EXPECT_EQ(sight(c, pair, cut, skin).factor, 0) << y << ' ' << by;
+      EXPECT_GT(sight(c, pair, cut).factor, 0) << y << ' ' << by;
+    }
+}
+
+/// Two points that see each other across a gap alone: the whole disk, as without a body.
+TEST(Extended, PairsAcrossAGapKeepTheirDisk) {
+  std::vector<Face> skin = skin_of({Vec3(-1, -1, 0.1), Vec3(1, 1, 1)});
+  for (const Face& face : skin_of({Vec3(-1, -1, -1), Vec3(1, 1, -0.1)}))
+    skin.push_back(face);
+  const Pair pair{Vec3(0, 0, 0.2), Vec3(0.01, 0.02, -0.2), 1};
+  const std::vector<Face> cut = strip(-1, 0.05, 1, 0.15);
+  const pba::Sight without = sight(choice("extended visibility"), pair, cut);
+  EXPECT_EQ(sight(choice("extended visibility"), pair, cut, skin), without);
+  EXPECT_GT(without.factor, 0);
+  EXPECT_LT(without.factor, 0.5);
 }
 
 TEST(AllCriteria, SeparateWhatIsCutThrough) {
