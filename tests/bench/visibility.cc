@@ -110,8 +110,8 @@ void measure_criterion(const std::string& name, const std::vector<Face>& skin) {
     searching = std::min(searching, search);
     updating = std::min(updating, update);
   }
-  std::printf("%-20s %6zu %9zu %10.2f %10.2f %12.3g\n", name.c_str(), skin.size(), n_looks, 1e3 * searching, 1e3 * updating,
-              static_cast<double>(n_looks) / (searching + updating));
+  std::printf("%-20s %6zu %9zu %10.2f %10.2f %12.3g\n", name.c_str(), skin.size(), n_looks, 1e3 * searching,
+              1e3 * updating, static_cast<double>(n_looks) / (searching + updating));
 }
 
 } // namespace

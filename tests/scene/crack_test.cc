@@ -146,10 +146,10 @@ TEST(Crack, APennyHasItsEnergyReleaseRateAndOpening) { penny(5); }
 /// over the width, 2 through the thickness: the scene of the study.
 double mouth_of_points(const std::string& criterion) {
   std::ifstream scene(std::string(KERF_SOURCE_DIR) + "/params/compare/edge_crack.prm");
-  const Trial plate({std::istreambuf_iterator<char>(scene), {}},
-                    {"Body plate/Backend=pba", "Body plate/Integrator=quasi-static", "Time/Time step [s]=1",
-                     "Time/End time [s]=1", "Body plate/Cube edge [m]=0.0714285714285714",
-                     "Body plate/Visibility/Criterion=" + criterion});
+  const Trial plate(
+    {std::istreambuf_iterator<char>(scene), {}},
+    {"Body plate/Backend=pba", "Body plate/Integrator=quasi-static", "Time/Time step [s]=1", "Time/End time [s]=1",
+     "Body plate/Cube edge [m]=0.0714285714285714", "Body plate/Visibility/Criterion=" + criterion});
   return plate.last("probe above z") - plate.last("probe below z");
 }
 
