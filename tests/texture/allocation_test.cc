@@ -19,8 +19,9 @@ void* operator new(const std::size_t n) {
     return p;
   throw std::bad_alloc();
 }
-void operator delete(void* const p) noexcept { std::free(p); }
-void operator delete(void* const p, std::size_t) noexcept { std::free(p); }
+// Not inlined, for the compiler would see free() called on what new returned, and warn.
+[[gnu::noinline]] void operator delete(void* const p) noexcept { std::free(p); }
+[[gnu::noinline]] void operator delete(void* const p, std::size_t) noexcept { std::free(p); }
 
 namespace kerf::texture {
 namespace {
