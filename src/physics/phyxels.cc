@@ -126,6 +126,8 @@ void Phyxels::find_pieces(const CutBody& body) {
 bool Phyxels::hold_together(std::vector<pba::Sight>& sights) const {
   constexpr double counts = 0.3; // part of the direction along a bond that one of its ends knows
   constexpr double weak = 0.3;   // enough to be known; a bond that comes back stretched brings energy, so no more
+  constexpr double least = 5e-3; // weight that holds: what is lighter falls as if it were free
+  constexpr double near = 1.5;   // supports of a bond that comes back, in its distances, at least: a weight of .05
   const auto& pairs = model_.neighbours().pairs;
   UnionFind parts(rest().size());
   std::vector<std::pair<double, std::size_t>> idle; // distance at rest or now, what is more; pair
@@ -133,7 +135,7 @@ bool Phyxels::hold_together(std::vector<pba::Sight>& sights) const {
     const auto [i, j] = pairs[p];
     const Vec3 X = (rest()[j] - rest()[i]).normalized();
     const double known = std::max(X.dot(model_.fits()[i].used * X), X.dot(model_.fits()[j].used * X));
-    if (model_.weights()[p] > 0 && known > counts)
+    if (model_.weights()[p] > least && known > counts)
       parts.unite(i, j);
     else if (phyxel_pieces_[i] == phyxel_pieces_[j] && !crumbs_.carries(i))
       idle.emplace_back(std::max((rest()[i] - rest()[j]).norm(), (now_[i] - now_[j]).norm()), p);
@@ -145,7 +147,7 @@ bool Phyxels::hold_together(std::vector<pba::Sight>& sights) const {
     if (parts.root(i) == parts.root(j))
       continue;
     parts.unite(i, j);
-    sights[p] = {(rest()[i] - rest()[j]).norm(), weak};
+    sights[p] = {std::min((rest()[i] - rest()[j]).norm(), model_.neighbours().support[p] / near), weak};
     has_changed = true;
   }
   return has_changed;

@@ -6,7 +6,7 @@
 /// A piece that the cut has left whole may have lost all bonds between parts of it, or be of so few phyxels that they
 /// know no direction (fit.h). Then pairs that join its parts see each other again, weakly: what the copies hold together
 /// does not drift apart. They are the shortest by their length at rest or now, what is more, since a pair that comes back
-/// stretched brings energy.
+/// stretched brings energy. Bonds too light to hold count as lost.
 ///
 /// After a cut, its faces come between pairs of phyxels, and between corners and phyxels, under a budget of pairs a
 /// step: catch_up(). What lies in different pieces is parted at once, whatever the criterion has seen. Nothing of all
