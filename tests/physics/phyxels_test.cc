@@ -97,8 +97,8 @@ TEST(Phyxels, CarryForcesWithTheirSumAfterAnyCuts) {
   EXPECT_GT(grid::n_pieces(block.body.complex), 2u);
 }
 
-/// Phyxels of one piece are joined by bonds of some weight whose direction the model knows, wherever pairs reach: what the copies hold
-/// together does not drift apart.
+/// Phyxels of one piece are joined by bonds of some weight whose direction the model knows, wherever pairs reach: what the
+/// copies hold together does not drift apart.
 TEST(Phyxels, PiecesThatStayWholeKeepABond) {
   support::Random random(7);
   GrowingCut block(whole_block());
