@@ -14,7 +14,7 @@ namespace {
 TEST(KnownAnswers, OfCooksMembrane) {
   for (const int degree : {3, 4}) {
     const auto found = solve(cooks_membrane(4), {degree, 0, 14, 0.1});
-    EXPECT_NEAR(found->displacement(Vec3(48, 52, 0))[1], 23.96774, 2e-5) << degree;
+    EXPECT_NEAR(found->displacement(Vec3(48, 52, 0))[1], 23.96774, 5e-5) << degree;
     EXPECT_NEAR(found->displacement(Vec3(48, 52, 0))[1], verification::cook_reference, 5e-4) << degree;
   }
 }
