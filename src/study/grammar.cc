@@ -1,5 +1,7 @@
 #include "study/grammar.h"
 
+#include "study/truth.h"
+
 namespace kerf::study {
 
 using scene::keys_of;
@@ -39,6 +41,7 @@ void SettingParameters::describe(Parameters& p) {
 std::vector<scene::SectionKind> grammar() {
   return {
     {"Study", Occurrence::once, "What is run and asked.", keys_of<StudyParameters, ReferenceParameters>(), {}},
+    truth_grammar(),
     {"Variant", Occurrence::named, "One way to run the scene.", keys_of<SettingParameters, ReferenceParameters>(), {}},
     {"Change",
      Occurrence::named,

@@ -48,7 +48,7 @@ const std::vector<Room> rooms = {
   {"scene",
    {"base", "geometry", "grid", "cut", "surface", "material", "dynamics", "fem", "lattice", "spring", "pba", "visibility",
     "physics", "gl", "image", "warp", "texture", "render", "output"}},
-  {"study", {"base", "material", "output", "scene"}},
+  {"study", {"base", "material", "output", "reference", "scene"}},
 };
 
 /// Headers that only some rooms may see.
