@@ -80,8 +80,9 @@ output::StudyRow StudyRows::read_row(const std::size_t k) const {
   return std::move(rows.front());
 }
 
-output::StudyTable StudyRows::table() const {
-  output::StudyTable table{plan_.parameters.title, plan_.text, plan_.parameters.unit, in_words(plan_.parameters), {}, {}};
+output::StudyTable StudyRows::table(const output::Outcome outcome) const {
+  output::StudyTable table{plan_.parameters.title, plan_.text, plan_.parameters.unit, in_words(plan_.parameters), outcome,
+                           {}};
   table.made_of = made_of_;
   for (const auto& row : rows_)
     if (row)
@@ -91,16 +92,14 @@ output::StudyTable StudyRows::table() const {
 }
 
 void StudyRows::write(const output::Outcome outcome) const {
-  output::StudyTable whole = table();
-  whole.outcome = outcome;
-  output::write_study_file(folder_ / study_name, whole, info_);
+  output::write_study_file(folder_ / study_name, table(outcome), info_);
 }
 
 output::StudyTable StudyRows::finish() {
-  const output::StudyTable whole = table();
-  const bool all_failed = std::none_of(whole.rows.begin(), whole.rows.end(),
-                                       [](const output::StudyRow& row) { return row.outcome == "completed"; });
-  write(all_failed ? output::Outcome::failed : output::Outcome::completed);
+  const bool all_failed =
+    std::none_of(rows_.begin(), rows_.end(), [](const auto& row) { return row->outcome == "completed"; });
+  const output::StudyTable whole = table(all_failed ? output::Outcome::failed : output::Outcome::completed);
+  output::write_study_file(folder_ / study_name, whole, info_);
   if (all_failed)
     throw NumericalError("every row of the study has failed. The first, " + whole.rows.front().name + ", " +
                          whole.rows.front().outcome);

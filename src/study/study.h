@@ -30,7 +30,7 @@ class StudyRows {
   output::StudyTable finish();
 
  private:
-  output::StudyTable table() const;
+  output::StudyTable table(output::Outcome outcome) const;
   void write(output::Outcome outcome) const;
 
   const Plan& plan_;
