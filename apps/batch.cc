@@ -1,21 +1,16 @@
 #include "batch.h"
+#include "process.h"
 
 #include "base/interrupt.h"
 #include "base/parallel.h"
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
-#include <map>
 #include <set>
 #include <thread>
 #include <utility>
-
-#include <sys/prctl.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 namespace kerf::apps {
 
@@ -24,7 +19,7 @@ namespace {
 struct Job {
   std::string scene;
   std::filesystem::path output;
-  std::FILE* said = nullptr; ///< what it writes, out of the way
+  Process process = {};
 };
 
 /// One folder each, below --output or where a run alone would write.
@@ -54,48 +49,9 @@ std::vector<std::string> command_of(const Job& job, const SceneArguments& argume
   return words;
 }
 
-/// Starts this program again, with all it says going into job.said. It ends when we do, however we end.
-pid_t start(Job& job, const std::vector<std::string>& words) {
-  std::vector<char*> pointers;
-  for (const std::string& word : words)
-    pointers.push_back(const_cast<char*>(word.c_str()));
-  pointers.push_back(nullptr);
-  job.said = std::tmpfile();
-  const int said = job.said ? fileno(job.said) : STDERR_FILENO;
-  const pid_t id = fork();
-  if (id == 0) {
-    prctl(PR_SET_PDEATHSIG, SIGTERM);
-    dup2(said, STDOUT_FILENO);
-    dup2(said, STDERR_FILENO);
-    execv("/proc/self/exe", pointers.data());
-    std::_Exit(127);
-  }
-  if (id < 0)
-    throw DataError("no process can be started for " + job.scene);
-  return id;
-}
-
-/// The last line that a job has written.
-std::string last_line(const Job& job) {
-  std::string last, line;
-  if (job.said)
-    std::rewind(job.said);
-  for (int c = 0; job.said && (c = std::fgetc(job.said)) != EOF;) {
-    if (c == '\n') {
-      last = line;
-      line.clear();
-    } else {
-      line += static_cast<char>(c);
-    }
-  }
-  return line.empty() ? last : line;
-}
-
-/// How a process ended, as a shell would say it.
-int exit_code_of(const int status) { return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status); }
-
-std::string verdict(const Job& job, const int code) {
-  return job.scene + ": " + (code == 0 ? "completed, " : "exit code " + std::to_string(code) + ": ") + last_line(job);
+std::string verdict(Job& job, const int code) {
+  return job.scene + ": " + (code == 0 ? "completed, " : "exit code " + std::to_string(code) + ": ") +
+         last_words(job.process);
 }
 
 class Batch {
@@ -103,11 +59,11 @@ class Batch {
   Batch(const SceneArguments& arguments, std::vector<Job> jobs)
     : arguments_(arguments),
       jobs_(std::move(jobs)),
-      n_threads_(arguments.n_threads > 0 ? arguments.n_threads : std::max(1, n_threads() / arguments.n_jobs)) {}
+      n_threads_(arguments.n_threads > 0 ? arguments.n_threads : std::max(1, n_threads() / std::max(1, arguments.n_jobs))) {}
 
   int run() {
     while (!running_.empty() || (next_ < jobs_.size() && wish_to_end() == 0)) {
-      while (next_ < jobs_.size() && running_.size() < static_cast<std::size_t>(arguments_.n_jobs) &&
+      while (next_ < jobs_.size() && running_.size() < static_cast<std::size_t>(std::max(1, arguments_.n_jobs)) &&
              wish_to_end() == 0)
         begin();
       if (wish_to_end() != 0)
@@ -127,30 +83,29 @@ class Batch {
  private:
   void begin() {
     Job& job = jobs_[next_++];
-    running_[start(job, command_of(job, arguments_, n_threads_))] = &job;
+    job.process = start(command_of(job, arguments_, n_threads_), SIGTERM);
+    running_.push_back(&job);
   }
 
   void pass_on() {
     if (!std::exchange(passed_on_, true))
-      for (const auto& [id, job] : running_)
-        ::kill(id, wish_to_end());
+      for (const Job* job : running_)
+        ::kill(job->process.id, wish_to_end());
   }
 
   bool take_one_that_ended() {
-    for (const auto& [id, job] : running_) {
-      int status = 0;
-      if (waitpid(id, &status, WNOHANG) != id)
+    for (auto it = running_.begin(); it != running_.end(); ++it) {
+      Job* job = *it;
+      const int code = exit_code_of(job->process);
+      if (code < 0)
         continue;
-      const int code = exit_code_of(status);
       const std::string line = verdict(*job, code);
       std::printf("%s\n", line.c_str());
       std::fflush(stdout);
       if (code != 0)
         failed_.push_back(line);
       worst_ = std::max(worst_, code);
-      if (job->said)
-        std::fclose(job->said);
-      running_.erase(id);
+      running_.erase(it);
       return true;
     }
     return false;
@@ -160,7 +115,7 @@ class Batch {
   std::vector<Job> jobs_;
   int n_threads_, worst_ = 0;
   std::size_t next_ = 0;
-  std::map<pid_t, Job*> running_;
+  std::vector<Job*> running_;
   std::vector<std::string> failed_;
   bool passed_on_ = false;
 };

@@ -20,8 +20,10 @@ constexpr const char* usage = R"(usage:
                                                           --force replaces the results of an earlier run, --resume
                                                           goes on from its last checkpoint
   kerf check SCENE.prm [--set "Section/Key=value"]...     parse and compose, run nothing
-  kerf study STUDY.prm [--set ...] [--output DIR] [--threads N] [--force | --resume]
-                                                          a scene in variants: error against run time, as a table
+  kerf study STUDY.prm [--set ...] [--output DIR] [--threads N] [--force | --resume] [--jobs N | --row K]
+                                                          a scene in variants: error against run time, as a table;
+                                                          --jobs gives each row a process, N at a time where times
+                                                          do not count; --row runs one alone
   kerf weights WEIGHTS.prm [--set ...] [--output DIR]     weights of points near cuts, as images and a table
   kerf texture SCENE.prm --plane "x, y, z; normal x, y, z" [--pixel M] [--output FILE.png] [--set ...] [--threads N]
                                                           the inside of its first body that has one, on any plane

@@ -17,7 +17,7 @@ int parse_number(const std::string& option, const std::string& text) {
 }
 
 void add_scene(const std::string& scene, const Scenes scenes, SceneArguments& parsed) {
-  if (!parsed.scenes.empty() && scenes == Scenes::one)
+  if (!parsed.scenes.empty() && scenes != Scenes::several)
     throw ParameterError(Complaint{
       .value = scene, .rule = "only one scene can be given", .remedy = "Put quotes around arguments with spaces"});
   parsed.scenes.push_back(scene);
@@ -53,15 +53,17 @@ SceneArguments parse_scene_arguments(const Arguments& arguments, const Scenes sc
       parsed.output = value();
     else if (argument == "--threads")
       parsed.n_threads = parse_number(argument, value());
-    else if (argument == "--jobs" && scenes == Scenes::several)
+    else if (argument == "--jobs" && scenes != Scenes::one)
       parsed.n_jobs = parse_number(argument, value());
+    else if (argument == "--row" && scenes == Scenes::study)
+      parsed.row = parse_number(argument, value());
     else if (argument == "--force" || argument == "--resume")
       set_earlier(argument, parsed);
     else if (argument.starts_with("-"))
       throw ParameterError(
         Complaint{.value = argument,
                   .rule = "is no option",
-                  .remedy = "The options are --set, --output, --threads, --force, --resume, and --jobs of run"});
+                  .remedy = "The options are --set, --output, --threads, --force, --resume, --jobs of run and study, and --row of study"});
     else
       add_scene(argument, scenes, parsed);
   }

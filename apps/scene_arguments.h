@@ -13,13 +13,14 @@ struct SceneArguments {
   std::vector<std::string> scenes; ///< all; more than one for `run` alone
   std::vector<std::string> overrides;
   std::filesystem::path output; ///< results/SCENE when not given; of several scenes what is given, or results
-  int n_jobs = 1;               ///< at a time, of several scenes
+  int n_jobs = 0;               ///< at a time, of several scenes or rows; 0: not said
+  int row = 0;                  ///< of a study, from 1; 0: all
   int n_threads = 0;            ///< 0: as many as there are processors
   output::Earlier earlier = output::Earlier::refuse; ///< what to do about an earlier run's results
 };
 
-/// Whether a command takes several scenes.
-enum class Scenes { one, several };
+/// Whether a command takes several scenes, or a study, which has rows.
+enum class Scenes { one, several, study };
 
 /// Throws ParameterError for what is no valid argument.
 SceneArguments parse_scene_arguments(const Arguments& arguments, Scenes scenes = Scenes::one);

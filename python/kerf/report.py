@@ -44,7 +44,8 @@ def read_all(paths):
 
 def together(items, figures):
     """What several studies, and several runs, have to say side by side."""
-    several = [(name, s) for kind, name, s in items if kind == "study" and "error" in studies.norms(s)]
+    timed = [(name, s) for kind, name, s in items if kind == "study" and studies.has_times(s)]
+    several = [(name, s) for name, s in timed if "error" in studies.norms(s)]
     runs_ = [(name, r) for kind, name, r in items if kind == "run"]
     pieces = []
     if len(several) > 1:

@@ -69,11 +69,17 @@ def methods(study):
     return {method: [i for i, f in enumerate(families) if f == method] for method in dict.fromkeys(families)}
 
 
+def has_times(study):
+    """Whether the times of any of its rows count."""
+    return bool((study.columns["stepping_time"].values > 0).any())
+
+
 def comparable(study, norm):
-    """(rows, time [s], error [1]): the rows that completed with an error and a time; the error without its sign."""
+    """(rows, time [s], error [1]): the rows that completed with an error; the error without its sign. Times that do not
+    count are NaN."""
     times, errors = study.columns["cpu_time"].values, np.abs(study.columns[norm].values)
     good = [i for i in range(study.n_rows) if study.columns["outcome"].values[i] == "completed"]
-    rows = np.array([i for i in good if np.isfinite(errors[i]) and errors[i] > 0 and times[i] > 0], int)
+    rows = np.array([i for i in good if np.isfinite(errors[i]) and errors[i] > 0 and not times[i] <= 0], int)
     return rows, times[rows], errors[rows]
 
 
@@ -89,7 +95,7 @@ def front(times, errors):
     """Indices of the Pareto front, by time: those that nobody beats in time and error at once."""
     best, found = np.inf, []
     for i in np.lexsort((errors, times)):
-        if errors[i] < best:
+        if np.isfinite(times[i]) and errors[i] < best:
             best = errors[i]
             found.append(int(i))
     return found

@@ -86,13 +86,17 @@ def norm_parts(study, norm, name, figures):
     """Figures of one norm."""
     title = norm.replace("_", " ")
     together = "" if studies.has_families(study) else " Rows are of different problems, so there is a front for each."
-    return [
-        figures.add(
-            f"{name}_{norm}_time",
-            study_figures.error_against_time([study], [name], norm),
-            f"{study.title}: {title} against CPU time of all steps. Rings: the Pareto front.{together}",
-        ),
-        page.paragraph(front_in_words(study, norm)),
+    by_time = []
+    if studies.has_times(study):
+        by_time = [
+            figures.add(
+                f"{name}_{norm}_time",
+                study_figures.error_against_time([study], [name], norm),
+                f"{study.title}: {title} against CPU time of all steps. Rings: the Pareto front.{together}",
+            ),
+            page.paragraph(front_in_words(study, norm)),
+        ]
+    return by_time + [
         figures.add(
             f"{name}_{norm}_h",
             study_figures.error_against_h(study, norm),
@@ -100,10 +104,6 @@ def norm_parts(study, norm, name, figures):
         ),
         orders_table(study, norm, name),
     ]
-
-
-def has_times(study):
-    return study.n_rows > 0 and bool((study.columns["setup_time"].values + study.columns["stepping_time"].values).any())
 
 
 def study_part(study, name, figures):
@@ -117,7 +117,7 @@ def study_part(study, name, figures):
     ]
     for norm in norms:
         pieces += norm_parts(study, norm, name, figures)
-    if has_times(study):
+    if studies.has_times(study):
         caption = f"{study.title}: where each row's wall-clock time went."
         pieces.append(figures.add(f"{name}_stages", study_figures.time_per_stage(study), caption))
     pieces.append(table_of(study, f"{name}-rows", marked))

@@ -1,5 +1,7 @@
 #include "study/grammar.h"
 
+#include "study/truth.h"
+
 namespace kerf::study {
 
 using scene::keys_of;
@@ -22,6 +24,9 @@ void StudyParameters::describe(Parameters& p) {
   p.require_last();
   p.text("Order over", order_over,
          "The change whose cases differ in h: orders of convergence are told between rows that differ in it alone.");
+  p.choice("Times", times, {"count", "do not count"},
+           "Rows whose times count run one at a time, whatever --jobs says, so that none is beside another. Those of rows that "
+           "do not are unknown.");
 }
 
 void ReferenceParameters::describe(Parameters& p) {
@@ -39,6 +44,7 @@ void SettingParameters::describe(Parameters& p) {
 std::vector<scene::SectionKind> grammar() {
   return {
     {"Study", Occurrence::once, "What is run and asked.", keys_of<StudyParameters, ReferenceParameters>(), {}},
+    truth_grammar(),
     {"Variant", Occurrence::named, "One way to run the scene.", keys_of<SettingParameters, ReferenceParameters>(), {}},
     {"Change",
      Occurrence::named,

@@ -19,6 +19,7 @@ struct StudyParameters {
   double last_part = 0.1; ///< [1]
   std::string unit;
   std::string order_over;
+  std::string times = "count";
   void describe(Parameters& p);
 };
 

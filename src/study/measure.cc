@@ -143,8 +143,7 @@ double take(const std::vector<double>& series, const std::string& how, const dou
   return std::accumulate(series.end() - n, series.end(), 0.0) / double(n);
 }
 
-output::StudyRow measure(const Plan& plan, const PlannedRow& planned, const std::filesystem::path& folder,
-                         const output::RunInfo& info, const output::Earlier earlier) {
+output::StudyRow failed_row(const PlannedRow& planned, const std::string& why) {
   output::StudyRow row;
   row.name = planned.name;
   row.family = planned.family;
@@ -152,6 +151,14 @@ output::StudyRow measure(const Plan& plan, const PlannedRow& planned, const std:
   row.reference = planned.reference.value != 0 ? planned.reference.value : unknown;
   row.reference_source = planned.reference.source;
   row.value = row.error = row.order = row.peak_memory = unknown;
+  if (!why.empty())
+    row.outcome = "failed: " + in_one_line(why);
+  return row;
+}
+
+output::StudyRow measure(const Plan& plan, const PlannedRow& planned, const std::filesystem::path& folder,
+                         const output::RunInfo& info, const output::Earlier earlier) {
+  output::StudyRow row = failed_row(planned, "");
   name_physics(find_body(plan, scene::parse_scene(planned.scene, scene::grammar())), row);
 
   const PeakMemory memory;
@@ -181,6 +188,8 @@ output::StudyRow measure(const Plan& plan, const PlannedRow& planned, const std:
   row.peak_memory = memory.beyond_start();
   read_run(folder / "run.h5", plan, body.name, row);
   row.error = row.value / row.reference - 1;
+  if (plan.parameters.times == "do not count")
+    row.setup_seconds = row.stepping_seconds = row.cpu_seconds = unknown;
   return row;
 }
 

@@ -16,6 +16,9 @@ namespace kerf::study {
 output::StudyRow measure(const Plan& plan, const PlannedRow& row, const std::filesystem::path& folder,
                          const output::RunInfo& info, output::Earlier earlier);
 
+/// A row that has no numbers, only a reason.
+output::StudyRow failed_row(const PlannedRow& planned, const std::string& why);
+
 /// The number that stands for a series over time: the last one; the largest, the smallest; the mean over the last part
 /// of it [1], of one entry at least. NaN for a series without entries.
 double take(const std::vector<double>& series, const std::string& how, double last_part);

@@ -4,6 +4,7 @@
 #include "scene/grammar.h"
 #include "scene/inputs.h"
 #include "study/choices.h"
+#include "study/truth.h"
 
 #include <algorithm>
 
@@ -37,15 +38,28 @@ void require_change(const Section& study, const StudyParameters& parameters, con
                           "Name a change of this study, or leave the key out");
 }
 
+/// The reference of the study: what it says, or what its section Truth finds.
+Reference reference_of(const Section& root, const Section& study, const StudyParameters& parameters) {
+  const Reference said = read_reference(study);
+  const Section* truth = root.find("Truth");
+  if (!truth)
+    return said;
+  if (said.value != 0)
+    throw study.complaint("Reference", "there is a section Truth that finds one", "Leave out one of them");
+  if (parameters.unit != "m")
+    throw study.complaint("Unit", "the section Truth finds a displacement in m", "Ask for one, or leave the section out");
+  return find_truth(*truth, truth_cache());
+}
+
 } // namespace
 
 Plan make_plan(const scene::SceneText& text) {
   const Section root = scene::parse_scene(text, grammar());
   const Section& study = root.require("Study");
   const auto parameters = study.read<StudyParameters>();
-  const Reference reference = read_reference(study);
   const std::vector<Axis> axes = read_axes(root);
   require_change(study, parameters, axes);
+  const Reference reference = reference_of(root, study, parameters);
   root.require_all_read();
 
   Plan plan{parameters, study, scene::standalone_text(text, grammar()), scene::resolved(parameters.scene, study), {}};

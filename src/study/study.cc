@@ -13,7 +13,7 @@ namespace kerf::study {
 
 namespace {
 
-constexpr char study_name[] = "study.h5";
+constexpr char study_name[] = "study.h5", row_name[] = "row.h5";
 
 std::string in_words(const StudyParameters& p) {
   return p.take + " of '" + p.answer + "'" + (p.minus.empty() ? "" : " minus '" + p.minus + "'");
@@ -47,38 +47,100 @@ void tell_orders(std::vector<output::StudyRow>& rows) {
   }
 }
 
+StudyRows::StudyRows(const Plan& plan, const std::filesystem::path& folder, const output::RunInfo& info,
+                     const output::Earlier earlier)
+  : plan_(plan),
+    folder_(folder),
+    info_(info),
+    claimed_(folder, earlier, {study_name, output::name_beside(study_name).string()}),
+    made_of_(made_of(info, plan.text, scenes_of(plan))),
+    rows_(plan.rows.size()) {
+  if (earlier != output::Earlier::resume)
+    return;
+  const auto known = earlier_rows(folder / study_name, output::read_study_file, made_of_);
+  for (std::size_t k = 0; k < rows_.size(); ++k) {
+    for (const output::StudyRow& row : known)
+      if (row.name == plan.rows[k].name)
+        rows_[k] = row;
+    if (!has(k) && std::filesystem::exists(folder / row_folder(plan, k) / row_name))
+      rows_[k] = read_row(k);
+  }
+}
+
+void StudyRows::put(const std::size_t k, output::StudyRow row) {
+  rows_[k] = std::move(row);
+  write(output::Outcome::running);
+}
+
+output::StudyRow StudyRows::read_row(const std::size_t k) const {
+  const auto file = folder_ / row_folder(plan_, k) / row_name;
+  auto rows = earlier_rows(file, output::read_study_file, made_of_);
+  if (rows.size() != 1)
+    throw DataError(file.string() + " does not hold one row of a study");
+  return std::move(rows.front());
+}
+
+output::StudyTable StudyRows::table(const output::Outcome outcome) const {
+  output::StudyTable table{plan_.parameters.title, plan_.text, plan_.parameters.unit, in_words(plan_.parameters), outcome,
+                           {}};
+  table.made_of = made_of_;
+  for (const auto& row : rows_)
+    if (row)
+      table.rows.push_back(*row);
+  tell_orders(table.rows);
+  return table;
+}
+
+void StudyRows::write(const output::Outcome outcome) const {
+  output::write_study_file(folder_ / study_name, table(outcome), info_);
+}
+
+output::StudyTable StudyRows::finish() {
+  const bool all_failed =
+    std::none_of(rows_.begin(), rows_.end(), [](const auto& row) { return row->outcome == "completed"; });
+  const output::StudyTable whole = table(all_failed ? output::Outcome::failed : output::Outcome::completed);
+  output::write_study_file(folder_ / study_name, whole, info_);
+  if (all_failed)
+    throw NumericalError("every row of the study has failed. The first, " + whole.rows.front().name + ", " +
+                         whole.rows.front().outcome);
+  return whole;
+}
+
+std::filesystem::path row_folder(const Plan& plan, const std::size_t k) {
+  return std::filesystem::path("rows") / folder_name(plan.rows[k].name);
+}
+
 output::StudyTable run_study(const Plan& plan, const std::filesystem::path& folder, const output::RunInfo& info,
                              const output::Earlier earlier, const std::function<void(const output::StudyRow&)>& done) {
-  const output::ResultsFolder claimed(folder, earlier, {study_name, output::name_beside(study_name).string()});
-  const auto write = [&](output::StudyTable& table, const output::Outcome outcome) {
-    table.outcome = outcome;
-    output::write_study_file(folder / study_name, table, info);
-  };
-  output::StudyTable table{plan.parameters.title, plan.text, plan.parameters.unit, in_words(plan.parameters), {}, {}};
-  table.made_of = made_of(info, plan.text, scenes_of(plan));
-  if (earlier == output::Earlier::resume)
-    table.rows = earlier_rows(folder / study_name, output::read_study_file, table.made_of);
-  for (const output::StudyRow& row : table.rows)
-    done(row);
-  for (std::size_t r = table.rows.size(); r < plan.rows.size(); ++r) {
-    const PlannedRow& row = plan.rows[r];
+  StudyRows rows(plan, folder, info, earlier);
+  for (std::size_t k = 0; k < plan.rows.size(); ++k) {
     try {
-      table.rows.push_back(measure(plan, row, folder / "rows" / folder_name(row.name), info, earlier));
+      if (!rows.has(k))
+        rows.put(k, measure(plan, plan.rows[k], folder / row_folder(plan, k), info, earlier));
     } catch (const Interrupted&) {
-      write(table, output::Outcome::interrupted);
+      rows.interrupt();
       throw;
     }
-    tell_orders(table.rows);
-    write(table, output::Outcome::running);
-    done(table.rows.back());
+    done(rows.row(k));
   }
-  const bool all_failed = std::none_of(table.rows.begin(), table.rows.end(),
-                                       [](const output::StudyRow& row) { return row.outcome == "completed"; });
-  write(table, all_failed ? output::Outcome::failed : output::Outcome::completed);
-  if (all_failed)
-    throw NumericalError("every row of the study has failed. The first, " + table.rows.front().name + ", " +
-                         table.rows.front().outcome);
-  return table;
+  return rows.finish();
+}
+
+output::StudyRow run_row(const Plan& plan, const std::size_t k, const std::filesystem::path& folder,
+                         const output::RunInfo& info, const output::Earlier earlier) {
+  const auto own = folder / row_folder(plan, k), file = own / row_name;
+  const std::string of = made_of(info, plan.text, scenes_of(plan));
+  if (earlier == output::Earlier::resume)
+    if (auto rows = earlier_rows(file, output::read_study_file, of); !rows.empty())
+      return std::move(rows.front());
+  output::StudyTable table{plan.parameters.title, plan.text, plan.parameters.unit, in_words(plan.parameters),
+                           output::Outcome::completed, {}};
+  table.rows.push_back(measure(plan, plan.rows[k], own, info, earlier));
+  table.made_of = of;
+  const output::ResultsFolder claimed(own, output::Earlier::resume,
+                                      {row_name, output::name_beside(row_name).string()});
+  output::write_study_file(file, table, info);
+  return std::move(table.rows.front());
 }
 
 } // namespace kerf::study

@@ -167,6 +167,21 @@ class Report(unittest.TestCase):
         for looks in ([line.get_marker() for line in lines], [line.get_color() for line in lines]):
             self.assertEqual(len(set(looks)), len(looks))
 
+    def test_a_study_whose_times_do_not_count_has_no_figure_over_time(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "timeless" / "study.h5"
+            path.parent.mkdir()
+            path.write_bytes((FILES / "quick/study.h5").read_bytes())
+            with h5py.File(path, "r+") as file:
+                for name in ("setup_time", "stepping_time", "cpu_time"):
+                    file["study/rows"][name][:] = np.nan
+            done = kerf("report", path.parent, FILES / "quick", "--output", f"{folder}/out")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            figures = {figure.name for figure in pathlib.Path(folder, "out/figures").glob("*.png")}
+            self.assertIn("timeless_error_h.png", figures)
+            self.assertNotIn("timeless_error_time.png", figures)
+            self.assertIn("quick_error_time.png", figures)
+
     def test_a_report_is_not_replaced_unasked(self):
         again = kerf("report", FILES / "short", "--output", self.folder.name)
         self.assertEqual(again.returncode, 1)

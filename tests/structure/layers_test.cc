@@ -44,10 +44,11 @@ const std::vector<Room> rooms = {
   {"texture", {"base", "geometry", "image", "warp"}},
   {"render", {"base", "gl"}},
   {"output", {"base"}},
+  {"reference", {"base"}},
   {"scene",
    {"base", "geometry", "grid", "cut", "surface", "material", "dynamics", "fem", "lattice", "spring", "pba", "visibility",
     "physics", "gl", "image", "warp", "texture", "render", "output"}},
-  {"study", {"base", "material", "output", "scene"}},
+  {"study", {"base", "material", "output", "reference", "scene"}},
 };
 
 /// Headers that only some rooms may see.
@@ -56,7 +57,7 @@ struct Heavy {
   Names rooms;
 };
 const std::vector<Heavy> heavy_headers = {
-  {"deal.II/", {"dynamics", "fem", "scene"}},
+  {"deal.II/", {"dynamics", "fem", "reference", "scene"}},
   {"CGAL/", {"geometry"}},
   {"hdf5", {"output"}},
   {"H5", {"output"}},

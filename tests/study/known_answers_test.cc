@@ -47,6 +47,11 @@ TEST(KnownAnswers, OfASplitBeam) {
   EXPECT_NEAR(error_of("split_beam", "pba-extended, 2-of-6"), -0.23, 0.05);
 }
 
+TEST(KnownAnswers, OfCooksMembrane) {
+  EXPECT_NEAR(error_of("cook", "fem, 24"), -0.036, 0.003);
+  EXPECT_NEAR(error_of("cook", "mass-spring, 24"), -0.038, 0.004);
+}
+
 /// Criteria that leave a bond around the front of a cut hold it closer than those that part what cannot see each other.
 TEST(KnownAnswers, OfAPennyShapedCut) {
   EXPECT_NEAR(error_of("penny", "fem, 12"), -0.04, 0.02);

@@ -1,0 +1,109 @@
+// References that deal.II finds for a study: the section Truth.
+
+#include "study/truth.h"
+
+#include "study/grammar.h"
+#include "tests/study/study_text.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+
+namespace kerf::study {
+namespace {
+
+const std::string corners = "  set Corners [m] = 0, 0, 0; 10, 0, 0; 10, 1, 0; 0, 1, 0\n";
+const std::string rest = "  set Cells [1] = 10, 2\n"
+                         "  set Young's modulus [Pa] = 1e5\n"
+                         "  set Force [N/m^3] = 0, -1, 0\n"
+                         "  set Point [m] = 10, 0.25, 0\n"
+                         "  set Axis = y\n"
+                         "  set Adaptations [1] = 2\n"
+                         "  subsection Held left\n    set Upper [m] = 0.01, 9, 9\n  end\n";
+const std::string crack = "  subsection Crack all\n    set Point [m] = 0, 0.5, 0\n    set Normal [1] = 0, 1, 0\n  end\n";
+
+std::string truth(const std::string& body) { return "subsection Truth\n" + body + "end\n"; }
+
+Reference find(const std::string& text, const std::filesystem::path& cache = {}) {
+  const scene::Section root = scene::parse_scene(scene::scan_scene_text(text, "study.prm"), {truth_grammar()});
+  const Reference found = find_truth(root.require("Truth"), cache);
+  root.require_all_read();
+  return found;
+}
+
+/// w L^4 / (8 E I) + shear of a cantilever of nu = 0 under its weight; cut in two, it is bent four times as far.
+TEST(Truth, OfABeamAndOfItsHalves) {
+  const double bending = 1e4 / (8 * 1e5 / 12), shear = 100 / (2 * 5.0 / 6 * 5e4);
+  EXPECT_NEAR(find(truth(corners + rest)).value, -(bending + shear), 2e-3 * bending);
+  EXPECT_NEAR(find(truth(corners + rest + crack)).value, -(4 * bending + shear), 8e-3 * bending);
+}
+
+TEST(Truth, OfABlock) {
+  const std::string block = "  set Corners [m] = 0, 0, 0; 1, 0, 0; 1, 2, 0; 0, 2, 0\n  set Heights [m] = 0, 3\n"
+                            "  set Cells [1] = 1, 2, 3\n  set Young's modulus [Pa] = 100\n"
+                            "  set Poisson's ratio [1] = 0.25\n  set Point [m] = 1, 1, 3\n  set Adaptations [1] = 0\n"
+                            "  subsection Held x\n    set Upper [m] = 0.01, 9, 9\n    set Hold = x\n  end\n"
+                            "  subsection Held y\n    set Upper [m] = 9, 0.01, 9\n    set Hold = y\n  end\n"
+                            "  subsection Held z\n    set Upper [m] = 9, 9, 0.01\n    set Hold = z\n  end\n"
+                            "  subsection Pulled top\n    set Lower [m] = -9, -9, 2.99\n    set Traction [N/m^2] = 0, 0, 5\n"
+                            "  end\n";
+  EXPECT_NEAR(find(truth(block)).value, 3 * 5.0 / 100, 1e-12);
+  EXPECT_NEAR(find(truth(block + "  set Axis = x\n")).value, -0.25 * 5.0 / 100, 1e-12);
+  EXPECT_NEAR(find(truth(block + "  set Minus point [m] = 0, 1, 1\n")).value, 2 * 5.0 / 100, 1e-12);
+}
+
+TEST(Truth, IsKeptByAHashOfItsSection) {
+  const output::TemporaryFolder cache;
+  const std::string text = truth(corners + rest);
+  const Reference found = find(text, cache / "references");
+  std::filesystem::path file;
+  for (const auto& entry : std::filesystem::directory_iterator(cache / "references")) {
+    EXPECT_TRUE(file.empty()) << "one file";
+    file = entry.path();
+  }
+  EXPECT_EQ(find(text, cache / "references").value, found.value) << "bit by bit";
+  EXPECT_EQ(find(text, cache / "references").source, found.source);
+  std::ofstream(file) << "42\nelsewhere\nend\n";
+  EXPECT_EQ(find(text, cache / "references").value, 42) << "not solved again";
+  EXPECT_NE(find(truth(corners + rest + crack), cache / "references").value, 42) << "another problem";
+  std::ofstream(file) << "42\nelse";
+  EXPECT_EQ(find(text, cache / "references").value, found.value) << "half a file does not count";
+}
+
+TEST(Truth, RefusesWhatCannotBe) {
+  EXPECT_THROW(find(truth("  set Corners [m] = 0, 0, 0; 1, 0, 0; 0, 1, 0; 1, 1, 0\n" + rest)), ParameterError);
+  EXPECT_THROW(find(truth("  set Corners [m] = 0, 0, 0; 1, 0, 0; 0, 1, 0\n" + rest)), ParameterError);
+  EXPECT_THROW(find(truth(corners + "  set Heights [m] = 2, 1\n" + rest)), ParameterError);
+  EXPECT_THROW(find(truth(corners + rest + "  subsection Crack off\n    set Point [m] = 0, 0.3, 0\n"
+                                           "    set Normal [1] = 0, 1, 0\n  end\n")),
+               ParameterError);
+  EXPECT_THROW(find(truth(corners + rest + "  subsection Held far\n    set Lower [m] = 99, 99, 99\n  end\n")),
+               ParameterError);
+  EXPECT_THROW(find(truth(corners + rest + "  set Minus point [m] = 0, 9, 0\n")), ParameterError);
+  EXPECT_THROW(find(truth(corners + rest + "  set Tolerance [1] = 1e-12\n")), NumericalError);
+}
+
+TEST(Truth, IsTheReferenceOfRowsWithoutAnother) {
+  const CubeStudy study;
+  const std::string head = "subsection Study\n  set Scene = scene.prm\n  set Answer = largest displacement\n";
+  const std::string fem = CubeStudy::variant("fem", "") +
+                          "subsection Variant other\n  set Reference = 7\n  set Reference source = a book\nend\n";
+  const Plan plan = study.plan(head + "  set Unit = m\nend\n" + truth(corners + rest) + fem);
+  EXPECT_NEAR(plan.rows[0].reference.value, -0.1512, 5e-4);
+  EXPECT_TRUE(plan.rows[0].reference.source.starts_with("deal.II, degree 4")) << plan.rows[0].reference.source;
+  EXPECT_EQ(plan.rows[1].reference.value, 7);
+  EXPECT_THROW(study.plan(head + "  set Unit = J\nend\n" + truth(corners + rest) + fem), ParameterError);
+  EXPECT_THROW(study.plan(CubeStudy::head() + truth(corners + rest) + fem), ParameterError) << "two references";
+}
+
+/// Of the tables' 23.96774, at a hundredth of the length and 1e-4 of the strain.
+TEST(Truth, OfTheStudyOfCooksMembrane) {
+  const Plan plan =
+    make_plan(scene::read_scene_text(std::string(KERF_SOURCE_DIR) + "/params/studies/cook.prm", {}));
+  for (const PlannedRow& row : plan.rows)
+    EXPECT_NEAR(row.reference.value, 23.96774e-6, 1e-11);
+}
+
+} // namespace
+} // namespace kerf::study
