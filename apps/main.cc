@@ -32,6 +32,7 @@ constexpr const char* usage = R"(usage:
   kerf inspect FILE...                                    what is in a file of ours
   kerf params [study]                                     every section and key of a scene, or of a study
   kerf table --output FILE.h5                             the Splitting Cubes table as a file
+  kerf run --help                                         its options with their defaults; check and study too
   kerf --version                                          version, commit, compiler, libraries
 exit codes: 1 the scene, 2 a file, 3 the computation; 128 + n: ended by signal n
 )";
@@ -55,7 +56,8 @@ int dispatch(const kerf::apps::Arguments& arguments) {
     kerf::apps::become_python(arguments[0], {arguments.begin() + 1, arguments.end()});
   const auto asks_for_help = [](const std::string& word) { return word == "--help" || word == "-h"; };
   if (arguments.empty() || arguments[0] == "help" || std::any_of(arguments.begin(), arguments.end(), asks_for_help)) {
-    std::printf("%s", usage);
+    const std::string page = arguments.empty() ? "" : kerf::apps::help_of(arguments[0]);
+    std::printf("%s", page.empty() ? usage : page.c_str());
     return arguments.empty() ? 1 : 0;
   }
   if (arguments[0] == "--version")

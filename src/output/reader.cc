@@ -6,6 +6,8 @@
 #include "output/run_info.h"
 #include "output/schema.h"
 
+#include <algorithm>
+
 namespace kerf::output {
 namespace {
 
@@ -51,6 +53,11 @@ std::optional<Failure> Reader::failure() const {
 std::string Reader::scene() const { return h5::read_text(contents_->root, "/scene"); }
 
 bool Reader::has_scene() const { return h5::exists(contents_->root, "/scene"); }
+
+bool Reader::has_checkpoint() const {
+  return std::ranges::count(h5::attribute_names(contents_->root), "has_checkpoint") > 0 &&
+         h5::integer_attribute(contents_->root, "has_checkpoint") != 0;
+}
 
 std::vector<std::string> Reader::inputs() const { return h5::read_lines(contents_->root, "/inputs"); }
 

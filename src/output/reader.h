@@ -24,6 +24,7 @@ class Reader {
   std::optional<Failure> failure() const;
   std::string scene() const;
   bool has_scene() const;                  ///< none: the run was killed before its first step
+  bool has_checkpoint() const;             ///< whether one was written that should still stand beside the file
   std::vector<std::string> inputs() const; ///< SHA-256 and path of each file that the scene reads
   std::vector<std::string> composition() const;
   Schema schema() const;

@@ -10,6 +10,7 @@
 #include <cerrno>
 #include <fstream>
 #include <sstream>
+#include <string_view>
 #include <system_error>
 
 namespace kerf::output {
@@ -49,6 +50,16 @@ bool is_numbered(const fs::path& file) {
   const std::string stem = file.stem().string();
   return file.extension() == ".png" && !stem.empty() &&
          std::all_of(stem.begin(), stem.end(), [](const unsigned char c) { return std::isdigit(c); });
+}
+
+/// Whether a picture carries the mark that render/image.cc writes, or was left empty by a kill.
+bool is_ours(const fs::path& picture) {
+  const std::string mark("tEXtSoftware\0Kerf", 17);
+  std::array<char, 64> head{};
+  std::ifstream in(picture, std::ios::binary);
+  in.read(head.data(), head.size());
+  const std::string_view read(head.data(), static_cast<std::size_t>(in.gcount()));
+  return read.empty() || read.find(mark) != std::string_view::npos;
 }
 
 /// The files that a name stands for, as they are now.
@@ -93,13 +104,19 @@ void require_no_results(const fs::path& folder, const Earlier earlier) {
 
 void require_no_strangers(const fs::path& folder, const Names& names) {
   const Names ours = read_list(folder).names;
-  for (const std::string& name : names)
-    if (std::find(ours.begin(), ours.end(), name) == ours.end())
-      if (const auto files = files_of(folder, name); !files.empty())
-        throw DataError(Complaint{.file = files.front().string(),
-                                  .rule = "would be overwritten, and is not known to be Kerf's: " +
-                                          (folder / list_name).string() + " does not list it",
-                                  .remedy = "Move it away, or choose another folder with --output"});
+  const auto refuse_stranger = [](const fs::path& file, const std::string& why) {
+    throw DataError(Complaint{.file = file.string(),
+                              .rule = "would be overwritten, and is not known to be Kerf's: " + why,
+                              .remedy = "Move it away, or choose another folder with --output"});
+  };
+  for (const std::string& name : names) {
+    const bool is_listed = std::find(ours.begin(), ours.end(), name) != ours.end();
+    for (const fs::path& file : files_of(folder, name))
+      if (!is_listed)
+        refuse_stranger(file, (folder / list_name).string() + " does not list it");
+      else if (name == frames && !is_ours(file))
+        refuse_stranger(file, "it does not carry Kerf's mark");
+  }
 }
 
 /// The folder itself, or what it would have to be made in.
@@ -158,7 +175,8 @@ ResultsFolder::ResultsFolder(fs::path folder, const Earlier earlier, const Names
     if (earlier == Earlier::replace)
       for (const std::string& name : all)
         for (const fs::path& file : files_of(folder_, name))
-          fs::remove(file, error); // what cannot be removed is overwritten, or its writer says why not
+          if (name != frames || is_ours(file))
+            fs::remove(file, error); // what cannot be removed is overwritten, or its writer says why not
     if (earlier != Earlier::resume)
       write_list(names_, this_process());
     else

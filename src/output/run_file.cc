@@ -166,8 +166,15 @@ void RunFile::append(const StepRecord& record) {
   contents_->file.transaction([&] { contents_->append(record); });
 }
 
+void RunFile::note_checkpoint() {
+  contents_->file.transaction([&] { h5::set_attribute(contents_->root(), "has_checkpoint", std::int64_t{1}); });
+}
+
 void RunFile::complete() {
-  contents_->file.transaction([&] { h5::set_attribute(contents_->root(), "outcome", to_string(Outcome::completed)); });
+  contents_->file.transaction([&] {
+    h5::set_attribute(contents_->root(), "outcome", to_string(Outcome::completed));
+    h5::set_attribute(contents_->root(), "has_checkpoint", std::int64_t{0});
+  });
 }
 
 std::vector<std::int64_t> RunFile::steps() const { return h5::read_vector<std::int64_t>(contents_->root(), "/step"); }

@@ -3,7 +3,7 @@
 /// The one file of a run, in HDF5: what was run, the series over time, and the frames of every body.
 ///
 ///     /                    attributes: version, git_commit, command_line, ..., outcome; n_resumed: how often it went
-///                          on after an early end
+///                          on after an early end; has_checkpoint: whether there is one beside it to go on from, 1 or 0
 ///     /scene               the whole text of the scene, overrides in place, names of files absolute
 ///     /inputs              the files that it reads, a line each: SHA-256, path
 ///     /composition         what was composed and what was left out, a line each
@@ -52,6 +52,10 @@ class RunFile {
   std::vector<double> observable(const std::string& name) const;
   const Schema& schema() const;
 
+  /// A checkpoint stands beside the file now.
+  void note_checkpoint();
+
+  /// And has none any more.
   void complete();
   void fail(const Failure& failure);
   /// The same for an end that a signal has asked for.

@@ -1,5 +1,6 @@
 #include "scene/compose.h"
 
+#include "base/interrupt.h"
 #include "scene/compose_body.h"
 #include "scene/compose_cut_surface.h"
 #include "scene/compose_loads.h"
@@ -12,6 +13,12 @@
 namespace kerf::scene {
 
 namespace {
+
+/// Between two things that take long to compose.
+void end_if_asked() {
+  if (const int signal = wish_to_end(); signal != 0)
+    throw Interrupted(signal, " while the scene was composed: no step was run, the results folder is as it was");
+}
 
 void compose_time(const Section& section, World& world) {
   const auto parameters = section.read<TimeParameters>();
@@ -89,8 +96,11 @@ World compose(const SceneText& text) {
     world.composition.push_back(
       line("cut surface ", timed.surface.name, ": cuts at ", (timed.step - 1) * world.time_step, " s"));
   }
-  for (const Section* body : root.all("Body"))
+  for (const Section* body : root.all("Body")) {
+    end_if_asked();
     world.bodies.push_back(compose_body(*body, gravity_section ? &gravity : nullptr, root.all("Floor"), world));
+  }
+  end_if_asked();
   require_meeting_of_all(root, world);
   for (const Section* section : root.all("Forceps"))
     compose_forceps(*section, world);

@@ -8,6 +8,7 @@
 #include "scene/compose_interior.h"
 #include "scene/compose_loads.h"
 #include "scene/compose_physics.h"
+#include "scene/crack_report.h"
 #include "scene/initial_state.h"
 #include "scene/support_report.h"
 
@@ -176,11 +177,17 @@ Body compose_body(const Section& section, const GravityParameters* gravity, cons
                                    body.solid.grid.n_cells(), " cells of ", parameters.cube_edge, " m, ",
                                    body.solid.complex.n_corners(), " corners, ", body.surface.triangles.size(),
                                    " surface triangles"));
+  const std::size_t n_supports = section.all("Support").size(); // those that hold the skin are loads
   world.composition.push_back(line("body ", body.name, ": ", describe_physics(section, parameters, body), ", ",
-                                   body.regions.size(), " supports, ", body.load_makers.size(), " loads"));
+                                   n_supports, " supports, ",
+                                   body.regions.size() + body.load_makers.size() - n_supports, " loads"));
   for (const std::string& said : describe_supports(body))
     world.composition.push_back(said);
+  for (const std::string& said : describe_skin_supports(section, body))
+    world.composition.push_back(said);
   for (const std::string& warning : check_crack_fronts(section, body))
+    world.composition.push_back(warning);
+  for (const std::string& warning : warn_of_fronts(body, world))
     world.composition.push_back(warning);
   if (body.physics->crumbs().any())
     world.composition.push_back(describe_crumbs(body));

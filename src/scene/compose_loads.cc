@@ -1,5 +1,6 @@
 #include "scene/compose_loads.h"
 
+#include "base/union_find.h"
 #include "dynamics/floor.h"
 #include "dynamics/handle.h"
 #include "dynamics/rigid_modes.h"
@@ -10,12 +11,14 @@
 #include "scene/expression.h"
 #include "scene/grammar_body.h"
 #include "scene/grammar_physics.h"
+#include "scene/support_report.h"
 
 #include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <set>
 
 namespace kerf::scene {
 
@@ -228,6 +231,25 @@ void require_held_triangles(const Section& section, const Body& body) {
                             "Move or enlarge it: it is meant in the rest configuration, in metres");
 }
 
+/// "0.04 m^2 of skin from (0, 0, 0) to (0, .2, .2) m, in 1 piece"
+std::string describe(const dynamics::SurfacePatch& patch) {
+  UnionFind sets(patch.rest.size());
+  std::set<std::uint32_t> roots;
+  Points points;
+  double area = 0;
+  for (const auto& [a, b, c] : patch.triangles) {
+    sets.unite(a, b);
+    sets.unite(b, c);
+    area += 0.5 * (patch.rest[b] - patch.rest[a]).cross(patch.rest[c] - patch.rest[a]).norm();
+  }
+  for (const auto& triangle : patch.triangles)
+    for (const auto vertex : triangle) {
+      roots.insert(sets.root(vertex));
+      points.push_back(patch.rest[vertex]);
+    }
+  return line(area, " m^2 of skin ", extent(points), ", in ", roots.size(), roots.size() == 1 ? " piece" : " pieces");
+}
+
 /// Those behind body.regions, in their order.
 std::vector<const Section*> corner_supports(const Section& section) {
   std::vector<const Section*> supports;
@@ -268,6 +290,17 @@ void compose_loads(const Section& section, const std::vector<const Section*>& fl
     compose_floor(*floor, body);
   for (const Section* probe : section.all("Probe"))
     body.probes.push_back({probe->name(), probe->read<ProbeParameters>().point});
+}
+
+std::vector<std::string> describe_skin_supports(const Section& section, const Body& body) {
+  std::vector<std::string> lines;
+  for (const Section* support : section.all("Support"))
+    if (holds_skin(*support)) {
+      const Region region = read_region(*support, support->read<SupportParameters>().region);
+      lines.push_back(line("body ", body.name, ": support ", support->name(), " holds ",
+                           describe(patch_of(body, "skin", region))));
+    }
+  return lines;
 }
 
 void require_sound_loads(const Section& section, const double end_time, const Body& body) {

@@ -14,6 +14,9 @@ void compose_loads(const Section& section, const std::vector<const Section*>& fl
 /// and supports that want one corner in different places.
 void require_sound_loads(const Section& section, double end_time, const Body& body);
 
+/// A line for each support that holds the skin: its area at rest, from where to where, in how many pieces.
+std::vector<std::string> describe_skin_supports(const Section& section, const Body& body);
+
 /// For statics, with everything there that holds the body at the start: throws ParameterError that names the rigid
 /// motions that nothing resists, unless the section allows them.
 void require_static_answer(const Section& section, const Body& body);

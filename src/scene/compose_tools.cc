@@ -4,6 +4,7 @@
 #include "cut/scissors.h"
 #include "geometry/box_tree.h"
 #include "scene/held.h"
+#include "scene/support_report.h"
 #include "scene/tool_shapes.h"
 
 #include <algorithm>
@@ -92,11 +93,13 @@ bool comes_near(const cut::Blade& blade, const Body& body) {
   return geometry::overlap(swept, Box{box.lower - slack, box.upper + slack});
 }
 
-std::size_t n_particles_in(const Region& region, const World& world) {
-  std::size_t n = 0;
+/// The particles of all bodies that rest in a region [m].
+Points held_in(const Region& region, const World& world) {
+  Points held;
   for (const Body& body : world.bodies)
-    n += particles_in(body, region).size();
-  return n;
+    for (const auto i : particles_in(body, region))
+      held.push_back(body.physics->rest()[i]);
+  return held;
 }
 
 void check_times(const Section& section, const Forceps& forceps, const World& world) {
@@ -164,13 +167,17 @@ void compose_forceps(const Section& section, World& world) {
   } catch (const ParameterError& error) {
     throw placed(section, key_of(error.complaint()), error);
   }
-  const std::size_t n_held = n_particles_in(forceps.region, world);
-  if (n_held == 0)
+  const Points held = held_in(forceps.region, world);
+  if (held.empty())
     throw section.complaint("the region holds no corner or phyxel of a body",
                             "Move or enlarge it: it is meant in the rest configuration, in metres");
   complete_shape(forceps, world, parameters.grip_time);
   world.composition.push_back(
-    line("forceps ", forceps.name, ": hold ", n_held, " corners or phyxels from step ", forceps.grip_step));
+    line("forceps ", forceps.name, ": hold ", held.size(), " corners or phyxels from step ", forceps.grip_step, ", ",
+         extent(held)));
+  for (const Body& body : world.bodies)
+    for (const std::string& warning : warn_of_layers(body, "forceps " + forceps.name, forceps.region))
+      world.composition.push_back(warning);
   world.forceps.push_back(std::move(forceps));
 }
 

@@ -5,9 +5,11 @@
 #include <deal.II/base/function_parser.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <iostream>
 #include <memory>
+#include <vector>
 
 namespace kerf::scene {
 
@@ -38,13 +40,30 @@ bool assigns(const std::string& text) {
   return false;
 }
 
-/// n expressions of some variables, the last of which is the time.
+/// Whether a comma stands elsewhere than between the arguments of a function: the parser takes what is behind the last.
+bool has_loose_comma(const std::string& text) {
+  std::vector<bool> is_call; // of the open parentheses
+  char before = ' ';
+  for (const char c : text) {
+    if (c == '(')
+      is_call.push_back(std::isalnum(static_cast<unsigned char>(before)) != 0 || before == '_');
+    else if (c == ')' && !is_call.empty())
+      is_call.pop_back();
+    else if (c == ',' && (is_call.empty() || !is_call.back()))
+      return true;
+    before = c == ' ' ? before : c;
+  }
+  return false;
+}
+
+/// n expressions of some variables: "t", "x, y, z and t", or "x, y, z".
 class Expressions {
  public:
   Expressions(const Section& section, const std::string& key, const std::string& text, const int n,
               const std::string& variables)
     : n_(n),
       has_place_(variables != "t"),
+      has_time_(variables != "x, y, z"),
       place_(section.complaint(key, "", "Choose an expression that is finite in the whole body").complaint()),
       parser_(std::make_shared<dealii::FunctionParser<3>>(n)) {
     const std::string of = (n == 1 ? "one expression of " : "three expressions of ") + variables;
@@ -52,13 +71,18 @@ class Expressions {
     const std::string separated = n == 1 ? "" : ", separated by semicolons";
     if (std::count(text.begin(), text.end(), ';') != n - 1)
       throw section.complaint(key, "must be " + of + separated, remedy);
+    if (has_loose_comma(text))
+      throw section.complaint(key, "must be " + of + separated + ": a comma separates arguments of a function only",
+                              "Write decimals with a point, as 0.5, and semicolons between expressions");
     if (assigns(text))
       throw section.complaint(key, "must be " + of + ", which assigns nothing: '=' compares as '=='", remedy);
     try {
       const SilentErrors silent;
       parser_->initialize("x,y,z,t", text, {{"pi", std::acos(-1.0)}}, true);
       if (!has_place_)
-        require_no_place(section, key, text, of, remedy);
+        require_no_others<1>("t", text);
+      if (!has_time_)
+        require_no_others<3>("x,y,z", text);
       for (int i = 0; i < n; ++i)
         if (!std::isfinite((*this)(i, Vec3::Zero(), 0)) && !has_place_)
           throw section.complaint(key, "must be finite at t = 0", remedy);
@@ -80,20 +104,16 @@ class Expressions {
   }
 
  private:
-  /// The parser knows x, y and z; an expression of time must not.
-  void require_no_place(const Section& section, const std::string& key, const std::string& text, const std::string& of,
-                        const std::string& remedy) const {
-    dealii::FunctionParser<1> parser(static_cast<unsigned>(n_));
-    try {
-      parser.initialize("t", text, {{"pi", std::acos(-1.0)}});
-      parser.value(dealii::Point<1>(0));
-    } catch (const dealii::ExceptionBase&) {
-      throw section.complaint(key, "must be " + of + " that can be evaluated", remedy);
-    }
+  /// The parser knows x, y, z and t; not every expression may. Throws its exceptions.
+  template <int n_variables>
+  void require_no_others(const std::string& variables, const std::string& text) const {
+    dealii::FunctionParser<n_variables> parser(static_cast<unsigned>(n_));
+    parser.initialize(variables, text, {{"pi", std::acos(-1.0)}});
+    parser.value(dealii::Point<n_variables>());
   }
 
   int n_;
-  bool has_place_;
+  bool has_place_, has_time_;
   Complaint place_; ///< of what is not finite only somewhere
   std::shared_ptr<dealii::FunctionParser<3>> parser_;
 };
@@ -109,6 +129,12 @@ std::function<Vec3(double time)> vector_of_time(const Section& section, const st
 std::function<Vec3(const Vec3& X, double time)> vector_of_place(const Section& section, const std::string& key,
                                                                 const std::string& expressions) {
   const Expressions f(section, key, expressions, 3, "x, y, z and t");
+  return [f](const Vec3& X, const double t) { return Vec3(f(0, X, t), f(1, X, t), f(2, X, t)); };
+}
+
+std::function<Vec3(const Vec3& X, double time)> vector_of_rest(const Section& section, const std::string& key,
+                                                               const std::string& expressions) {
+  const Expressions f(section, key, expressions, 3, "x, y, z");
   return [f](const Vec3& X, const double t) { return Vec3(f(0, X, t), f(1, X, t), f(2, X, t)); };
 }
 

@@ -18,6 +18,10 @@ std::function<Vec3(double time)> vector_of_time(const Section& section, const st
 std::function<Vec3(const Vec3& X, double time)> vector_of_place(const Section& section, const std::string& key,
                                                                 const std::string& expressions);
 
+/// The same of the rest position alone.
+std::function<Vec3(const Vec3& X, double time)> vector_of_rest(const Section& section, const std::string& key,
+                                                               const std::string& expressions);
+
 /// One expression of the rest position and the time.
 std::function<double(const Vec3& X, double time)> number_of_place(const Section& section, const std::string& key,
                                                                   const std::string& expression);

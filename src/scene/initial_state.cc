@@ -27,8 +27,8 @@ void InitialStateParameters::describe(Parameters& p) {
 
 InitialState compose_initial_state(const Section& section) {
   const auto parameters = section.read<InitialStateParameters>();
-  return {vector_of_place(section, "Displacement [m]", parameters.displacement),
-          vector_of_place(section, "Velocity [m/s]", parameters.velocity), 0};
+  return {vector_of_rest(section, "Displacement [m]", parameters.displacement),
+          vector_of_rest(section, "Velocity [m/s]", parameters.velocity), 0};
 }
 
 void put_in_initial_state(Body& body) {

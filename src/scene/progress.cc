@@ -1,7 +1,6 @@
 #include "scene/progress.h"
 
 #include <algorithm>
-#include <string>
 
 #include <unistd.h>
 
@@ -41,6 +40,14 @@ void Progress::name_step(const double seconds) {
 double Progress::steps_per_second() const {
   const double seconds = std::chrono::duration<double>(Clock::now() - start_).count();
   return seconds > 0 ? step_ / seconds : 0;
+}
+
+void Progress::say(const std::string& line) {
+  const std::lock_guard lock(mutex_);
+  if (style_ == ProgressStyle::silent)
+    return;
+  std::fprintf(stream_, "%s\n", line.c_str());
+  std::fflush(stream_);
 }
 
 void Progress::show(const int step, const double time) {

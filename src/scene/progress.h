@@ -7,6 +7,7 @@
 #include <condition_variable>
 #include <cstdio>
 #include <mutex>
+#include <string>
 #include <thread>
 
 namespace kerf::scene {
@@ -22,6 +23,8 @@ class Progress {
   Progress(int n_steps, double end_time, ProgressStyle style, std::FILE* stream,
            std::chrono::milliseconds patience = std::chrono::seconds(10));
 
+  /// A line of its own.
+  void say(const std::string& line);
   /// After step `step` at time `time` [s].
   void show(int step, double time);
   /// Ends the bar's line; no step is named any more.

@@ -21,6 +21,12 @@ const std::string run_name = "run.h5", frames_folder = "frames";
 
 std::string surface_name(const Body& body) { return "surface_" + body.name + ".vtkhdf"; }
 
+std::filesystem::path image_path(const std::filesystem::path& folder, const int step) {
+  std::array<char, 32> name;
+  std::snprintf(name.data(), name.size(), "%06d.png", step);
+  return folder / frames_folder / name.data();
+}
+
 /// What a run of this world makes in its folder.
 std::vector<std::string> names_of(const World& world) {
   const std::string checkpoint = checkpoint_file("").string();
@@ -102,11 +108,24 @@ std::chrono::steady_clock::duration seconds_of(const double seconds) {
     std::chrono::duration<double>(std::min(seconds, 1e8)));
 }
 
-/// Whether a folder's run can be gone on with. Throws as require_same().
-bool can_go_on(const std::filesystem::path& folder, const Source& source) {
+void require_file(const std::filesystem::path& file, const std::string& why) {
+  if (std::error_code error; !std::filesystem::exists(file, error))
+    throw DataError(Complaint{.file = file.string(),
+                              .rule = "is not there, and " + why,
+                              .remedy = "Bring it back, or start again with --force"});
+}
+
+/// Whether a folder's run can be gone on with. Throws as require_same(), and DataError where a file of it is lost.
+bool can_go_on(const std::filesystem::path& folder, const World& world, const Source& source) {
   if (!has_begun(folder / run_name))
     return false;
   require_same(folder, source);
+  if (!output::Reader(folder / run_name).has_checkpoint())
+    return true;
+  require_file(checkpoint_file(folder), "the run that is to be resumed has written it");
+  if (world.surface_file)
+    for (const Body& body : world.bodies)
+      require_file(folder / surface_name(body), "the run that is to be resumed has written a part of it");
   return true;
 }
 
@@ -141,7 +160,8 @@ void require_same(const std::filesystem::path& folder, const Source& source) {
 Recorder::Recorder(const std::filesystem::path& folder, const World& world, const Source& source,
                    const output::Earlier earlier)
   : folder_(folder, earlier, names_of(world)),
-    goes_on_(earlier == output::Earlier::resume && can_go_on(folder, source)),
+    earlier_(earlier),
+    goes_on_(earlier == output::Earlier::resume && can_go_on(folder, world, source)),
     run_file_(goes_on_ ? output::RunFile(folder / run_name)
                        : output::RunFile(folder / run_name, source.info, make_schema(world))),
     bodies_(world.bodies.size()),
@@ -176,11 +196,21 @@ void Recorder::open_surface_files(const World& world) {
   }
 }
 
-int Recorder::resume(World& world) {
+Cost Recorder::total_cost() const {
+  const Cost now = cost_ ? cost_() : Cost();
+  return {earlier_cost_.cpu_seconds + now.cpu_seconds, std::max(now.peak_memory, earlier_cost_.peak_memory)};
+}
+
+Start Recorder::resume(World& world) {
   next_checkpoint_ = Clock::now() + seconds_of(world.output.checkpoint_interval);
   const auto checkpoint = goes_on_ ? output::read_checkpoint(checkpoint_file(folder())) : std::nullopt;
+  if (!checkpoint && earlier_ != output::Earlier::resume)
+    return {};
   if (!checkpoint)
-    return -1;
+    return {-1,
+            {ends_ < 0 ? "nothing is there to resume: starts from step 0"
+                       : "no checkpoint had been written: starts from step 0, and compares with the " +
+                           std::to_string(ends_) + " steps that are recorded"}};
   if (checkpoint->inputs != inputs_ || checkpoint->program != program_)
     throw DataError(Complaint{.file = checkpoint_file(folder()).string(),
                               .rule = "was written by " + checkpoint->program + ", and this is " + program_,
@@ -192,8 +222,25 @@ int Recorder::resume(World& world) {
   Archive state(checkpoint->state, checkpoint_file(folder()).string());
   for (Body& body : world.bodies)
     archive(state, body);
-  state(bodies_, world.watches);
-  return static_cast<int>(checkpoint->step);
+  state(bodies_, world.watches, earlier_cost_.cpu_seconds, earlier_cost_.peak_memory);
+  const int step = static_cast<int>(checkpoint->step);
+  Start start{step,
+              {"goes on from step " + std::to_string(step) + " of " + std::to_string(world.n_steps) +
+               " (t = " + to_text(step * world.time_step) + " s)"}};
+  for (const std::string& line : warn_of_lost_images(world, step))
+    start.lines.push_back(line);
+  return start;
+}
+
+std::vector<std::string> Recorder::warn_of_lost_images(const World& world, const int step) const {
+  std::vector<std::filesystem::path> lost;
+  for (int i = 0; world.images && i <= step; i += world.images->every)
+    if (const auto path = image_path(folder(), i); !std::filesystem::exists(path))
+      lost.push_back(path);
+  if (lost.empty())
+    return {};
+  return {"warning: " + std::to_string(lost.size()) + " images up to there are lost, " + lost.front().string() +
+          " first, and are not drawn again. Start again with --force to have them"};
 }
 
 void Recorder::keep(World& world, const int step, Timings& seconds) {
@@ -215,8 +262,11 @@ void Recorder::keep_now(World& world, const int step) {
   Archive state;
   for (Body& body : world.bodies)
     archive(state, body);
-  state(bodies_, world.watches);
+  Cost cost = total_cost();
+  state(bodies_, world.watches, cost.cpu_seconds, cost.peak_memory);
   output::write_checkpoint(checkpoint_file(folder()), {program_, inputs_, step, state.bytes()});
+  if (!std::exchange(has_noted_checkpoint_, true))
+    run_file_.note_checkpoint();
 }
 
 void Recorder::complete() {
@@ -302,10 +352,7 @@ void Recorder::append_surfaces(const World& world, const int step) {
 }
 
 void Recorder::write_image(const World& world, const int step) {
-  std::array<char, 32> name;
-  std::snprintf(name.data(), name.size(), "%06d.png", step);
-  render::write_png(world.images->renderer->draw(drawing(world, step)),
-                    (folder() / frames_folder / name.data()).string());
+  render::write_png(world.images->renderer->draw(drawing(world, step)), image_path(folder(), step).string());
 }
 
 } // namespace kerf::scene

@@ -14,6 +14,8 @@
 
 #include <chrono>
 #include <filesystem>
+#include <functional>
+#include <utility>
 
 namespace kerf::scene {
 
@@ -24,14 +26,31 @@ struct Source {
   std::vector<std::string> inputs; ///< hashes_of_inputs()
 };
 
+/// Of a run, or of one of the processes that it took.
+struct Cost {
+  double cpu_seconds = 0; ///< of all threads [s]
+  double peak_memory = 0; ///< [byte]
+};
+
+/// Where a run begins.
+struct Start {
+  int step = -1;                  ///< that of its checkpoint; -1 without one
+  std::vector<std::string> lines; ///< what there is to say of it, where it was to be resumed
+};
+
 class Recorder {
  public:
   /// Makes the folder and the files that the world asks for, or opens those that are to be gone on with. Throws as
   /// output::ResultsFolder, and ParameterError where they are of another scene or other inputs.
   Recorder(const std::filesystem::path& folder, const World& world, const Source& source, output::Earlier earlier);
 
-  /// Brings a world that has just been composed to its last checkpoint. Returns that step; -1 without one.
-  int resume(World& world);
+  /// How the cost of this process until now is measured; checkpoints carry it on.
+  void measure(std::function<Cost()> cost) { cost_ = std::move(cost); }
+  /// Of all processes that the run has taken until now.
+  Cost total_cost() const;
+
+  /// Brings a world that has just been composed to its last checkpoint.
+  Start resume(World& world);
 
   /// Records step `step` of the world, with the seconds of its stages. What recording itself takes (images, output)
   /// stands in `seconds` afterwards, in place of those stages, and so counts with the next step. The last step is
@@ -49,6 +68,8 @@ class Recorder {
   void fail(const std::string& text, int step, double time) { run_file_.fail({text, step, time}); }
   void interrupt(const std::string& text, int step, double time) { run_file_.interrupt({text, step, time}); }
 
+  /// The last step that the files held when they were opened; -1: none.
+  int last_earlier_step() const { return static_cast<int>(ends_); }
   const std::filesystem::path& folder() const { return folder_.path(); }
 
  private:
@@ -64,6 +85,7 @@ class Recorder {
   using Clock = std::chrono::steady_clock;
 
   void open_surface_files(const World& world);
+  std::vector<std::string> warn_of_lost_images(const World& world, int step) const;
   void compare(int step, std::span<const double> values) const;
 
   void append_step(const World& world, int step, const Timings& seconds, bool with_frames);
@@ -71,7 +93,11 @@ class Recorder {
   void write_image(const World& world, int step);
 
   output::ResultsFolder folder_;
+  output::Earlier earlier_;
   bool goes_on_; ///< with files that are there
+  bool has_noted_checkpoint_ = false;
+  std::function<Cost()> cost_; ///< empty: nobody asks
+  Cost earlier_cost_;          ///< up to the checkpoint that this process goes on from
   output::RunFile run_file_;
   std::vector<BodyFiles> bodies_;
   std::string program_, inputs_;

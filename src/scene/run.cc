@@ -120,8 +120,10 @@ Timings run(World& world, Recorder& recorder, Progress& progress) {
   Timings seconds = world.setup_seconds, total;
   int step = 0;
   try {
-    step = recorder.resume(world);
-    if (step < 0)
+    const Start start = recorder.resume(world);
+    for (const std::string& line : start.lines)
+      progress.say(line);
+    if ((step = start.step) < 0)
       recorder.record(world, step = 0, seconds);
     while (step < world.n_steps) {
       end_if_asked(world, recorder, step);
@@ -136,7 +138,8 @@ Timings run(World& world, Recorder& recorder, Progress& progress) {
       total[stage] += s;
   } catch (const Interrupted& wish) {
     progress.finish();
-    recorder.interrupt(wish.what(), step, step * world.time_step);
+    const int last = std::max(step, recorder.last_earlier_step()); // what the files hold
+    recorder.interrupt(wish.what(), last, last * world.time_step);
     throw;
   } catch (const std::exception& error) {
     progress.finish();

@@ -38,18 +38,26 @@ std::string describe(const Body& body, const std::string& name, const std::vecto
   const std::string what = of_corners ? " corners" : " phyxels", start = line("body ", body.name, ": support ", name);
   if (held.empty())
     return start + " holds no" + what;
-  Vec3 lower = Vec3::Constant(1e300), upper = -lower;
-  for (const auto i : held) {
-    lower = lower.cwiseMin(body.physics->rest()[i]);
-    upper = upper.cwiseMax(body.physics->rest()[i]);
-  }
+  Points points;
+  for (const auto i : held)
+    points.push_back(body.physics->rest()[i]);
   const std::size_t n = of_corners ? n_pieces(body, held) : 0;
-  return line(start, " holds ", held.size(), what, " from ", place(lower), " to ", place(upper), " m") +
+  return line(start, " holds ", held.size(), what, " ", extent(points)) +
          (n > 0 ? line(", in ", n, n == 1 ? " piece" : " pieces") : "");
 }
 
-/// Which faces of a box lie on a layer of nodes of the body.
-std::vector<std::string> faces_on_layers(const Body& body, const Box& box) {
+/// Where the plane faces of a region are that lie across an axis; of spheres, meshes and oblique half spaces none [m].
+std::vector<double> faces_across(const Region& region, const int axis) {
+  if (const Box* const box = std::get_if<Box>(&region))
+    return {box->lower[axis], box->upper[axis]};
+  const HalfSpace* const half = std::get_if<HalfSpace>(&region);
+  if (half && half->normal.cross(Vec3::Unit(axis)).norm() <= 1e-9 * half->normal.norm())
+    return {half->point[axis]};
+  return {};
+}
+
+/// Which faces of a region lie on a layer of nodes of the body.
+std::vector<std::string> faces_on_layers(const Body& body, const Region& region) {
   constexpr double near = 1e-6;
   const grid::Lattice& lattice = body.solid.grid.lattice();
   const Points& rest = body.physics->rest();
@@ -57,7 +65,7 @@ std::vector<std::string> faces_on_layers(const Body& body, const Box& box) {
   for (int axis = 0; axis < 3; ++axis) {
     const auto [least, most] =
       std::minmax_element(rest.begin(), rest.end(), [&](const Vec3& a, const Vec3& b) { return a[axis] < b[axis]; });
-    for (const double at : {box.lower[axis], box.upper[axis]}) {
+    for (const double at : faces_across(region, axis)) {
       const double layers = (at - lattice.origin[axis]) / lattice.h;
       const bool is_in_body = at > (*least)[axis] - near * lattice.h && at < (*most)[axis] + near * lattice.h;
       if (is_in_body && std::abs(layers - std::round(layers)) < near)
@@ -69,6 +77,26 @@ std::vector<std::string> faces_on_layers(const Body& body, const Box& box) {
 
 } // namespace
 
+std::string extent(const Points& points) {
+  Vec3 lower = Vec3::Constant(1e300), upper = -lower;
+  for (const Vec3& p : points) {
+    lower = lower.cwiseMin(p);
+    upper = upper.cwiseMax(p);
+  }
+  return line("from ", place(lower), " to ", place(upper), " m");
+}
+
+std::vector<std::string> warn_of_layers(const Body& body, const std::string& what, const Region& region) {
+  std::vector<std::string> warnings;
+  if (body.physics->particles_are_corners())
+    for (const std::string& face : faces_on_layers(body, region))
+      warnings.push_back(
+        line("warning: body ", body.name, ": the face ", face, " of ", what,
+             " lies on a layer of nodes, and round-off of the mesh decides whether it holds them. Move it by "
+             "a part of a cube"));
+  return warnings;
+}
+
 std::vector<std::string> describe_supports(const Body& body) {
   std::vector<std::string> lines, warnings;
   std::vector<std::uint8_t> held(body.physics->rest().size(), 0);
@@ -78,13 +106,8 @@ std::vector<std::string> describe_supports(const Body& body) {
     lines.push_back(describe(body, region.name, corners));
     for (const auto i : corners)
       held[i] = 1;
-    const Box* const box = std::get_if<Box>(&region.region);
-    if (box && body.physics->particles_are_corners())
-      for (const std::string& face : faces_on_layers(body, *box))
-        warnings.push_back(
-          line("warning: body ", body.name, ": the face ", face, " of support ", region.name,
-               " lies on a layer of nodes, and round-off of the mesh decides whether it holds them. Move it by "
-               "a part of a cube"));
+    for (const std::string& warning : warn_of_layers(body, "support " + region.name, region.region))
+      warnings.push_back(warning);
   }
   if (!body.physics->particles_are_corners() &&
       std::all_of(held.begin(), held.end(), [](const auto h) { return h != 0; }))

@@ -105,14 +105,31 @@ std::string in_one_line(std::string text) {
   return text;
 }
 
+/// Runs it, or what is left of it. However it ends, the row tells what all of its processes have cost.
 void run_world(scene::World& world, const std::filesystem::path& folder, const output::RunInfo& info,
-               const PlannedRow& planned, const output::Earlier earlier) {
+               const PlannedRow& planned, const output::Earlier earlier, const PeakMemory& memory,
+               output::StudyRow& row) {
   world.output.frames_every = std::max(world.n_steps, 1);
   const scene::Source source{info, scene::standalone_text(planned.scene, scene::grammar()),
                              scene::hashes_of_inputs(planned.scene, scene::grammar())};
+  const std::clock_t start = std::clock();
   scene::Recorder recorder(folder, world, source, earlier);
+  recorder.measure([&] {
+    return scene::Cost{double(std::clock() - start) / CLOCKS_PER_SEC, memory.beyond_start()};
+  });
   scene::Progress progress(world.n_steps, world.n_steps * world.time_step, scene::ProgressStyle::silent, stdout);
-  scene::run(world, recorder, progress);
+  const auto tell_cost = [&] {
+    const scene::Cost cost = recorder.total_cost();
+    row.cpu_seconds = cost.cpu_seconds;
+    row.peak_memory = cost.peak_memory;
+  };
+  try {
+    scene::run(world, recorder, progress);
+  } catch (...) {
+    tell_cost();
+    throw;
+  }
+  tell_cost();
 }
 
 /// Composes; what is wrong with the scene becomes the row's outcome, and then there is no world.
@@ -122,6 +139,8 @@ std::optional<scene::World> compose(const PlannedRow& planned, output::StudyRow&
     scene::World world = scene::compose(planned.scene);
     row.setup_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return world;
+  } catch (const Interrupted&) {
+    throw;
   } catch (const std::exception& error) {
     row.outcome = "failed: " + in_one_line(error.what());
     return std::nullopt;
@@ -173,9 +192,8 @@ output::StudyRow measure(const Plan& plan, const PlannedRow& planned, const std:
   output::require_claimable(folder, earlier);
   row.dt = world->time_step;
   row.outcome = "completed";
-  const std::clock_t cpu_start = std::clock();
   try {
-    run_world(*world, folder, info, planned, earlier);
+    run_world(*world, folder, info, planned, earlier, memory, row);
   } catch (const DataError&) {
     throw;
   } catch (const Interrupted&) {
@@ -183,9 +201,7 @@ output::StudyRow measure(const Plan& plan, const PlannedRow& planned, const std:
   } catch (const std::exception& error) {
     row.outcome = "failed: " + in_one_line(error.what());
   }
-  row.cpu_seconds = double(std::clock() - cpu_start) / CLOCKS_PER_SEC;
   row.n_dof = count_dof(*world);
-  row.peak_memory = memory.beyond_start();
   read_run(folder / "run.h5", plan, body.name, row);
   row.error = row.value / row.reference - 1;
   if (plan.parameters.times == "do not count")

@@ -75,6 +75,11 @@ TEST_F(ProgramTest, HelpsBesideACommandAndSaysWhatItIs) {
     EXPECT_EQ(help.exit_code, 0) << words[0];
     EXPECT_NE(help.out.find("--resume"), std::string::npos) << help.out;
   }
+  const std::string page = kerf({"run", "--help"}).out; // a screen, of this command alone
+  EXPECT_LT(std::count(page.begin(), page.end(), '\n'), 30);
+  EXPECT_EQ(page.find("kerf study"), std::string::npos) << page;
+  for (const char* option : {"--set", "--output", "--threads", "--jobs", "--force", "--resume"})
+    EXPECT_NE(page.find(std::string("\n  ") + option), std::string::npos) << option;
   const Result version = kerf({"--version"});
   EXPECT_EQ(version.exit_code, 0);
   EXPECT_TRUE(std::regex_search(version.out, std::regex(R"(^kerf \d+\.\d+\.\d+, commit .*deal\.II \d)")))

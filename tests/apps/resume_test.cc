@@ -226,6 +226,25 @@ TEST_F(Resume, SignalsEndAStepCleanly) {
   }
 }
 
+TEST_F(Resume, ASignalWhileComposingEndsWithAMessage) {
+  write("scene.prm", busy_scene("fem"));
+  const pid_t id = start({"run", "scene.prm", "--output", "out"});
+  const auto heeds = [&] { // the mask of caught signals has SIGTERM
+    const std::string status = read_text("/proc/" + std::to_string(id) + "/status");
+    const auto at = status.find("SigCgt:");
+    return at != std::string::npos && (std::stoull(status.substr(at + 7), nullptr, 16) >> (SIGTERM - 1) & 1) != 0;
+  };
+  while (!heeds())
+    std::this_thread::sleep_for(std::chrono::microseconds(200));
+  ::kill(id, SIGTERM);
+  const int status = status_of(id);
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 128 + SIGTERM);
+  EXPECT_NE(read_text(folder / "stderr").find("interrupted by SIGTERM while the scene was composed"), std::string::npos)
+    << read_text(folder / "stderr");
+  EXPECT_FALSE(std::filesystem::exists(folder / "out/run.h5"));
+}
+
 TEST_F(Resume, ASecondRunLeavesTheFirstWhole) {
   write("scene.prm", busy_scene("fem"));
   const Words words = {"run", "scene.prm", "--output", "out"};
@@ -261,6 +280,65 @@ TEST_F(Resume, RefusesAnotherScene) {
   write("out/checkpoint.kerf", bytes);
   expect_error(kerf({"run", "scene.prm", "--output", "out", "--resume"}), 2,
                {"checkpoint.kerf", "is damaged", "--force"});
+}
+
+/// What is said of where it goes on; and what is refused or told where files are lost.
+TEST_F(Resume, SaysFromWhereItGoesOn) {
+  write("scene.prm", replaced(busy_scene("fem"), "Checkpoint every [1] = 4", "Checkpoint every [1] = 0"));
+  const Words resumed = {"run", "scene.prm", "--output", "out", "--resume"};
+  const auto say = [&](const std::string& text) {
+    const Result result = kerf(resumed);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_NE(result.out.find(text), std::string::npos) << text << " in " << result.out;
+  };
+  disturbed(resumed, SIGKILL); // before its first checkpoint
+  say("no checkpoint had been written: starts from step 0, and compares with the");
+  std::filesystem::remove_all(folder / "out");
+  disturbed(resumed, SIGTERM);
+  const auto step = output::read_checkpoint(folder / "out/checkpoint.kerf")->step;
+  EXPECT_EQ(output::Reader(folder / "out/run.h5").failure()->step, step);
+  for (const std::string name : {"checkpoint.kerf", "surface_cube.vtkhdf"}) {
+    std::filesystem::rename(folder / "out" / name, folder / "kept");
+    expect_error(kerf(resumed), 2, {name, "is not there", "--force"});
+    EXPECT_EQ(output::Reader(folder / "out/run.h5").outcome(), output::Outcome::interrupted);
+    std::filesystem::rename(folder / "kept", folder / "out" / name);
+  }
+  std::filesystem::remove(folder / "out/frames/000000.png");
+  const Result last = kerf(resumed);
+  EXPECT_EQ(last.exit_code, 0) << last.err;
+  for (const std::string& text : {"goes on from step " + std::to_string(step) + " of 30 (t = ",
+                                  std::string("warning: 1 images up to there are lost")})
+    EXPECT_NE(last.out.find(text), std::string::npos) << text << " in " << last.out;
+  std::filesystem::remove_all(folder / "out");
+  say("nothing is there to resume: starts from step 0");
+}
+
+/// The processor time and memory of a row are those of all processes that it took.
+TEST_F(Resume, ARowsCostIsThatOfAllItsProcesses) {
+  const std::string scene = busy_scene("fem");
+  write("scene.prm", scene.substr(0, scene.find("subsection Surface file")));
+  write("study.prm", "subsection Study\n  set Title = t\n  set Scene = scene.prm\n  set Answer = elastic energy\n"
+                     "  set Unit = J\n  set Reference = 1e-3\n  set Reference source = none\nend\n"
+                     "subsection Variant one\nend\n");
+  const Words words = {"study", "study.prm", "--threads", "1", "--output"};
+  const auto into = [&](const std::string& place, const Words& more = {}) {
+    Words all = words;
+    all.push_back(place);
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  };
+  ASSERT_EQ(kerf(into("whole")).exit_code, 0) << read_text(folder / "stderr");
+  const pid_t id = start(into("out"));
+  const auto checkpoint = folder / "out/rows/one/checkpoint.kerf";
+  while (!std::filesystem::exists(checkpoint) || output::read_checkpoint(checkpoint)->step < 24)
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  ::kill(id, SIGKILL);
+  status_of(id);
+  ASSERT_EQ(kerf(into("out", {"--resume"})).exit_code, 0) << read_text(folder / "stderr");
+  const auto whole = output::read_study_file(folder / "whole/study.h5").rows.at(0),
+             row = output::read_study_file(folder / "out/study.h5").rows.at(0);
+  EXPECT_GT(row.cpu_seconds, 0.7 * whole.cpu_seconds); // the last process ran a fifth of the steps
+  EXPECT_GT(row.peak_memory, 0.7 * whole.peak_memory);
 }
 
 /// Ten moments; rows that were finished are not run again, the one under way goes on.

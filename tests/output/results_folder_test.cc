@@ -54,7 +54,7 @@ TEST(ResultsFolder, AsksBeforeItReplaces) {
   {
     const ResultsFolder claimed(out, Earlier::refuse, names);
     write(out / "run.h5", "old");
-    write(out / "frames/000001.png", "old");
+    write(out / "frames/000001.png", std::string("\x89PNG tEXtSoftware\0Kerf", 22));
     write(out / "frames/montage.png", "the user's");
     write(out / "notes.txt", "the user's");
   }
@@ -94,6 +94,18 @@ TEST(ResultsFolder, LeavesWhatItDoesNotKnow) {
   for (const Earlier earlier : {Earlier::refuse, Earlier::replace, Earlier::resume})
     EXPECT_NE(error_of(out, earlier, names).find("is not known to be Kerf's"), std::string::npos);
   EXPECT_EQ(fs::file_size(out / "run.h5"), 15u);
+}
+
+/// A picture with a frame's name, and without the mark of ours, stays.
+TEST(ResultsFolder, LeavesPicturesThatAreNotKerfs) {
+  const TemporaryFolder folder;
+  const auto out = folder / "out";
+  { const ResultsFolder claimed(out, Earlier::refuse, names); }
+  write(out / "frames/000099.png", "\x89PNG of somebody else");
+  for (const Earlier earlier : {Earlier::replace, Earlier::resume})
+    EXPECT_NE(error_of(out, earlier, names).find("it does not carry Kerf's mark"), std::string::npos);
+  { const ResultsFolder without_images(out, Earlier::replace, {"run.h5"}); }
+  EXPECT_TRUE(fs::exists(out / "frames/000099.png"));
 }
 
 TEST(Checkpoint, IsReadBackOrRefused) {

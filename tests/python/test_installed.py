@@ -53,6 +53,35 @@ class Installed(unittest.TestCase):
             self.assertIn("a run: series over time and frames", done.stdout)
             self.assertEqual(done.stderr, "")
 
+    def test_a_build_folder_that_was_moved_is_configured_anew(self):
+        with tempfile.TemporaryDirectory() as folder:
+            tools, build = pathlib.Path(folder) / "tools", pathlib.Path(folder) / "build"
+            tools.mkdir()
+            build.mkdir()
+            # All packages are there, and cmake says what it is asked for.
+            write_tool(tools / "dpkg-query", "shift 2; printf 'installed %s\\n' \"$@\"")
+            write_tool(tools / "cmake", f"echo \"$@\" >>'{folder}/asked'")
+            environment = {"PATH": f"{tools}:{os.environ['PATH']}", "HOME": folder, "KERF_BUILD": str(build)}
+            for place, is_anew in ((build, False), (pathlib.Path(folder) / "old", True)):
+                (pathlib.Path(folder) / "old").mkdir(exist_ok=True)
+                (build / "CMakeCache.txt").write_text(
+                    f"CMAKE_CACHEFILE_DIR:INTERNAL={place}\nCMAKE_HOME_DIRECTORY:INTERNAL={SOURCES.resolve()}\n"
+                )
+                (build / "build.ninja").touch()
+                (build / ".configured").touch()
+                done = subprocess.run(
+                    [SOURCES / "kerf", "build"], capture_output=True, text=True, env=environment, check=False
+                )
+                self.assertEqual(done.returncode, 0, done.stderr)
+                asked = (pathlib.Path(folder) / "asked").read_text()
+                self.assertEqual("--fresh" in asked, is_anew, asked)
+                self.assertEqual(f"as {place}: it is made anew" in done.stderr, is_anew, done.stderr)
+
+
+def write_tool(path, line):
+    path.write_text(f"#!/bin/sh\n{line}\n")
+    path.chmod(0o755)
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -186,12 +186,13 @@ TEST(Crack, RefusesWhatIsNoFront) {
   refuse(circle, {"needs the stresses of finite elements"}, "mass-spring");
 }
 
-std::vector<std::string> warnings_of(const Keys& front, const std::string& held) {
+std::vector<std::string> warnings_of(const Keys& front, const std::string& held, const std::string& cut) {
   const World world =
     world_of(steps(1, 1) + section("Body bar", of_box({1, 0.2, 0.2}, 0.05, "0.3, 0.3, 0.3"),
                                    material(1e4, 0.3) + free_statics() +
                                      section("Support end", box("-9, -9, -9", "0.03, 9, 9") + Keys{"Hold = " + held}) +
-                                     section("Crack front tip", front)));
+                                     section("Crack front tip", front)) +
+             cut);
   std::vector<std::string> warnings;
   for (const std::string& said : world.composition)
     if (said.starts_with("warning: body bar: crack front tip"))
@@ -204,13 +205,26 @@ TEST(Crack, WarnsOfFrontsWhoseFiguresAreWrong) {
     return Keys{"First [m] = " + to_text(x) + ", 0, 0.1", "Second [m] = " + to_text(x) + ", " + end + ", 0.1",
                 "Growth [1] = 1, 0, 0"};
   };
-  EXPECT_TRUE(warnings_of(front(0.5, "0.2"), "all").empty());
-  const auto too_long = warnings_of(front(0.5, "2"), "all"), near_support = warnings_of(front(0.15, "0.2"), "all");
-  ASSERT_EQ(too_long.size(), 1u);
+  const auto to = [](const double x) { return rectangle({0, 0.1, 0.1}, 2 * x, 9); };
+  EXPECT_TRUE(warnings_of(front(0.5, "0.2"), "all", to(0.5)).empty());
+  EXPECT_TRUE(warnings_of(front(0.5, "0.2"), "all", to(0.47)).empty());
+  const auto too_long = warnings_of(front(0.5, "2"), "all", to(0.5));
+  const auto near_support = warnings_of(front(0.205, "0.2"), "all", to(0.205));
+  ASSERT_FALSE(too_long.empty());
   EXPECT_NE(too_long[0].find("is 2 m long"), std::string::npos) << too_long[0];
   ASSERT_EQ(near_support.size(), 1u);
   EXPECT_NE(near_support[0].find("support end holds corners in its outer tube"), std::string::npos) << near_support[0];
-  EXPECT_TRUE(warnings_of(front(0.15, "0.2"), "yz").empty()); // what slides along x does no work as the crack grows
+  EXPECT_TRUE(warnings_of(front(0.205, "0.2"), "yz", to(0.205)).empty()); // what slides along x does no work as it grows
+  const auto expect_one = [&](const double x, const std::string& cut, const std::string& words) {
+    const auto found = warnings_of(front(x, "0.2"), "yz", cut);
+    ASSERT_EQ(found.size(), 1u) << words;
+    EXPECT_NE(found[0].find(words), std::string::npos) << found[0];
+  };
+  expect_one(0.5, "", "no cut ends within a cube of it"); // there is no crack
+  expect_one(0.5, to(0.4), "no cut ends within a cube of it");
+  expect_one(0.15, to(0.15), "the skin is 0.15 m behind it, inside of its outer tube of 0.2 m");
+  expect_one(0.85, to(0.85), "ahead of it, inside of its outer tube");
+  expect_one(0.5, rectangle({0.375, 0.1, 0.1}, 0.25, 9), "shorter than both tubes, 0.3 m");
 }
 
 } // namespace

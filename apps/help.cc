@@ -1,0 +1,57 @@
+#include "commands.h"
+
+#include <map>
+
+namespace kerf::apps {
+
+namespace {
+
+const char* const exit_codes = "exit codes: 1 the scene, 2 a file, 3 the computation; 128 + n: ended by signal n\n";
+
+const char* const of_run = R"(usage: kerf run SCENE.prm... [options]
+Runs a scene, or several, each into a folder of its own.
+
+  --set "Section/Key=value"  changes a key of the scene; as often as wanted       none
+  --output DIR               folder of the results         results/SCENE; of several scenes DIR/SCENE, in results
+  --threads N                1 to 1024         as many as there are processors; of several scenes, shared by --jobs
+  --jobs N                   so many of several scenes at a time                  1
+  --force                    deletes what Kerf has made in the folder, and begins anew
+  --resume                   goes on from the last checkpoint, to the bits of a run that nobody disturbed
+Without --force or --resume a folder that holds results is refused.
+
+Where --resume finds
+  nothing, or no step yet    it begins, and says so
+  steps, and no checkpoint had been written (killed within the first Output/Checkpoint interval [s]; or that is 0)
+                             it begins anew, says so, and compares with what is recorded
+  a checkpoint               it says from which step it goes on
+  a checkpoint or surface file gone that was written     it refuses: bring it back, or --force
+  a complete run             it leaves it as it is
+)";
+
+const char* const of_check = R"(usage: kerf check SCENE.prm [options]
+Reads and composes a scene, says what it holds, and runs nothing.
+
+  --set "Section/Key=value"  changes a key of the scene; as often as wanted       none
+)";
+
+const char* const of_study = R"(usage: kerf study STUDY.prm [options]
+Runs a scene in variants: error against run time, as a table. `kerf params study` lists the keys.
+
+  --set "Section/Key=value"  changes a key of the study; as often as wanted       none
+  --output DIR               folder of the results                                results/STUDY
+  --threads N                1 to 1024                                            as many as there are processors
+  --force                    deletes what Kerf has made in the folder, and begins anew
+  --resume                   takes the finished rows, and goes on with the one that was under way; its CPU time is the
+                             sum of all processes that it took
+Without --force or --resume a folder that holds results is refused.
+)";
+
+} // namespace
+
+std::string help_of(const std::string& command) {
+  static const std::map<std::string, const char*> pages = {{"run", of_run}, {"check", of_check}, {"study", of_study}};
+  const auto page = pages.find(command);
+  return page == pages.end() ? "" : page->second + std::string(exit_codes);
+}
+
+} // namespace kerf::apps
