@@ -199,6 +199,8 @@ BothWays match(const Picture& a, const Picture& b, const MatchOptions& options) 
       return settled(result, level);
     };
     maps = descended(maps);
+    if (k == 0 && !options.pins.empty())
+      level.descend(maps); // what undoes a map meets its pins to the lattice only
     if (k == 0 || k + 1 == options.n_levels)
       continue;
     // The coarser level may have led astray: rings that its blur mixes, or sections that shrink.
