@@ -118,7 +118,7 @@ class Batch {
     for (; next_ < jobs_.size(); ++next_)
       failed_.push_back(jobs_[next_].scene + ": not begun");
     if (!failed_.empty())
-      std::fprintf(stderr, "kerf: %zu of %zu scenes have failed:\n", failed_.size(), jobs_.size());
+      std::fprintf(stderr, "kerf: %zu of %zu scenes did not complete:\n", failed_.size(), jobs_.size());
     for (const std::string& line : failed_)
       std::fprintf(stderr, "  %s\n", line.c_str());
     return wish_to_end() != 0 ? 128 + wish_to_end() : worst_;
