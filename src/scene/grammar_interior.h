@@ -20,7 +20,7 @@ struct InteriorParameters {
   double relief = 0; ///< [m]
   std::string skin_image;
   Vec3 skin_axis = Vec3::UnitZ(); ///< [1]
-  int levels = 4, cells = 24, match_pixels = 96;
+  int levels = 4, cells = 16, match_pixels = 192;
   double edges = 1, brightness = 1, outline = 1, stiffness = 8; ///< [1]
   std::string global = "none";
   void describe(Parameters& p);

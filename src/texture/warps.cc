@@ -177,26 +177,10 @@ Mat2 aligned_linear(const AlignedPair& pair, const Chart& from, const Chart& to)
   return raster_to_chart(pair.to, pair, to).linear * raster_to_chart(pair.from, pair, from).linear.inverse();
 }
 
-namespace {
-
-/// Midway between a map and what undoes another one that goes back; the map itself if that folds.
-warp::LatticeMap midway(const warp::LatticeMap& map, const warp::LatticeMap& back) {
-  warp::LatticeMap middle = warp::inverse(back, map.lower, map.upper, map.n_columns, map.n_rows);
-  for (std::size_t i = 0; i < middle.nodes.size(); ++i)
-    middle.nodes[i] = 0.5 * (middle.nodes[i] + map.nodes[i]);
-  return warp::smallest_determinant(middle) > 0 ? middle : map;
-}
-
-} // namespace
-
 BothWays match_faces(const Face& from, const Chart& from_chart, const Face& to, const Chart& to_chart,
                      const AlignedPair& pair, const warp::MatchOptions& options) {
   const warp::Picture a = picture_of(from, from_chart, pair.from, pair), b = picture_of(to, to_chart, pair.to, pair);
-  warp::MatchOptions reversed = options;
-  for (warp::Pin& pin : reversed.pins)
-    std::swap(pin.from, pin.to);
-  const warp::LatticeMap there = warp::match(a, b, options), back = warp::match(b, a, reversed);
-  return {midway(there, back), midway(back, there)};
+  return warp::match(a, b, options);
 }
 
 namespace {

@@ -29,7 +29,7 @@ enum class Partners {
 struct WarpOptions {
   Partners partners = Partners::all;
   warp::MatchOptions match; ///< without pins
-  int pixels = 96;          ///< of the longer side of what is matched
+  int pixels = 192;         ///< of the longer side of what is matched
   std::vector<ExemplarPin> pins;
 };
 
@@ -52,9 +52,7 @@ struct AlignedPair {
 AlignedPair align(const Face& from, const Chart& from_chart, const Face& to, const Chart& to_chart, int pixels);
 
 /// Maps between the pixels of two aligned boxes.
-struct BothWays {
-  warp::LatticeMap there, back;
-};
+using warp::BothWays;
 BothWays match_faces(const Face& from, const Chart& from_chart, const Face& to, const Chart& to_chart,
                      const AlignedPair& pair, const warp::MatchOptions& options);
 

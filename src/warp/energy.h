@@ -43,7 +43,7 @@ struct EnergyOptions {
   Border border = Border::slides;
   double stiffness = 0.05;
   double barrier = 0.1;
-  double pin_weight = 10;
+  double pin_weight = 20;
   double pin_unit = 1; ///< in units of the target
   /// A mask whose pixels span the rectangle: cells without any of it are softer by the factor `outside`, though flipped
   /// as little as others. Null: all are alike. Must live while the energy is built.

@@ -29,6 +29,32 @@ Curve from_farthest(Curve curve) {
   return curve;
 }
 
+/// The point at a real number of points along a closed curve.
+Vec2 at(const Curve& curve, const double number) {
+  const auto n = static_cast<double>(curve.size());
+  const double place = number - n * std::floor(number / n);
+  const auto i = std::min(static_cast<std::size_t>(place), curve.size() - 1);
+  return curve[i] + (place - static_cast<double>(i)) * (curve[(i + 1) % curve.size()] - curve[i]);
+}
+
+/// Numbers of partners once around, of m points, as means over some neighbours: so steps from one point to the next, and
+/// which of two as good ones round-off has taken, do not count.
+std::vector<double> smoothed(const std::vector<int>& partners, const int m) {
+  constexpr int n_rounds = 4;
+  const std::size_t n = partners.size();
+  std::vector<double> result(partners.begin(), partners.end());
+  for (std::size_t i = 1; i < n; ++i) // once around: they only grow
+    while (result[i] < result[i - 1] - 0.5)
+      result[i] += m;
+  for (int round = 0; round < n_rounds; ++round) {
+    const std::vector<double> before = result;
+    for (std::size_t i = 0; i < n; ++i)
+      result[i] = 0.5 * before[i] +
+                  0.25 * ((i > 0 ? before[i - 1] : before[n - 1] - m) + (i + 1 < n ? before[i + 1] : before[0] + m));
+  }
+  return result;
+}
+
 /// What goes where, asked anew as a map comes closer.
 using PinsOf = std::function<std::vector<Pin>(const LatticeMap&)>;
 
@@ -96,9 +122,9 @@ LatticeMap fit(const Curve& from, const Curve& to, const image::Grey& section, c
   const Curve targets = equally_spaced(from_farthest(to), denser * n_points);
   const auto pins = [&](const LatticeMap& map) {
     std::vector<Pin> result;
-    const std::vector<int> found = partners(images(points, map), targets);
+    const std::vector<double> found = smoothed(partners(images(points, map), targets), denser * n_points);
     for (int i = 0; i < n_points; ++i)
-      result.push_back({points[i], targets[found[i]]});
+      result.push_back({points[i], at(targets, found[i])});
     return result;
   };
   FitOptions soft = options;

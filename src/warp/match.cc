@@ -7,6 +7,7 @@
 #include <Eigen/LU>
 
 #include <cmath>
+#include <limits>
 #include <string>
 
 namespace kerf::warp {
@@ -85,16 +86,87 @@ Mat2 global_motion(const LatticeMap& map, const Global global) {
   return global == Global::rotation ? rotation : Mat2(std::sqrt(std::max(1e-6, mean.determinant())) * rotation);
 }
 
-void descend(Energy& energy, const MatchOptions& options, LatticeMap& map) {
-  // The global motion is estimated again as the match proceeds.
-  const int n_rounds = options.global == Global::none ? 1 : 5;
-  for (int round = 0; round < n_rounds; ++round) {
-    if (options.global != Global::none)
-      energy.take_out(global_motion(map, options.global));
-    Eigen::VectorXd x = to_unknowns(map);
-    minimise(std::cref(energy), x, {.n_iterations = options.n_iterations});
-    from_unknowns(x, map);
+/// Energies of the maps both ways, and how they descend, at one level.
+class Level {
+ public:
+  Level(const Picture& a, const FeatureLevel& features, const MatchOptions& options)
+    : options_(options), forwards_(features), backwards_{features.b, features.a} {
+    energy_.stiffness = options.stiffness;
+    energy_.border = options.global == Global::none ? Border::slides : Border::free;
+    energy_.pin_unit = 0.01 * Vec2(a.colours.width - 1, a.colours.height - 1).norm();
+    for (const Pin& pin : options.pins)
+      pins_back_.push_back({pin.to, pin.from});
   }
+
+  void descend(BothWays& maps) const {
+    descend(maps.there, forwards_, options_.pins);
+    descend(maps.back, backwards_, pins_back_);
+  }
+
+  double energy(const BothWays& maps) const {
+    return energy(maps.there, forwards_, options_.pins) + energy(maps.back, backwards_, pins_back_);
+  }
+
+ private:
+  Energy energy_of(const LatticeMap& map, const FeatureLevel& features, const std::vector<Pin>& pins) const {
+    Energy energy(map, features.a.empty() ? nullptr : &features, pins, energy_);
+    if (options_.global != Global::none)
+      energy.take_out(global_motion(map, options_.global));
+    return energy;
+  }
+
+  double energy(const LatticeMap& map, const FeatureLevel& features, const std::vector<Pin>& pins) const {
+    Eigen::VectorXd gradient;
+    return energy_of(map, features, pins)(to_unknowns(map), gradient);
+  }
+
+  void descend(LatticeMap& map, const FeatureLevel& features, const std::vector<Pin>& pins) const {
+    // The global motion is estimated again as the match proceeds.
+    const int n_rounds = options_.global == Global::none ? 1 : 5;
+    for (int round = 0; round < n_rounds; ++round) {
+      const Energy energy = energy_of(map, features, pins);
+      Eigen::VectorXd x = to_unknowns(map);
+      minimise(std::cref(energy), x, {.n_iterations = options_.n_iterations});
+      from_unknowns(x, map);
+    }
+  }
+
+  const MatchOptions& options_;
+  FeatureLevel forwards_, backwards_;
+  EnergyOptions energy_;
+  std::vector<Pin> pins_back_;
+};
+
+LatticeMap undone(const LatticeMap& map) { return inverse(map, map.lower, map.upper, map.n_columns, map.n_rows); }
+
+LatticeMap midway(const LatticeMap& a, const LatticeMap& b) {
+  LatticeMap middle = a;
+  for (std::size_t i = 0; i < a.nodes.size(); ++i)
+    middle.nodes[i] = 0.5 * (a.nodes[i] + b.nodes[i]);
+  return middle;
+}
+
+/// Of two maps that were found each by itself: themselves, either one with what undoes it, or what lies midway, whichever
+/// costs least. One that has grasped at the wrong feature is so put right by the other.
+BothWays settled(const BothWays& found, const Level& level) {
+  const BothWays by_there{found.there, undone(found.there)}, by_back{undone(found.back), found.back};
+  const BothWays middle{midway(by_there.there, by_back.there), midway(by_there.back, by_back.back)};
+  const BothWays* best = &found;
+  double least = std::numeric_limits<double>::infinity();
+  for (const BothWays* const maps : {&middle, &by_there, &by_back}) {
+    const double energy = level.energy(*maps);
+    if (energy < least) {
+      least = energy;
+      best = maps;
+    }
+  }
+  return *best;
+}
+
+/// A map at the nodes of a finer lattice. One that bends much may fold there: then it keeps the old ones.
+LatticeMap finer(const LatticeMap& map, const std::array<int, 2>& n) {
+  LatticeMap result = lattice_of(map, map.lower, map.upper, n[0] + 1, n[1] + 1);
+  return smallest_determinant(result) > 0 ? result : map;
 }
 
 } // namespace
@@ -112,25 +184,30 @@ std::vector<FeatureLevel> features(const Picture& a, const Picture& b, const Mat
   return levels;
 }
 
-LatticeMap match(const Picture& a, const Picture& b, const MatchOptions& options) {
+BothWays match(const Picture& a, const Picture& b, const MatchOptions& options) {
   check(a, b, options);
   const auto levels = features(a, b, options);
   const Vec2 upper(a.colours.width - 1, a.colours.height - 1);
-  EnergyOptions energy_options;
-  energy_options.stiffness = options.stiffness;
-  energy_options.border = options.global == Global::none ? Border::slides : Border::free;
-  energy_options.pin_unit = 0.01 * upper.norm();
-  LatticeMap map = lattice_of([](const Vec2& p) { return p; }, Vec2::Zero(), upper, 2, 2);
+  const LatticeMap start = lattice_of([](const Vec2& p) { return p; }, Vec2::Zero(), upper, 2, 2);
+  BothWays maps{start, start};
   for (int k = options.n_levels - 1; k >= 0; --k) {
-    const auto [nx, ny] = n_cells(a, options, k);
-    LatticeMap finer = lattice_of(map, Vec2::Zero(), upper, nx + 1, ny + 1);
-    if (smallest_determinant(finer) > 0)
-      map = std::move(
-        finer); // sampling a map that bends much at other nodes may fold it: then the level keeps the old ones
-    Energy energy(map, levels[k].a.empty() ? nullptr : &levels[k], options.pins, energy_options);
-    descend(energy, options, map);
+    const auto n = n_cells(a, options, k);
+    const Level level(a, levels[k], options);
+    const auto descended = [&](const BothWays& from) {
+      BothWays result{finer(from.there, n), finer(from.back, n)};
+      level.descend(result);
+      return settled(result, level);
+    };
+    maps = descended(maps);
+    if (k == 0 && !options.pins.empty())
+      level.descend(maps); // what undoes a map meets its pins to the lattice only
+    if (k == 0 || k + 1 == options.n_levels)
+      continue;
+    // The coarser level may have led astray: rings that its blur mixes, or sections that shrink.
+    if (const BothWays anew = descended({start, start}); level.energy(anew) < level.energy(maps))
+      maps = anew;
   }
-  return map;
+  return maps;
 }
 
 } // namespace kerf::warp

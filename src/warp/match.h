@@ -4,8 +4,9 @@
 ///
 /// An edge detector runs on every level of a Gaussian stack of each picture, and what it finds is then sampled as
 /// coarsely as the level is blurred; beside edges, brightness and the outline of what is section may count. The
-/// coarsest level moves a lattice of few cells, each finer level starts from the one before it with more of them. Both
-/// pictures have the same size: whoever calls has made their axis-aligned boxes match.
+/// coarsest level moves a lattice of few cells, each finer level starts from the one before it with more of them, and
+/// all but the finest once more from where all stays: of both, what costs less goes on. Both pictures have the same
+/// size: whoever calls has made their axis-aligned boxes match.
 
 #include "warp/energy.h"
 
@@ -22,7 +23,7 @@ enum class Global { none, rotation, rotation_and_scale };
 
 struct MatchOptions {
   int n_levels = 4;      ///< of the Gaussian stack
-  int n_cells = 24;      ///< of the finest lattice along the longer side
+  int n_cells = 16;      ///< of the finest lattice along the longer side
   double edges = 1;      ///< weight of the edges [1]
   double brightness = 1; ///< weight of blurred luminance [1]
   double outline = 1;    ///< weight of the blurred mask [1]
@@ -37,8 +38,15 @@ struct MatchOptions {
 /// Level by level, from the finest: what is compared, scaled so that each channel's mean square is its weight squared.
 std::vector<FeatureLevel> features(const Picture& a, const Picture& b, const MatchOptions& options);
 
-/// The map from pixels of `a` to pixels of `b` over the whole rectangle of `a`. No triangle of its lattice is flipped.
-/// Throws ParameterError if the pictures differ in size or are smaller than 4 x 4, or if a pin starts or ends outside.
-LatticeMap match(const Picture& a, const Picture& b, const MatchOptions& options);
+/// Maps between two pictures of one size.
+struct BothWays {
+  LatticeMap there, back;
+};
+
+/// The maps from pixels of `a` to pixels of `b` and back over the whole rectangle. On each level both are found, each by
+/// itself; the next one starts from those of them, and of what undoes them, that cost least. No triangle of their lattices
+/// is flipped. Throws ParameterError if the pictures differ in size or are smaller than 4 x 4, or if a pin starts or ends
+/// outside.
+BothWays match(const Picture& a, const Picture& b, const MatchOptions& options);
 
 } // namespace kerf::warp

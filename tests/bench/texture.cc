@@ -1,5 +1,7 @@
 /// Colours of the inside, points a second on one core: painted planes of a ball by 1 to 9 exemplars of 400 x 400
 /// pixels, without and with small features; and seconds to prepare each. Processor time, the best of several runs.
+///
+///     bench_texture [FIRST [LAST]]
 
 #include "base/parallel.h"
 #include "tests/texture/solids.h"
@@ -70,8 +72,8 @@ int main(const int argc, char** const argv) {
   set_n_threads(1);
   std::printf("%9s %8s %8s %9s %12s %12s %12s %11s %11s %9s\n", "exemplars", "cells", "warps", "sources", "points/s",
               "with small", "exact inv.", "prepare [s]", "histogr [s]", "least det");
-  const int most = argc > 1 ? std::atoi(argv[1]) : 9;
-  for (int n = 1; n <= most; ++n)
+  const int first = argc > 1 ? std::atoi(argv[1]) : 1, last = argc > 2 ? std::atoi(argv[2]) : 9;
+  for (int n = first; n <= last; ++n)
     measure(n);
   return 0;
 }

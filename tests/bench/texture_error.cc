@@ -1,6 +1,6 @@
 /// How far painted insides are from the truth.
 ///
-///     bench_texture_error [brain|facing|middles|onion|wood|citrus|all] [FOLDER [STIFFNESS [PIXELS LEVELS]]]
+///     bench_texture_error [brain|facing|middles|onion|wood|citrus|all] [FOLDER [STIFFNESS [PIXELS LEVELS [CELLS]]]]
 ///
 /// A brain of which one of nine sections is left out at a time and painted from the others; and solids whose colour is
 /// known everywhere, painted on planes between 2 to 9 parallel exemplars. By method: PSNR [dB] and SSIM against
@@ -281,6 +281,7 @@ int main(const int argc, char** const argv) {
   match_options.stiffness = argc > 3 ? std::atof(argv[3]) : match_options.stiffness;
   match_pixels = argc > 4 ? std::atoi(argv[4]) : match_pixels;
   match_options.n_levels = argc > 5 ? std::atoi(argv[5]) : match_options.n_levels;
+  match_options.n_cells = argc > 6 ? std::atoi(argv[6]) : match_options.n_cells;
   std::setvbuf(stdout, nullptr, _IOLBF, 0);
   if (is_asked("brain")) {
     std::printf("brain, one section left out\n");

@@ -189,10 +189,10 @@ TEST(Outline, NoStarIsDrawnNearlyTheSameHoweverItIsStored) {
     Case c;
     double by_right_angles, between; ///< mean difference allowed, of 255
   };
-  // Measured: .3 and 3.0; 3.1 and 8.8.
+  // Measured: .3 and 2.6; 2.5 and 8.5.
   for (const auto& [c, by_right_angles, between] : std::vector<Stored>{
-         {{"brain/axial_z35", "brain_40k", {0.015, 0.018, 0.035}, {0.0005, 0, 0}, {0, 0.0005, 0}}, 1.5, 4},
-         {{"brain/coronal_y140", "liver_25k", {0.05, 0.08, 0}, {0.0006, 0, 0}, {0, 0, 0.0006}}, 4, 12}}) {
+         {{"brain/axial_z35", "brain_40k", {0.015, 0.018, 0.035}, {0.0005, 0, 0}, {0, 0.0005, 0}}, 0.5, 3.5},
+         {{"brain/coronal_y140", "liver_25k", {0.05, 0.08, 0}, {0.0006, 0, 0}, {0, 0, 0.0006}}, 3, 10}}) {
     const geometry::TriangleMesh body = body_of(c);
     Exemplar exemplar = exemplar_of(c);
     const Grey mask = mask_of(exemplar.picture, exemplar.background);
@@ -200,9 +200,14 @@ TEST(Outline, NoStarIsDrawnNearlyTheSameHoweverItIsStored) {
     exemplar.picture.alpha = mask;
     exemplar.background = Background::alpha;
     const Chart before = fitted(exemplar, body);
+    double at_right_angles = 0;
     for (const auto& stored : {turned(exemplar), mirrored(exemplar), turned(turned(exemplar))})
-      EXPECT_LT(apart(before, fitted(stored, body)), by_right_angles) << c.picture;
-    EXPECT_LT(apart(before, fitted(turned_by(exemplar, 0.5), body)), between) << c.picture;
+      at_right_angles = std::max(at_right_angles, apart(before, fitted(stored, body)));
+    const double turned_between = apart(before, fitted(turned_by(exemplar, 0.5), body));
+    std::printf("%s in %s: by right angles %.2f, by half a radian %.2f\n", c.picture.c_str(), c.body.c_str(),
+                at_right_angles, turned_between);
+    EXPECT_LT(at_right_angles, by_right_angles) << c.picture;
+    EXPECT_LT(turned_between, between) << c.picture;
   }
 }
 

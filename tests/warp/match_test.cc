@@ -49,7 +49,7 @@ TEST(Match, FindsASmoothWarp) {
   for (const auto& [stiffness, most] : {std::pair(MatchOptions().stiffness, 1.2), std::pair(0.2, 0.8)}) {
     MatchOptions options;
     options.stiffness = stiffness;
-    const LatticeMap map = match(a, b, options);
+    const LatticeMap map = match(a, b, options).there;
     EXPECT_GT(smallest_determinant(map), 0);
     EXPECT_LT(error(map), most) << stiffness;
   }
@@ -66,7 +66,7 @@ TEST(Match, TakesAGlobalTurnAndScaleOut) {
   const auto error = [&](const Global global) {
     MatchOptions options;
     options.global = global;
-    const LatticeMap map = match(a, b, options);
+    const LatticeMap map = match(a, b, options).there;
     EXPECT_GT(smallest_determinant(map), 0);
     double sum = 0;
     for (const Vec2& p : {Vec2(0.3, 0.35), Vec2(0.65, 0.7), Vec2(0.7, 0.3), Vec2(0.3, 0.7)})
@@ -81,7 +81,7 @@ TEST(Match, PinsHold) {
   const Picture flat = blobs(n, [](const Vec2&) { return Vec2(9, 9); });
   MatchOptions options;
   options.pins = {{Vec2(20, 30), Vec2(26, 33)}};
-  const LatticeMap map = match(flat, flat, options);
+  const LatticeMap map = match(flat, flat, options).there;
   EXPECT_NEAR((map(Vec2(20, 30)) - Vec2(26, 33)).norm(), 0, 0.3);
   EXPECT_GT(smallest_determinant(map), 0);
   options.pins = {{Vec2(20, 30), Vec2(26, 64)}};
@@ -93,7 +93,7 @@ TEST(Match, OpposedPinsDoNotFlip) {
   const Picture flat = blobs(n, [](const Vec2&) { return Vec2(9, 9); });
   MatchOptions options;
   options.pins = {{Vec2(20, 30), Vec2(40, 30)}, {Vec2(40, 30), Vec2(20, 30)}};
-  EXPECT_GT(smallest_determinant(match(flat, flat, options)), 0);
+  EXPECT_GT(smallest_determinant(match(flat, flat, options).there), 0);
 }
 
 TEST(Match, MirroredInputGivesTheMirroredWarp) {
@@ -101,7 +101,7 @@ TEST(Match, MirroredInputGivesTheMirroredWarp) {
   const auto flipped = [](const Vec2& p) { return Vec2(1 - p[0], p[1]); };
   const Picture a = blobs(n, [](const Vec2&p) { return bent(p); }), b = blobs(n, [](const Vec2&p) { return p; });
   const Picture ma = blobs(n, [&](const Vec2&p) { return bent(flipped(p)); }), mb = blobs(n, flipped);
-  const LatticeMap map = match(a, b, {}), mirrored = match(ma, mb, {});
+  const LatticeMap map = match(a, b, {}).there, mirrored = match(ma, mb, {}).there;
   for (const Vec2& p : {Vec2(20, 20), Vec2(40, 44), Vec2(33, 10)}) {
     const Vec2 q = mirrored(Vec2(n - 1 - p[0], p[1]));
     EXPECT_NEAR((Vec2(n - 1 - q[0], q[1]) - map(p)).norm(), 0, 0.1);
