@@ -126,7 +126,8 @@ std::optional<Shred> shred_at(const grid::Solid& solid, const CellId cell, const
 
 Bound bound_at(const grid::Solid& solid, const CellId c, const grid::CellCuts& cuts, const int segment,
                const int inner_end) {
-  const Vec3 to_cut = grid::segment_point(solid, c, cuts.skeleton(), segment) - grid::item_point(solid, c, inner_end);
+  const Vec3 to_cut =
+    grid::segment_point(solid, c, cuts.skeleton(), segment) - grid::item_point(solid, c, inner_end);
   const auto outward = [&](const Vec3& normal) -> Vec3 { return normal.dot(to_cut) < 0 ? Vec3(-normal) : normal; };
   if (segment < cube::n_lines) {
     const EdgeId edge = solid.grid.edges(c)[segment];
@@ -162,17 +163,13 @@ double volume(const grid::Solid& solid, const Shred& shred) {
   return sum;
 }
 
-/// Are two cuts' normals, away from what lies between them, those of a slice that one blade left, or of the edge of a
-/// wedge between two blades?
-bool are_opposite(const Bound& a, const Bound& b) {
-  constexpr double by_one = -0.5, narrow = -0.8, parallel = -0.9995; // 60, 37, 2 degrees
-  const double cosine = a.outward.dot(b.outward);
-  return a.label == b.label ? cosine < by_one : parallel < cosine && cosine < narrow;
-}
-
-bool is_between(const std::vector<Bound>& bounds) {
-  return std::ranges::any_of(bounds, [&](const Bound& a) {
-    return std::ranges::any_of(bounds, [&](const Bound& b) { return are_opposite(a, b); });
+/// Do cuts of one blade bound the shred, and on opposite sides?
+bool is_between_passes(const std::vector<Bound>& bounds) {
+  constexpr double opposite = -0.5;
+  return std::ranges::all_of(bounds, [&](const Bound& a) {
+           return a.label == bounds.front().label;
+         }) && std::ranges::any_of(bounds, [&](const Bound& a) {
+    return std::ranges::any_of(bounds, [&](const Bound& b) { return a.outward.dot(b.outward) < opposite; });
   });
 }
 
@@ -181,7 +178,7 @@ void leave(const grid::Solid& solid, const Shred& shred, const NewCuts& new_cuts
   const std::vector<Bound> bounds = bounds_of(solid, shred);
   const double material = volume(solid, shred);
   const bool is_tip = shred.nodes.empty() && material <= no_volume;
-  if (!is_tip && !(material < little && is_between(bounds)))
+  if (!is_tip && !(material < little && is_between_passes(bounds)))
     return;
   const Bound* nearest = nullptr;
   for (const Bound& bound : bounds)

@@ -9,10 +9,7 @@
 /// Shavings are a few nodes, or points of the skin, between cuts of one blade on opposite sides, with less material than
 /// a cube: where a blade comes back through a body that has moved, beside where it was before. The grid has nodes here
 /// and there in what lies between, and would show crumbs. They stay by that one of the new cuts that comes nearest to
-/// them. The same holds where two blades cross at less than 37 degrees, of the edge of the wedge between them. What
-/// different blades part as a slice is parted, however thin, and so is what one blade cuts off from one side.
-///
-/// Limit: what hangs together when cuts cross at small angles depends on which came first.
+/// them. What different blades part is parted, however thin, and so is what one blade cuts off from one side.
 
 #include "grid/solid.h"
 
