@@ -59,7 +59,8 @@ class Batch {
   Batch(const SceneArguments& arguments, std::vector<Job> jobs)
     : arguments_(arguments),
       jobs_(std::move(jobs)),
-      n_threads_(arguments.n_threads > 0 ? arguments.n_threads : std::max(1, n_threads() / std::max(1, arguments.n_jobs))) {}
+      n_threads_(arguments.n_threads > 0 ? arguments.n_threads
+                                         : std::max(1, n_threads() / std::max(1, arguments.n_jobs))) {}
 
   int run() {
     while (!running_.empty() || (next_ < jobs_.size() && wish_to_end() == 0)) {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include <cstdio>
 #include <sys/types.h>
+#include <cstdio>
 
 namespace kerf::apps {
 

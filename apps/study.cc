@@ -49,7 +49,8 @@ int study(const Arguments& arguments) {
   const scene::SceneText text = scene::read_scene_text(parsed.scene, parsed.overrides);
   if (study::is_stability_study(text)) {
     if (parsed.n_jobs + parsed.row > 0)
-      throw ParameterError(Complaint{.file = parsed.scene, .rule = "is a study of stability: its rows take no time, and have no --jobs or --row"});
+      throw ParameterError(Complaint{
+        .file = parsed.scene, .rule = "is a study of stability: its rows take no time, and have no --jobs or --row"});
     run_stability(text, parsed, run_info("study", arguments));
     return 0;
   }
@@ -65,9 +66,8 @@ int study(const Arguments& arguments) {
     std::fflush(stdout);
   };
   const output::RunInfo info = run_info("study", arguments);
-  const output::StudyTable table = parsed.n_jobs > 0
-                                     ? run_study_jobs(plan, parsed, info, say)
-                                     : study::run_study(plan, parsed.output, info, parsed.earlier, say);
+  const output::StudyTable table = parsed.n_jobs > 0 ? run_study_jobs(plan, parsed, info, say)
+                                                     : study::run_study(plan, parsed.output, info, parsed.earlier, say);
   std::printf("\n%s\nvalue: %s\n\n%s\nresults in %s\n", table.title.c_str(), table.answer.c_str(),
               study::aligned(table).c_str(), parsed.output.c_str());
   return 0;

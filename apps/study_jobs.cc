@@ -75,8 +75,15 @@ class Rows {
 
   std::vector<std::string> command_of(const std::size_t k) const {
     const int n = arguments_.n_threads > 0 ? arguments_.n_threads : std::max(1, n_threads() / n_jobs_);
-    std::vector<std::string> words = {"kerf",     "study", arguments_.scene,    "--output",  arguments_.output.string(),
-                                      "--row",    std::to_string(k + 1),        "--threads", std::to_string(n)};
+    std::vector<std::string> words = {"kerf",
+                                      "study",
+                                      arguments_.scene,
+                                      "--output",
+                                      arguments_.output.string(),
+                                      "--row",
+                                      std::to_string(k + 1),
+                                      "--threads",
+                                      std::to_string(n)};
     for (const std::string& change : arguments_.overrides) {
       words.emplace_back("--set");
       words.push_back(change);

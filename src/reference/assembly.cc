@@ -62,7 +62,8 @@ void add_stiffness(const Space<dim>& space, const Shapes<dim>& shapes, dealii::F
       for (unsigned int i = 0; i < shapes.n(); ++i)
         for (unsigned int j = 0; j < shapes.n(); ++j) {
           const double entry = lambda * S(i, j) + mu * S(j, i) + (a == b ? mu * laplace(i, j) : 0.0);
-          const auto row = space.element.component_to_system_index(a, i), column = space.element.component_to_system_index(b, j);
+          const auto row = space.element.component_to_system_index(a, i),
+                     column = space.element.component_to_system_index(b, j);
           K(row, column) = K(column, row) = entry;
         }
     }
@@ -138,7 +139,8 @@ void assemble_mass(const Space<dim>& space, const System<dim>& system, dealii::S
     for (int d = 0; d < dim; ++d)
       for (unsigned int i = 0; i < shapes.n(); ++i)
         for (unsigned int j = 0; j < shapes.n(); ++j)
-          cell_M(space.element.component_to_system_index(d, i), space.element.component_to_system_index(d, j)) = m(i, j);
+          cell_M(space.element.component_to_system_index(d, i), space.element.component_to_system_index(d, j)) =
+            m(i, j);
     cell->get_dof_indices(indices);
     space.constraints.distribute_local_to_global(cell_M, indices, M);
   }

@@ -79,7 +79,9 @@ Mesh rectangles(const std::vector<double>& x, const std::vector<double>& y) {
   for (const double yj : y)
     for (const double xi : x)
       mesh.vertices.emplace_back(xi, yj, 0);
-  const auto at = [&](const std::size_t i, const std::size_t j) { return static_cast<std::uint32_t>(j * x.size() + i); };
+  const auto at = [&](const std::size_t i, const std::size_t j) {
+    return static_cast<std::uint32_t>(j * x.size() + i);
+  };
   for (std::size_t j = 0; j + 1 < y.size(); ++j)
     for (std::size_t i = 0; i + 1 < x.size(); ++i)
       mesh.cells.push_back({at(i, j), at(i + 1, j), at(i, j + 1), at(i + 1, j + 1)});

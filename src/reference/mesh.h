@@ -19,8 +19,8 @@ enum class Sides {
 };
 
 struct Mesh {
-  int dimension = 2;   ///< 2: quadrilaterals, z = 0 (plane strain); 3: hexahedra
-  Points vertices;     ///< [m]
+  int dimension = 2;                               ///< 2: quadrilaterals, z = 0 (plane strain); 3: hexahedra
+  Points vertices;                                 ///< [m]
   std::vector<std::array<std::uint32_t, 8>> cells; ///< vertices in deal.II's order; a quadrilateral has the first four
   std::vector<Sides> sides;                        ///< per cell
 };

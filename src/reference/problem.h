@@ -26,19 +26,20 @@ struct Traction {
 };
 
 struct Problem {
-  Mesh mesh;                  ///< of quadrilaterals: plane strain
-  double youngs_modulus = 1;  ///< [Pa]
-  double poissons_ratio = 0;  ///< [1]
-  double density = 1;         ///< [kg/m^3]
+  Mesh mesh;                 ///< of quadrilaterals: plane strain
+  double youngs_modulus = 1; ///< [Pa]
+  double poissons_ratio = 0; ///< [1]
+  double density = 1;        ///< [kg/m^3]
   std::vector<Support> supports;
   std::vector<Traction> tractions;
   Field body_force = nullptr; ///< [N/m^3]; none: 0
 };
 
 struct Discretisation {
-  int degree = 2;         ///< of FE_Q, 1 to 4
-  int n_refinements = 0;  ///< of all cells, each into four or eight
-  int n_adaptations = 0;  ///< after these: solutions that an estimate of the error refines the mesh by (KellyErrorEstimator)
+  int degree = 2;        ///< of FE_Q, 1 to 4
+  int n_refinements = 0; ///< of all cells, each into four or eight
+  int n_adaptations =
+    0; ///< after these: solutions that an estimate of the error refines the mesh by (KellyErrorEstimator)
   double refined_part = 0.1; ///< of the cells, each time: those with the largest estimate
 };
 

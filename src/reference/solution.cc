@@ -107,8 +107,8 @@ class Found : public Solution {
           values.reinit(cell, face);
           values[all].get_function_values(u_, u);
           for (unsigned int q = 0; q < u.size(); ++q)
-            sum += values.JxW(q) * f(to_vec<dim>(values.quadrature_point(q)), to_vec<dim>(values.normal_vector(q)),
-                                     to_vec<dim>(u[q]));
+            sum += values.JxW(q) *
+                   f(to_vec<dim>(values.quadrature_point(q)), to_vec<dim>(values.normal_vector(q)), to_vec<dim>(u[q]));
         }
     return sum;
   }

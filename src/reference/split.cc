@@ -13,10 +13,9 @@ using Face = std::vector<std::uint32_t>; // vertices, ascending
 
 std::vector<Face> faces_of(const Mesh& mesh, const std::size_t cell) {
   const std::vector<std::vector<std::size_t>> local =
-    mesh.dimension == 2
-      ? std::vector<std::vector<std::size_t>>{{0, 2}, {1, 3}, {0, 1}, {2, 3}}
-      : std::vector<std::vector<std::size_t>>{{0, 2, 4, 6}, {1, 3, 5, 7}, {0, 1, 4, 5}, {2, 3, 6, 7}, {0, 1, 2, 3},
-                                              {4, 5, 6, 7}};
+    mesh.dimension == 2 ? std::vector<std::vector<std::size_t>>{{0, 2}, {1, 3}, {0, 1}, {2, 3}}
+                        : std::vector<std::vector<std::size_t>>{{0, 2, 4, 6}, {1, 3, 5, 7}, {0, 1, 4, 5},
+                                                                {2, 3, 6, 7}, {0, 1, 2, 3}, {4, 5, 6, 7}};
   std::vector<Face> faces;
   for (const auto& vertices : local) {
     Face face;

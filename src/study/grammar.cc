@@ -25,7 +25,8 @@ void StudyParameters::describe(Parameters& p) {
   p.text("Order over", order_over,
          "The change whose cases differ in h: orders of convergence are told between rows that differ in it alone.");
   p.choice("Times", times, {"count", "do not count"},
-           "Rows whose times count run one at a time, whatever --jobs says, so that none is beside another. Those of rows that "
+           "Rows whose times count run one at a time, whatever --jobs says, so that none is beside another. Those of "
+           "rows that "
            "do not are unknown.");
 }
 

@@ -47,7 +47,8 @@ Reference reference_of(const Section& root, const Section& study, const StudyPar
   if (said.value != 0)
     throw study.complaint("Reference", "there is a section Truth that finds one", "Leave out one of them");
   if (parameters.unit != "m")
-    throw study.complaint("Unit", "the section Truth finds a displacement in m", "Ask for one, or leave the section out");
+    throw study.complaint("Unit", "the section Truth finds a displacement in m",
+                          "Ask for one, or leave the section out");
   return find_truth(*truth, truth_cache());
 }
 

@@ -81,8 +81,8 @@ output::StudyRow StudyRows::read_row(const std::size_t k) const {
 }
 
 output::StudyTable StudyRows::table(const output::Outcome outcome) const {
-  output::StudyTable table{plan_.parameters.title, plan_.text, plan_.parameters.unit, in_words(plan_.parameters), outcome,
-                           {}};
+  output::StudyTable table{plan_.parameters.title,     plan_.text, plan_.parameters.unit,
+                           in_words(plan_.parameters), outcome,    {}};
   table.made_of = made_of_;
   for (const auto& row : rows_)
     if (row)
@@ -133,12 +133,11 @@ output::StudyRow run_row(const Plan& plan, const std::size_t k, const std::files
   if (earlier == output::Earlier::resume)
     if (auto rows = earlier_rows(file, output::read_study_file, of); !rows.empty())
       return std::move(rows.front());
-  output::StudyTable table{plan.parameters.title, plan.text, plan.parameters.unit, in_words(plan.parameters),
+  output::StudyTable table{plan.parameters.title,      plan.text, plan.parameters.unit, in_words(plan.parameters),
                            output::Outcome::completed, {}};
   table.rows.push_back(measure(plan, plan.rows[k], own, info, earlier));
   table.made_of = of;
-  const output::ResultsFolder claimed(own, output::Earlier::resume,
-                                      {row_name, output::name_beside(row_name).string()});
+  const output::ResultsFolder claimed(own, output::Earlier::resume, {row_name, output::name_beside(row_name).string()});
   output::write_study_file(file, table, info);
   return std::move(table.rows.front());
 }

@@ -18,7 +18,8 @@ class StudyRows {
  public:
   /// Takes the folder. To resume, rows that study.h5 or a row.h5 holds are taken as they are. Throws as output::ResultsFolder,
   /// and ParameterError where they are of another study.
-  StudyRows(const Plan& plan, const std::filesystem::path& folder, const output::RunInfo& info, output::Earlier earlier);
+  StudyRows(const Plan& plan, const std::filesystem::path& folder, const output::RunInfo& info,
+            output::Earlier earlier);
 
   bool has(std::size_t k) const { return rows_[k].has_value(); }
   const output::StudyRow& row(std::size_t k) const { return *rows_[k]; }

@@ -52,7 +52,8 @@ void require_shape(const TruthParameters& p, const Section& section) {
     throw section.complaint("Corners [m]", "must be the four corners of a convex quadrilateral, counter-clockwise",
                             "Write four points: 0, 0, 0; 1, 0, 0; 1, 1, 0; 0, 1, 0");
   if (!p.heights.empty() && (p.heights.size() != 2 || !(p.heights[0] < p.heights[1])))
-    throw section.complaint("Heights [m]", "must be two, the lower one first, or none", "Write 0, 1; none: plane strain");
+    throw section.complaint("Heights [m]", "must be two, the lower one first, or none",
+                            "Write 0, 1; none: plane strain");
   const std::size_t n = p.heights.empty() ? 2 : 3;
   if (p.cells.size() < n || std::any_of(p.cells.begin(), p.cells.end(), [](double c) { return c != std::floor(c); }))
     throw section.complaint("Cells [1]", "must be whole numbers, one a direction", "Write 4, 4 or 4, 4, 2");
@@ -76,14 +77,16 @@ void crack(reference::Mesh& mesh, const Section& section) {
   if (!(p.normal.norm() > 0))
     throw section.complaint("Normal [1]", "must not be zero", "Write a direction");
   if (reference::split(mesh, p.point, p.normal, within(p.box)) == 0)
-    throw section.complaint("no faces of the mesh lie in it", "Choose cells whose faces do, or move it to where they are");
+    throw section.complaint("no faces of the mesh lie in it",
+                            "Choose cells whose faces do, or move it to where they are");
 }
 
 /// Throws where the part meets no face, at its section.
 void require_met(const reference::Mesh& mesh, const Box& box, const Section& section) {
   const auto is_inside = [&](const Vec3& X) { return box.contains(X); };
   if (std::none_of(mesh.vertices.begin(), mesh.vertices.end(), is_inside))
-    throw section.complaint("no vertex of the mesh lies in its box", "Give it the bounds of a side of the body, with room");
+    throw section.complaint("no vertex of the mesh lies in its box",
+                            "Give it the bounds of a side of the body, with room");
 }
 
 reference::Problem problem_of(const TruthParameters& p, const Section& section) {
@@ -124,8 +127,8 @@ Reference solve(const reference::Problem& problem, const TruthParameters& p, con
   if (!(difference <= p.tolerance))
     throw NumericalError("the section Truth has no answer within its tolerance: " + told +
                          ". Use more adaptations or cells");
-  return {value, "deal.II, degree " + std::to_string(p.degree) + ", " + std::to_string(best->n_unknowns()) + " unknowns; " +
-                   told};
+  return {value, "deal.II, degree " + std::to_string(p.degree) + ", " + std::to_string(best->n_unknowns()) +
+                   " unknowns; " + told};
 }
 
 std::optional<Reference> kept(const std::filesystem::path& file) {
@@ -193,16 +196,23 @@ void TruthCrackParameters::describe(Parameters& p) {
 }
 
 scene::SectionKind truth_grammar() {
-  return {"Truth",
-          Occurrence::once,
-          "A reference for all rows that have no other, found by deal.II on a mesh that is fitted to the body: elements of "
-          "high degree, refined where their error is. It is a displacement at small strain.",
-          keys_of<TruthParameters>(),
-          {{"Held", Occurrence::named, "Sides of the body whose middles (of each cell's face) lie in a box.",
-            keys_of<TruthHeldParameters>(), {}},
-           {"Pulled", Occurrence::named, "Sides of the body under a traction.", keys_of<TruthPulledParameters>(), {}},
-           {"Crack", Occurrence::named, "A plane cut between cells, whose front is where its box ends.",
-            keys_of<TruthCrackParameters>(), {}}}};
+  return {
+    "Truth",
+    Occurrence::once,
+    "A reference for all rows that have no other, found by deal.II on a mesh that is fitted to the body: elements of "
+    "high degree, refined where their error is. It is a displacement at small strain.",
+    keys_of<TruthParameters>(),
+    {{"Held",
+      Occurrence::named,
+      "Sides of the body whose middles (of each cell's face) lie in a box.",
+      keys_of<TruthHeldParameters>(),
+      {}},
+     {"Pulled", Occurrence::named, "Sides of the body under a traction.", keys_of<TruthPulledParameters>(), {}},
+     {"Crack",
+      Occurrence::named,
+      "A plane cut between cells, whose front is where its box ends.",
+      keys_of<TruthCrackParameters>(),
+      {}}}};
 }
 
 std::filesystem::path truth_cache() {

@@ -94,7 +94,7 @@ TEST_F(SmallRefusals, EveryHoldSaysWhatItHolds) {
   EXPECT_TRUE(std::regex_search(
     skin.out, std::regex(R"(support top holds 0\.0[34]\d* m\^2 of skin from \(-0\.1, -0\.1, 0\.1\) to \(0\.1, 0\.1, 0\.1\) m, in 1 piece)")))
     << skin.out;
-  const Result forceps = run(cube_scene() + "subsection Forceps grip\n  set Lower [m] = -1, -1, 0.075\n"
+  const Result forceps = run(cube_scene() + "subsection Forceps grip\n  set Region = box\n  set Lower [m] = -1, -1, 0.075\n"
                                             "  set Upper [m] = 1, 1, 1\n  set Times [s] = 0, 1\n"
                                             "  set Positions [m] = 0, 0, 0.1; 0, 0, 0.1\nend\n");
   EXPECT_NE(forceps.out.find(", from (-0.125, -0.125, "), std::string::npos) << forceps.out << forceps.err;

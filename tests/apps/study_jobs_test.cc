@@ -16,18 +16,19 @@ using namespace std::chrono_literals;
 
 /// Four variants in some cases, of a cube that sags on its foot.
 std::string four_rows_a_case(const std::string& times, const int n_cases) {
-  std::string text = "subsection Study\n  set Scene = scene.prm\n  set Answer = elastic energy\n  set Unit = J\n"
-                     "  set Reference = 1e-3\n  set Reference source = a guess\n  set Times = " +
-                     times +
-                     "\nend\n"
-                     "subsection Variant fem\nend\n"
-                     "subsection Variant enhanced\n  set Set = Body cube/Element=enhanced\nend\n"
-                     "subsection Variant springs\n  set Set = Body cube/Backend=mass-spring\nend\n"
-                     "subsection Variant points\n  set Set = Body cube/Backend=pba\nend\n"
-                     "subsection Change stiffness\n";
+  std::string text =
+    "subsection Study\n  set Scene = scene.prm\n  set Answer = elastic energy\n  set Unit = J\n"
+    "  set Reference = 1e-3\n  set Reference source = a guess\n  set Times = " +
+    times +
+    "\nend\n"
+    "subsection Variant fem\nend\n"
+    "subsection Variant enhanced\n  set Set = Body cube/Element=enhanced\nend\n"
+    "subsection Variant springs\n  set Set = Body cube/Backend=mass-spring\nend\n"
+    "subsection Variant points\n  set Set = Body cube/Backend=pba\nend\n"
+    "subsection Change stiffness\n";
   for (int i = 1; i <= n_cases; ++i)
-    text += "  subsection Case " + std::to_string(i) + "\n    set Set = Body cube/Material/Young's modulus [Pa]=" +
-            std::to_string(i) + "e4\n  end\n";
+    text += "  subsection Case " + std::to_string(i) +
+            "\n    set Set = Body cube/Material/Young's modulus [Pa]=" + std::to_string(i) + "e4\n  end\n";
   return text + "end\n";
 }
 
@@ -64,7 +65,9 @@ class StudyJobs : public Program {
     return most;
   }
 
-  output::StudyTable table(const std::string& name) const { return output::read_study_file(folder / name / "study.h5"); }
+  output::StudyTable table(const std::string& name) const {
+    return output::read_study_file(folder / name / "study.h5");
+  }
 
   static void expect_same(const std::vector<output::StudyRow>& a, const std::vector<output::StudyRow>& b) {
     ASSERT_EQ(a.size(), b.size());
@@ -85,9 +88,7 @@ TEST_F(StudyJobs, FortyRowsKilledFiveTimesAreThoseOfAnUndisturbedStudy) {
   write("study.prm", four_rows_a_case("do not count", 10));
   ASSERT_EQ(kerf({"study", "study.prm", "--output", "whole"}).exit_code, 0) << read_text(folder / "stderr");
   const Words resumed = {"study", "study.prm", "--output", "out", "--jobs", "2", "--threads", "1", "--resume"};
-  const auto n_rows = [&] {
-    return std::filesystem::exists(folder / "out/study.h5") ? table("out").rows.size() : 0;
-  };
+  const auto n_rows = [&] { return std::filesystem::exists(folder / "out/study.h5") ? table("out").rows.size() : 0; };
   for (int kill = 1; kill <= 5; ++kill) {
     const pid_t id = start(resumed);
     int status = 0;
@@ -124,8 +125,7 @@ TEST_F(StudyJobs, RowsThatRanAloneAreGathered) {
   EXPECT_EQ(kerf({"study", "study.prm", "--output", "out", "--row", "2"}).exit_code, 0) << read_text(folder / "stderr");
   EXPECT_FALSE(std::filesystem::exists(folder / "out/study.h5"));
   expect_error(kerf({"study", "study.prm", "--output", "out", "--row", "2"}), 1, {"earlier run", "--resume"});
-  const double seconds =
-    output::read_study_file(folder / "out/rows/enhanced+1/row.h5").rows[0].stepping_seconds;
+  const double seconds = output::read_study_file(folder / "out/rows/enhanced+1/row.h5").rows[0].stepping_seconds;
   EXPECT_EQ(kerf({"study", "study.prm", "--output", "out", "--resume"}).exit_code, 0) << read_text(folder / "stderr");
   EXPECT_EQ(table("out").rows[2].stepping_seconds, seconds) << "taken as it was";
   EXPECT_EQ(table("out").rows.size(), 8u);

@@ -27,7 +27,8 @@ Vec3 wave(const Vec3& X) {
 /// -div sigma = -(lambda + mu) grad div u - mu laplace u, by hand. div u = (2 cos x sinh y + 2 z y) / 4.
 Field force_of_wave(const double lambda, const double mu) {
   return [=](const Vec3& X) {
-    const Vec3 grad_div(-2 * std::sin(X[0]) * std::sinh(X[1]), 2 * std::cos(X[0]) * std::cosh(X[1]) + 2 * X[2], 2 * X[1]);
+    const Vec3 grad_div(-2 * std::sin(X[0]) * std::sinh(X[1]), 2 * std::cos(X[0]) * std::cosh(X[1]) + 2 * X[2],
+                        2 * X[1]);
     const Vec3 laplace(0, 0, 2 * X[1]);
     return Vec3(-((lambda + mu) * grad_div + mu * laplace) / 4);
   };

@@ -14,14 +14,16 @@ namespace kerf::study {
 namespace {
 
 const std::string corners = "  set Corners [m] = 0, 0, 0; 10, 0, 0; 10, 1, 0; 0, 1, 0\n";
-const std::string rest = "  set Cells [1] = 10, 2\n"
-                         "  set Young's modulus [Pa] = 1e5\n"
-                         "  set Force [N/m^3] = 0, -1, 0\n"
-                         "  set Point [m] = 10, 0.25, 0\n"
-                         "  set Axis = y\n"
-                         "  set Adaptations [1] = 2\n"
-                         "  subsection Held left\n    set Upper [m] = 0.01, 9, 9\n  end\n";
-const std::string crack = "  subsection Crack all\n    set Point [m] = 0, 0.5, 0\n    set Normal [1] = 0, 1, 0\n  end\n";
+const std::string rest =
+  "  set Cells [1] = 10, 2\n"
+  "  set Young's modulus [Pa] = 1e5\n"
+  "  set Force [N/m^3] = 0, -1, 0\n"
+  "  set Point [m] = 10, 0.25, 0\n"
+  "  set Axis = y\n"
+  "  set Adaptations [1] = 2\n"
+  "  subsection Held left\n    set Upper [m] = 0.01, 9, 9\n  end\n";
+const std::string crack =
+  "  subsection Crack all\n    set Point [m] = 0, 0.5, 0\n    set Normal [1] = 0, 1, 0\n  end\n";
 
 std::string truth(const std::string& body) { return "subsection Truth\n" + body + "end\n"; }
 
@@ -40,14 +42,15 @@ TEST(Truth, OfABeamAndOfItsHalves) {
 }
 
 TEST(Truth, OfABlock) {
-  const std::string block = "  set Corners [m] = 0, 0, 0; 1, 0, 0; 1, 2, 0; 0, 2, 0\n  set Heights [m] = 0, 3\n"
-                            "  set Cells [1] = 1, 2, 3\n  set Young's modulus [Pa] = 100\n"
-                            "  set Poisson's ratio [1] = 0.25\n  set Point [m] = 1, 1, 3\n  set Adaptations [1] = 0\n"
-                            "  subsection Held x\n    set Upper [m] = 0.01, 9, 9\n    set Hold = x\n  end\n"
-                            "  subsection Held y\n    set Upper [m] = 9, 0.01, 9\n    set Hold = y\n  end\n"
-                            "  subsection Held z\n    set Upper [m] = 9, 9, 0.01\n    set Hold = z\n  end\n"
-                            "  subsection Pulled top\n    set Lower [m] = -9, -9, 2.99\n    set Traction [N/m^2] = 0, 0, 5\n"
-                            "  end\n";
+  const std::string block =
+    "  set Corners [m] = 0, 0, 0; 1, 0, 0; 1, 2, 0; 0, 2, 0\n  set Heights [m] = 0, 3\n"
+    "  set Cells [1] = 1, 2, 3\n  set Young's modulus [Pa] = 100\n"
+    "  set Poisson's ratio [1] = 0.25\n  set Point [m] = 1, 1, 3\n  set Adaptations [1] = 0\n"
+    "  subsection Held x\n    set Upper [m] = 0.01, 9, 9\n    set Hold = x\n  end\n"
+    "  subsection Held y\n    set Upper [m] = 9, 0.01, 9\n    set Hold = y\n  end\n"
+    "  subsection Held z\n    set Upper [m] = 9, 9, 0.01\n    set Hold = z\n  end\n"
+    "  subsection Pulled top\n    set Lower [m] = -9, -9, 2.99\n    set Traction [N/m^2] = 0, 0, 5\n"
+    "  end\n";
   EXPECT_NEAR(find(truth(block)).value, 3 * 5.0 / 100, 1e-12);
   EXPECT_NEAR(find(truth(block + "  set Axis = x\n")).value, -0.25 * 5.0 / 100, 1e-12);
   EXPECT_NEAR(find(truth(block + "  set Minus point [m] = 0, 1, 1\n")).value, 2 * 5.0 / 100, 1e-12);
@@ -75,8 +78,9 @@ TEST(Truth, RefusesWhatCannotBe) {
   EXPECT_THROW(find(truth("  set Corners [m] = 0, 0, 0; 1, 0, 0; 0, 1, 0; 1, 1, 0\n" + rest)), ParameterError);
   EXPECT_THROW(find(truth("  set Corners [m] = 0, 0, 0; 1, 0, 0; 0, 1, 0\n" + rest)), ParameterError);
   EXPECT_THROW(find(truth(corners + "  set Heights [m] = 2, 1\n" + rest)), ParameterError);
-  EXPECT_THROW(find(truth(corners + rest + "  subsection Crack off\n    set Point [m] = 0, 0.3, 0\n"
-                                           "    set Normal [1] = 0, 1, 0\n  end\n")),
+  EXPECT_THROW(find(truth(corners + rest +
+                          "  subsection Crack off\n    set Point [m] = 0, 0.3, 0\n"
+                          "    set Normal [1] = 0, 1, 0\n  end\n")),
                ParameterError);
   EXPECT_THROW(find(truth(corners + rest + "  subsection Held far\n    set Lower [m] = 99, 99, 99\n  end\n")),
                ParameterError);
@@ -99,8 +103,7 @@ TEST(Truth, IsTheReferenceOfRowsWithoutAnother) {
 
 /// Of the tables' 23.96774, at a hundredth of the length and 1e-4 of the strain.
 TEST(Truth, OfTheStudyOfCooksMembrane) {
-  const Plan plan =
-    make_plan(scene::read_scene_text(std::string(KERF_SOURCE_DIR) + "/params/studies/cook.prm", {}));
+  const Plan plan = make_plan(scene::read_scene_text(std::string(KERF_SOURCE_DIR) + "/params/studies/cook.prm", {}));
   for (const PlannedRow& row : plan.rows)
     EXPECT_NEAR(row.reference.value, 23.96774e-6, 1e-11);
 }
