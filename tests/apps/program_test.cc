@@ -27,7 +27,7 @@ TEST_F(ProgramTest, RefusesArgumentsThatMeanNothing) {
   write("scene.prm", cube_scene());
   expect_error(kerf({"run"}), 1, {"a scene file must be given", "params/liver.prm"});
   expect_error(kerf({"run", "scene.prm", "--bogus"}), 1,
-               {"'--bogus'", "is no option", "--set, --output, --threads, --force, --resume, and --jobs of run"});
+               {"'--bogus'", "is no option", "--set, --output, --threads, --force, --resume, --jobs of run and study, and --row of study"});
   for (const auto& [first, second] : {std::pair{"--force", "--resume"}, std::pair{"--resume", "--force"}})
     expect_error(kerf({"run", "scene.prm", first, second}), 1, {"--force and --resume exclude each other"});
   expect_error(kerf({"check", "scene.prm", "--output", "out"}), 1, {"'--output'", "takes no such option"});

@@ -84,7 +84,7 @@ TEST(Run, ClearsImagesOfAnEarlierRun) {
   const output::TemporaryFolder folder;
   World earlier = world_of(cube_scene() + all_outputs());
   run_silently(earlier, folder / "out");
-  std::ofstream(folder / "out/frames/000077.png") << "old";
+  std::filesystem::copy_file(folder / "out/frames/000005.png", folder / "out/frames/000077.png");
   std::ofstream(folder / "out/frames/notes.txt") << "mine";
   World world = world_of(cube_scene() + all_outputs());
   run_silently(world, folder / "out");
