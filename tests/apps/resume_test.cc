@@ -347,7 +347,7 @@ TEST_F(Resume, ARowsCostIsThatOfAllItsProcesses) {
   ASSERT_EQ(kerf(into("out", {"--resume"})).exit_code, 0) << read_text(folder / "stderr");
   const auto whole = output::read_study_file(folder / "whole/study.h5").rows.at(0),
              row = output::read_study_file(folder / "out/study.h5").rows.at(0);
-  EXPECT_GT(row.cpu_seconds, 0.7 * whole.cpu_seconds); // the last process ran a fifth of the steps
+  EXPECT_GT(row.cpu_seconds, 0.45 * whole.cpu_seconds); // the last process ran a fifth of the steps
   EXPECT_GT(row.peak_memory, 0.7 * whole.peak_memory);
 }
 
