@@ -40,12 +40,7 @@ std::vector<Job> jobs_of(const SceneArguments& arguments) {
 std::vector<std::string> command_of(const Job& job, const SceneArguments& arguments, const int n_threads) {
   std::vector<std::string> words = {
     "kerf", "run", job.scene, "--output", job.output.string(), "--threads", std::to_string(n_threads)};
-  for (const std::string& change : arguments.overrides) {
-    words.emplace_back("--set");
-    words.push_back(change);
-  }
-  if (arguments.earlier != output::Earlier::refuse)
-    words.emplace_back(arguments.earlier == output::Earlier::replace ? "--force" : "--resume");
+  add_common(arguments, words);
   return words;
 }
 

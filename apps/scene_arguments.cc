@@ -75,4 +75,13 @@ SceneArguments parse_scene_arguments(const Arguments& arguments, const Scenes sc
   return parsed;
 }
 
+void add_common(const SceneArguments& arguments, std::vector<std::string>& words) {
+  for (const std::string& change : arguments.overrides) {
+    words.emplace_back("--set");
+    words.push_back(change);
+  }
+  if (arguments.earlier != output::Earlier::refuse)
+    words.emplace_back(arguments.earlier == output::Earlier::replace ? "--force" : "--resume");
+}
+
 } // namespace kerf::apps

@@ -25,6 +25,10 @@ enum class Scenes { one, several, study };
 /// Throws ParameterError for what is no valid argument.
 SceneArguments parse_scene_arguments(const Arguments& arguments, Scenes scenes = Scenes::one);
 
+/// Appends what a process for one of several scenes or rows is told as well: changes of the scene, and what to do about
+/// earlier results.
+void add_common(const SceneArguments& arguments, std::vector<std::string>& words);
+
 /// FOLDER/SCENE, without the scene's own folder and ending.
 std::filesystem::path default_output(const std::string& scene, const std::filesystem::path& folder = "results");
 

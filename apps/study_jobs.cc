@@ -84,12 +84,7 @@ class Rows {
                                       std::to_string(k + 1),
                                       "--threads",
                                       std::to_string(n)};
-    for (const std::string& change : arguments_.overrides) {
-      words.emplace_back("--set");
-      words.push_back(change);
-    }
-    if (arguments_.earlier != output::Earlier::refuse)
-      words.emplace_back(arguments_.earlier == output::Earlier::replace ? "--force" : "--resume");
+    add_common(arguments_, words);
     return words;
   }
 

@@ -79,6 +79,21 @@ class Program : public testing::Test {
     return result;
   }
 
+  /// Starts `kerf arguments...` beside this process.
+  pid_t start(const Words& arguments) const {
+    Words words = {program()};
+    words.insert(words.end(), arguments.begin(), arguments.end());
+    const std::vector<char*> pointers = pointers_to(words);
+    const pid_t id = fork();
+    if (id == 0) {
+      if (chdir((folder / "").c_str()) == 0 && std::freopen("stdout", "w", stdout) &&
+          std::freopen("stderr", "w", stderr))
+        execv(pointers[0], pointers.data());
+      _exit(127);
+    }
+    return id;
+  }
+
   void write(const std::string& name, const std::string& text) const { std::ofstream(folder / name) << text; }
 
   /// Runs a scene into the folder "out", in place of what an earlier run has left there.

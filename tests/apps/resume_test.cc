@@ -42,21 +42,6 @@ std::string busy_scene(const std::string& backend) {
 
 class Resume : public Program {
  protected:
-  /// Starts `kerf arguments...` beside this process.
-  pid_t start(const Words& arguments) const {
-    Words words = {program()};
-    words.insert(words.end(), arguments.begin(), arguments.end());
-    const std::vector<char*> pointers = pointers_to(words);
-    const pid_t id = fork();
-    if (id == 0) {
-      if (chdir((folder / "").c_str()) == 0 && std::freopen("stdout", "w", stdout) &&
-          std::freopen("stderr", "w", stderr))
-        execv(pointers[0], pointers.data());
-      _exit(127);
-    }
-    return id;
-  }
-
   static int status_of(const pid_t id) {
     int status = 0;
     waitpid(id, &status, 0);

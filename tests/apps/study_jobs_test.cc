@@ -41,19 +41,6 @@ class StudyJobs : public Program {
                          "subsection Gravity\nend\nsubsection Observables\n  set Names = elastic energy\nend\n");
   }
 
-  pid_t start(Words words) const {
-    words.insert(words.begin(), program());
-    const std::vector<char*> pointers = pointers_to(words);
-    const pid_t id = fork();
-    if (id == 0) {
-      if (chdir((folder / "").c_str()) == 0 && std::freopen("stdout", "w", stdout) &&
-          std::freopen("stderr", "w", stderr))
-        execv(pointers[0], pointers.data());
-      _exit(127);
-    }
-    return id;
-  }
-
   /// How many processes it has had at a time, at most; it comes to its end.
   static std::size_t most_at_a_time(const pid_t id) {
     const std::string file = "/proc/" + std::to_string(id) + "/task/" + std::to_string(id) + "/children";
