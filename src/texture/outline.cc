@@ -174,8 +174,10 @@ warp::Gap gap_after(const warp::LatticeMap& map, const Outlines& outlines) {
   return {std::max(a.mean, b.mean), std::max(a.largest, b.largest)};
 }
 
-warp::LatticeMap fitted(const Outlines& outlines, const warp::FitOptions& options) {
+warp::LatticeMap fitted(const Outlines& outlines, warp::FitOptions options) {
   const Vec2 lower = Vec2::Zero(), upper(outlines.within.width - 1, outlines.within.height - 1);
+  // As fine as on a section of one part, where others widen the box.
+  options.n_cells *= std::max(1.0, 0.25 * std::lround(4 * upper.maxCoeff() / size_of(outlines.within)));
   return outlines.by_rays.empty()
            ? warp::fit(outlines.section, outlines.picture, outlines.within, lower, upper, options)
            : warp::fit(outlines.by_rays, warp::affine_between(outlines.section, outlines.picture), lower, upper,

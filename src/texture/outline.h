@@ -33,7 +33,7 @@ Outlines outlines_of(const image::Grey& section, const image::Grey& picture);
 /// How far apart the outlines lie in the picture once a map has been applied, seen from both [pixels].
 warp::Gap gap_after(const warp::LatticeMap& map, const Outlines& outlines);
 
-/// Draws one outline to the other.
-warp::LatticeMap fitted(const Outlines& outlines, const warp::FitOptions& options);
+/// Draws one outline to the other. Cells of the lattice are counted along what `within` bounds.
+warp::LatticeMap fitted(const Outlines& outlines, warp::FitOptions options);
 
 } // namespace kerf::texture
