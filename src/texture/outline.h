@@ -16,6 +16,7 @@ warp::Curve outline_of(const image::Grey& mask);
 struct Outlines {
   warp::Curve section, picture; ///< pixels of each mask
   image::Grey within;           ///< what `section` bounds
+  double wider = 1;             ///< the box of all that is section, over that of `within`, by their longer sides [1]
   /// The middles, and points of both that lie in the same direction from them, once the affine map between both has
   /// been taken out; empty where one is no star.
   std::vector<warp::Pin> by_rays;

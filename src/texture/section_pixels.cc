@@ -1,5 +1,6 @@
 #include "texture/section_pixels.h"
 
+#include "image/filters.h"
 #include "texture/exemplar.h"
 
 #include <Eigen/Geometry>
@@ -99,13 +100,14 @@ Relaid relaid(const image::Grey& mask, const SectionPlane& plane, const SectionP
     for (const double row : {0, mask.height - 1})
       box.add(pixels_of(pixels, plane, Vec2(column, row)));
   const PixelBox whole = box.in_whole_pixels();
+  const image::Grey smooth = image::blurred(mask, 1); // the steps of one lattice are not those of another
   Relaid result{image::Grey(whole.width(), whole.height(), 0), moved(pixels, whole.lower)};
   for (int r = 0; r < whole.height(); ++r)
     for (int c = 0; c < whole.width(); ++c) {
       const Vec2 p = pixels_of(plane, result.plane, Vec2(c, r));
       const bool is_in = p[0] >= -0.5 && p[1] >= -0.5 && p[0] <= mask.width - 0.5 && p[1] <= mask.height - 0.5;
       const auto x = static_cast<float>(p[0]), y = static_cast<float>(p[1]);
-      result.mask(c, r) = is_in && image::sample(mask, x, y) >= 0.5f ? 1.0f : 0.0f;
+      result.mask(c, r) = is_in && image::sample(smooth, x, y) >= 0.5f ? 1.0f : 0.0f;
     }
   return result;
 }
