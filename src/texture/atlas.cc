@@ -28,16 +28,19 @@ Corners corners_of(const SurfaceView& surface, const std::size_t t) {
   return {surface.rest[v[0]], surface.rest[v[1]], surface.rest[v[2]]};
 }
 
-double longest_side(const Corners& corners) {
+/// The side of the squares that a triangle is halves of, area for area; of slivers, those that are as long across. Parts
+/// of a triangle with n of them a side are halves of squares n times smaller.
+double square_side(const Corners& corners) {
   double longest = 0;
   for (int i = 0; i < 3; ++i)
     longest = std::max(longest, (corners[(i + 1) % 3] - corners[i]).norm());
-  return longest;
+  const double twice_area = (corners[1] - corners[0]).cross(corners[2] - corners[0]).norm();
+  return std::max(std::sqrt(twice_area), longest / std::sqrt(2));
 }
 
-int parts_for(const Corners& corners, const double resolution) {
-  const double n = std::min(std::ceil(longest_side(corners) / resolution), double(Atlas::max_parts));
-  return std::max(static_cast<int>(n), 1);
+double parts_for(const double square_side, const double resolution) {
+  constexpr double rounding = 1e-9;
+  return std::max(1.0, std::ceil(square_side / resolution - rounding));
 }
 
 } // namespace
@@ -65,10 +68,15 @@ void Atlas::fill_triangle(const std::size_t t, const SurfaceView& surface, const
   });
 }
 
+double n_samples_of(const double area, const double resolution, const double cube_edge) {
+  const double side = 0.5 * cube_edge, n = parts_for(side, resolution);
+  return area / (side * side) * (n + 1) * (n + 2);
+}
+
 std::size_t Atlas::n_coarse() const {
   std::size_t n = 0;
   for (std::size_t t = 0; t < parts_.size(); ++t)
-    n += parts_[t] == max_parts && longest_side(filled_[t]) > max_parts * resolution_ ? 1 : 0;
+    n += parts_[t] == max_parts && square_side(filled_[t]) > max_parts * resolution_ ? 1 : 0;
   return n;
 }
 
@@ -90,7 +98,7 @@ std::size_t Atlas::fill(const SurfaceView& surface, const Paint& paint) {
     if (first_[t] != none && filled_[t] == corners && labels_[t] == surface.labels[t])
       continue;
     first_[t] = static_cast<std::uint32_t>(end);
-    parts_[t] = static_cast<std::uint16_t>(parts_for(corners, resolution_));
+    parts_[t] = static_cast<std::uint16_t>(std::min(parts_for(square_side(corners), resolution_), double(max_parts)));
     filled_[t] = corners;
     labels_[t] = surface.labels[t];
     end += n_samples(parts_[t]);

@@ -36,7 +36,7 @@ class Atlas {
   static constexpr std::uint32_t none = 0xffffffff;
   static constexpr int max_parts = 64; ///< a side; larger triangles than this allows are coarser, and counted
 
-  /// Samples are at most `resolution` apart [m].
+  /// Samples are as fine as square pixels with sides of `resolution` [m].
   explicit Atlas(const double resolution) : resolution_(resolution) {}
 
   static double bytes_a_sample(const double relief) { return relief != 0 ? 11 : 3; } ///< colour, and slopes
@@ -69,9 +69,9 @@ class Atlas {
 /// Samples of a triangle with n parts a side.
 inline std::size_t n_samples(const int n) { return static_cast<std::size_t>(n + 1) * (n + 2) / 2; }
 
-/// About how many samples revealed faces of that area take [m^2]: right-angled triangles with two equal sides would
-/// take 2 a square of the resolution.
-inline double n_samples_of(const double area, const double resolution) { return 3 * area / (resolution * resolution); }
+/// How many samples revealed faces of that area take [m^2] where a plane cuts cubes along a layer of them: in triangles
+/// with two sides of half a cube's edge at a right angle. Elsewhere there are more and smaller triangles.
+double n_samples_of(double area, double resolution, double cube_edge);
 
 /// Calls f(i, j) for each sample in their order: the point a + i/n (b - a) + j/n (c - a) of the triangle a, b, c.
 template <class Function>

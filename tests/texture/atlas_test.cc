@@ -134,11 +134,11 @@ TEST(Atlas, CountsTrianglesThatAreTooLargeForTheirResolution) {
   const Points rest = {Vec3(0, 0, 0), Vec3(0.02, 0, 0), Vec3(0, 0.02, 0), Vec3(0.001, 0.001, 0)};
   const std::vector<Triangle> triangles = {{0, 1, 2}, {0, 1, 3}, {0, 3, 2}};
   const std::vector<std::uint16_t> labels = {1, 1, 0};
-  Atlas atlas(0.0004);
+  Atlas atlas(0.0003);
   atlas.fill({rest, triangles, labels}, {&five()});
-  EXPECT_EQ(atlas.n_coarse(), 1u); // its longest side, 28.3 mm, would need 71 parts
+  EXPECT_EQ(atlas.n_coarse(), 1u); // half a square of 20 mm, which would need 67 parts
   EXPECT_EQ(atlas.parts()[0], Atlas::max_parts);
-  EXPECT_EQ(atlas.parts()[1], 50);
+  EXPECT_EQ(atlas.parts()[1], 48); // a sliver: 20 mm over the square root of 2
 }
 
 } // namespace
