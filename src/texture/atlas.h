@@ -5,11 +5,12 @@
 /// A triangle that is divided into n parts a side has a colour at each of the (n + 1)(n + 2) / 2 points of its lattice,
 /// its corners included: so neighbours agree at what they share, and nothing is packed or distorted. Samples are only
 /// ever appended. A triangle is filled when it appears, and again only if its corners have moved in the rest
-/// configuration or its label has changed.
+/// configuration or its label has changed. Both sides of a cut lie on each other at rest: one is copied from the other.
 
 #include "base/archive.h"
 #include "texture/paint.h"
 #include "texture/skin.h"
+#include "texture/twins.h"
 
 #include <cstdint>
 #include <span>
@@ -55,14 +56,16 @@ class Atlas {
   const std::vector<std::array<float, 2>>& slopes() const { return slopes_; }
 
  private:
+  std::vector<std::size_t> lay_out(const SurfaceView& surface, const Paint& paint);
   void fill_triangle(std::size_t t, const SurfaceView& surface, const Paint& paint);
+  void copy(const Twin& twin);
 
   double resolution_;
   std::vector<std::uint32_t> first_;
   std::vector<std::uint16_t> parts_;
   std::vector<std::array<std::uint8_t, 3>> colours_;
   std::vector<std::array<float, 2>> slopes_;
-  std::vector<std::array<Vec3, 3>> filled_; // the corners that each triangle was filled for
+  std::vector<Corners> filled_; // the corners that each triangle was filled for
   std::vector<std::uint16_t> labels_;
 };
 

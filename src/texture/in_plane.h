@@ -7,13 +7,12 @@
 /// point each way, for the cells of the points around it, and are bilinear in between. A colour itself is exact: only
 /// what small features add to it, and the height of the relief, come from the lattice.
 
+#include "texture/twins.h"
 #include "texture/windows.h"
 
 #include <deque>
 
 namespace kerf::texture {
-
-using Corners = std::array<Vec3, 3>;
 
 class InPlane {
  public:

@@ -86,7 +86,7 @@ TEST_F(Inside, SaysHowMuchOfASectionAPictureShows) {
   EXPECT_EQ(said(""),
             "exemplar one: shows 77 % of the body's section; what lacks goes on from its border, as it is not "
             "fitted (key Fit)");
-  EXPECT_NE(said("      set Fit = rigid\n").find("% of the body's section, drawn to it to 0."), std::string::npos);
+  EXPECT_NE(said("      set Fit = rigid\n").find("% of the body's section, drawn to it to 0"), std::string::npos);
 }
 
 TEST_F(Inside, TheBodyIsNamed) {

@@ -203,7 +203,8 @@ TEST(Outline, NoStarIsDrawnNearlyTheSameHoweverItIsStored) {
     const Chart before = fitted(exemplar, body);
     double at_right_angles = 0;
     for (const auto& stored : {turned(exemplar), mirrored(exemplar), turned(turned(exemplar))})
-      printf("%g\n",apart(before, fitted(stored, body))),at_right_angles = std::max(at_right_angles, apart(before, fitted(stored, body)));
+      printf("%g\n", apart(before, fitted(stored, body))),
+        at_right_angles = std::max(at_right_angles, apart(before, fitted(stored, body)));
     const double turned_between = apart(before, fitted(turned_by(exemplar, 0.5), body));
     std::printf("%s in %s: by right angles %.2f, by half a radian %.2f\n", c.picture.c_str(), c.body.c_str(),
                 at_right_angles, turned_between);
@@ -218,9 +219,14 @@ TEST(Outline, WhatIsSymmetricIsDrawnSymmetrically) {
   for (Vec3& v : body.vertices)
     v = Vec3(v[0], 0.4 * v[1] + 20 * v[0] * v[0], 0.5 * v[2]);
   const Vec3 x(0.0005, 0, 0), y(0, 0.0005, 0);
-  const auto bent = [](const Vec2& p) { return Vec2((p[0] - 120) / 100, (p[1] - 60 - 0.006 * std::pow(p[0] - 120, 2)) / 35); };
-  Exemplar exemplar{"bean", {image::Colours(240, 240, image::Rgb::Zero()), {}}, Background::alpha,
-                    SectionPlane(-120 * x - 60 * y, x, y), Fit::rigid};
+  const auto bent = [](const Vec2& p) {
+    return Vec2((p[0] - 120) / 100, (p[1] - 60 - 0.006 * std::pow(p[0] - 120, 2)) / 35);
+  };
+  Exemplar exemplar{"bean",
+                    {image::Colours(240, 240, image::Rgb::Zero()), {}},
+                    Background::alpha,
+                    SectionPlane(-120 * x - 60 * y, x, y),
+                    Fit::rigid};
   exemplar.picture.alpha = mask_where(240, 240, [&](const Vec2& p) { return bent(p).norm() < 1; });
   for (int r = 0; r < 240; ++r)
     for (int c = 0; c < 240; ++c)
