@@ -1,6 +1,7 @@
 #include "scene/compose_body.h"
 
 #include "cut/embed.h"
+#include "dynamics/modal.h"
 #include "geometry/shapes.h"
 #include "geometry/solid.h"
 #include "material/elastic.h"
@@ -166,6 +167,8 @@ Body compose_body(const Section& section, const GravityParameters* gravity, cons
   body.loads.mass_damping = damping.mass;
   body.loads.stiffness_damping = damping.stiffness;
   compose_loads(section, floors, body);
+  if (parameters.integrator == "modal")
+    body.n_modes = read_if_written<dynamics::ModalParameters>(section, "Modal").n_modes;
   body.fronts = compose_crack_fronts(section, parameters.cube_edge, parameters.backend);
   if (const std::size_t n_cuts = world.blades.size() + world.cut_surfaces.size(); n_cuts > 0)
     body.cutter = std::make_unique<cut::Cutter>(n_cuts, cut::Release::queued, fronts_of(parameters.backend));
