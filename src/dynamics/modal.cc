@@ -55,15 +55,13 @@ class Pencil {
       coupling->add_product(p, y);
     project(y);
   }
-  /// K's and the loads' diagonal blocks, and a bound of the loads.
-  void add_blocks(std::vector<Mat3>& blocks, std::vector<Mat3>& bounds) const {
+  std::vector<Mat3> stiffness_diagonal() const {
+    std::vector<Mat3> blocks;
     model_.stiffness_diagonal(blocks);
     tangent_.add_diagonal(blocks);
-    if (tangent_.empty())
-      return;
-    bounds.assign(n_corners(), Mat3::Zero());
-    tangent_.add_bound(bounds);
+    return blocks;
   }
+  const LoadTangent& loads() const { return tangent_; }
   ElasticModel& model() const { return model_; }
 
  private:
@@ -94,15 +92,18 @@ double shift_of(const Pencil& pencil, const Points& x) {
 class Inverse {
  public:
   Inverse(const Pencil& pencil, const double shift, const ModalParameters& parameters, int& n_iterations)
-    : pencil_(pencil), shift_(shift), parameters_(parameters), n_iterations_(n_iterations) {
-    pencil.add_blocks(blocks_, bounds_);
+    : pencil_(pencil),
+      shift_(shift),
+      parameters_(parameters),
+      n_iterations_(n_iterations),
+      blocks_(pencil.stiffness_diagonal()) {
     const auto mass = pencil.model().lumped_mass();
     for (std::size_t i = 0; i < blocks_.size(); ++i) {
       blocks_[i] += shift * mass[i] * Mat3::Identity();
       const Mat3 factor = inverse_factor(blocks_[i], pencil.constraints().freedom(i));
       inverse_blocks_.push_back(factor.transpose() * factor);
     }
-    own_ = pencil.model().preconditioner({shift, 1, mass, blocks_, bounds_, pencil.constraints()});
+    own_ = pencil.model().preconditioner({shift, 1, mass, blocks_, pencil.loads(), pencil.constraints()});
   }
 
   void vmult(Vector& x, const Vector& b) const {
@@ -138,7 +139,7 @@ class Inverse {
   double shift_;
   const ModalParameters& parameters_;
   int& n_iterations_;
-  std::vector<Mat3> blocks_, bounds_, inverse_blocks_;
+  std::vector<Mat3> blocks_, inverse_blocks_;
   Preconditioner* own_ = nullptr;
 };
 

@@ -96,6 +96,30 @@ std::vector<GhostLine> coarsened(const std::span<const GhostLine> fine, const Ce
   return lines;
 }
 
+PointSprings coarsened(const PointSprings& fine, const Weights& prolongation, const std::size_t n_coarse) {
+  PointSprings coarse{{}, fine.blocks};
+  std::vector<std::uint32_t> place(n_coarse, CellsOfLevel::unused);
+  Weights& rows = coarse.rows;
+  for (std::size_t i = 0; i < fine.blocks.size(); ++i) {
+    for (std::uint32_t k = fine.rows.begin[i]; k < fine.rows.begin[i + 1]; ++k) {
+      const std::uint32_t corner = fine.rows.column[k];
+      for (std::uint32_t l = prolongation.begin[corner]; l < prolongation.begin[corner + 1]; ++l) {
+        std::uint32_t& p = place[prolongation.column[l]];
+        if (p == CellsOfLevel::unused) {
+          p = static_cast<std::uint32_t>(rows.column.size());
+          rows.column.push_back(prolongation.column[l]);
+          rows.weight.push_back(0);
+        }
+        rows.weight[p] += fine.rows.weight[k] * prolongation.weight[l];
+      }
+    }
+    for (std::size_t k = rows.begin.back(); k < rows.column.size(); ++k)
+      place[rows.column[k]] = CellsOfLevel::unused;
+    rows.begin.push_back(static_cast<std::uint32_t>(rows.column.size()));
+  }
+  return coarse;
+}
+
 void Level::resize() {
   for (auto* const values : {&r, &x, &d, &t})
     values->assign(batching.n_rows(), {});
@@ -125,20 +149,37 @@ void Level::make_diagonal() {
   }
 }
 
-void Level::invert_diagonal() {
-  inverse.resize(2 * n_corners());
-  std::vector<std::uint32_t> spring_of;
-  if (!springs.empty()) {
-    spring_of.assign(n_corners(), CellsOfLevel::unused);
-    for (std::uint32_t k = 0; k < springs.size(); ++k)
-      spring_of[springs[k].corner] = k;
+/// Blocks at corners that together are at least all springs, those of points too: |sum w_k u_k|^2 <= sum |w_l| sum |w_k|
+/// |u_k|^2.
+std::vector<Spring> Level::springs_at_least() const {
+  std::vector<Spring> all = springs;
+  for (std::size_t i = 0; i < points.blocks.size(); ++i) {
+    const Mat3 block = points.blocks[i].cast<double>();
+    double sum = 0;
+    for (std::uint32_t k = points.rows.begin[i]; k < points.rows.begin[i + 1]; ++k)
+      sum += std::abs(double(points.rows.weight[k]));
+    for (std::uint32_t k = points.rows.begin[i]; k < points.rows.begin[i + 1]; ++k)
+      all.push_back({points.rows.column[k], sum * std::abs(double(points.rows.weight[k])) * block});
   }
+  return all;
+}
+
+Mat3 Level::inverse_block(const std::size_t corner) const { return block_of(&inverse[2 * corner]); }
+void Level::put_inverse_block(const std::size_t corner, const Mat3& block) { put_block(block, &inverse[2 * corner]); }
+
+void Level::invert_diagonal(const std::function<Mat3(std::uint32_t corner, const Mat3& block)>& inverse_where_held) {
+  inverse.resize(2 * n_corners());
   for_each_corner([&](const std::size_t i) {
-    Mat3 B = block_of(&diagonal[2 * i]) + double(mass[i]) * Mat3::Identity();
-    if (!springs.empty() && spring_of[i] != CellsOfLevel::unused)
-      B += springs[spring_of[i]].block;
-    put_block(fem::inverse(B), &inverse[2 * i]);
+    put_inverse_block(i, block_of(&diagonal[2 * i]) + double(mass[i]) * Mat3::Identity());
   });
+  for (const Spring& spring : springs_at_least())
+    put_inverse_block(spring.corner, inverse_block(spring.corner) + spring.block);
+  std::vector<Spring> where_held;
+  for (const Spring& one : held)
+    where_held.push_back({one.corner, inverse_where_held(one.corner, inverse_block(one.corner))});
+  for_each_corner([&](const std::size_t i) { put_inverse_block(i, fem::inverse(inverse_block(i))); });
+  for (const Spring& one : where_held)
+    put_inverse_block(one.corner, one.block);
 }
 
 /// t += A d but for the masses.
@@ -156,6 +197,22 @@ void Level::add_products() {
     add(t[line.a], 1);
     add(t[line.b], -2);
     add(t[line.c], 1);
+  }
+  for (std::size_t i = 0; i < points.blocks.size(); ++i) {
+    Eigen::Vector3f u = Eigen::Vector3f::Zero();
+    const auto for_each = [&](const auto& function) {
+      for (std::uint32_t k = points.rows.begin[i]; k < points.rows.begin[i + 1]; ++k)
+        function(points.rows.column[k], points.rows.weight[k]);
+    };
+    for_each([&](const std::uint32_t corner, const float w) {
+      u += w * Eigen::Vector3f(d[corner].x, d[corner].y, d[corner].z);
+    });
+    const Eigen::Vector3f f = points.blocks[i] * u;
+    for_each([&](const std::uint32_t corner, const float w) {
+      t[corner].x += w * f.x();
+      t[corner].y += w * f.y();
+      t[corner].z += w * f.z();
+    });
   }
   for (const Spring& spring : springs) {
     FloatRow& row = t[spring.corner];

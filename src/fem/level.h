@@ -6,6 +6,8 @@
 #include "fem/coarsening.h"
 #include "fem/ghost_penalty.h"
 
+#include <functional>
+
 namespace kerf::fem {
 
 /// k / 2 |x_a - 2 x_b + x_c|^2 across the face between two glued copies.
@@ -26,6 +28,16 @@ struct Spring {
   Mat3 block;
 };
 
+/// Springs of points that follow corners: the square of w u in the measure of a block, for a row w of weights.
+struct PointSprings {
+  Weights rows;
+  std::vector<Eigen::Matrix3f> blocks; ///< one a row, over the stiffness factor [N/m]
+
+  bool empty() const { return blocks.empty(); }
+};
+/// For motions of coarse cubes.
+PointSprings coarsened(const PointSprings& fine, const Weights& prolongation, std::size_t n_coarse);
+
 struct Level {
   CellsOfLevel cells;
   Batching batching;
@@ -38,6 +50,7 @@ struct Level {
   // The equation, over its stiffness factor.
   std::vector<float> mass;
   std::vector<Spring> springs;
+  PointSprings points;
   std::vector<Row<float>> diagonal; ///< of K and the penalties, two rows a corner (kernels.h)
   std::vector<Row<float>> inverse;  ///< of all blocks among the free directions, likewise
   std::vector<Spring> held;         ///< projectors onto the free directions of corners that are held
@@ -49,7 +62,8 @@ struct Level {
   void resize();
   /// From rotations, masses and springs.
   void make_diagonal();
-  void invert_diagonal();
+  /// Of all blocks; `inverse_where_held` gives those of corners that are held, among their free directions.
+  void invert_diagonal(const std::function<Mat3(std::uint32_t corner, const Mat3& block)>& inverse_where_held);
 
   /// Smooths x = 0 towards A x = r, and leaves in r what is left.
   void smooth_from_zero();
@@ -59,6 +73,9 @@ struct Level {
  private:
   template <class Function>
   void for_each_corner(const Function& f) const;
+  Mat3 inverse_block(std::size_t corner) const;
+  void put_inverse_block(std::size_t corner, const Mat3& block);
+  std::vector<Spring> springs_at_least() const;
   void add_products();
 };
 
