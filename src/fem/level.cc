@@ -96,30 +96,6 @@ std::vector<GhostLine> coarsened(const std::span<const GhostLine> fine, const Ce
   return lines;
 }
 
-PointSprings coarsened(const PointSprings& fine, const Weights& prolongation, const std::size_t n_coarse) {
-  PointSprings coarse{{}, fine.blocks};
-  std::vector<std::uint32_t> place(n_coarse, CellsOfLevel::unused);
-  Weights& rows = coarse.rows;
-  for (std::size_t i = 0; i < fine.blocks.size(); ++i) {
-    for (std::uint32_t k = fine.rows.begin[i]; k < fine.rows.begin[i + 1]; ++k) {
-      const std::uint32_t corner = fine.rows.column[k];
-      for (std::uint32_t l = prolongation.begin[corner]; l < prolongation.begin[corner + 1]; ++l) {
-        std::uint32_t& p = place[prolongation.column[l]];
-        if (p == CellsOfLevel::unused) {
-          p = static_cast<std::uint32_t>(rows.column.size());
-          rows.column.push_back(prolongation.column[l]);
-          rows.weight.push_back(0);
-        }
-        rows.weight[p] += fine.rows.weight[k] * prolongation.weight[l];
-      }
-    }
-    for (std::size_t k = rows.begin.back(); k < rows.column.size(); ++k)
-      place[rows.column[k]] = CellsOfLevel::unused;
-    rows.begin.push_back(static_cast<std::uint32_t>(rows.column.size()));
-  }
-  return coarse;
-}
-
 void Level::resize() {
   for (auto* const values : {&r, &x, &d, &t})
     values->assign(batching.n_rows(), {});
@@ -149,21 +125,6 @@ void Level::make_diagonal() {
   }
 }
 
-/// Blocks at corners that together are at least all springs, those of points too: |sum w_k u_k|^2 <= sum |w_l| sum |w_k|
-/// |u_k|^2.
-std::vector<Spring> Level::springs_at_least() const {
-  std::vector<Spring> all = springs;
-  for (std::size_t i = 0; i < points.blocks.size(); ++i) {
-    const Mat3 block = points.blocks[i].cast<double>();
-    double sum = 0;
-    for (std::uint32_t k = points.rows.begin[i]; k < points.rows.begin[i + 1]; ++k)
-      sum += std::abs(double(points.rows.weight[k]));
-    for (std::uint32_t k = points.rows.begin[i]; k < points.rows.begin[i + 1]; ++k)
-      all.push_back({points.rows.column[k], sum * std::abs(double(points.rows.weight[k])) * block});
-  }
-  return all;
-}
-
 Mat3 Level::inverse_block(const std::size_t corner) const { return block_of(&inverse[2 * corner]); }
 void Level::put_inverse_block(const std::size_t corner, const Mat3& block) { put_block(block, &inverse[2 * corner]); }
 
@@ -172,14 +133,30 @@ void Level::invert_diagonal(const std::function<Mat3(std::uint32_t corner, const
   for_each_corner([&](const std::size_t i) {
     put_inverse_block(i, block_of(&diagonal[2 * i]) + double(mass[i]) * Mat3::Identity());
   });
-  for (const Spring& spring : springs_at_least())
-    put_inverse_block(spring.corner, inverse_block(spring.corner) + spring.block);
+  const auto add = [&](const std::uint32_t corner, const Mat3& block) {
+    put_inverse_block(corner, inverse_block(corner) + block);
+  };
+  for (const Spring& spring : springs)
+    add(spring.corner, spring.block);
+  clusters = Clusters(points, n_corners());
+  clusters.add_bound(points, add);
+  std::map<std::uint32_t, Mat3> free;
   std::vector<Spring> where_held;
-  for (const Spring& one : held)
+  for (const Spring& one : held) {
+    free[one.corner] = one.block;
     where_held.push_back({one.corner, inverse_where_held(one.corner, inverse_block(one.corner))});
+  }
+  clusters.invert([&](const std::uint32_t corner) { return inverse_block(corner); },
+                  [&](const std::uint32_t corner) {
+                    const auto it = free.find(corner);
+                    return it == free.end() ? Mat3(Mat3::Identity()) : it->second;
+                  });
   for_each_corner([&](const std::size_t i) { put_inverse_block(i, fem::inverse(inverse_block(i))); });
   for (const Spring& one : where_held)
     put_inverse_block(one.corner, one.block);
+  clusters.for_each(
+    [](std::uint32_t) { return Eigen::Vector3f::Zero(); },
+    [&](const std::uint32_t corner, const Eigen::Vector3f&) { put_inverse_block(corner, Mat3::Zero()); });
 }
 
 /// t += A d but for the masses.
@@ -237,12 +214,24 @@ FloatRow scaled(const float s, const FloatRow& a) { return {s * a.x, s * a.y, s 
 
 } // namespace
 
+/// What a step does at the corners of clusters, by their own blocks.
+void Level::add_of_clusters(const float after) {
+  clusters.for_each([&](const std::uint32_t corner) { return Eigen::Vector3f(r[corner].x, r[corner].y, r[corner].z); },
+                    [&](const std::uint32_t corner, const Eigen::Vector3f& v) {
+                      const FloatRow step = {after * v.x(), after * v.y(), after * v.z()};
+                      d[corner] = sum(d[corner], step);
+                      x[corner] = sum(x[corner], step);
+                      t[corner] = sum(t[corner], scaled(mass[corner], step));
+                    });
+}
+
 void Level::smooth_from_zero() {
   const auto steps = chebyshev_steps(bound);
   for_each_corner([&](const std::size_t i) {
     d[i] = x[i] = scaled(steps[0].after, product(&inverse[2 * i], r[i]));
     t[i] = scaled(mass[i], d[i]);
   });
+  add_of_clusters(steps[0].after);
   for (int k = 1; k < n_steps; ++k) {
     add_products();
     for_each_corner([&](const std::size_t i) {
@@ -251,6 +240,7 @@ void Level::smooth_from_zero() {
       x[i] = sum(x[i], d[i]);
       t[i] = scaled(mass[i], d[i]);
     });
+    add_of_clusters(steps[k].after);
   }
   add_products();
   for_each_corner([&](const std::size_t i) { r[i] = difference(r[i], t[i]); });
@@ -270,6 +260,7 @@ void Level::smooth_after_change() {
       x[i] = sum(x[i], d[i]);
       t[i] = scaled(mass[i], d[i]);
     });
+    add_of_clusters(step.after);
   }
 }
 

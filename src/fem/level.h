@@ -3,6 +3,7 @@
 /// One level of multigrid.h: its operator, its smoother, its vectors.
 
 #include "fem/batches.h"
+#include "fem/clusters.h"
 #include "fem/coarsening.h"
 #include "fem/ghost_penalty.h"
 
@@ -28,16 +29,6 @@ struct Spring {
   Mat3 block;
 };
 
-/// Springs of points that follow corners: the square of w u in the measure of a block, for a row w of weights.
-struct PointSprings {
-  Weights rows;
-  std::vector<Eigen::Matrix3f> blocks; ///< one a row, over the stiffness factor [N/m]
-
-  bool empty() const { return blocks.empty(); }
-};
-/// For motions of coarse cubes.
-PointSprings coarsened(const PointSprings& fine, const Weights& prolongation, std::size_t n_coarse);
-
 struct Level {
   CellsOfLevel cells;
   Batching batching;
@@ -51,6 +42,7 @@ struct Level {
   std::vector<float> mass;
   std::vector<Spring> springs;
   PointSprings points;
+  Clusters clusters;                ///< whose corners have zeros in `inverse`
   std::vector<Row<float>> diagonal; ///< of K and the penalties, two rows a corner (kernels.h)
   std::vector<Row<float>> inverse;  ///< of all blocks among the free directions, likewise
   std::vector<Spring> held;         ///< projectors onto the free directions of corners that are held
@@ -75,7 +67,7 @@ struct Level {
   void for_each_corner(const Function& f) const;
   Mat3 inverse_block(std::size_t corner) const;
   void put_inverse_block(std::size_t corner, const Mat3& block);
-  std::vector<Spring> springs_at_least() const;
+  void add_of_clusters(float after);
   void add_products();
 };
 

@@ -242,7 +242,7 @@ TEST(Multigrid, KnowsSkinsThatAreHeld) {
   RecordProperty("iterations",
                  std::to_string(counts[0]) + " " + std::to_string(counts[1]) + " " + std::to_string(counts[2]));
   EXPECT_LE(counts[2], 1.2 * counts[0] + 4) << counts[0] << ' ' << counts[1];
-  EXPECT_LE(counts[2], 130); // opposite motions of both ends meet no spring, but blocks that bound it
+  EXPECT_LE(counts[2], 12);
 }
 
 /// A block of which more and more edges are cut, three tenths of them after two rounds, until it is dust: random cuts leave
