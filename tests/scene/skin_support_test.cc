@@ -194,5 +194,19 @@ TEST(SkinSupportScene, RefusesWhatCannotHold) {
                  {"Support base/Hold at", "lattice", "set Hold at = corners"});
 }
 
+/// Corners before the end of the bar, corners on both sides of it, the skin.
+TEST(SkinSupportScene, CornersOutsideOfTheMaterialAreWarnedOf) {
+  const auto is_warned = [](const Keys& region, const std::string& offset) {
+    const World world = world_of(static_bar(0.05, offset, material(E, 0) + section("Support wall", region), "pieces"));
+    return std::any_of(world.composition.begin(), world.composition.end(), [](const std::string& said) {
+      return said.find("all corners that support wall holds lie outside") != std::string::npos;
+    });
+  };
+  EXPECT_TRUE(is_warned(left, "0.5, 0.5, 0.5"));
+  EXPECT_FALSE(is_warned(box("-1, -1, -1", "0.03, 1, 1"), "0.5, 0.5, 0.5"));
+  EXPECT_FALSE(is_warned(left + at_skin, "0.5, 0.5, 0.5"));
+  EXPECT_FALSE(is_warned(left, "0.001, 0.5, 0.5"));
+}
+
 } // namespace
 } // namespace kerf::scene
