@@ -89,9 +89,14 @@ SectionPlane along_section(const std::vector<Segment>& outline, const SectionPla
   for (const Segment& segment : outline)
     for (const Vec2& p : segment)
       box.add(Vec2(x.dot(p), y.dot(p)));
-  const Vec2 middle = 0.5 * (box.lower + box.upper);
-  const auto step = [&](const Vec2& to) { return Vec3(plane.pixel() * (to[0] * plane.x() + to[1] * plane.y())); };
-  return {plane.point(middle[0] * x + middle[1] * y), step(x), step(y)};
+  const Vec2 middle = 0.5 * (box.lower + box.upper), half = 0.5 * (box.upper - box.lower);
+  // The box ends midway between pixels: where it ended on them, round-off would say which are in.
+  constexpr double rounding = 1e-6;
+  const Vec2 n = (half.array() / plane.pixel() - 0.5 - rounding).ceil().max(1.0) + 0.5;
+  const auto step = [&](const double length, const Vec2& to) {
+    return Vec3(length * (to[0] * plane.x() + to[1] * plane.y()));
+  };
+  return {plane.point(middle[0] * x + middle[1] * y), step(half[0] / n[0], x), step(half[1] / n[1], y)};
 }
 
 Relaid relaid(const image::Grey& mask, const SectionPlane& plane, const SectionPlane& pixels) {
@@ -100,14 +105,16 @@ Relaid relaid(const image::Grey& mask, const SectionPlane& plane, const SectionP
     for (const double row : {0, mask.height - 1})
       box.add(pixels_of(pixels, plane, Vec2(column, row)));
   const PixelBox whole = box.in_whole_pixels();
-  const image::Grey smooth = image::blurred(mask, 1); // the steps of one lattice are not those of another
+  constexpr int around = 4;
+  constexpr float enough = 0.499f; // a border midway between pixels is no matter of round-off
+  // The steps of one lattice are not those of another.
+  const image::Grey smooth = image::blurred(image::padded(mask, around), 1);
   Relaid result{image::Grey(whole.width(), whole.height(), 0), moved(pixels, whole.lower)};
   for (int r = 0; r < whole.height(); ++r)
     for (int c = 0; c < whole.width(); ++c) {
-      const Vec2 p = pixels_of(plane, result.plane, Vec2(c, r));
-      const bool is_in = p[0] >= -0.5 && p[1] >= -0.5 && p[0] <= mask.width - 0.5 && p[1] <= mask.height - 0.5;
-      const auto x = static_cast<float>(p[0]), y = static_cast<float>(p[1]);
-      result.mask(c, r) = is_in && image::sample(smooth, x, y) >= 0.5f ? 1.0f : 0.0f;
+      const Vec2 p = pixels_of(plane, result.plane, Vec2(c, r)) + Vec2::Constant(around);
+      result.mask(c, r) =
+        image::sample(smooth, static_cast<float>(p[0]), static_cast<float>(p[1])) >= enough ? 1.0f : 0.0f;
     }
   return result;
 }

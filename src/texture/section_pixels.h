@@ -23,7 +23,7 @@ SectionPlane moved(const SectionPlane& plane, const Vec2& first);
 /// A point given in pixels of `from` [pixels of `plane`].
 Vec2 pixels_of(const SectionPlane& plane, const SectionPlane& from, const Vec2& pixel);
 
-/// Square pixels of the same area in the same plane, from the middle of an outline's box, rows along the direction in
+/// Nearly square pixels of nearly the same area in the same plane, from the middle of an outline's box, rows along the direction in
 /// which it is longest (as long all around: along an axis of the body's), seen from a side that the body's axes decide.
 /// Those of a symmetric section are symmetric. `outline` in coordinates of the plane [m].
 SectionPlane along_section(const std::vector<Segment>& outline, const SectionPlane& plane, const Mat3& body_axes);

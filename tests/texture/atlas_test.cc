@@ -74,7 +74,7 @@ TEST(Atlas, BothSidesOfACutShowTheSame) {
       for (int k = 0; k < 3; ++k)
         EXPECT_NEAR(together.colours()[at][k], alone.colours()[i][k], 1); // round-off
       for (int k = 0; k < 2; ++k)
-        EXPECT_NEAR(together.slopes()[at][k], alone.slopes()[i][k], 2e-4); // of 1 mm, along 9 mm
+        EXPECT_NEAR(together.slopes()[at][k], alone.slopes()[i][k], 6e-4); // differences over two pixels
     }
   }
 }
