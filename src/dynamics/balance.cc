@@ -370,11 +370,10 @@ int BalanceSolver::correct_by_cg(const Problem& problem, const Points& guess, co
   const CgStop stop{.residual = std::max({options_.cg_tolerance * scale, left, scaled_round_off()}),
                     .error = of_own * way_,
                     .of_way = guess.empty() ? 0 : of_own};
-  const Product A = [&](const auto p, const auto y) { apply(problem, p, y); },
-                J = [&](const auto r, const auto z) {
-                  apply_inverse_blocks(r, z);
-                  problem.balance.free.relieve_motion(z);
-                };
+  const Product A = [&](const auto p, const auto y) { apply(problem, p, y); }, J = [&](const auto r, const auto z) {
+    apply_inverse_blocks(r, z);
+    problem.balance.free.relieve_motion(z);
+  };
   Preconditioner* const own = options_.equation == Equation::regular ? preconditioner(problem) : nullptr;
   const CgEquation equation =
     own ? CgEquation{A, [own](const auto r, const auto z) { own->apply(r, z); }, J} : CgEquation{A, J, {}};

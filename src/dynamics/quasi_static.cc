@@ -11,8 +11,7 @@ namespace {
 
 /// The balance on the part `s` of the way; positions so far in x.
 Balance on_the_way(const double s, const double time, const Points& start, const Points& end, const Points& x,
-                   const Points& out_of_balance, const Constraints& constraints,
-                     const FreeMotions& free) {
+                   const Points& out_of_balance, const Constraints& constraints, const FreeMotions& free) {
   const std::size_t n = x.size();
   Balance balance{.time = time,
                   .start = x,

@@ -44,7 +44,8 @@ struct Extent {
 /// The samples that each copy holds.
 class SamplesOfCopies {
  public:
-  SamplesOfCopies(const Solid& solid, const Points& samples) : samples_(samples), first_(solid.complex.n_copies() + 1, 0) {
+  SamplesOfCopies(const Solid& solid, const Points& samples)
+    : samples_(samples), first_(solid.complex.n_copies() + 1, 0) {
     const std::vector<CopyId> copies = copies_around(solid, samples);
     for (const CopyId c : copies)
       ++first_[c.value + 1];
@@ -77,7 +78,8 @@ class Spread {
   }
   bool spans_volume(const double h) const {
     constexpr double least = 1.0 / 8; // of h^2
-    return n_ > 3 && Eigen::SelfAdjointEigenSolver<Mat3>(moment_, Eigen::EigenvaluesOnly).eigenvalues()[0] >= least * h * h;
+    return n_ > 3 &&
+           Eigen::SelfAdjointEigenSolver<Mat3>(moment_, Eigen::EigenvaluesOnly).eigenvalues()[0] >= least * h * h;
   }
 
  private:
@@ -88,7 +90,7 @@ class Spread {
 
 /// What makes a piece a crumb.
 struct Rule {
-  bool may_be_small = false;         ///< or must be loose
+  bool may_be_small = false;       ///< or must be loose
   const Points* samples = nullptr; ///< that are to span its volume
 };
 
@@ -232,9 +234,7 @@ void update_crumbs_by(const Rule& rule, Solid& solid, CutChange& change) {
 
 } // namespace
 
-void update_crumbs(Solid& solid, CutChange& change) {
-  update_crumbs_by({.may_be_small = true}, solid, change);
-}
+void update_crumbs(Solid& solid, CutChange& change) { update_crumbs_by({.may_be_small = true}, solid, change); }
 
 void update_crumbs(Solid& solid, CutChange& change, const Points& samples) {
   update_crumbs_by({.may_be_small = true, .samples = &samples}, solid, change);
