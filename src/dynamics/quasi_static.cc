@@ -5,6 +5,8 @@
 
 #include <Eigen/Geometry>
 
+#include <cmath>
+
 namespace kerf::dynamics {
 
 namespace {
@@ -74,14 +76,15 @@ Points QuasiStatic::out_of_balance(const Loads& loads, const double time, const 
 }
 
 bool QuasiStatic::sees_rotations(const Points& rest) const {
-  constexpr double little = 1e-6; // of what it takes to double the body's size
+  constexpr double little = 1e-6; // of what there is, and of what it takes to double the body's size
   Points turned = rest, grown = rest;
   const Mat3 R = Eigen::AngleAxisd(1, Vec3(1, 2, 3).normalized()).toRotationMatrix();
   for (std::size_t i = 0; i < turned.size(); ++i) {
     turned[i] = R * turned[i];
     grown[i] *= 2;
   }
-  return model_.energy(turned) > little * model_.energy(grown);
+  const double energy = model_.energy(rest);
+  return std::abs(model_.energy(turned) - energy) > little * (energy + model_.energy(grown));
 }
 
 FreeMotions QuasiStatic::balanced_motions(const Loads& loads, const double time, State& state) {
