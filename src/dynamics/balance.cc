@@ -262,6 +262,7 @@ double BalanceSolver::assemble_residual(const Problem& problem) {
     }
     return sum;
   });
+  balance.free.relieve_forces(flat(residual_));
   if (!std::isfinite(square_of_scale) || !std::isfinite(norm(residual_)))
     throw NumericalError("forces are not finite");
   return std::sqrt(square_of_scale);
@@ -349,6 +350,7 @@ int BalanceSolver::correct(const Problem& problem, const Points& guess, const do
   if (options_.line_search != LineSearch::none && !(product(residual_, correction_) > 0))
     for (std::size_t i = 0; i < correction_.size(); ++i) // the scaled force itself always leads downhill
       correction_[i] = scaling_[i].transpose() * (scaling_[i] * residual_[i]);
+  problem.balance.free.relieve_motion(flat(correction_));
   return n_iterations;
 }
 
@@ -362,8 +364,10 @@ int BalanceSolver::correct_by_cg(const Problem& problem, const Points& guess, co
   const CgStop stop{.residual = std::max({options_.cg_tolerance * scale, left, scaled_round_off()}),
                     .error = of_own * way_,
                     .of_way = guess.empty() ? 0 : of_own};
-  const Product A = [&](const auto p, const auto y) { apply(problem, p, y); },
-                J = [&](const auto r, const auto z) { apply_inverse_blocks(r, z); };
+  const Product A = [&](const auto p, const auto y) { apply(problem, p, y); }, J = [&](const auto r, const auto z) {
+    apply_inverse_blocks(r, z);
+    problem.balance.free.relieve_motion(z);
+  };
   Preconditioner* const own = options_.equation == Equation::regular ? preconditioner(problem) : nullptr;
   const CgEquation equation =
     own ? CgEquation{A, [own](const auto r, const auto z) { own->apply(r, z); }, J} : CgEquation{A, J, {}};

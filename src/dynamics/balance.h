@@ -43,10 +43,14 @@
 /// Half the way from free motion to x is the error of the step itself: x_1 - x_0 - dt v_0 = dt^2 a_1, and implicit Euler
 /// is wrong by dt^2 a / 2. Conjugate gradients know the way from their guess in the energy norm, which is that or, of a
 /// better guess, less; they need not be much better. Nothing is solved below the round-off of forces.
+///
+/// Where nothing resists some rigid motions, K is singular: residuals are relieved of what goes along them, and
+/// corrections of what moves along them (FreeMotions).
 
 #include "dynamics/constraints.h"
 #include "dynamics/mixing.h"
 #include "dynamics/preconditioner.h"
+#include "dynamics/rigid_modes.h"
 
 #include <Eigen/SparseCore>
 
@@ -95,6 +99,7 @@ struct Balance {
   Points start, velocity, acceleration;
   Points guess = {};  ///< first guess of x - start [m]; empty: zero
   Points offset = {}; ///< a force on each corner [N]; empty: none
+  FreeMotions free = {}; ///< that A does not resist
 };
 
 struct NewtonReport {

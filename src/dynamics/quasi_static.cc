@@ -2,7 +2,10 @@
 
 #include "base/error.h"
 #include "dynamics/forces.h"
-#include "dynamics/rigid_modes.h"
+
+#include <Eigen/Geometry>
+
+#include <cmath>
 
 namespace kerf::dynamics {
 
@@ -10,13 +13,14 @@ namespace {
 
 /// The balance on the part `s` of the way; positions so far in x.
 Balance on_the_way(const double s, const double time, const Points& start, const Points& end, const Points& x,
-                   const Points& out_of_balance, const Constraints& constraints) {
+                   const Points& out_of_balance, const Constraints& constraints, const FreeMotions& free) {
   const std::size_t n = x.size();
   Balance balance{.time = time,
                   .start = x,
                   .velocity = Points(n, Vec3::Zero()),
                   .acceleration = Points(n, Vec3::Zero()),
-                  .offset = Points(n)};
+                  .offset = Points(n),
+                  .free = free};
   for (const auto& held : constraints.held()) {
     const auto c = held.corner;
     const Vec3 wanted = start[c] + s * (end[c] - start[c]); // differs from x only along held directions
@@ -71,6 +75,38 @@ Points QuasiStatic::out_of_balance(const Loads& loads, const double time, const 
   return forces;
 }
 
+bool QuasiStatic::sees_rotations(const Points& rest) const {
+  constexpr double little = 1e-6; // of what there is, and of what it takes to double the body's size
+  Points turned = rest, grown = rest;
+  const Mat3 R = Eigen::AngleAxisd(1, Vec3(1, 2, 3).normalized()).toRotationMatrix();
+  for (std::size_t i = 0; i < turned.size(); ++i) {
+    turned[i] = R * turned[i];
+    grown[i] *= 2;
+  }
+  const double energy = model_.energy(rest);
+  return std::abs(model_.energy(turned) - energy) > little * (energy + model_.energy(grown));
+}
+
+FreeMotions QuasiStatic::balanced_motions(const Loads& loads, const double time, State& state) {
+  constexpr double most = 0.1;
+  const Points& rest = state.history.try_emplace("before statics", state.x).first->second;
+  std::vector<FreeMode> modes = free_rigid_modes(model_, loads, time, rest, options_.piece);
+  if (!sees_rotations(rest))
+    std::erase_if(modes, [](const FreeMode& mode) { return !mode.rotation.isZero(0); });
+  const FreeMotions motions(modes, options_.piece, model_.lumped_mass(), rest);
+  const Points at_rest(rest.size(), Vec3::Zero());
+  Points forces = at_rest;
+  add_load_forces(loads, {time, state.x, at_rest}, forces);
+  for (std::size_t i = 0; i < forces.size(); ++i)
+    forces[i] += model_.lumped_mass()[i] * loads.gravity;
+  for (std::size_t k = 0; k < motions.size(); ++k)
+    if (const double part = motions.part_out_of_balance(k, forces); part > most)
+      throw NumericalError("no equilibrium: nothing resists the " + modes[k].name + " of piece " +
+                           std::to_string(modes[k].piece) + ", along which " + to_text(100 * part) +
+                           " % of the loads are not in balance. Balance them, or add supports or handles");
+  return motions;
+}
+
 StepReport QuasiStatic::step(State& state, const Loads& loads, const double dt) {
   const double time = state.time + dt;
   const Constraints constraints(loads, state.x.size());
@@ -78,14 +114,17 @@ StepReport QuasiStatic::step(State& state, const Loads& loads, const double dt) 
   constraints.place(time, end);
   if (options_.free_modes == FreeModes::refuse)
     require_supported(free_rigid_modes(model_, loads, time, end, options_.piece));
-  const Points r_0 = out_of_balance(loads, time, x);
+  const FreeMotions free =
+    options_.free_modes == FreeModes::allow ? balanced_motions(loads, time, state) : FreeMotions();
+  Points r_0 = out_of_balance(loads, time, x);
+  free.relieve_forces(flat(r_0));
   StepReport report;
   double s = 0, part = 1;
   while (s < 1) {
     NewtonReport newton{.converged = false};
     try {
       newton = solver_.solve(loads, constraints,
-                             on_the_way(std::min(1.0, s + part), time, state.x, end, x, r_0, constraints), tried);
+                             on_the_way(std::min(1.0, s + part), time, state.x, end, x, r_0, constraints, free), tried);
     } catch (const NumericalError& error) {
       newton.failure = error.what();
     }

@@ -15,7 +15,9 @@ namespace kerf::dynamics {
 /// What to do about rigid motions that no support and no load resists.
 enum class FreeModes {
   refuse, ///< with their names
-  allow   ///< the model itself, or gravity on what hangs, resists them
+  /// The model itself, or gravity on what hangs, resists them. Along translations, and with a law that sees rotations along
+  /// all of them, the loads may have hardly anything out of balance (a tenth), and are relieved of it (FreeMotions).
+  allow
 };
 
 struct QuasiStaticOptions {
@@ -47,12 +49,15 @@ class QuasiStatic : public Stepper {
     : model_(model), options_(options), solver_(model, newton(options)) {}
 
   MotionKind motion() const override { return MotionKind::quasi_static; }
-  /// Counts load steps as substeps. Throws ParameterError for free rigid motions, NumericalError when the smallest load
-  /// step (1/1024) does not converge.
+  /// Counts load steps as substeps. Throws ParameterError for free rigid motions, NumericalError for loads along them that are
+  /// not in balance, and when the smallest load step (1/1024) does not converge.
   StepReport step(State& state, const Loads& loads, double dt) override;
 
  private:
   static NewtonOptions newton(const QuasiStaticOptions& options);
+  /// The rigid motions along which nothing but the loads' own balance decides. Throws NumericalError without it.
+  FreeMotions balanced_motions(const Loads& loads, double time, State& state);
+  bool sees_rotations(const Points& rest) const;
   Points out_of_balance(const Loads& loads, double time, const Points& x);
 
   ElasticModel& model_;

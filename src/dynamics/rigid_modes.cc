@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/parameters.h"
 #include "dynamics/forces.h"
+#include "dynamics/points.h"
 #include "dynamics/state.h"
 
 #include <Eigen/Eigenvalues>
@@ -164,6 +165,64 @@ std::vector<FreeMode> free_rigid_modes(const ForceModel& model, const Loads& loa
     if (pieces[p].mass > 0)
       name_modes(pieces[p], p, kernel_of(pieces[p]), modes);
   return modes;
+}
+
+FreeMotions::FreeMotions(const std::vector<FreeMode>& modes, const std::span<const std::uint32_t> piece,
+                         const std::span<const double> mass, const Points& x)
+  : mass_(mass.begin(), mass.end()) {
+  std::size_t first = 0; // of this piece
+  for (std::size_t k = 0; k < modes.size(); ++k) {
+    if (modes[k].piece != modes[first].piece)
+      first = k;
+    Motion motion;
+    for (std::uint32_t i = 0; i < x.size(); ++i)
+      if ((piece.empty() ? 0 : piece[i]) == modes[k].piece && mass[i] > 0) {
+        motion.corners.push_back(i);
+        motion.d.push_back(modes[k].translation + modes[k].rotation.cross(x[i] - modes[k].centre));
+      }
+    const auto product = [&](const Points& a, const Points& b) {
+      double sum = 0;
+      for (std::size_t i = 0; i < a.size(); ++i)
+        sum += mass[motion.corners[i]] * a[i].dot(b[i]);
+      return sum;
+    };
+    for (std::size_t before = first; before < k; ++before)
+      motion.d = moved(motion.d, -product(motion.d, motions_[before].d), motions_[before].d);
+    const double length = std::sqrt(product(motion.d, motion.d));
+    for (Vec3& d : motion.d)
+      d /= length;
+    motions_.push_back(std::move(motion));
+  }
+}
+
+void FreeMotions::relieve_forces(const std::span<double> forces) const {
+  for (const auto& [corners, d] : motions_) {
+    double sum = 0;
+    for (std::size_t i = 0; i < corners.size(); ++i)
+      sum += d[i].dot(at(forces, corners[i]));
+    for (std::size_t i = 0; i < corners.size(); ++i)
+      at(forces, corners[i]) -= sum * mass_[corners[i]] * d[i];
+  }
+}
+
+void FreeMotions::relieve_motion(const std::span<double> motion) const {
+  for (const auto& [corners, d] : motions_) {
+    double sum = 0;
+    for (std::size_t i = 0; i < corners.size(); ++i)
+      sum += mass_[corners[i]] * d[i].dot(at(motion, corners[i]));
+    for (std::size_t i = 0; i < corners.size(); ++i)
+      at(motion, corners[i]) -= sum * d[i];
+  }
+}
+
+double FreeMotions::part_out_of_balance(const std::size_t motion, const Points& forces) const {
+  const auto& [corners, d] = motions_[motion];
+  double sum = 0, all = 0;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    sum += d[i].dot(forces[corners[i]]);
+    all += std::abs(d[i].dot(forces[corners[i]]));
+  }
+  return all > 0 ? std::abs(sum) / all : 0;
 }
 
 void require_supported(const std::vector<FreeMode>& modes) {

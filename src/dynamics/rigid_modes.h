@@ -22,6 +22,33 @@ struct FreeMode {
 std::vector<FreeMode> free_rigid_modes(const ForceModel& model, const Loads& loads, double time, const Points& x,
                                        std::span<const std::uint32_t> piece);
 
+/// Rigid motions that an equation leaves out. Along them bodies are accelerated as a whole by what their loads have out of
+/// balance, and deform in the frame that is: forces are relieved of as much as the masses' inertia takes (inertia relief),
+/// and motions of as much as the masses move along them.
+class FreeMotions {
+ public:
+  FreeMotions() = default; ///< none
+  /// `piece` of each corner (empty: one piece), its mass [kg], and its place where the modes are meant [m].
+  FreeMotions(const std::vector<FreeMode>& modes, std::span<const std::uint32_t> piece, std::span<const double> mass,
+              const Points& x);
+
+  bool any() const { return !motions_.empty(); }
+  std::size_t size() const { return motions_.size(); }
+  void relieve_forces(std::span<double> forces) const;
+  void relieve_motion(std::span<double> d) const;
+  /// What forces along a motion have out of balance, over what they are one by one [1].
+  double part_out_of_balance(std::size_t motion, const Points& forces) const;
+
+ private:
+  /// Of the corners of one piece. All of a piece are orthonormal as measured by mass.
+  struct Motion {
+    std::vector<std::uint32_t> corners;
+    Points d;
+  };
+  std::vector<double> mass_;
+  std::vector<Motion> motions_;
+};
+
 /// Throws ParameterError that names them when there are any.
 void require_supported(const std::vector<FreeMode>& modes);
 

@@ -1,9 +1,15 @@
 #include "grid/crumbs.h"
 
+#include "grid/locate.h"
 #include "grid/material.h"
+#include "grid/sampled_crumbs.h"
+
+#include <Eigen/Eigenvalues>
 
 #include <algorithm>
 #include <bit>
+#include <numeric>
+#include <optional>
 #include <span>
 
 namespace kerf::grid {
@@ -35,13 +41,67 @@ struct Extent {
   bool is_of_one_cube() const { return most[0] - least[0] <= 1 && most[1] - least[1] <= 1 && most[2] - least[2] <= 1; }
 };
 
+/// The samples that each copy holds.
+class SamplesOfCopies {
+ public:
+  SamplesOfCopies(const Solid& solid, const Points& samples)
+    : samples_(samples), first_(solid.complex.n_copies() + 1, 0) {
+    const std::vector<CopyId> copies = copies_around(solid, samples);
+    for (const CopyId c : copies)
+      ++first_[c.value + 1];
+    std::partial_sum(first_.begin(), first_.end(), first_.begin());
+    std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
+    order_.resize(copies.size());
+    for (std::uint32_t i = 0; i < copies.size(); ++i)
+      order_[next[copies[i].value]++] = i;
+  }
+
+  template <class Function>
+  void for_each(const CopyId c, const Function& f) const {
+    for (auto k = first_[c.value]; k < first_[c.value + 1]; ++k)
+      f(samples_[order_[k]]);
+  }
+
+ private:
+  const Points& samples_;
+  std::vector<std::uint32_t> first_, order_;
+};
+
+/// Second moment of points about their mean.
+class Spread {
+ public:
+  void add(const Vec3& p) {
+    ++n_;
+    const Vec3 from_mean = p - mean_; // Welford's update
+    mean_ += from_mean / n_;
+    moment_ += from_mean * (p - mean_).transpose();
+  }
+  bool spans_volume(const double h) const {
+    constexpr double least = 1.0 / 8; // of h^2
+    return n_ > 3 &&
+           Eigen::SelfAdjointEigenSolver<Mat3>(moment_, Eigen::EigenvaluesOnly).eigenvalues()[0] >= least * h * h;
+  }
+
+ private:
+  double n_ = 0;
+  Vec3 mean_ = Vec3::Zero();
+  Mat3 moment_ = Mat3::Zero();
+};
+
+/// What makes a piece a crumb.
+struct Rule {
+  bool may_be_small = false;       ///< or must be loose
+  const Points* samples = nullptr; ///< that are to span its volume
+};
+
 /// Walks through pieces until it knows what they are.
 class Search {
  public:
-  enum class Rule { loose, loose_or_small };
-
-  Search(const Solid& solid, const Rule rule)
-    : solid_(solid), rule_(rule), known_(solid.complex.n_copies(), Known::nothing) {}
+  Search(const Solid& solid, const Rule& rule)
+    : solid_(solid), rule_(rule), known_(solid.complex.n_copies(), Known::nothing) {
+    if (rule.samples)
+      samples_.emplace(solid, *rule.samples);
+  }
 
   /// The copies of the crumb that holds a copy, ascending; none where it is in no crumb, or in one found before.
   std::vector<CopyId> crumb_at(const CopyId start) {
@@ -50,12 +110,16 @@ class Search {
       return copies;
     bool is_crumb = true, is_loose = true;
     Extent extent;
+    Spread spread;
     copies.push_back(start);
     known_[start] = Known::seen;
     for (std::size_t i = 0; i < copies.size() && is_crumb; ++i) {
       is_loose = is_loose && this->is_loose(copies[i]);
       extent.add(solid_, copies[i]);
-      is_crumb = is_loose || (rule_ == Rule::loose_or_small && extent.is_of_one_cube());
+      if (samples_)
+        samples_->for_each(copies[i], [&](const Vec3& p) { spread.add(p); });
+      is_crumb = is_loose || (rule_.may_be_small && extent.is_of_one_cube()) ||
+                 (samples_ && !spread.spans_volume(solid_.grid.h()));
       for (int face = 0; face < 6 && is_crumb; ++face)
         is_crumb = add_neighbours(copies[i], face, copies);
     }
@@ -98,6 +162,7 @@ class Search {
 
   const Solid& solid_;
   Rule rule_;
+  std::optional<SamplesOfCopies> samples_;
   Table<CopyId, Known> known_;
 };
 
@@ -110,7 +175,7 @@ void mark(Solid& solid, const Crumb& crumb) {
 }
 
 /// The crumbs that hold some of these copies.
-std::vector<Crumb> crumbs_at(const Solid& solid, const Search::Rule rule, const std::span<const CopyId> copies) {
+std::vector<Crumb> crumbs_at(const Solid& solid, const Rule& rule, const std::span<const CopyId> copies) {
   std::vector<Crumb> found;
   Search search(solid, rule);
   std::uint32_t name = solid.crumbs.n_named;
@@ -138,17 +203,19 @@ void find_crumbs(Solid& solid) {
   for (const auto c : ids<CopyId>(solid.complex.n_copies()))
     if (solid.complex.copies[c].nodes != 0xff)
       all.push_back(c);
-  if (auto found = crumbs_at(solid, Search::Rule::loose, all); !found.empty())
+  if (auto found = crumbs_at(solid, {}, all); !found.empty())
     add(solid, std::move(found));
 }
 
-void update_crumbs(Solid& solid, CutChange& change) {
+namespace {
+
+void update_crumbs_by(const Rule& rule, Solid& solid, CutChange& change) {
   Crumbs& crumbs = solid.crumbs;
   if (!crumbs.of_corner.empty()) { // what a cut leaves of a crumb stays one
     crumbs.of_corner.resize(change.n_corners_before, 0);
     inherit(change, crumbs.of_corner);
   }
-  std::vector<Crumb> found = crumbs_at(solid, Search::Rule::loose_or_small, change.reshaped);
+  std::vector<Crumb> found = crumbs_at(solid, rule, change.reshaped);
   if (found.empty())
     return;
   std::vector<CopyId> fresh;
@@ -163,6 +230,14 @@ void update_crumbs(Solid& solid, CutChange& change) {
   change.reshaped.insert(change.reshaped.end(), fresh.begin(), fresh.end());
   sort_unique(change.reshaped);
   add(solid, std::move(found));
+}
+
+} // namespace
+
+void update_crumbs(Solid& solid, CutChange& change) { update_crumbs_by({.may_be_small = true}, solid, change); }
+
+void update_crumbs(Solid& solid, CutChange& change, const Points& samples) {
+  update_crumbs_by({.may_be_small = true, .samples = &samples}, solid, change);
 }
 
 } // namespace kerf::grid

@@ -1,7 +1,5 @@
 #include "lattice/riders.h"
 
-#include "grid/crumbs.h"
-
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
@@ -14,7 +12,6 @@ namespace {
 
 using grid::CopyId;
 
-constexpr double light = grid::well_filled, heavy = light / 8; // masses of corners, over a cube's
 constexpr std::uint32_t none = CopyId::no_value;
 
 /// For each copy its carrier, itself where it can carry; `none` where the piece has no such copy.
@@ -82,7 +79,9 @@ Rigid rigid_motion(const std::span<const std::uint32_t> corners, const Points& x
 
 } // namespace
 
-Riders::Riders(const grid::CellComplex& complex, const std::span<const double> mass, const double mass_of_cube) {
+Riders::Riders(const grid::CellComplex& complex, const std::span<const double> mass, const double mass_of_cube,
+               const double light) {
+  const double heavy = light / 8;
   std::vector<std::uint8_t> is_heavy(mass.size());
   std::ranges::transform(mass, is_heavy.begin(), [&](const double m) { return m >= heavy * mass_of_cube ? 1 : 0; });
   const auto carrier_of_copy = nearest_carriers(complex, is_heavy);

@@ -33,6 +33,7 @@
 /// Limits: pieces without a carrier have no riders; and a carrier that is crushed to a line or to a point carries none.
 
 #include "grid/complex.h"
+#include "grid/crumbs.h"
 
 #include <array>
 #include <span>
@@ -43,8 +44,9 @@ namespace kerf::lattice {
 class Riders {
  public:
   Riders() = default; ///< none
-  /// `mass` of the corners, `mass_of_cube` of a full one [kg].
-  Riders(const grid::CellComplex& complex, std::span<const double> mass, double mass_of_cube);
+  /// `mass` of the corners, `mass_of_cube` of a full one [kg]; `light`: m_ref over that of a cube [1].
+  Riders(const grid::CellComplex& complex, std::span<const double> mass, double mass_of_cube,
+         double light = grid::well_filled);
 
   /// Moves riders to goals [m], in x [m] and v [m/s].
   void settle(const Points& goals, std::span<const double> mass, Points& x, Points& v) const;

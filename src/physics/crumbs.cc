@@ -2,9 +2,35 @@
 
 #include <Eigen/Geometry>
 
+#include <algorithm>
+
 namespace kerf::physics {
 
 using dynamics::RigidMotion;
+
+namespace {
+
+/// What the particles of each crumb weigh [kg].
+std::vector<double> mass_of_particles(const CrumbParticles& particles, const std::size_t n_crumbs) {
+  std::vector<double> sums(n_crumbs, 0.0);
+  for (std::size_t i = 0; i < particles.crumb.size(); ++i)
+    if (particles.crumb[i] != CrumbParticles::none)
+      sums[particles.crumb[i]] += particles.mass[i];
+  return sums;
+}
+
+/// Gives a crumb the mass of its particles, or none to speak of: a backend that has its own has given them all of the
+/// body's, some of it for material across the cut, and none is to be made or lost.
+void weigh(const double mass, CrumbBody& crumb) {
+  constexpr double nothing = 1e-12;
+  const double factor = std::max(nothing, mass / crumb.body.mass);
+  crumb.body.mass *= factor;
+  crumb.body.inertia *= factor;
+  for (double& of_corner : crumb.mass_of_corners)
+    of_corner *= factor;
+}
+
+} // namespace
 
 void Crumbs::follow(const grid::Solid& solid, const CrumbParticles* const particles,
                     const std::function<Motion()>& motion_of_corners, dynamics::State& state) {
@@ -13,6 +39,7 @@ void Crumbs::follow(const grid::Solid& solid, const CrumbParticles* const partic
   std::vector<Crumb> crumbs;
   Motions motions;
   std::optional<Motion> now;
+  const auto weights = particles ? mass_of_particles(*particles, solid.crumbs.all.size()) : std::vector<double>();
   auto before = crumbs_.begin(); // both lists are by ascending name
   for (const grid::Crumb& crumb : solid.crumbs.all) {
     while (before != crumbs_.end() && before->name < crumb.name)
@@ -25,6 +52,8 @@ void Crumbs::follow(const grid::Solid& solid, const CrumbParticles* const partic
     if (!now)
       now = motion_of_corners();
     crumbs.push_back({measure(solid, crumb, density_), crumb.name, {}, {}});
+    if (particles)
+      weigh(weights[crumbs.size() - 1], crumbs.back());
     motions.push_back(motion_of(crumbs.back(), *now));
   }
   crumbs_ = std::move(crumbs);

@@ -5,10 +5,19 @@
 
 #include "fem/hexahedra.h"
 #include "lattice/shape_matching.h"
+#include "physics/carry_all.h"
 #include "physics/physics.h"
 #include "spring/mass_spring.h"
 
 namespace kerf::physics {
+
+/// Elements whose integrator takes no energy: corners of hardly any mass ring for ever once a cut has moved them, take up
+/// what the body's vibrations have, and turn their copies inside out. They are damped against what carries them, as those
+/// of a lattice are (lattice/riders.h), critically for the frequency of a cube. Of the others none.
+inline lattice::Riders riders_of(const dynamics::ForceModel&, const CutBody&) { return {}; }
+lattice::Riders riders_of(const fem::Hexahedra& model, const CutBody& body);
+inline void damp_riders(const dynamics::ForceModel&, const lattice::Riders&, double, dynamics::State&) {}
+void damp_riders(const fem::Hexahedra& model, const lattice::Riders& riders, double dt, dynamics::State& state);
 
 /// One model on the corners, with an integrator of it.
 template <class Model>
@@ -34,7 +43,13 @@ class OnCorners : public Physics {
   const Crumbs& crumbs() const override { return crumbs_; }
 
   dynamics::StepReport step(dynamics::State& state, const dynamics::Loads& loads, const double dt) override {
-    const dynamics::StepReport report = stepper_->step(state, loads, dt);
+    dynamics::StepReport report;
+    if (carry_all(crumbs_)) {
+      state.time += dt;
+    } else {
+      damp_riders(*model_, riders_, dt, state);
+      report = stepper_->step(state, loads, dt);
+    }
     crumbs_.step(loads, dt, stepper_->motion(), state);
     return report;
   }
@@ -81,6 +96,7 @@ class OnCorners : public Physics {
   void make_stepper(const CutBody& body) {
     // The complex outlives the call, as the stepper asks at once.
     stepper_ = make_integrator_(*model_, [&body] { return corner_pieces(body.solid.complex); });
+    riders_ = riders_of(*model_, body);
   }
 
   ModelMaker make_model_;
@@ -89,6 +105,7 @@ class OnCorners : public Physics {
   std::unique_ptr<Model> model_;
   Crumbs crumbs_;
   std::unique_ptr<dynamics::Stepper> stepper_;
+  lattice::Riders riders_;
 };
 
 /// Elements are brought up to date where the cut is, and stay elsewhere.

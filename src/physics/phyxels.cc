@@ -2,6 +2,7 @@
 
 #include "base/union_find.h"
 #include "grid/locate.h"
+#include "physics/carry_all.h"
 
 #include <Eigen/Eigenvalues>
 
@@ -93,7 +94,11 @@ Phyxels::Phyxels(const CutBody& body, const PhyxelsOptions& options, StepperMake
 }
 
 dynamics::StepReport Phyxels::step(dynamics::State& state, const dynamics::Loads& loads, const double dt) {
-  const dynamics::StepReport report = stepper_->step(state, loads, dt);
+  dynamics::StepReport report;
+  if (carry_all(crumbs_))
+    state.time += dt;
+  else
+    report = stepper_->step(state, loads, dt);
   crumbs_.step(loads, dt, stepper_->motion(), state);
   return report;
 }

@@ -2,6 +2,7 @@
 
 #include "cut/fit.h"
 #include "grid/locate.h"
+#include "grid/sampled_crumbs.h"
 #include "scene/held.h"
 
 namespace kerf::scene {
@@ -31,7 +32,10 @@ void follow_cut(Body& body, grid::CutChange change, Timings& timings) {
     body.placed.n_placed += placed.n_placed;
     body.placed.n_clamped += placed.n_clamped;
     surface::update_surface(body.solid, change, body.surface, body.surface_index);
-    grid::update_crumbs(body.solid, change);
+    if (body.physics->particles_are_corners())
+      grid::update_crumbs(body.solid, change);
+    else
+      grid::update_crumbs(body.solid, change, body.physics->rest());
     ++body.n_recuts;
   }
   const ScopedTimer timer(timings, "assemble");

@@ -30,7 +30,9 @@ struct QuasiStaticSceneParameters {
     statics.describe(p);
     p.choice("Free modes", free_modes, {"refuse", "allow"},
              "What to do about rigid motions of a piece that no support and no load resists: name them and stop, or "
-             "leave it to the solver.");
+             "leave it to the solver. Loads along free translations (with small strain, along free rotations too) must "
+             "then be in balance to a tenth; what is left of them accelerates the body as a whole, and does not deform "
+             "it.");
   }
 };
 

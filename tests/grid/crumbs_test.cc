@@ -3,6 +3,7 @@
 #include "grid/crumbs.h"
 
 #include "grid/material.h"
+#include "grid/sampled_crumbs.h"
 #include "tests/grid/histories.h"
 #include "tests/support/placed.h"
 
@@ -137,6 +138,38 @@ TEST(Crumbs, KeepTheirNamesUntilTheyAreCut) {
         names.insert(crumb.name);
     }
   EXPECT_EQ(names.size(), n_pieces(body.complex)) << "all is dust in the end";
+}
+
+/// A plane halves a block; what is known of the upper half by samples decides whether it is one.
+TEST(Crumbs, AreThoseWhoseSamplesSpanNoVolume) {
+  const Points corner = {Vec3(0.1, 0.1, 0.1), Vec3(0.2, 0.1, 0.1), Vec3(0.1, 0.2, 0.1)};
+  const auto with = [&](Points more) {
+    more.insert(more.begin(), corner.begin(), corner.end());
+    return more;
+  };
+  const std::vector<std::pair<Points, bool>> cases = {{{}, true},
+                                                      {corner, true},
+                                                      {with({Vec3(0.2, 0.2, 0.1), Vec3(0.3, 0.3, 0.11)}), true},
+                                                      {with({Vec3(0.1, 0.1, 0.2)}), false}};
+  for (const auto& [above, is_crumb] : cases) {
+    Body body = support::with_copies(support::with_placed_skin(support::block({4, 4, 6}, 0.1)));
+    find_crumbs(body);
+    cut::Cutter cutter{9};
+    cutter.begin(body, rest_positions(body));
+    Points samples;
+    for (const auto n : ids<NodeId>(body.grid.n_nodes()))
+      if (const Vec3 p = body.grid.position(n); body.grid.is_material(n) && p[2] < 0.32)
+        samples.push_back(p + Vec3(0.01, 0.01, -0.01));
+    for (const Vec3& p : above)
+      samples.push_back(p + Vec3(0.01, 0.01, 0.33));
+    CutChange change = cutter.cut(body, support::cuts_of_plane(body, {Vec3::UnitZ(), 0.35}, 1));
+    surface::place(body, change, {});
+    update_crumbs(body, change, samples);
+    EXPECT_EQ(body.crumbs.all.size(), is_crumb ? 1u : 0u) << above.size() << " above";
+    for (const Crumb& crumb : body.crumbs.all)
+      for (const CopyId c : crumb.copies)
+        EXPECT_GE(body.grid.origin(body.complex.copies[c].cell)[2], 0.25);
+  }
 }
 
 } // namespace

@@ -1,5 +1,6 @@
 // Scenes of statics with known answers: loads, supports, probes.
 
+#include "base/error.h"
 #include "tests/scene/trials.h"
 
 #include <numbers>
@@ -249,6 +250,51 @@ TEST(StaticScene, ABallHoldsTheWholeWeight) {
                   section("Gravity", {}));
   EXPECT_NEAR(bar.last("reaction pin z"), 40 * 9.81, 1e-3);
   EXPECT_NEAR(bar.last("reaction pin x"), 0, 1e-3);
+}
+
+/// A cylinder with a penny-shaped crack that nothing holds, pulled at both ends.
+std::string free_cylinder(const std::string& law, const double up, const double down) {
+  const auto pull = [](const std::string& name, const double z, const double traction) {
+    return section("Traction " + name, box("-1, -1, " + to_text(z - 0.01), "1, 1, " + to_text(z + 0.01)) +
+                                         Keys{"Traction [N/m^2] = 0; 0; " + to_text(traction)});
+  };
+  return steps(1, 2) +
+         section("Body cylinder",
+                 Keys{"Shape = cylinder", "Radius [m] = 0.5", "Height [m] = 1", "Cube edge [m] = 0.08"} + statics(),
+                 material(E, 0.25, law) + section("Quasi-static", {"Free modes = allow"}) + pull("up", 0.5, up) +
+                   pull("down", -0.5, -down)) +
+         section("Cut surface crack",
+                 {"Shape = disc", "Point [m] = 0, 0, 0", "Normal [1] = 0, 0, 1", "Radius [m] = 0.2"}) +
+         observe("elastic energy, cut volumes, load forces, largest displacement");
+}
+
+/// Its ends' faces differ by some per cent in what the grid makes of their rims, so its loads are hardly in balance: it
+/// is relieved of what would move it. Its energy is sigma^2 V / (2 E), and that of the crack (Sneddon 1946) beside it, which
+/// stands up to one cube short.
+TEST(StaticScene, ABodyThatOnlyBalancedLoadsHoldFindsItsEquilibrium) {
+  constexpr double sigma = 100, nu = 0.25, a = 0.2, volume = std::numbers::pi / 4;
+  const double whole = sigma * sigma * volume / (2 * E),
+               crack = 8 * (1 - nu * nu) * sigma * sigma * a * a * a / (3 * E);
+  for (const std::string law : {"small strain", "corotational"}) {
+    const Trial cylinder(free_cylinder(law, sigma, sigma));
+    const double net = cylinder.last("force of up z") + cylinder.last("force of down z");
+    EXPECT_GT(std::abs(net), 1e-3 * sigma * volume) << "else this tests nothing";
+    EXPECT_NEAR(cylinder.last("elastic energy") / (whole + crack), 1, 0.1) << law;
+    EXPECT_LT(cylinder.last("largest displacement"), 2 * sigma / E);
+    EXPECT_NEAR(cylinder.series("elastic energy")[1] / cylinder.last("elastic energy"), 1, 1e-6)
+      << "a second step stays there";
+  }
+}
+
+TEST(StaticScene, LoadsOutOfBalanceOnABodyThatNothingHoldsAreRefused) {
+  try {
+    const Trial cylinder(free_cylinder("small strain", 100, 50));
+    FAIL() << "it has no equilibrium";
+  } catch (const NumericalError& error) {
+    EXPECT_NE(std::string(error.what()).find("nothing resists the translation along z"), std::string::npos)
+      << error.what();
+    EXPECT_NE(std::string(error.what()).find("not in balance"), std::string::npos) << error.what();
+  }
 }
 
 } // namespace
