@@ -92,21 +92,22 @@ Raster section_of(const Solid& solid, const CellId c, const InPlane& in_plane) {
   return section;
 }
 
-bool is_in_reach(const Patch& quad, const Vec3& origin, const double h) {
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto [least, most] =
-      std::minmax({quad[0][axis], quad[1][axis], quad[2][axis], quad[3][axis]});
-    if (most < origin[axis] || least > origin[axis] + h)
-      return false;
-  }
-  return true;
+/// A cell's cube at rest, and around it what a front in another cell may reach over by its lag.
+Box reach_of(const Solid& solid, const CellId c) {
+  const double h = solid.grid.h(), lag = grid::front_lag * std::sqrt(3.0) * h;
+  const Vec3 origin = solid.grid.origin(c);
+  return {origin - Vec3::Constant(lag), origin + Vec3::Constant(h + lag)};
 }
 
-/// Clipped by the cube.
-Polygon in_cube(Polygon polygon, const Vec3& origin, const double h) {
+bool is_in(const Box& box, const Patch& quad) {
+  const Box around = geometry::box_around(quad);
+  return (around.lower.array() <= box.upper.array()).all() && (box.lower.array() <= around.upper.array()).all();
+}
+
+Polygon clipped(Polygon polygon, const Box& box) {
   for (int axis = 0; axis < 3; ++axis)
     for (const double side : {-1.0, 1.0}) {
-      const double end = side * (origin[axis] + (side > 0 ? h : 0));
+      const double end = side * (side > 0 ? box.upper : box.lower)[axis];
       Polygon kept;
       for (std::size_t i = 0; i < polygon.size(); ++i) {
         const Vec3 &p = polygon[i], &q = polygon[(i + 1) % polygon.size()];
@@ -138,13 +139,16 @@ class Sweep {
       corners[v] = x_[copy.corners[v].value];
       corners[8 + v] = x_before_[copy.corners[v].value];
     }
-    return near_.may_be_in(geometry::box_around(corners));
+    Box box = geometry::box_around(corners);
+    const Vec3 lag = Vec3::Constant(grid::front_lag * (box.upper - box.lower).sum());
+    return near_.may_be_in({box.lower - lag, box.upper + lag});
   }
 
   /// Calls f(quad at rest) for what of the path may lie in the cell.
   template <class Function>
   void for_each_quad(const CellId c, const Function& f) const {
     const ToRest before(solid_, c, x_before_), now(solid_, c, x_);
+    const Box reach = reach_of(solid_, c);
     const auto at = [&](const std::size_t k, const std::size_t i) {
       const double t = path_.fractions[k];
       const Vec3& p = path_.lines[k][i];
@@ -153,7 +157,7 @@ class Sweep {
     for (std::size_t k = 1; k < path_.lines.size(); ++k)
       for (std::size_t i = 1; i < path_.lines[k].size(); ++i) {
         const Patch quad = {at(k - 1, i - 1), at(k - 1, i), at(k, i), at(k, i - 1)};
-        if (is_in_reach(quad, solid_.grid.origin(c), solid_.grid.h()))
+        if (is_in(reach, quad))
           f(quad);
       }
   }
@@ -164,13 +168,6 @@ class Sweep {
   const Points &x_before_, &x_;
   NearSweep near_;
 };
-
-/// The part of the section that the cut has come to.
-double passed(const Raster& section, const Raster& swept, const double lag) {
-  const double whole = section.count(), own = (section & swept).count() / whole;
-  const double grown = (section & swept.grown(lag)).count() / whole;
-  return own + (grown - own) * std::min(1.0, own / lag);
-}
 
 } // namespace
 
@@ -255,7 +252,7 @@ std::optional<Advance::Cell> Advance::begin(const Solid& solid, const CellId c, 
                                             const grid::CutLabel label) {
   constexpr double least_area = 1e-6; // of a face
   const double h = solid.grid.h();
-  const Polygon piece = in_cube({quad.begin(), quad.end()}, solid.grid.origin(c), h);
+  const Polygon piece = clipped({quad.begin(), quad.end()}, reach_of(solid, c));
   if (area(piece) < least_area * h * h)
     return std::nullopt;
   const CellAtPlane at_plane(solid, c, {mean(piece), normal(piece)}, rest_of(solid, c));
@@ -263,7 +260,7 @@ std::optional<Advance::Cell> Advance::begin(const Solid& solid, const CellId c, 
     return std::nullopt;
   const Front front = at_plane.front(at_plane.section(), 0);
   const Raster section = section_of(solid, c, InPlane(front.point, front.normal, h));
-  if (section.count() == 0)
+  if (!section.any())
     return std::nullopt;
   return Cell{front.point, front.normal, section, {}, label};
 }
@@ -286,16 +283,30 @@ std::vector<Front> Advance::take(const Solid& solid, const PendingCuts& pending)
   return fronts;
 }
 
+/// Is the blade in the material of the cell, or of one beside it?
+bool Advance::is_in_material(const Solid& solid, const CellId c) const {
+  const auto is_in = [&](const CellId cell) {
+    if (const auto at = cells_.find(cell); at != cells_.end())
+      return (at->second.section & at->second.swept).any();
+    return cell.valid() && grid::cuts_of(solid, cell).blades != 0;
+  };
+  bool found = is_in(c);
+  for (int face = 0; face < grid::cube::n_faces && !found; ++face)
+    found = is_in(solid.grid.neighbour(c, face));
+  return found;
+}
+
 /// As it is now, if that is further than it was.
 std::optional<Front> Advance::front_in(const Solid& solid, const CellId c) const {
   const Cell& cell = cells_.at(c);
-  const double lag = grid::front_lag * cell.normal.lpNorm<1>(), now = passed(cell.section, cell.swept, lag);
+  const Raster come = cell.section & cell.swept.grown(grid::front_lag * cell.normal.lpNorm<1>());
+  const double now = double(come.count()) / cell.section.count();
   if (const Front* const earlier = solid.cuts.front(c)) {
     Front moved = *earlier;
     moved.passed = std::min(most_passed, now);
     return moved.passed > earlier->passed ? std::optional(moved) : std::nullopt;
   }
-  if (now < least_passed)
+  if (now < least_passed || !is_in_material(solid, c))
     return std::nullopt;
   const CellAtPlane at_plane(solid, c, {cell.point, cell.normal}, rest_of(solid, c));
   Front front = at_plane.front(at_plane.section(), now);

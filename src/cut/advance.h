@@ -4,15 +4,15 @@
 ///
 /// The first piece of a strip that a blade sweeps in a cell gives the plane in which the cell would be parted. All that it
 /// sweeps there from then on is drawn onto a raster in that plane, in the frame of the cell at rest, where a point that
-/// is passed twice counts once; what leaves the plane by a quarter of a cube does not count. The part of the plane's
-/// section that is covered is how far the cut has come. As elements are too stiff at a front, what is covered is taken
-/// larger by the lag of fronts, on the cell's own section; a front that only begins takes less of that, so that it begins
-/// with nothing.
+/// is passed twice counts once; what leaves the plane by a quarter of a cube does not count. As elements are too stiff at
+/// a front, what is drawn is taken larger by the lag of fronts, and so reaches on into the next cells. The part of the
+/// section of plane and material that it covers is how far the cut has come. Where it is the lag alone that reaches into
+/// a cell, the blade has to be in the material of one beside it.
 ///
 /// Cells in which cuts wait (pending.h) get no front before they are cut.
 ///
-/// Errors: a texel is .027 cubes wide; within a cell the map of its copy is taken as affine. A blade that turns in a cell
-/// leaves in it the front that it had there.
+/// Errors: a texel is .04 cubes wide; within a cell the map of its copy is taken as affine. A blade that turns leaves
+/// the fronts that it had.
 
 #include "cut/edge_boxes.h"
 #include "cut/near_sweep.h"
@@ -24,11 +24,11 @@
 
 namespace kerf::cut {
 
-/// Bits over the square of side 1.75 cubes around a point of a plane.
+/// Bits over a square around a point of a plane.
 class Raster {
  public:
   static constexpr int n = 64;
-  static constexpr double side = 1.75; ///< in cubes; more than a cube's space diagonal
+  static constexpr double side = 2.5; ///< in cubes; more than a cube's space diagonal and twice the lag
 
   /// Sets the texels whose middles lie in a triangle, where the third coordinate is at most `most` away from 0; of
   /// coordinates in cubes, from the middle.
@@ -36,6 +36,7 @@ class Raster {
   /// All texels within a distance of set ones.
   Raster grown(double distance) const;
   int count() const;
+  bool any() const { return count() > 0; }
   friend Raster operator&(Raster a, const Raster& b);
 
   void archive(Archive& a) { a(rows_); }
@@ -67,6 +68,7 @@ class Advance {
   void draw(const grid::Solid& solid, grid::CellId c, const Patch& quad, grid::CutLabel label);
   static std::optional<Cell> begin(const grid::Solid& solid, grid::CellId c, const Patch& quad, grid::CutLabel label);
   std::optional<grid::Front> front_in(const grid::Solid& solid, grid::CellId c) const;
+  bool is_in_material(const grid::Solid& solid, grid::CellId c) const;
 
   std::map<grid::CellId, Cell> cells_;
   std::set<grid::CellId> touched_; // in which blades have swept since fronts were taken
