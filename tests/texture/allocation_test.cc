@@ -13,13 +13,13 @@ namespace {
 std::atomic<std::size_t> n_allocations = 0;
 }
 
-void* operator new(const std::size_t n) {
+// None of them is inlined: the compiler would see malloc() or free() on one side alone, and warn.
+[[gnu::noinline]] void* operator new(const std::size_t n) {
   ++n_allocations;
   if (void* const p = std::malloc(n))
     return p;
   throw std::bad_alloc();
 }
-// Not inlined, for the compiler would see free() called on what new returned, and warn.
 [[gnu::noinline]] void operator delete(void* const p) noexcept { std::free(p); }
 [[gnu::noinline]] void operator delete(void* const p, std::size_t) noexcept { std::free(p); }
 
