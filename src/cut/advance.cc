@@ -299,7 +299,9 @@ bool Advance::is_in_material(const Solid& solid, const CellId c) const {
 /// As it is now, if that is further than it was.
 std::optional<Front> Advance::front_in(const Solid& solid, const CellId c) const {
   const Cell& cell = cells_.at(c);
-  const Raster come = cell.section & cell.swept.grown(grid::front_lag * cell.normal.lpNorm<1>());
+  const bool has_skin = grid::material_of(solid.grid, c) != 0xff;
+  const Raster come =
+    cell.section & (has_skin ? cell.swept : cell.swept.grown(grid::front_lag * cell.normal.lpNorm<1>()));
   const double now = double(come.count()) / cell.section.count();
   if (const Front* const earlier = solid.cuts.front(c)) {
     Front moved = *earlier;
