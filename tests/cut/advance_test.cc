@@ -1,0 +1,106 @@
+#include "cut/advance.h"
+
+#include "grid/fronts.h"
+#include "tests/cut/cutting.h"
+#include "tests/cut/patient.h"
+
+#include <cmath>
+
+namespace kerf::cut {
+namespace {
+
+/// In the plane z = 5.4, from x = -2 on, its edge along y, by 1 a second.
+Blade along_x(const double y0 = -20, const double y1 = 20) {
+  return {"blade", {Vec3(0, y0, 0), Vec3(0, y1, 0)}, {{0, Vec3(-2, 0, 5.4)}, {100, Vec3(98, 0, 5.4)}}};
+}
+
+/// A blade that stops anywhere leaves the fronts that a rectangle up to there leaves.
+TEST(Advance, LeavesTheFrontsOfARectangle) {
+  for (const double speed : {0.05, 0.3, 2.0}) {
+    Cutting moving(block(), Fronts::inside_cells);
+    double t = 0;
+    for (int k = 0; t < 9; ++k, t += speed) {
+      moving.step(along_x(), t, t + speed);
+      const double end = t + speed - 2;
+      if (end < 1 || std::abs(end - std::round(end)) < 1e-9 || moving.cutter.n_waiting() > 0)
+        continue; // right at a node round-off decides
+      Cutting at_once(block(), Fronts::inside_cells);
+      at_once.cut(Rectangle{Vec3(0.5 * end, 5, 5.4), Vec3(end, 0, 0), Vec3(0, 40, 0)});
+      ASSERT_EQ(moving.body.complex.tied.size(), at_once.body.complex.tied.size()) << speed << " " << end;
+      for (const auto& [a, b] : at_once.body.complex.tied) {
+        const grid::CellId c = at_once.body.complex.copies[a].cell;
+        const grid::Front *const one = moving.body.cuts.front(c), *const other = at_once.body.cuts.front(c);
+        ASSERT_NE(one, nullptr);
+        EXPECT_NEAR(one->passed, other->passed, 0.04) << speed << " " << end;
+        EXPECT_NEAR(one->area, other->area, 1e-9);
+        EXPECT_EQ(grid::cuts_of_copies(moving.body, c).blades, grid::cuts_of_copies(at_once.body, c).blades);
+      }
+    }
+  }
+}
+
+/// A stroke from a random place beside a body of this size into it and on, which turns on its way, and whose edge ends
+/// somewhere in it.
+Blade random_stroke(support::Random& random, const double size) {
+  const Vec3 towards = random_direction(random), side = towards.unitOrthogonal();
+  const Vec3 start = -1.3 * size * towards + 0.4 * size * support::random_vector(random);
+  const double reach = uniform(random, 0.6, 2.4), turn = uniform(random, -60, 60);
+  Blade blade = {"blade", {Vec3(uniform(random, -1.5, 0) * size * side), Vec3(uniform(random, 0, 1.5) * size * side)}, {}};
+  blade.key_frames = {{0, start, Vec3::Zero()}, {1, start + reach * size * towards, turn * side}};
+  return blade;
+}
+
+/// Blades that stop in the body, turn, come back and meet what others have cut, slow and fast.
+TEST(Advance, LeavesThePiecesMassAndSurfaceAsTheyWere) {
+  support::Random random(7);
+  std::size_t n_fronts = 0;
+  for (int i = 0; i < 40; ++i) {
+    const Body whole = support::with_copies(
+      support::with_placed_skin(support::ball(3 + 0.05 * i, 1, support::random_offset(random))));
+    Cutting with(whole, Fronts::inside_cells), without(whole, Fronts::at_faces);
+    for (int stroke = 0; stroke < 2; ++stroke) {
+      const Blade blade = random_stroke(random, 4);
+      const int n_steps = std::array{3, 17, 60}[i % 3], n_back = static_cast<int>(random() % 4);
+      for (int k = 0; k < n_steps + n_back; ++k) {
+        const double t0 = std::min(1.0, double(k) / n_steps), t1 = k < n_steps ? double(k + 1) / n_steps : 0.9;
+        with.step(blade, t0, t1);
+        without.step(blade, t0, t1);
+      }
+      SCOPED_TRACE(testing::Message() << i << " " << stroke);
+      expect_alike(with, without);
+    }
+    n_fronts += with.body.complex.tied.size();
+    expect_as_built(with);
+  }
+  EXPECT_GT(n_fronts, 400u);
+}
+
+/// What a blade has come through is tied no more; what is passed does not depend on the length of steps.
+TEST(Advance, TiesNothingThatIsCut) {
+  support::Random random(9);
+  for (int i = 0; i < 20; ++i) {
+    const Body whole = support::with_copies(
+      support::with_placed_skin(support::ball(4, 1, support::random_offset(random))));
+    Cutting slow(whole, Fronts::inside_cells), fast(whole, Fronts::inside_cells);
+    Blade blade = random_stroke(random, 4);
+    for (KeyFrame& frame : blade.key_frames)
+      frame.rotation = Vec3::Zero();
+    const auto pass = [&](Cutting& cutting, const int n, const double end) {
+      for (int k = 0; k < n || cutting.cutter.n_waiting() > 0; ++k)
+        cutting.step(blade, std::min(end, end * k / n), std::min(end, end * (k + 1) / n));
+    };
+    pass(slow, 80, 0.6);
+    pass(fast, 2, 0.6);
+    ASSERT_EQ(slow.body.complex.tied.size(), fast.body.complex.tied.size()) << i;
+    for (const auto& [a, b] : slow.body.complex.tied) {
+      const grid::CellId c = slow.body.complex.copies[a].cell;
+      const grid::Front *const one = slow.body.cuts.front(c), *const other = fast.body.cuts.front(c);
+      ASSERT_NE(other, nullptr);
+      EXPECT_NEAR(one->passed, other->passed, 0.02);
+      EXPECT_EQ(grid::cuts_of_copies(slow.body, c).blades, grid::cuts_of_copies(fast.body, c).blades);
+    }
+  }
+}
+
+} // namespace
+} // namespace kerf::cut
