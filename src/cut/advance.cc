@@ -1,9 +1,11 @@
 #include "cut/advance.h"
 
-#include "cut/cell_at_plane.h"
+#include "cut/shreds.h"
 #include "grid/fronts.h"
 #include "grid/material.h"
+#include "grid/parts.h"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
@@ -19,7 +21,7 @@ using grid::CellId;
 using grid::Front;
 using grid::Solid;
 
-constexpr double off_plane = 0.25;    // what counts [cubes]
+constexpr double off_plane = 0.25; // what counts [cubes]
 
 /// A cell's coordinates in which its cube is [0, h]^3 at its place at rest, as an affine map from where it is.
 struct ToRest {
@@ -144,9 +146,9 @@ class Sweep {
     return near_.may_be_in({box.lower - lag, box.upper + lag});
   }
 
-  /// Calls f(quad at rest) for what of the path may lie in the cell.
+  /// Calls f(polygon at rest [m]) for what of the path lies in the reach of the cell.
   template <class Function>
-  void for_each_quad(const CellId c, const Function& f) const {
+  void for_each_piece(const CellId c, const Function& f) const {
     const ToRest before(solid_, c, x_before_), now(solid_, c, x_);
     const Box reach = reach_of(solid_, c);
     const auto at = [&](const std::size_t k, const std::size_t i) {
@@ -157,8 +159,11 @@ class Sweep {
     for (std::size_t k = 1; k < path_.lines.size(); ++k)
       for (std::size_t i = 1; i < path_.lines[k].size(); ++i) {
         const Patch quad = {at(k - 1, i - 1), at(k - 1, i), at(k, i), at(k, i - 1)};
-        if (is_in(reach, quad))
-          f(quad);
+        if (!is_in(reach, quad))
+          continue;
+        const Polygon piece = clipped({quad.begin(), quad.end()}, reach);
+        if (area(piece) > 0)
+          f(piece);
       }
   }
 
@@ -169,54 +174,131 @@ class Sweep {
   NearSweep near_;
 };
 
-} // namespace
+void draw(const Polygon& piece, const InPlane& in_plane, Raster& raster) {
+  for (std::size_t i = 2; i < piece.size(); ++i)
+    raster.draw({in_plane(piece[0]), in_plane(piece[i - 1]), in_plane(piece[i])}, off_plane);
+}
 
-void Raster::draw(const std::array<Vec3, 3>& triangle, const double most) {
-  const auto& [a, b, c] = triangle;
-  const double twice_area = (b - a)[0] * (c - a)[1] - (b - a)[1] * (c - a)[0];
-  if (twice_area == 0)
-    return;
-  const auto texel = [](const double at) {
-    return static_cast<int>(std::clamp((at / side + 0.5) * n - 0.5, -1.0, double(n)));
+/// The cell and those that share a node with it, as far as faces lead to them.
+std::vector<CellId> cells_around(const grid::Grid& grid, const CellId c) {
+  std::vector<CellId> cells = {c};
+  for (int axis = 0; axis < 3; ++axis)
+    for (std::size_t i = 0, n = cells.size(); i < n; ++i)
+      for (const int side : {0, 1})
+        if (const CellId next = grid.neighbour(cells[i], 2 * axis + side); next.valid())
+          cells.push_back(next);
+  return cells;
+}
+
+/// Where a blade has been in a cell and around it, at rest [m].
+Points known_points(const Solid& solid, const CellId c, const std::vector<Polygon>& pieces,
+                    const grid::CutLabel label) {
+  Points points;
+  for (const Polygon& piece : pieces)
+    points.insert(points.end(), piece.begin(), piece.end());
+  for (const CellId cell : cells_around(solid.grid, c))
+    for (const grid::EdgeId e : solid.grid.edges(cell))
+      if (const grid::EdgeCut* const cut = solid.cuts.find(e); cut && cut->label == label)
+        points.push_back(edge_point(solid, e));
+  return points;
+}
+
+/// The plane nearest to points, and how far they stray from it [m].
+struct Course {
+  Plane plane;
+  double stray;
+};
+std::optional<Course> course_of(const Points& points, const double h) {
+  constexpr double least_width = 0.1; // as a standard deviation, in cubes
+  Vec3 middle = Vec3::Zero();
+  for (const Vec3& p : points)
+    middle += p / double(points.size());
+  Mat3 spread = Mat3::Zero();
+  for (const Vec3& p : points)
+    spread += (p - middle) * (p - middle).transpose() / double(points.size());
+  const Eigen::SelfAdjointEigenSolver<Mat3> axes(spread);
+  if (!(axes.eigenvalues()[1] > std::pow(least_width * h, 2)))
+    return std::nullopt;
+  Course course{{middle, axes.eigenvectors().col(0)}, 0};
+  for (const Vec3& p : points)
+    course.stray = std::max(course.stray, std::abs(course.plane.normal.dot(p - middle)));
+  return course;
+}
+
+/// Two parts, with nodes in each.
+bool parts_in_two(const Solid& solid, const Front& front) {
+  const grid::Parts parts = grid::parts_of(grid::with(grid::cuts_of(solid, front.cell), front.ahead));
+  return parts.n == 2 && std::ranges::all_of(parts, [](const grid::Part& part) { return part.nodes != 0; });
+}
+
+/// The front that a blade would leave which goes on through the cell as it came, where that is certain.
+std::optional<Front> front_ahead(const Solid& solid, const CellId c, const std::vector<Polygon>& pieces,
+                                 const grid::CutLabel label) {
+  constexpr double safety = 2, round_off = 1e-6;
+  const double h = solid.grid.h();
+  const std::optional<Course> course = course_of(known_points(solid, c, pieces, label), h);
+  if (!course)
+    return std::nullopt;
+  const CellAtPlane at_plane(solid, c, course->plane, rest_of(solid, c));
+  if (!at_plane.is_met() || !at_plane.is_clear(safety * course->stray + round_off * h))
+    return std::nullopt;
+  Front front = at_plane.front(at_plane.section(), 0);
+  front.label = label;
+  return front.ahead != 0 && parts_in_two(solid, front) && !hangs_by_skin(solid, front) ? std::optional(front)
+                                                                                       : std::nullopt;
+}
+
+/// Do the parts of two cells divide the face between them alike, or does one of the cells hold it together?
+bool divide_alike(const grid::Parts& one, const grid::Parts& other, const int face) {
+  const auto divided = [](const grid::Parts& parts, const int side) {
+    std::set<unsigned> in_face;
+    for (const grid::Part& part : parts)
+      if (const unsigned bits = grid::detail::in_face(part, side); bits != 0)
+        in_face.insert(bits);
+    return in_face;
   };
-  const Vec3 lower = a.cwiseMin(b).cwiseMin(c), upper = a.cwiseMax(b).cwiseMax(c);
-  for (int j = std::max(0, texel(lower[1])); j <= std::min(n - 1, texel(upper[1]) + 1); ++j)
-    for (int i = std::max(0, texel(lower[0])); i <= std::min(n - 1, texel(upper[0]) + 1); ++i) {
-      const double x = ((i + 0.5) / n - 0.5) * side, y = ((j + 0.5) / n - 0.5) * side;
-      const auto weight = [&](const Vec3& p, const Vec3& q) {
-        return ((q[0] - p[0]) * (y - p[1]) - (q[1] - p[1]) * (x - p[0])) / twice_area;
-      };
-      const double of_a = weight(b, c), of_b = weight(c, a), of_c = weight(a, b);
-      if (of_a >= 0 && of_b >= 0 && of_c >= 0 && std::abs(of_a * a[2] + of_b * b[2] + of_c * c[2]) <= most)
-        rows_[j] |= std::uint64_t(1) << i;
-    }
+  const std::set<unsigned> a = divided(one, face), b = divided(other, face ^ 1);
+  return a.size() < 2 || b.size() < 2 || a == b;
 }
 
-Raster Raster::grown(const double distance) const {
-  const double radius = distance / side * n;
-  Raster result;
-  const int reach = static_cast<int>(std::lround(radius));
-  for (int dj = -reach; dj <= reach; ++dj) {
-    const long width = std::lround(std::sqrt(std::max(0.0, radius * radius - dj * dj)));
-    for (int j = std::max(0, -dj); j < std::min(n, n - dj); ++j)
-      for (int di = 0; di <= width && rows_[j] != 0; ++di)
-        result.rows_[j + dj] |= rows_[j] << di | rows_[j] >> di;
-  }
-  return result;
+/// What the copies of a cell would follow.
+grid::CellCuts cuts_with(const Solid& solid, const CellId c, const std::map<CellId, Front>& begun) {
+  const auto at = begun.find(c);
+  return at == begun.end() ? grid::cuts_of_copies(solid, c) : grid::with(grid::cuts_of(solid, c), at->second.ahead);
 }
 
-int Raster::count() const {
-  int sum = 0;
-  for (const std::uint64_t row : rows_)
-    sum += std::popcount(row);
-  return sum;
+bool agrees_with_neighbours(const Solid& solid, const Front& front, const std::map<CellId, Front>& begun) {
+  const auto parts = [&](const CellId c) { return grid::parts_of(cuts_with(solid, c, begun)); };
+  const grid::Parts own = parts(front.cell);
+  for (int face = 0; face < grid::cube::n_faces; ++face)
+    if (const CellId next = solid.grid.neighbour(front.cell, face); next.valid() && !divide_alike(own, parts(next), face))
+      return false;
+  return true;
 }
 
-Raster operator&(Raster a, const Raster& b) {
-  for (int j = 0; j < Raster::n; ++j)
-    a.rows_[j] &= b.rows_[j];
-  return a;
+/// Would a part of the cell hang together with hardly anything?
+bool leaves_shreds(const Solid& solid, const Front& front, const std::map<CellId, Front>& begun) {
+  const auto cuts_of = [&](const CellId c) { return cuts_with(solid, c, begun); };
+  const grid::Parts parts = grid::parts_of(cuts_of(front.cell));
+  return std::ranges::any_of(parts, [&](const grid::Part& part) {
+    return is_small(solid, front.cell, std::countr_zero(part.items()), cuts_of);
+  });
 }
+
+bool is_cut_beside(const Solid& solid, const CellId c) {
+  for (int face = 0; face < grid::cube::n_faces; ++face)
+    if (const CellId next = solid.grid.neighbour(c, face); next.valid() && grid::cuts_of_copies(solid, next).blades != 0)
+      return true;
+  return false;
+}
+
+/// The part of a section that what is drawn covers, with its lag.
+double passed(const Front& front, const Raster& section, const Raster& swept) {
+  const Raster come = section & swept.grown(grid::front_lag * front.normal.lpNorm<1>());
+  return section.any() ? std::min(most_passed, double(come.count()) / section.count()) : 0;
+}
+
+} // namespace
 
 void Advance::sweep(const BladePath& path, const Solid& solid, const Points& x_before, const Points& x,
                     const EdgeBoxes& boxes, const grid::CutLabel label) {
@@ -225,95 +307,62 @@ void Advance::sweep(const BladePath& path, const Solid& solid, const Points& x_b
     boxes.for_each_cell(k, [&](const CellId c) {
       const bool is_whole = !solid.complex.copies[solid.complex.first_copy[c]].next.valid();
       if ((is_whole || cells_.contains(c)) && sweep.is_near(c))
-        sweep.for_each_quad(c, [&](const Patch& quad) { draw(solid, c, quad, label); });
+        sweep.for_each_piece(c, [&](const Polygon& piece) { add(solid, c, piece, label); });
     });
 }
 
-void Advance::draw(const Solid& solid, const CellId c, const Patch& quad, const grid::CutLabel label) {
-  const double h = solid.grid.h();
-  auto at = cells_.find(c);
-  if (at == cells_.end()) {
-    const std::optional<Cell> begun = begin(solid, c, quad, label);
-    if (!begun)
-      return;
-    at = cells_.emplace(c, *begun).first;
-  }
-  Cell& cell = at->second;
+void Advance::add(const Solid& solid, const CellId c, const Polygon& piece, const grid::CutLabel label) {
+  Cell& cell = cells_.emplace(c, Cell{label}).first->second;
   if (cell.label != label)
     return;
-  const InPlane in_plane(cell.point, cell.normal, h);
-  const Vec3 a = in_plane(quad[0]), b = in_plane(quad[1]), c_ = in_plane(quad[2]), d = in_plane(quad[3]);
-  cell.swept.draw({a, b, c_}, off_plane);
-  cell.swept.draw({a, c_, d}, off_plane);
+  if (const Front* const front = solid.cuts.front(c))
+    draw(piece, InPlane(front->point, front->normal, solid.grid.h()), cell.swept);
+  else
+    cell.pieces.push_back(piece);
   touched_.insert(c);
-}
-
-std::optional<Advance::Cell> Advance::begin(const Solid& solid, const CellId c, const Patch& quad,
-                                            const grid::CutLabel label) {
-  constexpr double least_area = 1e-6; // of a face
-  const double h = solid.grid.h();
-  const Polygon piece = clipped({quad.begin(), quad.end()}, reach_of(solid, c));
-  if (area(piece) < least_area * h * h)
-    return std::nullopt;
-  const CellAtPlane at_plane(solid, c, {mean(piece), normal(piece)}, rest_of(solid, c));
-  if (!at_plane.is_met())
-    return std::nullopt;
-  const Front front = at_plane.front(at_plane.section(), 0);
-  const Raster section = section_of(solid, c, InPlane(front.point, front.normal, h));
-  if (!section.any())
-    return std::nullopt;
-  return Cell{front.point, front.normal, section, {}, label};
 }
 
 std::vector<Front> Advance::take(const Solid& solid, const PendingCuts& pending) {
   std::vector<Front> fronts;
+  Fronts begun;
   std::set<CellId> later;
   for (const CellId c : touched_) {
-    if (grid::whole_parts_of(grid::cuts_of(solid, c)).n > 1) {
-      cells_.erase(c);
-      continue;
-    }
+    Cell& cell = cells_.at(c);
     const auto edges = solid.grid.edges(c);
-    if (std::ranges::any_of(edges, [&](const grid::EdgeId e) { return pending.waits(e); }))
+    if (grid::whole_parts_of(grid::cuts_of(solid, c)).n > 1)
+      cells_.erase(c);
+    else if (std::ranges::any_of(edges, [&](const grid::EdgeId e) { return pending.waits(e); }))
       later.insert(c);
-    else if (const std::optional<Front> front = front_in(solid, c))
-      fronts.push_back(*front);
+    else if (const Front* const earlier = solid.cuts.front(c)) {
+      Front moved = *earlier;
+      moved.passed = passed(moved, cell.section, cell.swept);
+      if (moved.passed > earlier->passed)
+        fronts.push_back(moved);
+    } else if (const auto front = front_ahead(solid, c, cell.pieces, cell.label))
+      begun.emplace(c, *front);
   }
+  for (auto& [c, front] : begun)
+    if (agrees_with_neighbours(solid, front, begun) && begin(solid, front, begun))
+      fronts.push_back(front);
   touched_ = std::move(later);
+  std::ranges::sort(fronts, {}, &Front::cell);
   return fronts;
 }
 
-/// Is the blade in the material of the cell, or of one beside it?
-bool Advance::is_in_material(const Solid& solid, const CellId c) const {
-  const auto is_in = [&](const CellId cell) {
-    if (const auto at = cells_.find(cell); at != cells_.end())
-      return (at->second.section & at->second.swept).any();
-    return cell.valid() && grid::cuts_of(solid, cell).blades != 0;
-  };
-  bool found = is_in(c);
-  for (int face = 0; face < grid::cube::n_faces && !found; ++face)
-    found = is_in(solid.grid.neighbour(c, face));
-  return found;
-}
-
-/// As it is now, if that is further than it was.
-std::optional<Front> Advance::front_in(const Solid& solid, const CellId c) const {
-  const Cell& cell = cells_.at(c);
-  const bool has_skin = grid::material_of(solid.grid, c) != 0xff;
-  const Raster come =
-    cell.section & (has_skin ? cell.swept : cell.swept.grown(grid::front_lag * cell.normal.lpNorm<1>()));
-  const double now = double(come.count()) / cell.section.count();
-  if (const Front* const earlier = solid.cuts.front(c)) {
-    Front moved = *earlier;
-    moved.passed = std::min(most_passed, now);
-    return moved.passed > earlier->passed ? std::optional(moved) : std::nullopt;
-  }
-  if (now < least_passed || !is_in_material(solid, c))
-    return std::nullopt;
-  const CellAtPlane at_plane(solid, c, {cell.point, cell.normal}, rest_of(solid, c));
-  Front front = at_plane.front(at_plane.section(), now);
-  front.label = cell.label;
-  return front.ahead != 0 && !hangs_by_skin(solid, front) ? std::optional(front) : std::nullopt;
+/// Whether it has come so far that it is worth a copy.
+bool Advance::begin(const Solid& solid, Front& front, const Fronts& begun) {
+  Cell& cell = cells_.at(front.cell);
+  const InPlane in_plane(front.point, front.normal, solid.grid.h());
+  Raster swept;
+  for (const Polygon& piece : cell.pieces)
+    draw(piece, in_plane, swept);
+  const Raster section = section_of(solid, front.cell, in_plane);
+  front.passed = passed(front, section, swept);
+  if (front.passed < least_passed || !((section & swept).any() || is_cut_beside(solid, front.cell)) ||
+      leaves_shreds(solid, front, begun))
+    return false;
+  cell = {cell.label, {}, section, swept};
+  return true;
 }
 
 } // namespace kerf::cut

@@ -57,6 +57,22 @@ CellAtPlane::CellAtPlane(const grid::Solid& solid, const grid::CellId c, const P
   }
 }
 
+bool CellAtPlane::is_clear(const double margin) const {
+  const grid::CellCuts cuts = grid::cuts_of(solid_, cell_);
+  const grid::Skeleton& skeleton = cuts.skeleton();
+  std::array<double, skeleton::n_items> heights{};
+  for (grid::Items left = skeleton.items; left != 0; left &= left - 1) {
+    const int item = std::countr_zero(left);
+    heights[item] = item < skeleton::first_on_line ? height_[item] : height(position(item));
+    if (std::abs(heights[item]) <= margin)
+      return false;
+  }
+  for (Segments left = cuts.blades & skeleton.segments; left != 0; left &= left - 1)
+    if (const auto& [a, b] = skeleton.segment[std::countr_zero(left)].ends; (heights[a] >= 0) == (heights[b] >= 0))
+      return false;
+  return true;
+}
+
 CellAtPlane::Section CellAtPlane::section() const {
   constexpr double little = 1e-3; // in parts of h
   const auto [least, most] = std::minmax_element(height_.begin(), height_.end());

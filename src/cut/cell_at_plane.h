@@ -24,6 +24,10 @@ class CellAtPlane {
 
   bool is_met() const { return above_ != 0 && above_ != 0xff; }
 
+  /// Do all nodes and points of the skin lie farther than this off the plane [m], and those that blades have parted on
+  /// either side of it?
+  bool is_clear(double margin) const;
+
   /// Where the plane meets the cube, around, there and at rest. A plane that only grazes the cell is moved into it by a
   /// little, so that its section has an area.
   struct Section {

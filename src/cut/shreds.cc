@@ -97,7 +97,8 @@ bool holds(const ItemsOfCells& all, const CellId cell, const Items items) {
 }
 
 /// All that hangs together with an item of a cell; nothing where that is more than a shred, which joins `large`.
-std::optional<Shred> shred_at(const grid::Solid& solid, const CellId cell, const int item, ItemsOfCells& large) {
+std::optional<Shred> shred_at(const grid::Solid& solid, const CellId cell, const int item, ItemsOfCells& large,
+                              const CutsOfCell& cuts_of) {
   Shred shred;
   std::vector<std::pair<CellId, int>> open = {{cell, item}};
   while (!open.empty()) {
@@ -106,7 +107,7 @@ std::optional<Shred> shred_at(const grid::Solid& solid, const CellId cell, const
     Items& known = shred.items[c];
     if (known >> i & 1)
       continue;
-    const grid::CellCuts cuts = grid::cuts_of(solid, c);
+    const grid::CellCuts cuts = cuts_of(c);
     const Items found = cuts.skeleton().reachable(Items(1) << i, cuts.blades);
     known |= found;
     const auto nodes = solid.grid.nodes(c);
@@ -210,7 +211,8 @@ TakenBack cuts_to_leave(const grid::Solid& solid, const NewCuts& new_cuts) {
     for (const grid::Part& part : whole_parts_of(grid::cuts_of(solid, c))) {
       if (holds(seen, c, part.items()) || holds(large, c, part.items()))
         continue;
-      if (const auto shred = shred_at(solid, c, std::countr_zero(part.items()), large)) {
+      if (const auto shred = shred_at(solid, c, std::countr_zero(part.items()), large,
+                                     [&](const CellId cell) { return grid::cuts_of(solid, cell); })) {
         add(seen, shred->items);
         leave(solid, *shred, new_cuts, back);
       }
@@ -229,6 +231,11 @@ std::size_t leave_shreds(grid::Solid& solid, std::vector<EdgeId>& edges, std::ve
       return n;
     n += n_now;
   }
+}
+
+bool is_small(const grid::Solid& solid, const CellId cell, const int item, const CutsOfCell& cuts_of) {
+  ItemsOfCells large;
+  return shred_at(solid, cell, item, large, cuts_of).has_value();
 }
 
 } // namespace kerf::cut

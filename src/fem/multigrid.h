@@ -7,7 +7,8 @@
 /// Levels: coarsening.h, elements on them: coarse_elements.h, with the mean rotation of their children; so all levels are
 /// the same kernels. M is lumped on every level, restricted with the weights of the transfer; so are loads. Penalties of
 /// near-empty copies (ghost_penalty.h) go along: for motions of the coarse cubes a face's second differences are half
-/// those across the coarse face, and vanish within a coarse copy. Coarse levels do not know supports, but springs in their
+/// those across the coarse face, and vanish within a coarse copy. Ties of fronts (ties.h) become ties of the coarse corners, where
+/// these are two. Coarse levels do not know supports, but springs in their
 /// place, of the size of the stiffness that they hold.
 ///
 /// A cycle is a V, smoothed before and after by the same Chebyshev polynomial of block Jacobi's matrix (Adams, Brezina, Hu
@@ -23,6 +24,7 @@
 #include "fem/batches.h"
 #include "fem/coarsening.h"
 #include "fem/ghost_penalty.h"
+#include "fem/ties.h"
 
 #include <memory>
 
@@ -38,6 +40,7 @@ struct FinestLevel {
   std::function<const Element&(std::uint32_t copy)> element;
   const Batching& batching;
   std::span<const GhostFace> faces;
+  std::span<const Tie> ties;
 };
 
 class Multigrid : public dynamics::Preconditioner {
