@@ -1,13 +1,14 @@
 #include "grid/fronts.h"
 
+#include "grid/material.h"
+
 #include <algorithm>
 
 namespace kerf::grid {
 
 namespace {
 
-constexpr double opening = 0.12;      // c
-constexpr double least_passed = 0.02; // by which skin alone is tied to what it belongs to
+constexpr double opening = 0.12; // c
 
 /// The corners that two copies of a cell do not share.
 void add_pairs(const Copy& one, const Copy& other, std::vector<Tie>& ties) {
@@ -45,9 +46,10 @@ std::vector<Tie> ties(const Solid& solid) {
     const Front& front = *solid.cuts.front(copies[c].cell);
     const std::size_t first = ties.size();
     add_pairs(copies[c], copies[d], ties);
-    const bool is_sliver = copies[c].nodes == 0 || copies[d].nodes == 0;
-    const double passed = is_sliver ? least_passed : front.passed;
-    const double length = opening * front.area / solid.grid.h() * (1 - passed) / passed;
+    const double length =
+      copies[c].nodes == 0 || copies[d].nodes == 0
+        ? std::min(fill(solid, copies[c]), fill(solid, copies[d])) * solid.grid.h()
+        : opening * front.area / solid.grid.h() * (1 - front.passed) / front.passed;
     for (std::size_t i = first; i < ties.size(); ++i)
       ties[i].length = length / static_cast<double>(ties.size() - first);
   }
