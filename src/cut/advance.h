@@ -2,31 +2,25 @@
 
 /// How far moving blades have come in cells that they have not parted: the fronts that they leave (grid/fronts.h).
 ///
-/// Where a blade will go in a cell is not known before it has been there. It is taken to go on as it came: in the plane
-/// nearest to what it has swept in the cell and to where it has cut edges around it, all at rest. A cell is parted along
-/// that plane where this is certain: no node and no point of the skin lies nearer to the plane than twice what strays
-/// farthest from it, what is cut already is parted by it, and the cells beside it, as far as they are parted, part the
-/// faces between them alike. Else it stays whole until it is cut. So a blade that turns, or a body that swings, gets no
-/// front rather than a wrong one.
+/// A cell is parted along the plane in which the blade will go through it, where that is certain (course.h); else it stays
+/// whole until it is cut.
 ///
 /// What the blade sweeps is drawn onto a raster in that plane, where a point that is passed twice counts once; what leaves
 /// the plane by a quarter of a cube does not count. As elements are too stiff at a front, what is drawn is taken larger by
-/// the lag of fronts, and so reaches on into the next cells. The part of the section of plane and material
-/// that it covers is how far the cut has come. Where it is the lag alone that reaches into a cell, one beside it has to be
-/// cut.
+/// the lag of fronts, and so reaches on into the next cells; one of which the lag alone reaches has to have a cut one beside
+/// it. The part of the section of plane and material that it covers is how far the cut has come.
 ///
 /// Cells in which cuts wait (pending.h) get no front before they are cut.
 ///
 /// Errors: a texel is .04 cubes wide; within a cell the map of its copy is taken as affine. A blade that turns leaves
 /// the fronts that it had.
 
-#include "cut/cell_at_plane.h"
+#include "cut/course.h"
 #include "cut/edge_boxes.h"
 #include "cut/near_sweep.h"
 #include "cut/pending.h"
 #include "cut/raster.h"
 
-#include <map>
 #include <set>
 
 namespace kerf::cut {
@@ -46,15 +40,14 @@ class Advance {
  private:
   struct Cell {
     grid::CutLabel label = 1;
-    std::vector<Polygon> pieces = {};      ///< of strips, rest frame [m]; until there is a front
-    Raster section = {}, swept = {}; ///< from then on
+    std::vector<Polygon> pieces = {}; ///< of strips, rest frame [m]; until there is a front
+    Raster section = {}, swept = {};  ///< from then on
 
     void archive(Archive& a) { a(label, pieces, section, swept); }
   };
 
-  using Fronts = std::map<grid::CellId, grid::Front>;
   void add(const grid::Solid& solid, grid::CellId c, const Polygon& piece, grid::CutLabel label);
-  bool begin(const grid::Solid& solid, grid::Front& front, const Fronts& begun);
+  bool begin(const grid::Solid& solid, grid::Front& front, const FrontsOfCells& begun);
 
   std::map<grid::CellId, Cell> cells_;
   std::set<grid::CellId> touched_; // in which blades have swept since fronts were taken

@@ -98,7 +98,7 @@ class Cutter {
   std::optional<EdgeBoxes> boxes_;  // around the edges; there from begin() on
   std::vector<PassedCells> passed_; // by label, from 1
   Advance advance_;
-  Points x_before_;                 // where the corners were when the blades were met last [m]
+  Points x_before_; // where the corners were when the blades were met last [m]
   CutCounts counts_;
 };
 

@@ -127,8 +127,7 @@ std::optional<Shred> shred_at(const grid::Solid& solid, const CellId cell, const
 
 Bound bound_at(const grid::Solid& solid, const CellId c, const grid::CellCuts& cuts, const int segment,
                const int inner_end) {
-  const Vec3 to_cut =
-    grid::segment_point(solid, c, cuts.skeleton(), segment) - grid::item_point(solid, c, inner_end);
+  const Vec3 to_cut = grid::segment_point(solid, c, cuts.skeleton(), segment) - grid::item_point(solid, c, inner_end);
   const auto outward = [&](const Vec3& normal) -> Vec3 { return normal.dot(to_cut) < 0 ? Vec3(-normal) : normal; };
   if (segment < cube::n_lines) {
     const EdgeId edge = solid.grid.edges(c)[segment];
@@ -167,11 +166,10 @@ double volume(const grid::Solid& solid, const Shred& shred) {
 /// Do cuts of one blade bound the shred, and on opposite sides?
 bool is_between_passes(const std::vector<Bound>& bounds) {
   constexpr double opposite = -0.5;
-  return std::ranges::all_of(bounds, [&](const Bound& a) {
-           return a.label == bounds.front().label;
-         }) && std::ranges::any_of(bounds, [&](const Bound& a) {
-    return std::ranges::any_of(bounds, [&](const Bound& b) { return a.outward.dot(b.outward) < opposite; });
-  });
+  return std::ranges::all_of(bounds, [&](const Bound& a) { return a.label == bounds.front().label; }) &&
+         std::ranges::any_of(bounds, [&](const Bound& a) {
+           return std::ranges::any_of(bounds, [&](const Bound& b) { return a.outward.dot(b.outward) < opposite; });
+         });
 }
 
 /// Of a tip all new cuts of the blade that comes nearest: it may hang on both sides of another one.
@@ -212,7 +210,7 @@ TakenBack cuts_to_leave(const grid::Solid& solid, const NewCuts& new_cuts) {
       if (holds(seen, c, part.items()) || holds(large, c, part.items()))
         continue;
       if (const auto shred = shred_at(solid, c, std::countr_zero(part.items()), large,
-                                     [&](const CellId cell) { return grid::cuts_of(solid, cell); })) {
+                                      [&](const CellId cell) { return grid::cuts_of(solid, cell); })) {
         add(seen, shred->items);
         leave(solid, *shred, new_cuts, back);
       }

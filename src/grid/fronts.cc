@@ -46,10 +46,9 @@ std::vector<Tie> ties(const Solid& solid) {
     const Front& front = *solid.cuts.front(copies[c].cell);
     const std::size_t first = ties.size();
     add_pairs(copies[c], copies[d], ties);
-    const double length =
-      copies[c].nodes == 0 || copies[d].nodes == 0
-        ? std::min(fill(solid, copies[c]), fill(solid, copies[d])) * solid.grid.h()
-        : opening * front.area / solid.grid.h() * (1 - front.passed) / front.passed;
+    const double length = copies[c].nodes == 0 || copies[d].nodes == 0
+                            ? std::min(fill(solid, copies[c]), fill(solid, copies[d])) * solid.grid.h()
+                            : opening * front.area / solid.grid.h() * (1 - front.passed) / front.passed;
     for (std::size_t i = first; i < ties.size(); ++i)
       ties[i].length = length / static_cast<double>(ties.size() - first);
   }

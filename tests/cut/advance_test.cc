@@ -45,7 +45,8 @@ Blade random_stroke(support::Random& random, const double size) {
   const Vec3 towards = random_direction(random), side = towards.unitOrthogonal();
   const Vec3 start = -1.3 * size * towards + 0.4 * size * support::random_vector(random);
   const double reach = uniform(random, 0.6, 2.4), turn = uniform(random, -60, 60);
-  Blade blade = {"blade", {Vec3(uniform(random, -1.5, 0) * size * side), Vec3(uniform(random, 0, 1.5) * size * side)}, {}};
+  Blade blade = {
+    "blade", {Vec3(uniform(random, -1.5, 0) * size * side), Vec3(uniform(random, 0, 1.5) * size * side)}, {}};
   blade.key_frames = {{0, start, Vec3::Zero()}, {1, start + reach * size * towards, turn * side}};
   return blade;
 }
@@ -55,8 +56,8 @@ TEST(Advance, LeavesThePiecesMassAndSurfaceAsTheyWere) {
   support::Random random(7);
   std::size_t n_fronts = 0;
   for (int i = 0; i < 40; ++i) {
-    const Body whole = support::with_copies(
-      support::with_placed_skin(support::ball(3 + 0.05 * i, 1, support::random_offset(random))));
+    const Body whole =
+      support::with_copies(support::with_placed_skin(support::ball(3 + 0.05 * i, 1, support::random_offset(random))));
     Cutting with(whole, Fronts::inside_cells), without(whole, Fronts::at_faces);
     for (int stroke = 0; stroke < 2; ++stroke) {
       const Blade blade = random_stroke(random, 4);
@@ -79,8 +80,8 @@ TEST(Advance, LeavesThePiecesMassAndSurfaceAsTheyWere) {
 TEST(Advance, TiesNothingThatIsCut) {
   support::Random random(9);
   for (int i = 0; i < 20; ++i) {
-    const Body whole = support::with_copies(
-      support::with_placed_skin(support::ball(4, 1, support::random_offset(random))));
+    const Body whole =
+      support::with_copies(support::with_placed_skin(support::ball(4, 1, support::random_offset(random))));
     Cutting slow(whole, Fronts::inside_cells), fast(whole, Fronts::inside_cells);
     Blade blade = random_stroke(random, 4);
     for (KeyFrame& frame : blade.key_frames)

@@ -51,7 +51,6 @@ inline bool is_closed(const surface::Surface& s) {
 
 inline double sum(const std::vector<double>& values) { return std::accumulate(values.begin(), values.end(), 0.0); }
 
-
 /// Built anew from what is cut, body and surface are the same.
 inline void expect_as_built(const Cutting& cutting) {
   Body anew = cutting.body;
