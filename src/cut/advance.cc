@@ -70,17 +70,21 @@ void draw_section(const std::array<Vec3, 4>& tetrahedron, Raster& raster) {
         raster.draw({points[i], points[j], points[k]}, 1);
 }
 
-/// Where a plane meets the material of a cell.
+/// Where a plane meets the material of a cell: a little above it, as what is cut already has its vertices in the plane.
 Raster section_of(const Solid& solid, const CellId c, const InPlane& in_plane) {
+  constexpr double little = 1e-3; // cubes
   Raster section;
   const Vec3 origin = solid.grid.origin(c);
-  grid::for_each_tetrahedron(
-    solid, solid.complex.copies[solid.complex.first_copy[c]], [&](const grid::Tetrahedron& rest, int) {
-      std::array<Vec3, 4> points;
-      std::ranges::transform(rest, points.begin(),
-                             [&](const Vec3& xi) { return in_plane(origin + solid.grid.h() * xi); });
-      draw_section(points, section);
+  grid::Copy whole = solid.complex.copies[solid.complex.first_copy[c]];
+  if (const grid::CellCuts cuts = grid::cuts_of(solid, c); cuts.is_cut_at_skin()) // which its copy may not know yet
+    whole.skin = grid::Part::of(cuts.skeleton().items).skin;
+  grid::for_each_tetrahedron(solid, whole, [&](const grid::Tetrahedron& rest, int) {
+    std::array<Vec3, 4> points;
+    std::ranges::transform(rest, points.begin(), [&](const Vec3& xi) {
+      return Vec3(in_plane(origin + solid.grid.h() * xi) - little * Vec3::UnitZ());
     });
+    draw_section(points, section);
+  });
   return section;
 }
 

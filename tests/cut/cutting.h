@@ -25,8 +25,9 @@ struct Cutting {
     surface = surface::build_surface(body, index);
   }
   void cut(const Shape& shape) { follow(cutter.at_once(body, {"cut", shape, 1}, grid::rest_positions(body))); }
-  void step(const Blade& blade, const double t0, const double t1) {
-    follow(cutter.step(body, std::span(&blade, 1), t0, t1, grid::rest_positions(body)));
+  void step(const Blade& blade, const double t0, const double t1) { step(blade, t0, t1, grid::rest_positions(body)); }
+  void step(const Blade& blade, const double t0, const double t1, const Points& x) {
+    follow(cutter.step(body, std::span(&blade, 1), t0, t1, x));
   }
   void follow(const grid::CutChange& change) {
     surface::place(body, change, {});
