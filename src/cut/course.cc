@@ -18,6 +18,8 @@ using grid::CellId;
 using grid::Front;
 using grid::Solid;
 
+constexpr double in_plane = 1e-6; // cubes; and of a unit vector
+
 std::array<Vec3, 8> rest_of(const Solid& solid, const CellId c) {
   std::array<Vec3, 8> corners;
   std::ranges::transform(solid.grid.nodes(c), corners.begin(),
@@ -71,6 +73,15 @@ std::optional<Course> course_of(const Points& points, const double h) {
   return course;
 }
 
+/// As the predicates have it, by which blades cut (geometry/predicates.h): what lies right in a plane is behind it along
+/// the first axis that is not in the plane.
+Plane displaced(const Plane& plane, const double distance) {
+  int axis = 0;
+  while (std::abs(plane.normal[axis]) < in_plane)
+    ++axis;
+  return {plane.point + (plane.normal[axis] > 0 ? distance : -distance) * plane.normal, plane.normal};
+}
+
 /// Two parts, with nodes in each.
 bool parts_in_two(const Solid& solid, const Front& front) {
   const grid::Parts parts = grid::parts_of(grid::with(grid::cuts_of(solid, front.cell), front.ahead));
@@ -119,13 +130,13 @@ bool leaves_shreds(const Solid& solid, const Front& front, const FrontsOfCells& 
 
 std::optional<Front> front_ahead(const Solid& solid, const CellId c, const std::vector<Polygon>& pieces,
                                  const grid::CutLabel label) {
-  constexpr double safety = 2, round_off = 1e-6;
+  constexpr double safety = 2;
   const double h = solid.grid.h();
   const std::optional<Course> course = course_of(known_points(solid, c, pieces, label), h);
   if (!course)
     return std::nullopt;
-  const CellAtPlane at_plane(solid, c, course->plane, rest_of(solid, c));
-  if (!at_plane.is_met() || !at_plane.is_clear(safety * course->stray + round_off * h))
+  const CellAtPlane at_plane(solid, c, displaced(course->plane, in_plane * h), rest_of(solid, c));
+  if (!at_plane.is_met() || !at_plane.is_clear(std::max(safety * course->stray, 0.9 * in_plane * h)))
     return std::nullopt;
   Front front = at_plane.front(at_plane.section(), 0);
   front.label = label;
