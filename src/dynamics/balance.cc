@@ -334,13 +334,8 @@ void BalanceSolver::apply_inverse_blocks(const std::span<const double> r, const 
 }
 
 Preconditioner* BalanceSolver::preconditioner(const Problem& problem) {
-  load_bounds_.clear();
-  if (!tangent_.empty()) {
-    load_bounds_.assign(blocks_.size(), Mat3::Zero());
-    tangent_.add_bound(load_bounds_);
-  }
   return model_.preconditioner(
-    {problem.mass_factor, problem.stiffness_factor, problem.mass, blocks_, load_bounds_, problem.constraints});
+    {problem.mass_factor, problem.stiffness_factor, problem.mass, blocks_, tangent_, problem.constraints});
 }
 
 int BalanceSolver::correct(const Problem& problem, const Points& guess, const double scale) {

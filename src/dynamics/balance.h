@@ -181,7 +181,6 @@ class BalanceSolver {
   std::vector<Mat3> stiffness_blocks_, blocks_; // diagonals of K and of A
   std::vector<Mat3> scaling_;        // L^-1 from the free directions' basis, a row of zeros for each that is held
   std::vector<Mat3> inverse_blocks_; // S^T S
-  std::vector<Mat3> load_bounds_;    // see LoadTangent::add_bound
   std::vector<double> load_product_, mass_product_;
   double most_work_ = 0; // of what is out of balance, in the step at hand [J]
   double way_ = 0;       // from the guess to the first iterate, in the energy norm; 0: unknown

@@ -15,6 +15,10 @@
 /// front that moves on gives and takes no energy at once. c is measured: at .12 the stiffness of a double cantilever
 /// tells where its front is to .07 h, wherever that is in a cell.
 ///
+/// A blade that turns after its front has begun may leave a third part, of skin without a node. That is no front: it is held
+/// to what it belongs to, by springs as stiff as its own material is: stiffer ones would do no more, and conjugate gradients
+/// would feel them.
+///
 /// Departs from the source, in which the jump vanishes at the front by the shape functions of the element: these need the
 /// front's shape in the cell, and another integration for each.
 ///

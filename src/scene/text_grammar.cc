@@ -101,6 +101,10 @@ class Checker {
     if (!std::all_of(match.name.begin(), match.name.end(), allowed))
       throw error(section.origin, path, match.name, "a name must be letters, digits, '_' and '-'",
                   "Write for example 'subsection " + match.kind->kind + " first'");
+    constexpr std::size_t most = 100; // of the 255 bytes of a file's name
+    if (match.name.size() > most)
+      throw error(section.origin, path, "", "a name must have at most " + std::to_string(most) + " characters",
+                  "Write a shorter one");
   }
 
   void check_keys(const WrittenSection& section, const std::vector<Parameter>& allowed, const std::string& path) const {
@@ -129,7 +133,8 @@ class Checker {
     if (rule.empty() || (it->required && key.value.empty())) // a missing key, told as such
       return;
     const auto word = nearest(key.value, it->words);
-    const std::string example = !it->fallback.empty() && it->check(it->fallback).empty() ? " (default " + it->fallback + ")" : "";
+    const std::string example =
+      !it->fallback.empty() && it->check(it->fallback).empty() ? " (default " + it->fallback + ")" : "";
     throw error(key.origin, path + "/" + key.name, key.value, rule,
                 word ? "Did you mean '" + *word + "'?" : it->text + example);
   }
