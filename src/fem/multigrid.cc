@@ -325,15 +325,15 @@ void Multigrid::put_rotations(const std::span<const Lanes9<double>> finest) {
     Level& level = levels_[l];
     const bool is_last = l + 1 == levels_.size();
     std::vector<Mat3> sums(is_last ? 0 : levels_[l + 1].cells.n_copies(), Mat3::Zero());
-    if (l == 0)
-      level.rotations.resize(level.cells.n_copies());
     for (std::size_t i = 0; i < level.batching.batches().size(); ++i) {
       const BatchOfCopies& batch = level.batching.batches()[i];
       for (std::size_t lane = 0; lane < n_lanes; ++lane) {
         const std::uint32_t c = batch.copies[lane];
         if (c == BatchOfCopies::none)
           continue;
-        Mat3& R = level.rotations[c];
+        Mat3 R;
+        if (l > 0)
+          R = level.rotations[c];
         for (int k = 0; k < 9 && l == 0; ++k)
           R.data()[k] = finest[i].row[k][lane];
         for (int k = 0; k < 9; ++k)
