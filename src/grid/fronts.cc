@@ -26,12 +26,15 @@ bool hang_together(const Parts& parts, const Copy& one, const Copy& other) {
 
 } // namespace
 
-std::vector<std::array<CopyId, 2>> tied_copies(const Solid& solid, const CellComplex& complex) {
+std::vector<std::array<CopyId, 2>> tied_copies(const Solid& solid, const CellComplex& complex,
+                                               const std::span<const CellId> cells) {
   const auto& copies = complex.copies;
   std::vector<std::array<CopyId, 2>> tied;
-  for (const Front& front : solid.cuts.fronts()) {
-    const Parts parts = whole_parts_of(cuts_of(solid, front.cell));
-    for (const CopyId c : complex.copies_of(front.cell))
+  for (const CellId cell : cells) {
+    if (!solid.cuts.front(cell))
+      continue;
+    const Parts parts = whole_parts_of(cuts_of(solid, cell));
+    for (const CopyId c : complex.copies_of(cell))
       for (CopyId d = copies[c].next; d.valid(); d = copies[d].next)
         if (hang_together(parts, copies[c], copies[d]))
           tied.push_back({c, d});

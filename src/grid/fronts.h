@@ -39,8 +39,10 @@ struct Tie {
   double length; ///< its spring's stiffness over E / (1 - nu^2) [m]
 };
 
-/// The copies that fronts alone part: none in cells through which cuts have come meanwhile.
-std::vector<std::array<CopyId, 2>> tied_copies(const Solid& solid, const CellComplex& complex);
+/// The copies that fronts alone part in some cells, in their order: none in those without a front, or through which cuts
+/// have come meanwhile.
+std::vector<std::array<CopyId, 2>> tied_copies(const Solid& solid, const CellComplex& complex,
+                                               std::span<const CellId> cells);
 
 /// Between them, in their order.
 std::vector<Tie> ties(const Solid& solid);
