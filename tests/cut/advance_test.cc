@@ -157,5 +157,36 @@ TEST(Advance, DoesNotDependOnSteps) {
   EXPECT_LE(n_all, n_common + n_common / 20);
 }
 
+/// Half a stroke, an archive, and the other half: as without one.
+TEST(Advance, GoesOnFromAnArchive) {
+  const Body whole = support::with_copies(support::with_placed_skin(support::ball(4, 1, Vec3(0.2, 0.7, 0.4))));
+  const Points x = grid::rest_positions(whole);
+  const Blade blade{"blade", {Vec3(0, -20, 0), Vec3(0, 20, 0)}, {{0, Vec3(-6, 0, 0.37)}, {1, Vec3(6, 0, 0.37)}}};
+  Body body = whole, again = whole;
+  Cutter cutter(1, Release::queued, Fronts::inside_cells), resumed(1, Release::queued, Fronts::inside_cells);
+  cutter.begin(body, x);
+  resumed.begin(again, x);
+  const auto step = [&](Cutter& by, Body& of, const int k) {
+    surface::place(of, by.step(of, std::span(&blade, 1), k / 40.0, (k + 1) / 40.0, grid::rest_positions(of)), {});
+  };
+  for (int k = 0; k < 20; ++k)
+    step(cutter, body, k);
+  Archive archive;
+  archive(body, cutter);
+  Archive back(archive.bytes(), "a test");
+  back(again, resumed);
+  for (int k = 20; k < 30; ++k) {
+    step(cutter, body, k);
+    step(resumed, again, k);
+  }
+  ASSERT_GT(body.complex.tied.size(), 5u);
+  EXPECT_EQ(body.complex.tied, again.complex.tied);
+  ASSERT_EQ(body.cuts.fronts().size(), again.cuts.fronts().size());
+  for (std::size_t i = 0; i < body.cuts.fronts().size(); ++i) {
+    EXPECT_EQ(body.cuts.fronts()[i].cell, again.cuts.fronts()[i].cell);
+    EXPECT_EQ(body.cuts.fronts()[i].passed, again.cuts.fronts()[i].passed);
+  }
+}
+
 } // namespace
 } // namespace kerf::cut
