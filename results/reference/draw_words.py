@@ -74,8 +74,8 @@ def draw_rest(axes, complex_, surface, layer, h):
         level = lower[ACROSS] + h
         n = len(copies)
         box(axes, lower, h, fc="#F3E2D3" if n > 1 else "white", ec="#BBBBBB", lw=0.8, zorder=0)
-        above = (cell[0], cell[1], cell[2] + 1)
-        if n == 1 and len(cells.get(above, [])) > 1:
+        below = (cell[0], cell[1], cell[2] - 1)
+        if n > 1 and len(cells.get(below, [])) == 1:
             fronts.append(lower)
     for lower in fronts:
         box(axes, lower, h, fc=FRONT, alpha=0.5, ec="none", zorder=0)

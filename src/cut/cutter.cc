@@ -39,8 +39,12 @@ CutChange Cutter::step(Solid& solid, const std::span<const Blade> blades, const 
   if (!blades.empty())
     boxes_->fit(x_before_, x);
   std::vector<Stroke> strokes;
-  for (const Blade& blade : blades)
+  for (const Blade& blade : blades) {
     strokes.push_back(stroke(solid, blade, t0, t1, x));
+    if (fronts_ == Fronts::inside_cells)
+      for (const BladePath& path : paths(blade, t0, t1))
+        advance_.sweep(path, solid, x_before_, x, *boxes_, blade.label);
+  }
   return take(solid, strokes, x);
 }
 
@@ -57,7 +61,8 @@ CutChange Cutter::take(Solid& solid, const std::span<const Stroke> strokes, cons
     cuts.cuts = pending_.release(solid);
   if (strokes.empty() || boxes_->moves())
     x_before_ = x; // not after the cut: where corners jump then, the blade meets them on their way
-  return cut(solid, cuts);
+  const Added added = add(solid, cuts);
+  return part(solid, added, advance_.take(solid, pending_));
 }
 
 CutChange Cutter::at_once(Solid& solid, const CutSurface& surface, const Points& x) {
@@ -65,13 +70,8 @@ CutChange Cutter::at_once(Solid& solid, const CutSurface& surface, const Points&
   const SweepCuts found = cut_edges(surface, solid, x, &*boxes_);
   counts_.n_double_crossings += found.n_double_crossings;
   const Added added = add(solid, found);
-  std::vector<grid::CellId> cells;
-  if (fronts_ == Fronts::inside_cells)
-    for (const grid::Front& front : find_fronts(surface, solid, x)) {
-      solid.cuts.set(front);
-      cells.push_back(front.cell);
-    }
-  return part(solid, added, cells);
+  return part(solid, added,
+              fronts_ == Fronts::inside_cells ? find_fronts(surface, solid, x) : std::vector<grid::Front>());
 }
 
 CutChange Cutter::cut(Solid& solid, const SweepCuts& cuts) { return part(solid, add(solid, cuts), {}); }
@@ -101,10 +101,15 @@ Cutter::Added Cutter::add(Solid& solid, const SweepCuts& cuts) {
   return added;
 }
 
-CutChange Cutter::part(Solid& solid, const Added& added, const std::span<const grid::CellId> fronts) {
+CutChange Cutter::part(Solid& solid, const Added& added, const std::span<const grid::Front> fronts) {
   if (added.edges.empty() && added.segments.empty() && fronts.empty())
     return {};
-  CutChange change = grid::update_complex(solid, added.edges, added.segments, fronts);
+  std::vector<grid::CellId> cells;
+  for (const grid::Front& front : fronts) {
+    solid.cuts.set(front);
+    cells.push_back(front.cell);
+  }
+  CutChange change = grid::update_complex(solid, added.edges, added.segments, cells);
   grid::inherit(change, x_before_);
   return change;
 }

@@ -6,6 +6,7 @@
 ///
 /// Labels: of blades and surfaces, from 1 on.
 
+#include "cut/advance.h"
 #include "cut/cut_surface.h"
 #include "cut/passed.h"
 #include "cut/pending.h"
@@ -38,7 +39,7 @@ struct CutCounts {
 /// skin is always cut at once.
 enum class Release { queued, at_once };
 
-/// Where a surface that cuts at once may end (fronts.h).
+/// Where cuts may end (fronts.h, advance.h).
 enum class Fronts {
   at_faces,    ///< with the last cell that it parts
   inside_cells ///< wherever it does, in cells whose copies are tied: for a physics that knows ties (grid/fronts.h)
@@ -74,7 +75,7 @@ class Cutter {
   /// All but the boxes, which are made of the body before its first cut and fitted in each step.
   void archive(Archive& a) {
     a.name("cutter");
-    a(pending_, passed_, x_before_, counts_);
+    a(pending_, passed_, advance_, x_before_, counts_);
   }
   /// Memory of what grows with the body [B].
   std::size_t n_bytes() const { return boxes_->n_bytes() + sizeof(Vec3) * x_before_.capacity(); }
@@ -88,7 +89,7 @@ class Cutter {
     std::vector<grid::SkinSegment> segments;
   };
   Added add(grid::Solid& solid, const SweepCuts& cuts);
-  grid::CutChange part(grid::Solid& solid, const Added& added, std::span<const grid::CellId> fronts);
+  grid::CutChange part(grid::Solid& solid, const Added& added, std::span<const grid::Front> fronts);
   SweepCuts queue(const grid::Solid& solid, std::span<const Stroke> strokes, const Points& x);
 
   Release release_;
@@ -96,7 +97,8 @@ class Cutter {
   PendingCuts pending_;
   std::optional<EdgeBoxes> boxes_;  // around the edges; there from begin() on
   std::vector<PassedCells> passed_; // by label, from 1
-  Points x_before_;                 // where the corners were when the blades were met last [m]
+  Advance advance_;
+  Points x_before_; // where the corners were when the blades were met last [m]
   CutCounts counts_;
 };
 

@@ -6,7 +6,7 @@
 /// part that is left of it is how far the cut has come. The shape is taken larger by the lag of fronts, as elements are
 /// too stiff there.
 ///
-/// Limits: only shapes that are flat and have an end; a mesh and moving blades end with the last cell that they part.
+/// Limits: only shapes that are flat and have an end; a mesh ends with the last cell that it parts. Moving blades: advance.h.
 
 #include "cut/cut_surface.h"
 

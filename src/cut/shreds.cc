@@ -97,7 +97,8 @@ bool holds(const ItemsOfCells& all, const CellId cell, const Items items) {
 }
 
 /// All that hangs together with an item of a cell; nothing where that is more than a shred, which joins `large`.
-std::optional<Shred> shred_at(const grid::Solid& solid, const CellId cell, const int item, ItemsOfCells& large) {
+std::optional<Shred> shred_at(const grid::Solid& solid, const CellId cell, const int item, ItemsOfCells& large,
+                              const CutsOfCell& cuts_of) {
   Shred shred;
   std::vector<std::pair<CellId, int>> open = {{cell, item}};
   while (!open.empty()) {
@@ -106,7 +107,7 @@ std::optional<Shred> shred_at(const grid::Solid& solid, const CellId cell, const
     Items& known = shred.items[c];
     if (known >> i & 1)
       continue;
-    const grid::CellCuts cuts = grid::cuts_of(solid, c);
+    const grid::CellCuts cuts = cuts_of(c);
     const Items found = cuts.skeleton().reachable(Items(1) << i, cuts.blades);
     known |= found;
     const auto nodes = solid.grid.nodes(c);
@@ -126,8 +127,7 @@ std::optional<Shred> shred_at(const grid::Solid& solid, const CellId cell, const
 
 Bound bound_at(const grid::Solid& solid, const CellId c, const grid::CellCuts& cuts, const int segment,
                const int inner_end) {
-  const Vec3 to_cut =
-    grid::segment_point(solid, c, cuts.skeleton(), segment) - grid::item_point(solid, c, inner_end);
+  const Vec3 to_cut = grid::segment_point(solid, c, cuts.skeleton(), segment) - grid::item_point(solid, c, inner_end);
   const auto outward = [&](const Vec3& normal) -> Vec3 { return normal.dot(to_cut) < 0 ? Vec3(-normal) : normal; };
   if (segment < cube::n_lines) {
     const EdgeId edge = solid.grid.edges(c)[segment];
@@ -166,11 +166,10 @@ double volume(const grid::Solid& solid, const Shred& shred) {
 /// Do cuts of one blade bound the shred, and on opposite sides?
 bool is_between_passes(const std::vector<Bound>& bounds) {
   constexpr double opposite = -0.5;
-  return std::ranges::all_of(bounds, [&](const Bound& a) {
-           return a.label == bounds.front().label;
-         }) && std::ranges::any_of(bounds, [&](const Bound& a) {
-    return std::ranges::any_of(bounds, [&](const Bound& b) { return a.outward.dot(b.outward) < opposite; });
-  });
+  return std::ranges::all_of(bounds, [&](const Bound& a) { return a.label == bounds.front().label; }) &&
+         std::ranges::any_of(bounds, [&](const Bound& a) {
+           return std::ranges::any_of(bounds, [&](const Bound& b) { return a.outward.dot(b.outward) < opposite; });
+         });
 }
 
 /// Of a tip all new cuts of the blade that comes nearest: it may hang on both sides of another one.
@@ -210,7 +209,8 @@ TakenBack cuts_to_leave(const grid::Solid& solid, const NewCuts& new_cuts) {
     for (const grid::Part& part : whole_parts_of(grid::cuts_of(solid, c))) {
       if (holds(seen, c, part.items()) || holds(large, c, part.items()))
         continue;
-      if (const auto shred = shred_at(solid, c, std::countr_zero(part.items()), large)) {
+      if (const auto shred = shred_at(solid, c, std::countr_zero(part.items()), large,
+                                      [&](const CellId cell) { return grid::cuts_of(solid, cell); })) {
         add(seen, shred->items);
         leave(solid, *shred, new_cuts, back);
       }
@@ -229,6 +229,11 @@ std::size_t leave_shreds(grid::Solid& solid, std::vector<EdgeId>& edges, std::ve
       return n;
     n += n_now;
   }
+}
+
+bool is_small(const grid::Solid& solid, const CellId cell, const int item, const CutsOfCell& cuts_of) {
+  ItemsOfCells large;
+  return shred_at(solid, cell, item, large, cuts_of).has_value();
 }
 
 } // namespace kerf::cut

@@ -11,8 +11,10 @@
 /// and there in what lies between, and would show crumbs. They stay by that one of the new cuts that comes nearest to
 /// them. What different blades part is parted, however thin, and so is what one blade cuts off from one side.
 
+#include "grid/parts.h"
 #include "grid/solid.h"
 
+#include <functional>
 #include <vector>
 
 namespace kerf::cut {
@@ -21,5 +23,11 @@ namespace kerf::cut {
 /// `solid.cuts` holds and `solid.complex` does not; what is taken back leaves them. Returns how many.
 std::size_t leave_shreds(grid::Solid& solid, std::vector<grid::EdgeId>& edges,
                          std::vector<grid::SkinSegment>& segments);
+
+/// The cuts of a cell, as they are or as they would be.
+using CutsOfCell = std::function<grid::CellCuts(grid::CellId)>;
+
+/// Does an item of a cell hang together with so little that it could be a shred?
+bool is_small(const grid::Solid& solid, grid::CellId cell, int item, const CutsOfCell& cuts_of);
 
 } // namespace kerf::cut

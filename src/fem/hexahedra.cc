@@ -279,7 +279,8 @@ void Hexahedra::make_multigrid() {
   cells.corners.assign(incidence_.corners(0), incidence_.corners(0) + 8 * n_elements());
   multigrid_ = std::make_unique<Multigrid>(FinestLevel{
     std::move(cells), h_, material_, elements_.full(), [this](const std::uint32_t copy) { return kind(copy); },
-    [this](const std::uint32_t copy) -> const Element& { return elements_[copy]; }, batching_, ghost_penalty_.faces()});
+    [this](const std::uint32_t copy) -> const Element& { return elements_[copy]; }, batching_, ghost_penalty_.faces(),
+    ties_.all()});
 }
 
 dynamics::Preconditioner* Hexahedra::preconditioner(const dynamics::LinearEquation& equation) {

@@ -96,6 +96,26 @@ std::vector<GhostLine> coarsened(const std::span<const GhostLine> fine, const Ce
   return lines;
 }
 
+/// The two corners of a tie are one node, so their rows go through the same coarse nodes in the same order; those of
+/// crumbs (grid/crumbs.h) are empty.
+std::vector<Tie> coarsened(const std::span<const Tie> fine, const Weights& prolongation) {
+  std::map<std::array<std::uint32_t, 2>, double> stiffness; // by corners
+  const auto row = [&](const std::uint32_t corner) {
+    return std::span(prolongation.column)
+      .subspan(prolongation.begin[corner], prolongation.begin[corner + 1] - prolongation.begin[corner]);
+  };
+  for (const Tie& tie : fine) {
+    const auto of_a = row(tie.a), of_b = row(tie.b);
+    for (std::size_t i = 0; i < std::min(of_a.size(), of_b.size()); ++i)
+      if (of_a[i] != of_b[i])
+        stiffness[{of_a[i], of_b[i]}] += double(prolongation.weight[prolongation.begin[tie.a] + i]) * tie.stiffness;
+  }
+  std::vector<Tie> ties;
+  for (const auto& [corners, k] : stiffness)
+    ties.push_back({corners[0], corners[1], k});
+  return ties;
+}
+
 void Level::resize() {
   for (auto* const values : {&r, &x, &d, &t})
     values->assign(batching.n_rows(), {});
@@ -108,20 +128,25 @@ void Level::for_each_corner(const Function& f) const {
 }
 
 void Level::make_diagonal() {
-  const float penalty = std::max(1.f, float(3 / bound)); // a line alone has the eigenvalue 3
+  const auto weight = [&](const double alone) { return std::max(1.0, alone / bound); };
+  const double of_line = weight(3), of_tie = weight(2); // eigenvalues of one alone
   diagonal.assign(2 * batching.n_rows(), {});
   add_diagonal(batching, elements, diagonal.data());
   const auto add = [&](const std::uint32_t corner, const double value) {
     FloatRow& row = diagonal[2 * std::size_t(corner)];
-    const float k = penalty * float(value);
+    const auto k = float(value);
     row.x += k;
     row.y += k;
     row.z += k;
   };
   for (const GhostLine& line : lines) {
-    add(line.a, line.stiffness);
-    add(line.b, 4 * line.stiffness);
-    add(line.c, line.stiffness);
+    add(line.a, of_line * line.stiffness);
+    add(line.b, of_line * 4 * line.stiffness);
+    add(line.c, of_line * line.stiffness);
+  }
+  for (const Tie& tie : ties) {
+    add(tie.a, of_tie * tie.stiffness);
+    add(tie.b, of_tie * tie.stiffness);
   }
 }
 
@@ -161,19 +186,24 @@ void Level::invert_diagonal(const std::function<Mat3(std::uint32_t corner, const
 
 /// t += A d but for the masses.
 void Level::add_products() {
+  const auto add = [](FloatRow& row, const float times, const FloatRow& f) {
+    row.x += times * f.x;
+    row.y += times * f.y;
+    row.z += times * f.z;
+  };
   add_product(batching, elements, d.data(), t.data());
   for (const GhostLine& line : lines) {
     const FloatRow &a = d[line.a], &b = d[line.b], &c = d[line.c];
     const auto k = float(line.stiffness);
     const FloatRow f = {k * (a.x - 2 * b.x + c.x), k * (a.y - 2 * b.y + c.y), k * (a.z - 2 * b.z + c.z)};
-    const auto add = [&f](FloatRow& row, const float times) {
-      row.x += times * f.x;
-      row.y += times * f.y;
-      row.z += times * f.z;
-    };
-    add(t[line.a], 1);
-    add(t[line.b], -2);
-    add(t[line.c], 1);
+    add(t[line.a], 1, f);
+    add(t[line.b], -2, f);
+    add(t[line.c], 1, f);
+  }
+  for (const Tie& tie : ties) {
+    const FloatRow &a = d[tie.a], &b = d[tie.b], jump = {a.x - b.x, a.y - b.y, a.z - b.z};
+    add(t[tie.a], float(tie.stiffness), jump);
+    add(t[tie.b], -float(tie.stiffness), jump);
   }
   for (std::size_t i = 0; i < points.blocks.size(); ++i) {
     Eigen::Vector3f u = Eigen::Vector3f::Zero();

@@ -6,6 +6,7 @@
 #include "fem/clusters.h"
 #include "fem/coarsening.h"
 #include "fem/ghost_penalty.h"
+#include "fem/ties.h"
 
 #include <functional>
 
@@ -23,6 +24,9 @@ std::vector<GhostLine> lines_of(std::span<const GhostFace> faces);
 std::vector<GhostLine> coarsened(std::span<const GhostLine> fine, const CellsOfLevel& cells,
                                  const Coarsening& coarsening);
 
+/// For motions of coarse cubes: sums of squares of mean jumps, at most. None between corners that are one.
+std::vector<Tie> coarsened(std::span<const Tie> fine, const Weights& prolongation);
+
 /// A symmetric 3 x 3 block at a corner [N/m].
 struct Spring {
   std::uint32_t corner;
@@ -36,6 +40,7 @@ struct Level {
   std::vector<double> volume; ///< of each copy [m^3]
   double bound = 0;           ///< of the eigenvalues of D^-1 A [1]
   std::vector<GhostLine> lines;
+  std::vector<Tie> ties;
   Coarsening to_coarse; ///< of no use on the coarsest
 
   // The equation, over its stiffness factor.

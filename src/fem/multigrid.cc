@@ -194,6 +194,11 @@ void add_entries(const Level& level, const std::function<Matrix24(std::size_t co
         add(corners[p], corners[q],
             Mat3(line.stiffness * second_difference[p] * second_difference[q] * Mat3::Identity()));
   }
+  for (const Tie& tie : level.ties)
+    for (const auto& [i, j] : {std::pair{tie.a, tie.b}, std::pair{tie.b, tie.a}}) {
+      add(i, i, Mat3(tie.stiffness * Mat3::Identity()));
+      add(i, j, Mat3(-tie.stiffness * Mat3::Identity()));
+    }
   for (const Spring& spring : level.springs)
     add(spring.corner, spring.corner, spring.block);
   const auto& [rows, blocks] = level.points;
@@ -265,6 +270,7 @@ Multigrid::Multigrid(const FinestLevel& finest) {
   levels_[0].cells = finest.cells;
   levels_[0].batching = finest.batching;
   levels_[0].lines = lines_of(finest.faces);
+  levels_[0].ties.assign(finest.ties.begin(), finest.ties.end());
   fill(levels_[0], finest_element, finest.full, h, finest.material);
   Elements elements;
   while (levels_.back().n_corners() > few) {
@@ -285,6 +291,7 @@ Multigrid::Multigrid(const FinestLevel& finest) {
     Level coarse;
     coarse.cells = coarsening.coarse;
     coarse.lines = coarsened(fine.lines, fine.cells, coarsening);
+    coarse.ties = coarsened(fine.ties, coarsening.prolongation);
     std::vector<std::uint32_t> order(coarse.cells.n_copies());
     std::iota(order.begin(), order.end(), 0);
     coarse.batching = Batching(

@@ -8,8 +8,9 @@
 /// the same kernels. M is lumped on every level, restricted with the weights of the transfer. What loads resist at points,
 /// as where a skin is held, is restricted exactly, and the corners that it joins are smoothed together (clusters.h); what
 /// they resist between two points is lumped. Penalties of near-empty copies (ghost_penalty.h) go along: for motions of the
-/// coarse cubes a face's second differences are half those across the coarse face, and vanish within a coarse copy. Coarse
-/// levels do not know supports, but springs in their place, of the size of the stiffness that they hold.
+/// coarse cubes a face's second differences are half those across the coarse face, and vanish within a coarse copy. Ties at
+/// fronts (ties.h) are ties of the coarse corners, and vanish where these are one. Coarse levels do not know supports, but
+/// springs in their place, of the size of the stiffness that they hold.
 ///
 /// A cycle is a V, smoothed before and after by the same Chebyshev polynomial of block Jacobi's matrix (Adams, Brezina, Hu
 /// and Tuminaro 2003, Parallel multigrid smoothing, J. Comput. Phys. 188), so it is symmetric; it is positive as long as
@@ -24,6 +25,7 @@
 #include "fem/batches.h"
 #include "fem/coarsening.h"
 #include "fem/ghost_penalty.h"
+#include "fem/ties.h"
 
 #include <memory>
 
@@ -39,6 +41,7 @@ struct FinestLevel {
   std::function<const Element&(std::uint32_t copy)> element;
   const Batching& batching;
   std::span<const GhostFace> faces;
+  std::span<const Tie> ties;
 };
 
 class Multigrid : public dynamics::Preconditioner {

@@ -11,12 +11,17 @@
 
 namespace kerf::fem {
 
+struct Tie {
+  std::uint32_t a, b; ///< corners
+  double stiffness;   ///< [N/m]
+};
+
 class Ties {
  public:
   /// Takes over all of them.
   void update(const grid::Solid& solid, const material::Elastic& material);
 
-  std::size_t size() const { return ties_.size(); }
+  std::span<const Tie> all() const { return ties_; }
   double energy(const Points& x) const;
   /// forces -= dE/dx [N].
   void add_force(const Points& x, Points& forces) const;
@@ -27,10 +32,6 @@ class Ties {
   void add_entries(std::vector<Eigen::Triplet<double>>& entries) const;
 
  private:
-  struct Tie {
-    std::uint32_t a, b; ///< corners
-    double stiffness;   ///< [N/m]
-  };
   std::vector<Tie> ties_;
 };
 

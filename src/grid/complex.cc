@@ -334,14 +334,22 @@ CellComplex build_complex(const Solid& solid) {
   const auto cut_cells = find_cut_cells(solid);
   make_copies(solid.grid, cut_cells, complex);
   make_corners(solid.grid, cut_cells, complex);
-  complex.tied = tied_copies(solid, complex);
+  std::vector<CellId> with_fronts;
+  for (const Front& front : solid.cuts.fronts())
+    with_fronts.push_back(front.cell);
+  std::ranges::sort(with_fronts);
+  complex.tied = tied_copies(solid, complex, with_fronts);
   return complex;
 }
 
 CutChange update_complex(Solid& solid, std::vector<EdgeId> new_edges, std::vector<SkinSegment> new_segments,
                          const std::span<const CellId> new_fronts) {
   CutChange change = Update(solid).run(std::move(new_edges), std::move(new_segments), new_fronts);
-  solid.complex.tied = tied_copies(solid, solid.complex);
+  std::vector<CellId> cells = change.cells; // and those whose copies were tied before: all others are as they were
+  for (const auto& [c, d] : solid.complex.tied)
+    cells.push_back(solid.complex.copies[c].cell);
+  sort_unique(cells);
+  solid.complex.tied = tied_copies(solid, solid.complex, cells);
   return change;
 }
 

@@ -122,6 +122,7 @@ class Search {
                  (samples_ && !spread.spans_volume(solid_.grid.h()));
       for (int face = 0; face < 6 && is_crumb; ++face)
         is_crumb = add_neighbours(copies[i], face, copies);
+      is_crumb = is_crumb && add_tied(copies[i], copies);
     }
     if (is_crumb) {
       std::sort(copies.begin(), copies.end());
@@ -150,14 +151,27 @@ class Search {
       const Part mine = copy.part(), its = solid_.complex.copies[other].part();
       if (face % 2 == 1 ? !are_glued(mine, its, face / 2) : !are_glued(its, mine, face / 2))
         continue;
-      if (known_[other] == Known::attached)
+      if (!add(other, copies))
         return false;
-      if (known_[other] == Known::nothing) {
-        known_[other] = Known::seen;
-        copies.push_back(other);
-      }
     }
     return true;
+  }
+
+  /// Of those that a front holds together with a copy.
+  bool add_tied(const CopyId c, std::vector<CopyId>& copies) {
+    if (solid_.cuts.front(solid_.complex.copies[c].cell))
+      for (const auto& [a, b] : solid_.complex.tied)
+        if ((a == c || b == c) && !add(a == c ? b : a, copies))
+          return false;
+    return true;
+  }
+
+  bool add(const CopyId other, std::vector<CopyId>& copies) {
+    if (known_[other] == Known::nothing) {
+      known_[other] = Known::seen;
+      copies.push_back(other);
+    }
+    return known_[other] != Known::attached;
   }
 
   const Solid& solid_;

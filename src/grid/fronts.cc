@@ -1,5 +1,7 @@
 #include "grid/fronts.h"
 
+#include "grid/material.h"
+
 #include <algorithm>
 
 namespace kerf::grid {
@@ -24,12 +26,15 @@ bool hang_together(const Parts& parts, const Copy& one, const Copy& other) {
 
 } // namespace
 
-std::vector<std::array<CopyId, 2>> tied_copies(const Solid& solid, const CellComplex& complex) {
+std::vector<std::array<CopyId, 2>> tied_copies(const Solid& solid, const CellComplex& complex,
+                                               const std::span<const CellId> cells) {
   const auto& copies = complex.copies;
   std::vector<std::array<CopyId, 2>> tied;
-  for (const Front& front : solid.cuts.fronts()) {
-    const Parts parts = whole_parts_of(cuts_of(solid, front.cell));
-    for (const CopyId c : complex.copies_of(front.cell))
+  for (const CellId cell : cells) {
+    if (!solid.cuts.front(cell))
+      continue;
+    const Parts parts = whole_parts_of(cuts_of(solid, cell));
+    for (const CopyId c : complex.copies_of(cell))
       for (CopyId d = copies[c].next; d.valid(); d = copies[d].next)
         if (hang_together(parts, copies[c], copies[d]))
           tied.push_back({c, d});
@@ -44,7 +49,9 @@ std::vector<Tie> ties(const Solid& solid) {
     const Front& front = *solid.cuts.front(copies[c].cell);
     const std::size_t first = ties.size();
     add_pairs(copies[c], copies[d], ties);
-    const double length = opening * front.area / solid.grid.h() * (1 - front.passed) / front.passed;
+    const double length = copies[c].nodes == 0 || copies[d].nodes == 0
+                            ? std::min(fill(solid, copies[c]), fill(solid, copies[d])) * solid.grid.h()
+                            : opening * front.area / solid.grid.h() * (1 - front.passed) / front.passed;
     for (std::size_t i = first; i < ties.size(); ++i)
       ties[i].length = length / static_cast<double>(ties.size() - first);
   }

@@ -15,6 +15,10 @@
 /// front that moves on gives and takes no energy at once. c is measured: at .12 the stiffness of a double cantilever
 /// tells where its front is to .07 h, wherever that is in a cell.
 ///
+/// A blade that turns after its front has begun may leave a third part, of skin without a node. That is no front: it is held
+/// to what it belongs to, by springs as stiff as its own material is: stiffer ones would do no more, and conjugate gradients
+/// would feel them.
+///
 /// Departs from the source, in which the jump vanishes at the front by the shape functions of the element: these need the
 /// front's shape in the cell, and another integration for each.
 ///
@@ -35,8 +39,10 @@ struct Tie {
   double length; ///< its spring's stiffness over E / (1 - nu^2) [m]
 };
 
-/// The copies that fronts alone part: none in cells through which cuts have come meanwhile.
-std::vector<std::array<CopyId, 2>> tied_copies(const Solid& solid, const CellComplex& complex);
+/// The copies that fronts alone part in some cells, in their order: none in those without a front, or through which cuts
+/// have come meanwhile.
+std::vector<std::array<CopyId, 2>> tied_copies(const Solid& solid, const CellComplex& complex,
+                                               std::span<const CellId> cells);
 
 /// Between them, in their order.
 std::vector<Tie> ties(const Solid& solid);

@@ -1,39 +1,12 @@
 #include "cut/fronts.h"
 
 #include "grid/fronts.h"
-#include "tests/support/placed.h"
-#include "tests/support/same.h"
+#include "tests/cut/cutting.h"
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <map>
-#include <numeric>
-
 namespace kerf::cut {
 namespace {
-
-using support::Body;
-
-Body block() { return support::with_copies(support::with_placed_skin(support::block({9, 9, 9}))); }
-
-/// The body cut by the surfaces one after the other, by a cutter of these fronts.
-struct Cutting {
-  explicit Cutting(Body whole, const Fronts fronts) : body(std::move(whole)), cutter(9, Release::queued, fronts) {
-    cutter.begin(body, grid::rest_positions(body));
-    surface = surface::build_surface(body, index);
-  }
-  void cut(const Shape& shape) {
-    const grid::CutChange change = cutter.at_once(body, {"cut", shape, 1}, grid::rest_positions(body));
-    surface::place(body, change, {});
-    surface::update_surface(body, change, surface, index);
-  }
-
-  Body body;
-  Cutter cutter;
-  surface::SurfaceIndex index;
-  surface::Surface surface;
-};
 
 Shape random_shape(support::Random& random, const Vec3& middle, const double size) {
   const Vec3 centre = middle + 0.4 * size * support::random_vector(random), n = support::random_direction(random);
@@ -43,18 +16,6 @@ Shape random_shape(support::Random& random, const Vec3& middle, const double siz
   const Vec3 side = n.unitOrthogonal();
   return Rectangle{centre, 2 * radius * side, size * support::uniform(random, 0.2, 1.4) * n.cross(side)};
 }
-
-bool is_closed(const surface::Surface& s) {
-  std::map<std::pair<std::uint32_t, std::uint32_t>, int> balance;
-  for (const auto& t : s.triangles)
-    for (int i = 0; i < 3; ++i) {
-      const auto a = t[i], b = t[(i + 1) % 3];
-      balance[std::minmax(a, b)] += a < b ? 1 : -1;
-    }
-  return std::all_of(balance.begin(), balance.end(), [](const auto& edge) { return edge.second == 0; });
-}
-
-double sum(const std::vector<double>& values) { return std::accumulate(values.begin(), values.end(), 0.0); }
 
 /// A straight front, along a layer of cells and off its nodes: the one cell along it is passed as far as the front has
 /// come, with its lag.
@@ -97,18 +58,11 @@ TEST(Fronts, LeaveThePiecesMassAndSurfaceAsTheyWere) {
       const Shape shape = random_shape(random, middle, 5);
       with.cut(shape);
       without.cut(shape);
-      ASSERT_EQ(grid::n_pieces(with.body.complex), grid::n_pieces(without.body.complex)) << i << " " << k;
-      const double volume = sum(support::octant_volumes(with.body));
-      EXPECT_NEAR(volume, sum(support::octant_volumes(without.body)), 1e-9) << i << " " << k;
-      EXPECT_NEAR(volume, surface::enclosed_volume(with.surface.rest, with.surface.triangles), 1e-9) << i << " " << k;
-      EXPECT_TRUE(is_closed(with.surface)) << i << " " << k;
+      SCOPED_TRACE(testing::Message() << i << " " << k);
+      expect_alike(with, without);
     }
     n_fronts += with.body.cuts.fronts().size();
-    Body anew = with.body;
-    anew.complex = grid::build_complex(anew);
-    const auto names = support::renaming(with.body.complex, anew.complex);
-    ASSERT_TRUE(names) << i;
-    EXPECT_TRUE(support::is_same(with.surface, surface::build_surface(anew), *names)) << i;
+    expect_as_built(with);
   }
   EXPECT_GT(n_fronts, 500u);
 }

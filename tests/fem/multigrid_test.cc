@@ -3,6 +3,7 @@
 #include "fem/multigrid.h"
 
 #include "base/parallel.h"
+#include "cut/cutter.h"
 #include "dynamics/conjugate_gradients.h"
 #include "dynamics/state.h"
 #include "grid/shape.h"
@@ -292,6 +293,27 @@ TEST(Multigrid, HalvesKnowNothingOfEachOther) {
     else
       EXPECT_EQ(z[i], Vec3(Vec3::Zero()));
   EXPECT_GT(here, 0);
+}
+
+/// A disc whose front lies inside cells, most of them hardly passed: ties as stiff as the cells that they hold together.
+TEST(Multigrid, KnowsTies) {
+  std::array<int, 2> counts{};
+  for (const cut::Fronts fronts : {cut::Fronts::at_faces, cut::Fronts::inside_cells}) {
+    Draw draw(345);
+    Body body = make_block({16, 16, 16}, 0.05, draw, {0.3, 0.7});
+    cut::Cutter cutter(1, cut::Release::queued, fronts);
+    cutter.begin(body, body.rest());
+    const cut::Disc disc{Vec3(0.72, 0.23, 0.52), Vec3(0.1, 0.2, 1).normalized(), 0.22};
+    surface::place(body, cutter.at_once(body, {"cut", disc, 1}, body.rest()), {});
+    EXPECT_EQ(fronts == cut::Fronts::inside_cells, body.complex.tied.size() > 30);
+    Hexahedra model(body, {.material = rubber(0.3)});
+    Equation equation(model, clamped_below(body, 0.3), body.rest(), 36);
+    const auto report = solve(equation, 346);
+    EXPECT_TRUE(report.converged);
+    counts[fronts == cut::Fronts::inside_cells] = report.n_iterations;
+  }
+  RecordProperty("iterations", std::to_string(counts[0]) + ' ' + std::to_string(counts[1]));
+  EXPECT_LE(counts[1], counts[0] + 3) << counts[0];
 }
 
 /// Bits do not depend on threads, nor on whether a cut was followed or the model built anew.

@@ -34,7 +34,7 @@ TEST(Ties, PullByTheGradientOfTheirEnergy) {
   const support::Body body = cracked(1.9);
   Ties ties;
   ties.update(body, {});
-  ASSERT_GT(ties.size(), 20u);
+  ASSERT_GT(ties.all().size(), 20u);
   const Points x = moved(grid::rest_positions(body), 0.1), way = moved(Points(x.size(), Vec3::Zero()), 1);
   Points forces(x.size(), Vec3::Zero()), product(x.size(), Vec3::Zero());
   ties.add_force(x, forces);
@@ -86,7 +86,7 @@ TEST(Ties, GoWithTheCut) {
   cutter.at_once(body, {"cut", plane, 1}, grid::rest_positions(body));
   Ties ties;
   ties.update(body, {});
-  EXPECT_EQ(ties.size(), 0u);
+  EXPECT_EQ(ties.all().size(), 0u);
   EXPECT_EQ(grid::n_pieces(body.complex), 2u);
 }
 

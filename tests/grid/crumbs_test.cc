@@ -111,6 +111,48 @@ TEST(Crumbs, AfterCutsAreThePiecesThatTheDefinitionNames) {
   EXPECT_GT(n_left, 0u);
 }
 
+/// A node of which a cut is still to come through all edges hangs by ties, and is a crumb when it has come.
+TEST(Crumbs, HangByNoTies) {
+  Body body = support::with_copies(support::with_placed_skin(support::block({6, 6, 6}, 0.1)));
+  find_crumbs(body);
+  NodeId node;
+  for (const auto n : ids<NodeId>(body.grid.n_nodes()))
+    if (body.grid.index(n) == Index3{3, 3, 3})
+      node = n;
+  std::vector<CellId> cells;
+  std::set<EdgeId> edges;
+  for (const auto c : ids<CellId>(body.grid.n_cells())) {
+    const auto nodes = body.grid.nodes(c);
+    Front front{.cell = c, .area = 0.01, .passed = 0.5};
+    for (int line = 0; line < cube::n_lines; ++line)
+      for (const int v : cube::line_vertices[line])
+        if (nodes[v] == node) {
+          front.ahead |= Segments(1) << line;
+          edges.insert(body.grid.edges(c)[line]);
+        }
+    if (front.ahead != 0) {
+      body.cuts.set(front);
+      cells.push_back(c);
+    }
+  }
+  CutChange change = update_complex(body, {}, {}, cells);
+  update_crumbs(body, change);
+  EXPECT_EQ(body.complex.tied.size(), 8u);
+  EXPECT_EQ(n_pieces(body.complex), 1u);
+  EXPECT_FALSE(body.crumbs.any());
+  std::vector<EdgeCut> cuts;
+  for (const EdgeId e : edges) // what one blade alone cuts out is a shaving, and stays
+    cuts.push_back({e, 0.5, Vec3::UnitX(), static_cast<CutLabel>(cuts.size() + 1)});
+  cut::Cutter cutter{6};
+  cutter.begin(body, rest_positions(body));
+  change = cutter.cut(body, {cuts, {}, 0});
+  surface::place(body, change, {});
+  update_crumbs(body, change);
+  EXPECT_TRUE(body.complex.tied.empty());
+  EXPECT_EQ(n_pieces(body.complex), 2u);
+  EXPECT_EQ(body.crumbs.all.size(), 1u);
+}
+
 /// A crumb that a cut does not meet keeps its name.
 TEST(Crumbs, KeepTheirNamesUntilTheyAreCut) {
   Body body = support::with_copies(support::with_placed_skin(support::block({6, 6, 6}, 0.1)));

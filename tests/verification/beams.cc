@@ -226,13 +226,13 @@ struct SplitArms {
   BeamResult result;
 };
 
-SplitArms split_arms(const DoubleCantilever& beam, const cut::Fronts fronts, const Tractions& tractions,
+SplitArms split_arms(const DoubleCantilever& beam, const std::function<void(Body&)>& cut, const Tractions& tractions,
                      const BeamModel& model) {
-  const double h = beam.arm / beam.n_over_arm, c = beam.a + beam.front * h;
+  const double h = beam.arm / beam.n_over_arm;
   const Strip strip{beam.a + 4 * beam.arm, 2 * beam.arm, h};
   const auto make = [&] {
     Body body = box(strip.box(), h, Vec3(0, 0, 0.5));
-    cut_at_once(body, cut::Rectangle{Vec3(0, h, beam.arm), Vec3(2 * c, 0, 0), Vec3(0, 4 * h, 0)}, fronts);
+    cut(body);
     return body;
   };
   Built built = build(make, options_of(model, 1, 0));
@@ -244,20 +244,53 @@ SplitArms split_arms(const DoubleCantilever& beam, const cut::Fronts fronts, con
   return {std::move(built), std::move(u), result};
 }
 
-} // namespace
+double length_of_cut(const DoubleCantilever& beam) { return beam.a + beam.front * beam.arm / beam.n_over_arm; }
 
-BeamResult double_cantilever(const DoubleCantilever& beam, const BeamModel& model) {
-  const double h = beam.arm / beam.n_over_arm, b = 2 * h, c = beam.a + beam.front * h, traction = 1 / (b * beam.arm);
-  const auto pull = [&](const SurfacePoint& p) -> Vec3 {
+std::function<void(Body&)> by_rectangle(const DoubleCantilever& beam, const cut::Fronts fronts) {
+  const double h = beam.arm / beam.n_over_arm;
+  const cut::Rectangle cut{Vec3(0, h, beam.arm), Vec3(2 * length_of_cut(beam), 0, 0), Vec3(0, 4 * h, 0)};
+  return [=](Body& body) { cut_at_once(body, cut, fronts); };
+}
+
+/// P on each arm.
+Tractions pull(const DoubleCantilever& beam) {
+  const double h = beam.arm / beam.n_over_arm, traction = 1 / (2 * h * beam.arm);
+  return [=](const SurfacePoint& p) -> Vec3 {
     if (p.position[0] > 1e-6 * h || std::abs(p.normal[0]) < 0.99)
       return Vec3::Zero();
     return {0, 0, p.position[2] > beam.arm ? traction : -traction};
   };
-  SplitArms arms = split_arms(beam, cut::Fronts::inside_cells, pull, model);
+}
+
+} // namespace
+
+BeamResult double_cantilever(const DoubleCantilever& beam, const BeamModel& model) {
+  const double h = beam.arm / beam.n_over_arm, b = 2 * h, c = length_of_cut(beam);
+  SplitArms arms = split_arms(beam, by_rectangle(beam, cut::Fronts::inside_cells), pull(beam), model);
   const fem::LineFront front{Vec3(c, 0, beam.arm), Vec3(c, b, beam.arm), Vec3::UnitX()};
   const double G = fem::energy_release_rate(*arms.built.model, arms.built.body.rest(),
                                             deformed(arms.built.body, arms.u), front, {0.5 * beam.a, 0.9 * beam.a});
   arms.result.value = G / (12 * c * c / (b * b * std::pow(beam.arm, 3)) * std::pow(1 + 0.673 * beam.arm / c, 2));
+  return arms.result;
+}
+
+BeamResult blade_over_rectangle(const DoubleCantilever& beam, const int n_steps, const BeamModel& model) {
+  const double h = beam.arm / beam.n_over_arm;
+  const cut::Blade blade{
+    .name = "blade",
+    .edge = {Vec3(0, -h, beam.arm), Vec3(0, 3 * h, beam.arm)},
+    .key_frames = {{0, Vec3(-h, 0, 0), Vec3::Zero()}, {1, Vec3(length_of_cut(beam), 0, 0), Vec3::Zero()}}};
+  const auto work = [&](const SplitArms& arms) {
+    const Points f = traction_forces(arms.built.body, pull(beam));
+    double sum = 0;
+    for (std::size_t i = 0; i < f.size(); ++i)
+      sum += f[i].dot(arms.u[i]);
+    return sum;
+  };
+  SplitArms arms = split_arms(
+    beam, [&](Body& body) { cut_with_blade(body, blade, n_steps); }, pull(beam), model);
+  arms.result.value =
+    work(arms) / work(split_arms(beam, by_rectangle(beam, cut::Fronts::inside_cells), pull(beam), model));
   return arms.result;
 }
 
@@ -267,7 +300,7 @@ BeamResult pressed_arms(const DoubleCantilever& beam, const BeamModel& model) {
     const bool is_pressed = p.label != grid::skin_label && p.position[0] < beam.a;
     return is_pressed ? Vec3(-p.normal) : Vec3(Vec3::Zero());
   };
-  SplitArms arms = split_arms(beam, cut::Fronts::at_faces, press, model);
+  SplitArms arms = split_arms(beam, by_rectangle(beam, cut::Fronts::at_faces), press, model);
   const auto at = [&](const double z) {
     return value_at(arms.built.body, arms.u, Vec3(1e-9 * h, h * (1 + 1e-9), z))[2];
   };

@@ -143,5 +143,15 @@ TEST(DoubleCantilever, FrontsLieWhereTheyAreCutInsideCells) {
   EXPECT_LT(most / least - 1, 0.02);
 }
 
+/// A blade that stops anywhere in a cell, slow or fast, leaves what a rectangle leaves that cuts as far at once.
+TEST(DoubleCantilever, BladesStopInsideCells) {
+  for (const int n_steps : {7, 100})
+    for (int i = 0; i < 8; ++i) {
+      const double ratio = blade_over_rectangle({.a = 2, .n_over_arm = 4, .front = (i + 0.5) / 8}, n_steps, {}).value;
+      record("front_" + std::to_string(i) + "_in_" + std::to_string(n_steps), ratio);
+      EXPECT_NEAR(ratio, 1, 0.01) << i << " " << n_steps;
+    }
+}
+
 } // namespace
 } // namespace kerf::verification

@@ -103,6 +103,16 @@ void cut_at_once(Body& body, const cut::Shape& shape, const cut::Fronts fronts) 
   surface::place(body, cutter.at_once(body, {"cut", shape, 1}, body.rest()), {});
 }
 
+void cut_with_blade(Body& body, const cut::Blade& blade, const int n_steps) {
+  cut::Cutter cutter(1, cut::Release::queued, cut::Fronts::inside_cells);
+  cutter.begin(body, body.rest());
+  for (int k = 0; k < n_steps || cutter.n_waiting() > 0; ++k)
+    surface::place(body,
+                   cutter.step(body, std::span(&blade, 1), std::min(1.0, double(k) / n_steps),
+                               std::min(1.0, double(k + 1) / n_steps), body.rest()),
+                   {});
+}
+
 Points traction_forces(const Body& body, const std::function<Vec3(const SurfacePoint&)>& traction) {
   static const auto rule = fem::triangle_rule(5);
   const auto skin = surface::build_surface(body);

@@ -37,6 +37,9 @@ void cut(Body& body, const support::Plane& plane, const std::function<bool(const
 /// Cuts the body with a surface, as scenes do for elements.
 void cut_at_once(Body& body, const cut::Shape& shape, cut::Fronts fronts = cut::Fronts::inside_cells);
 
+/// Cuts the body with a blade, from 0 s to 1 s in so many steps, as scenes do for elements.
+void cut_with_blade(Body& body, const cut::Blade& blade, int n_steps);
+
 /// A surface triangle as it is integrated over.
 struct SurfacePoint {
   Vec3 position; ///< rest [m]

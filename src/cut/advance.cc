@@ -1,0 +1,260 @@
+#include "cut/advance.h"
+
+#include "grid/fronts.h"
+#include "grid/material.h"
+#include "grid/parts.h"
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <cmath>
+
+namespace kerf::cut {
+
+namespace {
+
+using grid::CellId;
+using grid::Front;
+using grid::Solid;
+
+constexpr double off_plane = 0.25;       // what counts [cubes]
+constexpr std::size_t most_pieces = 128; // the last ones are kept: a body may swing about a blade that rests
+
+/// A cell's coordinates in which its cube is [0, h]^3 at its place at rest, as an affine map from where it is.
+struct ToRest {
+  ToRest(const Solid& solid, const CellId c, const Points& x) : origin(solid.grid.origin(c)) {
+    const grid::Copy& copy = solid.complex.copies[solid.complex.first_copy[c]];
+    Mat3 along = Mat3::Zero();
+    for (int v = 0; v < 8; ++v) {
+      const Vec3& p = x[copy.corners[v].value];
+      middle += p / 8;
+      for (int axis = 0; axis < 3; ++axis)
+        along.col(axis) += ((v >> axis & 1) != 0 ? 0.25 : -0.25) * p;
+    }
+    const double h = solid.grid.h();
+    bool invertible = false;
+    Mat3 inverse;
+    along.computeInverseWithCheck(inverse, invertible, 1e-6 * h * h * h);
+    from = invertible ? Mat3(h * inverse) : Mat3(Mat3::Zero());
+    origin += Vec3::Constant(0.5 * h);
+  }
+  Vec3 operator()(const Vec3& p) const { return origin + from * (p - middle); }
+
+  Vec3 origin, middle = Vec3::Zero();
+  Mat3 from;
+};
+
+/// Coordinates in a plane and above it, in cubes.
+struct InPlane {
+  InPlane(const Vec3& point, const Vec3& normal, const double h)
+    : origin(point), u(normal.unitOrthogonal() / h), v(normal.cross(u)), w(normal / h) {}
+  Vec3 operator()(const Vec3& p) const { return {u.dot(p - origin), v.dot(p - origin), w.dot(p - origin)}; }
+
+  Vec3 origin, u, v, w;
+};
+
+/// Where a plane meets a tetrahedron, of coordinates above it and in it: up to four points, around.
+void draw_section(const std::array<Vec3, 4>& tetrahedron, Raster& raster) {
+  std::array<Vec3, 4> points;
+  int n = 0;
+  constexpr std::array<std::array<int, 2>, 6> around = {{{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}};
+  for (const auto& [i, j] : around) {
+    const Vec3 &p = tetrahedron[i], &q = tetrahedron[j];
+    if ((p[2] >= 0) != (q[2] >= 0))
+      points[n++] = p + p[2] / (p[2] - q[2]) * (q - p);
+  }
+  for (int i = 0; i < n; ++i) // all triangles of the points cover what they span
+    for (int j = i + 1; j < n; ++j)
+      for (int k = j + 1; k < n; ++k)
+        raster.draw({points[i], points[j], points[k]}, 1);
+}
+
+/// Where a plane meets the material of a cell: a little above it, as what is cut already has its vertices in the plane.
+Raster section_of(const Solid& solid, const CellId c, const InPlane& in_plane) {
+  constexpr double little = 1e-3; // cubes
+  Raster section;
+  const Vec3 origin = solid.grid.origin(c);
+  grid::Copy whole = solid.complex.copies[solid.complex.first_copy[c]];
+  if (const grid::CellCuts cuts = grid::cuts_of(solid, c); cuts.is_cut_at_skin()) // which its copy may not know yet
+    whole.skin = grid::Part::of(cuts.skeleton().items).skin;
+  grid::for_each_tetrahedron(solid, whole, [&](const grid::Tetrahedron& rest, int) {
+    std::array<Vec3, 4> points;
+    std::ranges::transform(rest, points.begin(), [&](const Vec3& xi) {
+      return Vec3(in_plane(origin + solid.grid.h() * xi) - little * Vec3::UnitZ());
+    });
+    draw_section(points, section);
+  });
+  return section;
+}
+
+/// A cell's cube at rest, and around it what a front in another cell may reach over by its lag.
+Box reach_of(const Solid& solid, const CellId c) {
+  const double h = solid.grid.h(), lag = grid::front_lag * std::sqrt(3.0) * h;
+  const Vec3 origin = solid.grid.origin(c);
+  return {origin - Vec3::Constant(lag), origin + Vec3::Constant(h + lag)};
+}
+
+bool is_in(const Box& box, const Patch& quad) {
+  const Box around = geometry::box_around(quad);
+  return (around.lower.array() <= box.upper.array()).all() && (box.lower.array() <= around.upper.array()).all();
+}
+
+Polygon clipped(Polygon polygon, const Box& box) {
+  for (int axis = 0; axis < 3; ++axis)
+    for (const double side : {-1.0, 1.0}) {
+      const double end = side * (side > 0 ? box.upper : box.lower)[axis];
+      Polygon kept;
+      for (std::size_t i = 0; i < polygon.size(); ++i) {
+        const Vec3 &p = polygon[i], &q = polygon[(i + 1) % polygon.size()];
+        const double at_p = side * p[axis] - end, at_q = side * q[axis] - end;
+        if (at_p <= 0)
+          kept.push_back(p);
+        if ((at_p < 0 && at_q > 0) || (at_p > 0 && at_q < 0))
+          kept.push_back(p + at_p / (at_p - at_q) * (q - p));
+      }
+      polygon = std::move(kept);
+    }
+  return polygon;
+}
+
+/// Draws the pieces of a path in cells.
+class Sweep {
+ public:
+  Sweep(const BladePath& path, const Solid& solid, const Points& x_before, const Points& x)
+    : path_(path), solid_(solid), x_before_(x_before), x_(x), near_(patches(path)) {}
+
+  bool is_near(const EdgeBoxes::Block& block) const {
+    const Vec3 slack = Vec3::Constant(2 * block.longest);
+    return near_.may_be_in({block.box.lower - slack, block.box.upper + slack});
+  }
+  bool is_near(const CellId c) const {
+    const grid::Copy& copy = solid_.complex.copies[solid_.complex.first_copy[c]];
+    std::array<Vec3, 16> corners;
+    for (int v = 0; v < 8; ++v) {
+      corners[v] = x_[copy.corners[v].value];
+      corners[8 + v] = x_before_[copy.corners[v].value];
+    }
+    Box box = geometry::box_around(corners);
+    const Vec3 lag = Vec3::Constant(grid::front_lag * (box.upper - box.lower).sum());
+    return near_.may_be_in({box.lower - lag, box.upper + lag});
+  }
+
+  /// Calls f(polygon at rest [m]) for what of the path lies in the reach of the cell.
+  template <class Function>
+  void for_each_piece(const CellId c, const Function& f) const {
+    const ToRest before(solid_, c, x_before_), now(solid_, c, x_);
+    const Box reach = reach_of(solid_, c);
+    const auto at = [&](const std::size_t k, const std::size_t i) {
+      const double t = path_.fractions[k];
+      const Vec3& p = path_.lines[k][i];
+      return Vec3((1 - t) * before(p) + t * now(p));
+    };
+    for (std::size_t k = 1; k < path_.lines.size(); ++k)
+      for (std::size_t i = 1; i < path_.lines[k].size(); ++i) {
+        const Patch quad = {at(k - 1, i - 1), at(k - 1, i), at(k, i), at(k, i - 1)};
+        if (!is_in(reach, quad))
+          continue;
+        const Polygon piece = clipped({quad.begin(), quad.end()}, reach);
+        if (area(piece) > 0)
+          f(piece);
+      }
+  }
+
+ private:
+  const BladePath& path_;
+  const Solid& solid_;
+  const Points &x_before_, &x_;
+  NearSweep near_;
+};
+
+void draw(const Polygon& piece, const InPlane& in_plane, Raster& raster) {
+  for (std::size_t i = 2; i < piece.size(); ++i)
+    raster.draw({in_plane(piece[0]), in_plane(piece[i - 1]), in_plane(piece[i])}, off_plane);
+}
+
+bool is_cut_beside(const Solid& solid, const CellId c) {
+  for (int face = 0; face < grid::cube::n_faces; ++face)
+    if (const CellId next = solid.grid.neighbour(c, face);
+        next.valid() && grid::cuts_of_copies(solid, next).blades != 0)
+      return true;
+  return false;
+}
+
+/// The part of a section that what is drawn covers, with its lag.
+double passed(const Front& front, const Raster& section, const Raster& swept) {
+  const Raster come = section & swept.grown(grid::front_lag * front.normal.lpNorm<1>());
+  return section.any() ? std::min(most_passed, double(come.count()) / section.count()) : 0;
+}
+
+} // namespace
+
+void Advance::sweep(const BladePath& path, const Solid& solid, const Points& x_before, const Points& x,
+                    const EdgeBoxes& boxes, const grid::CutLabel label) {
+  const Sweep sweep(path, solid, x_before, x);
+  for (const std::uint32_t k : boxes.blocks([&](const EdgeBoxes::Block& block) { return sweep.is_near(block); }))
+    boxes.for_each_cell(k, [&](const CellId c) {
+      const bool is_whole = !solid.complex.copies[solid.complex.first_copy[c]].next.valid();
+      if ((is_whole || cells_.contains(c)) && sweep.is_near(c))
+        sweep.for_each_piece(c, [&](const Polygon& piece) { add(solid, c, piece, label); });
+    });
+}
+
+void Advance::add(const Solid& solid, const CellId c, const Polygon& piece, const grid::CutLabel label) {
+  Cell& cell = cells_.emplace(c, Cell{label}).first->second;
+  if (cell.label != label)
+    return;
+  if (const Front* const front = solid.cuts.front(c))
+    draw(piece, InPlane(front->point, front->normal, solid.grid.h()), cell.swept);
+  else {
+    if (cell.pieces.size() == most_pieces)
+      cell.pieces.erase(cell.pieces.begin());
+    cell.pieces.push_back(piece);
+  }
+  touched_.insert(c);
+}
+
+std::vector<Front> Advance::take(const Solid& solid, const PendingCuts& pending) {
+  std::vector<Front> fronts;
+  FrontsOfCells begun;
+  std::set<CellId> later;
+  for (const CellId c : touched_) {
+    Cell& cell = cells_.at(c);
+    const auto edges = solid.grid.edges(c);
+    if (grid::whole_parts_of(grid::cuts_of(solid, c)).n > 1)
+      cells_.erase(c);
+    else if (std::ranges::any_of(edges, [&](const grid::EdgeId e) { return pending.waits(e); }))
+      later.insert(c);
+    else if (const Front* const earlier = solid.cuts.front(c)) {
+      Front moved = *earlier;
+      moved.passed = passed(moved, cell.section, cell.swept);
+      if (moved.passed > earlier->passed)
+        fronts.push_back(moved);
+    } else if (const auto front = front_ahead(solid, c, cell.pieces, cell.label))
+      begun.emplace(c, *front);
+  }
+  for (auto& [c, front] : begun)
+    if (begin(solid, front, begun))
+      fronts.push_back(front);
+  touched_ = std::move(later);
+  std::ranges::sort(fronts, {}, &Front::cell);
+  return fronts;
+}
+
+/// Whether it can, and has come so far that it is worth a copy.
+bool Advance::begin(const Solid& solid, Front& front, const FrontsOfCells& begun) {
+  Cell& cell = cells_.at(front.cell);
+  const InPlane in_plane(front.point, front.normal, solid.grid.h());
+  Raster swept;
+  for (const Polygon& piece : cell.pieces)
+    draw(piece, in_plane, swept);
+  const Raster section = section_of(solid, front.cell, in_plane);
+  front.passed = passed(front, section, swept);
+  if (front.passed < least_passed || !((section & swept).any() || is_cut_beside(solid, front.cell)) ||
+      !fits_in(solid, front, begun))
+    return false;
+  cell = {cell.label, {}, section, swept};
+  return true;
+}
+
+} // namespace kerf::cut

@@ -1,0 +1,56 @@
+#pragma once
+
+/// How far moving blades have come in cells that they have not parted: the fronts that they leave (grid/fronts.h).
+///
+/// A cell is parted along the plane in which the blade will go through it, where that is certain (course.h); else it stays
+/// whole until it is cut.
+///
+/// What the blade sweeps is drawn onto a raster in that plane, where a point that is passed twice counts once; what leaves
+/// the plane by a quarter of a cube does not count. As elements are too stiff at a front, what is drawn is taken larger by
+/// the lag of fronts, and so reaches on into the next cells; one of which the lag alone reaches has to have a cut one beside
+/// it. The part of the section of plane and material that it covers is how far the cut has come.
+///
+/// Cells in which cuts wait (pending.h) get no front before they are cut.
+///
+/// Errors: a texel is .04 cubes wide; within a cell the map of its copy is taken as affine. A blade that turns leaves
+/// the fronts that it had.
+
+#include "cut/course.h"
+#include "cut/edge_boxes.h"
+#include "cut/near_sweep.h"
+#include "cut/pending.h"
+#include "cut/raster.h"
+
+#include <set>
+
+namespace kerf::cut {
+
+class Advance {
+ public:
+  /// What a blade sweeps while the corners go from x_before to x [m], to which `boxes` are fitted.
+  void sweep(const BladePath& path, const grid::Solid& solid, const Points& x_before, const Points& x,
+             const EdgeBoxes& boxes, grid::CutLabel label);
+
+  /// The fronts that have begun or moved on since it was asked last, ascending; where nothing is left to part, cells are
+  /// forgotten. To be asked when what the blades have met is cut.
+  std::vector<grid::Front> take(const grid::Solid& solid, const PendingCuts& pending);
+
+  void archive(Archive& a) { a(cells_, touched_); }
+
+ private:
+  struct Cell {
+    grid::CutLabel label = 1;
+    std::vector<Polygon> pieces = {}; ///< of strips, rest frame [m]; until there is a front
+    Raster section = {}, swept = {};  ///< from then on
+
+    void archive(Archive& a) { a(label, pieces, section, swept); }
+  };
+
+  void add(const grid::Solid& solid, grid::CellId c, const Polygon& piece, grid::CutLabel label);
+  bool begin(const grid::Solid& solid, grid::Front& front, const FrontsOfCells& begun);
+
+  std::map<grid::CellId, Cell> cells_;
+  std::set<grid::CellId> touched_; // in which blades have swept since fronts were taken
+};
+
+} // namespace kerf::cut

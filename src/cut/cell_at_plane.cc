@@ -1,0 +1,155 @@
+#include "cut/cell_at_plane.h"
+
+#include "grid/shape.h"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace kerf::cut {
+
+namespace {
+
+namespace cube = grid::cube;
+namespace skeleton = grid::skeleton;
+using grid::Segments;
+
+/// The points of a convex polygon in their order around it.
+void sort_around(Polygon& points, const Vec3& normal) {
+  const Vec3 u = normal.unitOrthogonal(), v = normal.cross(u), middle = mean(points);
+  const auto angle = [&](const Vec3& p) { return std::atan2(v.dot(p - middle), u.dot(p - middle)); };
+  std::sort(points.begin(), points.end(), [&](const Vec3& p, const Vec3& q) { return angle(p) < angle(q); });
+}
+
+} // namespace
+
+double area(const Polygon& polygon) {
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t i = 2; i < polygon.size(); ++i)
+    sum += (polygon[i - 1] - polygon[0]).cross(polygon[i] - polygon[0]);
+  return 0.5 * sum.norm();
+}
+
+Vec3 mean(const Polygon& points) {
+  Vec3 sum = Vec3::Zero();
+  for (const Vec3& p : points)
+    sum += p;
+  return sum / static_cast<double>(points.size());
+}
+
+Vec3 normal(const Polygon& points) {
+  const Vec3 middle = mean(points);
+  Mat3 spread = Mat3::Zero();
+  for (const Vec3& p : points)
+    spread += (p - middle) * (p - middle).transpose();
+  return Eigen::SelfAdjointEigenSolver<Mat3>(spread).eigenvectors().col(0);
+}
+
+CellAtPlane::CellAtPlane(const grid::Solid& solid, const grid::CellId c, const Plane& plane,
+                         const std::array<Vec3, 8>& x)
+  : solid_(solid), cell_(c), plane_(plane), x_(x) {
+  for (int v = 0; v < cube::n_vertices; ++v) {
+    height_[v] = height(x_[v]);
+    above_ |= unsigned(height_[v] >= 0) << v; // as meet() of cut_surface.cc has it
+  }
+}
+
+bool CellAtPlane::is_clear(const double margin) const {
+  const grid::CellCuts cuts = grid::cuts_of(solid_, cell_);
+  const grid::Skeleton& skeleton = cuts.skeleton();
+  std::array<double, skeleton::n_items> heights{};
+  for (grid::Items left = skeleton.items; left != 0; left &= left - 1) {
+    const int item = std::countr_zero(left);
+    heights[item] = item < skeleton::first_on_line ? height_[item] : height(position(item));
+    if (std::abs(heights[item]) <= margin)
+      return false;
+  }
+  for (Segments left = cuts.blades & skeleton.segments; left != 0; left &= left - 1)
+    if (const auto& [a, b] = skeleton.segment[std::countr_zero(left)].ends; (heights[a] >= 0) == (heights[b] >= 0))
+      return false;
+  return true;
+}
+
+CellAtPlane::Section CellAtPlane::section() const {
+  constexpr double little = 1e-3; // in parts of h
+  const auto [least, most] = std::minmax_element(height_.begin(), height_.end());
+  const double room = std::min(little * solid_.grid.h(), 0.25 * (*most - *least));
+  const double level = std::clamp(0.0, *least + room, *most - room);
+  const auto nodes = solid_.grid.nodes(cell_);
+  Section section;
+  for (const auto& [v, w] : cube::line_vertices) {
+    const double at_v = height_[v] - level, at_w = height_[w] - level;
+    if ((at_v >= 0) == (at_w >= 0))
+      continue;
+    const double t = at_v / (at_v - at_w);
+    const Vec3 p = solid_.grid.position(nodes[v]), q = solid_.grid.position(nodes[w]);
+    section.there.push_back(x_[v] + t * (x_[w] - x_[v]));
+    section.rest.push_back(p + t * (q - p));
+  }
+  sort_around(section.there, plane_.normal);
+  sort_around(section.rest, normal(section.rest));
+  return section;
+}
+
+grid::Front CellAtPlane::front(const Section& section, const double passed) const {
+  return {.cell = cell_,
+          .ahead = ahead(),
+          .point = mean(section.rest),
+          .normal = normal(section.rest),
+          .area = area(section.rest),
+          .passed = std::min(most_passed, passed)};
+}
+
+Segments CellAtPlane::ahead() const {
+  const grid::CellCuts cuts = grid::cuts_of(solid_, cell_);
+  const grid::Skeleton& skeleton = cuts.skeleton();
+  const auto heights = heights_of_items(cuts);
+  Segments found = 0;
+  for (Segments left = skeleton.segments & ~cuts.blades; left != 0; left &= left - 1)
+    if (const auto& [a, b] = skeleton.segment[std::countr_zero(left)].ends; (heights[a] >= 0) != (heights[b] >= 0))
+      found |= left & -left;
+  return found;
+}
+
+/// Signed like the side of the plane. Of what lies right in the plane the cut itself has said on which side it is.
+std::array<double, skeleton::n_items> CellAtPlane::heights_of_items(const grid::CellCuts& cuts) const {
+  const grid::Skeleton& skeleton = cuts.skeleton();
+  std::array<double, skeleton::n_items> heights{};
+  for (grid::Items left = skeleton.items; left != 0; left &= left - 1) {
+    const int item = std::countr_zero(left);
+    heights[item] = item < skeleton::first_on_line ? height_[item] : height(position(item));
+  }
+  const double in_plane = 1e-7 * solid_.grid.h();
+  for (const Segments kind : {skeleton::lines, ~skeleton::lines & ~skeleton::spokes, skeleton::spokes})
+    for (Segments left = skeleton.segments & cuts.blades & kind; left != 0; left &= left - 1) {
+      const auto& [a, b] = skeleton.segment[std::countr_zero(left)].ends;
+      for (const auto& [p, q] : {std::pair{a, b}, std::pair{b, a}})
+        if (p >= skeleton::first_on_line && std::abs(heights[p]) < in_plane)
+          heights[p] = heights[q] >= 0 ? -1 : 1;
+    }
+  return heights;
+}
+
+Vec3 CellAtPlane::position(const int item) const {
+  const Vec3 xi = (grid::item_point(solid_, cell_, item) - solid_.grid.origin(cell_)) / solid_.grid.h();
+  Vec3 p = Vec3::Zero();
+  for (int v = 0; v < cube::n_vertices; ++v)
+    p += grid::shape(v, xi) * x_[v];
+  return p;
+}
+
+bool hangs_by_skin(const grid::Solid& solid, const grid::Front& front) {
+  constexpr unsigned nodes = 0xf;
+  const grid::Parts parts = grid::parts_of(grid::with(grid::cuts_of(solid, front.cell), front.ahead));
+  for (int face = 0; face < cube::n_faces; ++face)
+    if (solid.grid.neighbour(front.cell, face).valid())
+      for (const grid::Part& part : parts)
+        if (const unsigned items = grid::detail::in_face(part, face); items != 0 && (items & nodes) == 0)
+          return true;
+  return false;
+}
+
+} // namespace kerf::cut

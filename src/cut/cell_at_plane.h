@@ -1,0 +1,61 @@
+#pragma once
+
+/// A cell that a plane passes, in which a cut may end (fronts.h, advance.h).
+
+#include "cut/cut_surface.h"
+
+namespace kerf::cut {
+
+using Polygon = std::vector<Vec3>;
+
+double area(const Polygon& polygon);
+Vec3 mean(const Polygon& points);
+/// Of the plane nearest to points, unit; the sign has no meaning.
+Vec3 normal(const Polygon& points);
+
+/// What a front has passed of its cell: below `least` it is not worth a copy, and as much less than all is tied until it
+/// is cut [1].
+constexpr double least_passed = 0.02, most_passed = 0.98;
+
+class CellAtPlane {
+ public:
+  /// The cell's corners at `x`, and the plane there: at rest or as they are now [m].
+  CellAtPlane(const grid::Solid& solid, grid::CellId c, const Plane& plane, const std::array<Vec3, 8>& x);
+
+  bool is_met() const { return above_ != 0 && above_ != 0xff; }
+
+  /// Do all nodes and points of the skin lie farther than this off the plane [m], and those that blades have parted on
+  /// either side of it?
+  bool is_clear(double margin) const;
+
+  /// Where the plane meets the cube, around, there and at rest. A plane that only grazes the cell is moved into it by a
+  /// little, so that its section has an area.
+  struct Section {
+    Polygon there, rest;
+  };
+  Section section() const;
+
+  /// The front of a cut that has come as far as `passed` of the section says.
+  grid::Front front(const Section& section, double passed) const;
+
+  /// The segments whose ends the plane parts, but that are not cut.
+  grid::Segments ahead() const;
+
+ private:
+  double height(const Vec3& p) const { return plane_.normal.dot(p - plane_.point); }
+  std::array<double, grid::skeleton::n_items> heights_of_items(const grid::CellCuts& cuts) const;
+  Vec3 position(int item) const;
+
+  const grid::Solid& solid_;
+  grid::CellId cell_;
+  Plane plane_;
+  std::array<Vec3, 8> x_;
+  std::array<double, 8> height_;
+  unsigned above_ = 0;
+};
+
+/// Would a part of the cell hold on to a neighbour by points of the skin alone? Neighbours that no blade has cut do not say
+/// which part holds those (grid/parts.h).
+bool hangs_by_skin(const grid::Solid& solid, const grid::Front& front);
+
+} // namespace kerf::cut

@@ -1,0 +1,151 @@
+#include "cut/course.h"
+
+#include "cut/cell_at_plane.h"
+#include "cut/shreds.h"
+
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <set>
+
+namespace kerf::cut {
+
+namespace {
+
+using grid::CellId;
+using grid::Front;
+using grid::Solid;
+
+constexpr double in_plane = 1e-6; // cubes; and of a unit vector
+
+std::array<Vec3, 8> rest_of(const Solid& solid, const CellId c) {
+  std::array<Vec3, 8> corners;
+  std::ranges::transform(solid.grid.nodes(c), corners.begin(),
+                         [&](const grid::NodeId node) { return solid.grid.position(node); });
+  return corners;
+}
+
+/// The cell and those that share a node with it, as far as faces lead to them.
+std::vector<CellId> cells_around(const grid::Grid& grid, const CellId c) {
+  std::vector<CellId> cells = {c};
+  for (int axis = 0; axis < 3; ++axis)
+    for (std::size_t i = 0, n = cells.size(); i < n; ++i)
+      for (const int side : {0, 1})
+        if (const CellId next = grid.neighbour(cells[i], 2 * axis + side); next.valid())
+          cells.push_back(next);
+  return cells;
+}
+
+/// Where a blade has been in a cell and around it, at rest [m].
+Points known_points(const Solid& solid, const CellId c, const std::vector<Polygon>& pieces,
+                    const grid::CutLabel label) {
+  Points points;
+  for (const Polygon& piece : pieces)
+    points.insert(points.end(), piece.begin(), piece.end());
+  for (const CellId cell : cells_around(solid.grid, c))
+    for (const grid::EdgeId e : solid.grid.edges(cell))
+      if (const grid::EdgeCut* const cut = solid.cuts.find(e); cut && cut->label == label)
+        points.push_back(edge_point(solid, e));
+  return points;
+}
+
+/// The plane nearest to points, and how far they stray from it [m].
+struct Course {
+  Plane plane;
+  double stray;
+};
+std::optional<Course> course_of(const Points& points, const double h) {
+  constexpr double least_width = 0.1; // as a standard deviation, in cubes
+  Vec3 middle = Vec3::Zero();
+  for (const Vec3& p : points)
+    middle += p / double(points.size());
+  Mat3 spread = Mat3::Zero();
+  for (const Vec3& p : points)
+    spread += (p - middle) * (p - middle).transpose() / double(points.size());
+  const Eigen::SelfAdjointEigenSolver<Mat3> axes(spread);
+  if (!(axes.eigenvalues()[1] > std::pow(least_width * h, 2)))
+    return std::nullopt;
+  Course course{{middle, axes.eigenvectors().col(0)}, 0};
+  for (const Vec3& p : points)
+    course.stray = std::max(course.stray, std::abs(course.plane.normal.dot(p - middle)));
+  return course;
+}
+
+/// As the predicates have it, by which blades cut (geometry/predicates.h): what lies right in a plane is behind it along
+/// the first axis that is not in the plane.
+Plane displaced(const Plane& plane, const double distance) {
+  int axis = 0;
+  while (std::abs(plane.normal[axis]) < in_plane)
+    ++axis;
+  return {plane.point + (plane.normal[axis] > 0 ? distance : -distance) * plane.normal, plane.normal};
+}
+
+/// Two parts, with nodes in each.
+bool parts_in_two(const Solid& solid, const Front& front) {
+  const grid::Parts parts = grid::parts_of(grid::with(grid::cuts_of(solid, front.cell), front.ahead));
+  return parts.n == 2 && std::ranges::all_of(parts, [](const grid::Part& part) { return part.nodes != 0; });
+}
+
+/// Do the parts of two cells divide the face between them alike, or does one of the cells hold it together?
+bool divide_alike(const grid::Parts& one, const grid::Parts& other, const int face) {
+  const auto divided = [](const grid::Parts& parts, const int side) {
+    std::set<unsigned> in_face;
+    for (const grid::Part& part : parts)
+      if (const unsigned bits = grid::detail::in_face(part, side); bits != 0)
+        in_face.insert(bits);
+    return in_face;
+  };
+  const std::set<unsigned> a = divided(one, face), b = divided(other, face ^ 1);
+  return a.size() < 2 || b.size() < 2 || a == b;
+}
+
+/// What the copies of a cell would follow.
+grid::CellCuts cuts_with(const Solid& solid, const CellId c, const FrontsOfCells& begun) {
+  const auto at = begun.find(c);
+  return at == begun.end() ? grid::cuts_of_copies(solid, c) : grid::with(grid::cuts_of(solid, c), at->second.ahead);
+}
+
+bool agrees_with_neighbours(const Solid& solid, const Front& front, const FrontsOfCells& begun) {
+  const auto parts = [&](const CellId c) { return grid::parts_of(cuts_with(solid, c, begun)); };
+  const grid::Parts own = parts(front.cell);
+  for (int face = 0; face < grid::cube::n_faces; ++face)
+    if (const CellId next = solid.grid.neighbour(front.cell, face);
+        next.valid() && !divide_alike(own, parts(next), face))
+      return false;
+  return true;
+}
+
+/// Would a part of the cell hang together with hardly anything?
+bool leaves_shreds(const Solid& solid, const Front& front, const FrontsOfCells& begun) {
+  const auto cuts_of = [&](const CellId c) { return cuts_with(solid, c, begun); };
+  const grid::Parts parts = grid::parts_of(cuts_of(front.cell));
+  return std::ranges::any_of(parts, [&](const grid::Part& part) {
+    return is_small(solid, front.cell, std::countr_zero(part.items()), cuts_of);
+  });
+}
+
+} // namespace
+
+std::optional<Front> front_ahead(const Solid& solid, const CellId c, const std::vector<Polygon>& pieces,
+                                 const grid::CutLabel label) {
+  constexpr double safety = 2;
+  const double h = solid.grid.h();
+  const std::optional<Course> course = course_of(known_points(solid, c, pieces, label), h);
+  if (!course)
+    return std::nullopt;
+  const CellAtPlane at_plane(solid, c, displaced(course->plane, in_plane * h), rest_of(solid, c));
+  if (!at_plane.is_met() || !at_plane.is_clear(std::max(safety * course->stray, 0.9 * in_plane * h)))
+    return std::nullopt;
+  Front front = at_plane.front(at_plane.section(), 0);
+  front.label = label;
+  return front.ahead != 0 && parts_in_two(solid, front) && !hangs_by_skin(solid, front) ? std::optional(front)
+                                                                                        : std::nullopt;
+}
+
+bool fits_in(const Solid& solid, const Front& front, const FrontsOfCells& begun) {
+  return agrees_with_neighbours(solid, front, begun) && !leaves_shreds(solid, front, begun);
+}
+
+} // namespace kerf::cut

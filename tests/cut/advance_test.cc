@@ -1,0 +1,192 @@
+#include "cut/advance.h"
+
+#include "grid/fronts.h"
+#include "tests/cut/cutting.h"
+#include "tests/cut/patient.h"
+
+#include <cmath>
+#include <set>
+
+namespace kerf::cut {
+namespace {
+
+/// In the plane z = 5.4, from x = -2 on, its edge along y, by 1 a second.
+Blade along_x(const double y0 = -20, const double y1 = 20) {
+  return {"blade", {Vec3(0, y0, 0), Vec3(0, y1, 0)}, {{0, Vec3(-2, 0, 5.4)}, {100, Vec3(98, 0, 5.4)}}};
+}
+
+/// A blade that stops anywhere leaves the fronts that a rectangle up to there leaves.
+TEST(Advance, LeavesTheFrontsOfARectangle) {
+  for (const double speed : {0.05, 0.3, 2.0}) {
+    Cutting moving(block(), Fronts::inside_cells);
+    double t = 0;
+    for (int k = 0; t < 9; ++k, t += speed) {
+      moving.step(along_x(), t, t + speed);
+      const double end = t + speed - 2;
+      if (end < 1 || std::abs(end - std::round(end)) < 1e-9 || moving.cutter.n_waiting() > 0)
+        continue; // right at a node round-off decides
+      Cutting at_once(block(), Fronts::inside_cells);
+      at_once.cut(Rectangle{Vec3(0.5 * end, 5, 5.4), Vec3(end, 0, 0), Vec3(0, 40, 0)});
+      ASSERT_EQ(moving.body.complex.tied.size(), at_once.body.complex.tied.size()) << speed << " " << end;
+      for (const auto& [a, b] : at_once.body.complex.tied) {
+        const grid::CellId c = at_once.body.complex.copies[a].cell;
+        const grid::Front *const one = moving.body.cuts.front(c), *const other = at_once.body.cuts.front(c);
+        ASSERT_NE(one, nullptr);
+        EXPECT_NEAR(one->passed, other->passed, 0.04) << speed << " " << end;
+        EXPECT_NEAR(one->area, other->area, 1e-9);
+        EXPECT_EQ(grid::cuts_of_copies(moving.body, c).blades, grid::cuts_of_copies(at_once.body, c).blades);
+      }
+    }
+  }
+}
+
+/// A stroke from a random place beside a body of this size into it and on, which turns on its way, and whose edge ends
+/// somewhere in it.
+Blade random_stroke(support::Random& random, const double size) {
+  const Vec3 towards = random_direction(random), side = towards.unitOrthogonal();
+  const Vec3 start = -1.3 * size * towards + 0.4 * size * support::random_vector(random);
+  const double reach = uniform(random, 0.6, 2.4), turn = uniform(random, -60, 60);
+  Blade blade = {
+    "blade", {Vec3(uniform(random, -1.5, 0) * size * side), Vec3(uniform(random, 0, 1.5) * size * side)}, {}};
+  blade.key_frames = {{0, start, Vec3::Zero()}, {1, start + reach * size * towards, turn * side}};
+  return blade;
+}
+
+/// A body in waves.
+Points swung(const Body& body, const double height, const double t) {
+  Points x = grid::rest_positions(body);
+  for (Vec3& p : x)
+    p += height * Vec3(std::sin(0.4 * p[1] + 5 * t), std::sin(0.3 * p[2] + 4 * t), std::sin(0.5 * p[0] + 6 * t));
+  return x;
+}
+
+/// Do cells whose fronts are new part the faces that they share with others as these do, as far as they do?
+void expect_faces_parted_alike(const Body& body, const std::set<grid::CellId>& with_fronts) {
+  const auto& copies = body.complex.copies;
+  for (const grid::Front& front : body.cuts.fronts())
+    for (int face = 0; face < grid::cube::n_faces && !with_fronts.contains(front.cell); ++face) {
+      const grid::CellId next = body.grid.neighbour(front.cell, face);
+      if (!next.valid())
+        continue;
+      std::set<grid::CopyId> own, others;
+      int n_glued = 0;
+      for (const grid::CopyId a : body.complex.copies_of(front.cell))
+        for (const grid::CopyId b : body.complex.copies_of(next)) {
+          const grid::Part mine = copies[a].part(), its = copies[b].part();
+          if (face % 2 == 1 ? !grid::are_glued(mine, its, face / 2) : !grid::are_glued(its, mine, face / 2))
+            continue;
+          own.insert(a);
+          others.insert(b);
+          ++n_glued;
+        }
+      if (own.size() > 1 && others.size() > 1) {
+        EXPECT_EQ(n_glued, own.size());
+        EXPECT_EQ(n_glued, others.size());
+      }
+    }
+}
+
+std::set<grid::CellId> cells_with_fronts(const Body& body) {
+  std::set<grid::CellId> cells;
+  for (const grid::Front& front : body.cuts.fronts())
+    cells.insert(front.cell);
+  return cells;
+}
+
+/// Blades that stop in the body, turn, come back and meet what others have cut, slow and fast, while it rests or swings.
+TEST(Advance, LeavesThePiecesMassAndSurfaceAsTheyWere) {
+  support::Random random(7);
+  std::array<std::size_t, 2> n_fronts{};
+  for (int i = 0; i < 40; ++i) {
+    const bool swings = i % 2 == 1;
+    const Body whole =
+      support::with_copies(support::with_placed_skin(support::ball(3 + 0.05 * i, 1, support::random_offset(random))));
+    Cutting with(whole, Fronts::inside_cells), without(whole, Fronts::at_faces);
+    double time = 0;
+    for (int stroke = 0; stroke < 2; ++stroke) {
+      const Blade blade = random_stroke(random, 4);
+      const int n_steps = std::array{3, 17, 60}[i % 3], n_back = static_cast<int>(random() % 4);
+      for (int k = 0; k < n_steps + n_back; ++k, time += 1.0 / n_steps) {
+        const double t0 = std::min(1.0, double(k) / n_steps), t1 = k < n_steps ? double(k + 1) / n_steps : 0.9;
+        const std::set<grid::CellId> before = cells_with_fronts(with.body);
+        for (Cutting* const cutting : {&with, &without})
+          cutting->step(blade, t0, t1, swung(cutting->body, swings ? 0.3 : 0, time));
+        expect_faces_parted_alike(with.body, before);
+      }
+      SCOPED_TRACE(testing::Message() << i << " " << stroke);
+      expect_alike(with, without);
+    }
+    n_fronts[swings] += with.body.complex.tied.size();
+    expect_as_built(with);
+  }
+  EXPECT_GT(n_fronts[0], 200u);
+  EXPECT_GT(n_fronts[1], 20u);
+}
+
+/// Which cells have fronts, and how far these have come, is hardly a matter of the length of steps.
+TEST(Advance, DoesNotDependOnSteps) {
+  support::Random random(9);
+  std::size_t n_all = 0, n_common = 0, n_of_one = 0;
+  for (int i = 0; i < 20; ++i) {
+    const Body whole =
+      support::with_copies(support::with_placed_skin(support::ball(4, 1, support::random_offset(random))));
+    Cutting slow(whole, Fronts::inside_cells), fast(whole, Fronts::inside_cells);
+    Blade blade = random_stroke(random, 4);
+    for (KeyFrame& frame : blade.key_frames)
+      frame.rotation = Vec3::Zero();
+    const auto pass = [&](Cutting& cutting, const int n, const double end) {
+      for (int k = 0; k < n || cutting.cutter.n_waiting() > 0; ++k)
+        cutting.step(blade, std::min(end, end * k / n), std::min(end, end * (k + 1) / n));
+    };
+    pass(slow, 80, 0.6);
+    pass(fast, 2, 0.6);
+    n_all += fast.body.complex.tied.size();
+    for (const auto& [a, b] : slow.body.complex.tied) {
+      const grid::CellId c = slow.body.complex.copies[a].cell;
+      const grid::Front *const one = slow.body.cuts.front(c), *const other = fast.body.cuts.front(c);
+      n_of_one += other == nullptr;
+      if (!other)
+        continue;
+      ++n_common;
+      EXPECT_NEAR(one->passed, other->passed, 0.02);
+      EXPECT_EQ(grid::cuts_of_copies(slow.body, c).blades, grid::cuts_of_copies(fast.body, c).blades);
+    }
+  }
+  EXPECT_GT(n_common, 100u);
+  EXPECT_LE(n_of_one, n_common / 20); // that had begun when cells beside them were whole
+  EXPECT_LE(n_all, n_common + n_common / 20);
+}
+
+/// Half a stroke, an archive, and the other half: as without one.
+TEST(Advance, GoesOnFromAnArchive) {
+  const Body whole = support::with_copies(support::with_placed_skin(support::ball(4, 1, Vec3(0.2, 0.7, 0.4))));
+  const Points x = grid::rest_positions(whole);
+  const Blade blade{"blade", {Vec3(0, -20, 0), Vec3(0, 20, 0)}, {{0, Vec3(-6, 0, 0.37)}, {1, Vec3(6, 0, 0.37)}}};
+  Body body = whole, again = whole;
+  Cutter cutter(1, Release::queued, Fronts::inside_cells), resumed(1, Release::queued, Fronts::inside_cells);
+  cutter.begin(body, x);
+  resumed.begin(again, x);
+  const auto step = [&](Cutter& by, Body& of, const int k) {
+    surface::place(of, by.step(of, std::span(&blade, 1), k / 40.0, (k + 1) / 40.0, grid::rest_positions(of)), {});
+  };
+  for (int k = 0; k < 20; ++k)
+    step(cutter, body, k);
+  Archive archive;
+  archive(body, cutter);
+  Archive back(archive.bytes(), "a test");
+  back(again, resumed);
+  for (int k = 20; k < 30; ++k) {
+    step(cutter, body, k);
+    step(resumed, again, k);
+  }
+  ASSERT_GT(body.complex.tied.size(), 5u);
+  EXPECT_EQ(body.complex.tied, again.complex.tied);
+  ASSERT_EQ(body.cuts.fronts().size(), again.cuts.fronts().size());
+  for (std::size_t i = 0; i < body.cuts.fronts().size(); ++i) {
+    EXPECT_EQ(body.cuts.fronts()[i].cell, again.cuts.fronts()[i].cell);
+    EXPECT_EQ(body.cuts.fronts()[i].passed, again.cuts.fronts()[i].passed);
+  }
+}
+
+} // namespace
+} // namespace kerf::cut
