@@ -4,6 +4,7 @@
 
 #include "base/parallel.h"
 #include "scene/recorder.h"
+#include "study/measure.h"
 #include "study/stability.h"
 #include "study/study.h"
 
@@ -60,6 +61,12 @@ int study(const Arguments& arguments) {
     return 0;
   }
   output::require_claimable(parsed.output, parsed.earlier);
+  if (parsed.earlier != output::Earlier::resume)
+    study::require_changes_read(plan);
+  if (!study::has_reference(plan))
+    std::printf(
+      "no errors will be told: the study has no reference. Write 'set Reference', a section Truth, or 'set Reference "
+      "row'\n");
   std::size_t n = 0;
   const auto say = [&](const output::StudyRow& row) {
     std::printf("row %zu of %zu: %s: %s\n", ++n, plan.rows.size(), row.name.c_str(), row.outcome.c_str());

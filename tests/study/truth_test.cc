@@ -27,9 +27,9 @@ const std::string crack =
 
 std::string truth(const std::string& body) { return "subsection Truth\n" + body + "end\n"; }
 
-Reference find(const std::string& text, const std::filesystem::path& cache = {}) {
+Reference find(const std::string& text, const std::filesystem::path& cache = {}, const TruthAsked& asked = {}) {
   const scene::Section root = scene::parse_scene(scene::scan_scene_text(text, "study.prm"), {truth_grammar()});
-  const Reference found = find_truth(root.require("Truth"), cache);
+  const Reference found = find_truth(root.require("Truth"), asked, cache);
   root.require_all_read();
   return found;
 }
@@ -67,10 +67,10 @@ TEST(Truth, IsKeptByAHashOfItsSection) {
   }
   EXPECT_EQ(find(text, cache / "references").value, found.value) << "bit by bit";
   EXPECT_EQ(find(text, cache / "references").source, found.source);
-  std::ofstream(file) << "42\nelsewhere\nend\n";
+  std::ofstream(file) << "42 0 0\nelsewhere\nend\n";
   EXPECT_EQ(find(text, cache / "references").value, 42) << "not solved again";
   EXPECT_NE(find(truth(corners + rest + crack), cache / "references").value, 42) << "another problem";
-  std::ofstream(file) << "42\nelse";
+  std::ofstream(file) << "42 0 0\nelse";
   EXPECT_EQ(find(text, cache / "references").value, found.value) << "half a file does not count";
 }
 
