@@ -3,6 +3,8 @@
 #include "study/grammar.h"
 
 #include <cmath>
+#include <iomanip>
+#include <sstream>
 
 namespace kerf::study {
 
@@ -21,12 +23,19 @@ void require_range(const RangeParameters& p, const Section& change) {
                            "Write ends of one sign, or 'set Spacing = equal steps'");
 }
 
+/// Without what rounding adds: 0.03, not 0.030000000000000002.
+double rounded(const double value) {
+  std::ostringstream text;
+  text << std::setprecision(12) << value;
+  return std::stod(text.str());
+}
+
 /// The ends exactly.
 double number_at(const RangeParameters& p, const int i) {
   const double first = p.range[0], last = p.range[1], part = p.number > 1 ? double(i) / (p.number - 1) : 0;
   if (i == 0 || i == p.number - 1)
     return i == 0 ? first : last;
-  return p.spacing == "equal steps" ? first + (last - first) * part : first * std::pow(last / first, part);
+  return rounded(p.spacing == "equal steps" ? first + (last - first) * part : first * std::pow(last / first, part));
 }
 
 std::vector<std::string> values_of(const RangeParameters& p, const Section& change) {

@@ -112,7 +112,7 @@ Displacements printed(const std::vector<std::string>& lines) {
     std::istringstream words(line);
     int node = 0;
     Vec3 u;
-    if (line.find("(vx,vy,vz)") != std::string::npos)
+    if (line.find(" for set ") != std::string::npos)
       is_displacement = line.find("displacements") != std::string::npos;
     else if (is_displacement && words >> node >> u[0] >> u[1] >> u[2])
       found[node] = u;
