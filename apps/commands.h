@@ -16,6 +16,7 @@ int weights(const Arguments& arguments);
 int params(const Arguments& arguments);
 int texture(const Arguments& arguments);
 int table(const Arguments& arguments);
+int bench(const Arguments& arguments);
 
 /// The page of a command with many options, a line each with its default; empty for the others.
 std::string help_of(const std::string& command);

@@ -48,10 +48,24 @@ Runs a scene in variants: error against run time, as a table. `kerf params study
 Without --force or --resume a folder that holds results is refused.
 )";
 
+const char* const of_bench = R"(usage: kerf bench [options]
+Measures each hot path of the program on cubes of about 200 cells and more: seconds a call, items a second, and what part that
+is of the additions and multiplications, and of the bytes, that this machine does at most, which is measured too. Medians of
+samples on the clock: leave the machine alone meanwhile.
+
+  --only PATH                only the paths whose name has this                   all
+  --largest CELLS            of a body, 216 to 1e6                                1e5
+  --samples N                of each path and size, 1 to 1000                     7
+  --threads N                1 to 1024                                            1
+  --output DIR               folder of bench.h5 and bench.csv                     results/bench
+  --against FILE.h5          an earlier bench.h5: names what is slower by more than 10 %
+  --force                    replaces the results of an earlier one
+)";
+
 } // namespace
 
 std::string help_of(const std::string& command) {
-  static const std::map<std::string, const char*> pages = {{"run", of_run}, {"check", of_check}, {"study", of_study}};
+  static const std::map<std::string, const char*> pages = {{"run", of_run}, {"check", of_check}, {"study", of_study}, {"bench", of_bench}};
   const auto page = pages.find(command);
   return page == pages.end() ? "" : page->second + std::string(exit_codes);
 }

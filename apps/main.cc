@@ -30,6 +30,8 @@ constexpr const char* usage = R"(usage:
   kerf report FILE.h5|FOLDER... [--output DIR] [--force]  one page about runs and studies, and figures for a paper
   kerf export --volume RUN [--body NAME] [--output FILE]  a run's cells with fields over time, for ParaView
   kerf inspect FILE...                                    what is in a file of ours
+  kerf bench [--only PATH] [--largest CELLS] [--against FILE.h5] [--threads N] [--output DIR] [--force]
+                                                          how fast each hot path is here, over the size of a body
   kerf params [study]                                     every section and key of a scene, or of a study
   kerf table --output FILE.h5                             the Splitting Cubes table as a file
   kerf run --help                                         its options with their defaults; check and study too
@@ -51,7 +53,7 @@ int dispatch(const kerf::apps::Arguments& arguments) {
   const std::map<std::string, Command> commands = {{"run", kerf::apps::run},       {"check", kerf::apps::check},
                                                    {"study", kerf::apps::study},   {"weights", kerf::apps::weights},
                                                    {"params", kerf::apps::params}, {"texture", kerf::apps::texture},
-                                                   {"table", kerf::apps::table}};
+                                                   {"table", kerf::apps::table},   {"bench", kerf::apps::bench}};
   if (!arguments.empty() && (arguments[0] == "report" || arguments[0] == "export" || arguments[0] == "inspect"))
     kerf::apps::become_python(arguments[0], {arguments.begin() + 1, arguments.end()});
   const auto asks_for_help = [](const std::string& word) { return word == "--help" || word == "-h"; };

@@ -4,6 +4,7 @@
 
 #include "base/parallel.h"
 #include "scene/compose.h"
+#include "scene/crack_report.h"
 #include "scene/inputs.h"
 #include "scene/run.h"
 
@@ -34,6 +35,8 @@ void print_body(const scene::Body& body, const scene::Watch& watch) {
   if (const std::size_t n = body.interior ? body.interior->atlas.n_coarse() : 0; n > 0)
     std::printf("  %zu triangles have colours farther apart than asked for, %d to a side: use a smaller cube edge\n", n,
                 texture::Atlas::max_parts);
+  for (const std::string& line : scene::fronts_that_cuts_missed(body))
+    std::printf("  warning: %s\n", line.c_str());
   if (body.n_lost_shells > 0)
     std::printf("  %zu shells of the mesh hold no grid node and are lost: use a smaller cube edge\n",
                 body.n_lost_shells);
@@ -74,7 +77,8 @@ void print_cutting(const scene::World& world) {
   if (n_double + n_waiting > 0)
     std::printf("  %zu edges crossed twice by one cut and left whole, %zu cuts still waiting\n", n_double, n_waiting);
   if (n_left_whole > 0)
-    std::printf("  %zu edges left whole: behind them are shavings with less material than a cube, or none\n", n_left_whole);
+    std::printf("  %zu edges left whole: behind them are shavings with less material than a cube, or none\n",
+                n_left_whole);
   if (n_crumbs > 0)
     std::printf("  %zu crumbs, pieces that the grid cannot deform: they moved as rigid bodies\n", n_crumbs);
   if (n_passed > 0)

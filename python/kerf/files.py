@@ -8,11 +8,12 @@ import struct
 import h5py
 import numpy as np
 
-NAMES = ("run.h5", "study.h5", "stability.h5")  # what the folder of a run or study holds
+NAMES = ("run.h5", "study.h5", "stability.h5", "bench.h5")  # what a folder of results holds
 KINDS = {
     "run": "a run: series over time and frames",
     "study": "a study: errors and times of many runs",
     "stability": "a study of stability: what became of many runs",
+    "bench": "a benchmark: how fast hot paths are",
     "surface": "a moving surface, for ParaView",
     "volume": "cells with fields over time, for ParaView",
     "table": "the Splitting Cubes table",
@@ -137,6 +138,8 @@ def kind_of(file):
         return "study"
     if "stability/rows" in file:
         return "stability"
+    if "bench/rows" in file:
+        return "bench"
     if "observables" in file and "time" in file:
         return "run"
     if "VTKHDF" in file:

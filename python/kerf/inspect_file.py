@@ -74,6 +74,19 @@ def of_stability(path):
     return [study.title, f"outcome: {study.outcome}", f"{study.n_rows} rows: {counts}", *provenance(study.info)]
 
 
+def of_bench(path):
+    with files.open_h5(path) as file, files.told(path):
+        bench, info = file["bench"], files.provenance(file)
+        names = ("path", "cells", "n", "item", "seconds", "rate")
+        rows = zip(*(files.column(bench["rows"][name]) for name in names), strict=True)
+        lines = [
+            f"on {bench.attrs['threads']} threads; the machine does {bench.attrs['peak_flops']:.3g} additions and "
+            f"multiplications a second, and moves {bench.attrs['bandwidth']:.3g} bytes a second"
+        ]
+        lines += columns([(p, f"{c} cells", f"{n} {i}", f"{1e3 * s:.4g} ms", f"{r:.3g} /s") for p, c, n, i, s, r in rows])
+        return lines + provenance(info)
+
+
 def of_vtk(path):
     """A surface or cells for ParaView."""
     with files.open_h5(path) as file, files.told(path):
@@ -151,6 +164,7 @@ READERS = {
     "run": of_run,
     "study": of_study,
     "stability": of_stability,
+    "bench": of_bench,
     "surface": of_vtk,
     "volume": of_vtk,
     "table": of_arrays,

@@ -212,30 +212,29 @@ void BalanceSolver::move_to(const Problem& problem, const Points& x) {
       acceleration_[i] = b.acceleration[i] + b.mass_factor * moved;
     },
     worth);
-  damping_.assign(x.size(), Vec3::Zero());
-  if (problem.loads.stiffness_damping > 0 && b.velocity_factor > 0)
+  damping_.clear();
+  if (problem.loads.stiffness_damping > 0 && b.velocity_factor > 0) {
+    damping_.resize(x.size());
     model_.apply_stiffness(flat(velocity_), flat(damping_));
+  }
   tangent_ = load_tangent(problem.loads, Tangent::positive, {b.time, x, velocity_}, b.velocity_factor);
   load_force_.assign(x.size(), Vec3::Zero());
   add_load_forces(problem.loads, {b.time, x, velocity_}, load_force_);
 }
 
 void BalanceSolver::factorise(const Problem& problem) {
-  model_.stiffness_diagonal(stiffness_blocks_);
-  blocks_.resize(stiffness_blocks_.size());
+  model_.stiffness_diagonal(blocks_);
   for (std::size_t i = 0; i < blocks_.size(); ++i)
-    blocks_[i] =
-      problem.stiffness_factor * stiffness_blocks_[i] + problem.mass_factor * problem.mass[i] * Mat3::Identity();
+    blocks_[i] = problem.stiffness_factor * blocks_[i] + problem.mass_factor * problem.mass[i] * Mat3::Identity();
   tangent_.add_diagonal(blocks_);
   scaling_.resize(blocks_.size());
-  inverse_blocks_.resize(blocks_.size());
   parallel_for(
     blocks_.size(),
-    [&](const std::size_t i) {
-      scaling_[i] = inverse_factor(blocks_[i], problem.constraints.freedom(i));
-      inverse_blocks_[i] = scaling_[i].transpose() * scaling_[i];
-    },
-    worth);
+    [&](const std::size_t i) { scaling_[i] = inverse_factor(blocks_[i], problem.constraints.freedom(i)); }, worth);
+}
+
+Vec3 BalanceSolver::damping(const Problem& problem, const std::size_t i) const {
+  return damping_.empty() ? Vec3(Vec3::Zero()) : Vec3(problem.loads.stiffness_damping * damping_[i]);
 }
 
 Points BalanceSolver::resisted(const Problem& problem) const {
@@ -251,8 +250,7 @@ double BalanceSolver::assemble_residual(const Problem& problem) {
     double sum = 0;
     for (std::size_t i = begin; i < end; ++i) {
       const Vec3 weight = mass[i] * loads.gravity,
-                 resistance = mass[i] * (acceleration_[i] + loads.mass_damping * velocity_[i]) +
-                              loads.stiffness_damping * damping_[i];
+                 resistance = mass[i] * (acceleration_[i] + loads.mass_damping * velocity_[i]) + damping(problem, i);
       residual_[i] = force_[i] + weight + load_force_[i] + problem.offset(i) - resistance;
       if (coupling)
         residual_[i] -= more[i];
@@ -330,17 +328,13 @@ void BalanceSolver::apply(const Problem& problem, const std::span<const double> 
 
 void BalanceSolver::apply_inverse_blocks(const std::span<const double> r, const std::span<double> z) const {
   parallel_for(
-    inverse_blocks_.size(), [&](const std::size_t i) { at(z, i) = inverse_blocks_[i] * at(r, i); }, worth);
+    scaling_.size(), [&](const std::size_t i) { at(z, i) = scaling_[i].transpose() * (scaling_[i] * at(r, i)); },
+    worth);
 }
 
 Preconditioner* BalanceSolver::preconditioner(const Problem& problem) {
-  load_bounds_.clear();
-  if (!tangent_.empty()) {
-    load_bounds_.assign(blocks_.size(), Mat3::Zero());
-    tangent_.add_bound(load_bounds_);
-  }
   return model_.preconditioner(
-    {problem.mass_factor, problem.stiffness_factor, problem.mass, blocks_, load_bounds_, problem.constraints});
+    {problem.mass_factor, problem.stiffness_factor, problem.mass, blocks_, tangent_, problem.constraints});
 }
 
 int BalanceSolver::correct(const Problem& problem, const Points& guess, const double scale) {
@@ -450,7 +444,7 @@ BalanceSolver::Change BalanceSolver::change(const Problem& problem, const Points
   for (std::size_t i = 0; i < x.size(); ++i) {
     const Vec3& d = correction_[i];
     linear += d.dot(problem.mass[i] * (acceleration_[i] + loads.mass_damping * velocity_[i] - loads.gravity) +
-                    loads.stiffness_damping * damping_[i] - problem.offset(i));
+                    damping(problem, i) - problem.offset(i));
     quadratic += 0.5 * problem.mass_factor * problem.mass[i] * d.squaredNorm() +
                  0.5 * loads.stiffness_damping * b.velocity_factor * d.dot(damped[i]);
   }

@@ -129,6 +129,8 @@ class BalanceSolver {
   /// Forces, velocities and accelerations at x; the linearisation stays.
   void move_to(const Problem& problem, const Points& x);
   void factorise(const Problem& problem);
+  /// beta K v of a corner [N].
+  Vec3 damping(const Problem& problem, std::size_t i) const;
   /// a + alpha v, which M resists; nothing where the mass is lumped.
   Points resisted(const Problem& problem) const;
   /// Returns the scale of what balances, in the scaled norm.
@@ -178,10 +180,8 @@ class BalanceSolver {
   Points force_, load_force_, damping_;       // there
   Points residual_, correction_;
   LoadTangent tangent_;
-  std::vector<Mat3> stiffness_blocks_, blocks_; // diagonals of K and of A
-  std::vector<Mat3> scaling_;        // L^-1 from the free directions' basis, a row of zeros for each that is held
-  std::vector<Mat3> inverse_blocks_; // S^T S
-  std::vector<Mat3> load_bounds_;    // see LoadTangent::add_bound
+  std::vector<Mat3> blocks_;  // A's diagonal
+  std::vector<Mat3> scaling_; // L^-1 from the free directions' basis, a row of zeros for each that is held
   std::vector<double> load_product_, mass_product_;
   double most_work_ = 0; // of what is out of balance, in the step at hand [J]
   double way_ = 0;       // from the guess to the first iterate, in the energy norm; 0: unknown

@@ -27,17 +27,18 @@ void LoadTangent::add_diagonal(std::vector<Mat3>& blocks) const {
   }
 }
 
-/// |sum w_k p_k|^2 <= sum |w_l| sum |w_k| |p_k|^2; a pair of two points is bounded by the size of its block at both.
-void LoadTangent::add_bound(std::vector<Mat3>& blocks) const {
+/// |sum w_k p_k|^2 <= sum |w_l| sum |w_k| |p_k|^2; a pair is bounded by the size of its block at both.
+void LoadTangent::add_bound_of_pairs(std::vector<Mat3>& blocks) const {
   for (const Term& term : terms_) {
+    if (term.i == term.j)
+      continue;
     const Interpolation& w = *term.points;
     double sum = 0;
     for (auto k = w.start[term.i]; k < w.start[term.i + 1]; ++k)
       sum += std::abs(w.values[k]);
-    const Mat3 symmetric = 0.5 * (term.block + term.block.transpose()),
-               block = term.i == term.j ? symmetric : Mat3(symmetric.norm() * Mat3::Identity());
+    const double size = 0.5 * (term.block + term.block.transpose()).norm();
     for (auto k = w.start[term.i]; k < w.start[term.i + 1]; ++k)
-      blocks[w.corners[k]] += sum * std::abs(w.values[k]) * block;
+      blocks[w.corners[k]] += sum * std::abs(w.values[k]) * size * Mat3::Identity();
   }
 }
 

@@ -29,8 +29,15 @@ class LoadTangent {
   void add_product(std::span<const double> p, std::span<double> y) const;
   /// Adds the symmetric part of the diagonal 3 x 3 blocks.
   void add_diagonal(std::vector<Mat3>& blocks) const;
-  /// Adds blocks that together are at least what all is, where all is symmetric and positive.
-  void add_bound(std::vector<Mat3>& blocks) const;
+  /// Calls f(points, i, block) for each term of one point, with its symmetric part.
+  template <class Function>
+  void for_each_point(const Function& f) const {
+    for (const Term& term : terms_)
+      if (term.i == term.j)
+        f(*term.points, term.i, Mat3(0.5 * (term.block + term.block.transpose())));
+  }
+  /// Adds blocks that together are at least what the terms of two points are.
+  void add_bound_of_pairs(std::vector<Mat3>& blocks) const;
   /// All entries, by the numbers of the 3 n components.
   void add_entries(std::vector<Eigen::Triplet<double>>& entries) const;
 

@@ -3,6 +3,7 @@
 /// The contract of an approximate inverse that a model makes of its own linear equations.
 
 #include "dynamics/constraints.h"
+#include "dynamics/load.h"
 
 #include <span>
 
@@ -14,7 +15,7 @@ struct LinearEquation {
   double mass_factor, stiffness_factor; ///< [1/s^2], [1]
   std::span<const double> mass;         ///< of each corner [kg]
   std::span<const Mat3> blocks;         ///< A's diagonal 3 x 3 blocks, one a corner [N/m]
-  std::span<const Mat3> loads;          ///< blocks that are at least what loads add to A; empty: none [N/m]
+  const LoadTangent& loads;             ///< what loads add to A, among all directions
   const Constraints& constraints;
 };
 

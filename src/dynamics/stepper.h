@@ -5,6 +5,14 @@
 
 namespace kerf::dynamics {
 
+/// Of vibration (modal.h); nothing of other steppers.
+struct Modes {
+  std::vector<double> frequencies = {}; ///< ascending [Hz]
+  std::vector<Points> shapes = {};      ///< displacement of each particle, the largest of a mode 1 [1]
+
+  void archive(Archive& a) { a(frequencies, shapes); }
+};
+
 /// What a step took; 0 where a stepper has no such thing.
 struct StepReport {
   int n_iterations = 0;   ///< of the linear solver, summed over the step
@@ -14,7 +22,9 @@ struct StepReport {
   double stable_step = 0; ///< of an explicit integrator when it was computed last [s]
   double residual = 0;    ///< forces out of balance at the end over the forces that balance, if it was measured [1]
 
-  void archive(Archive& a) { a(n_iterations, n_newton, n_substeps, n_rejected, stable_step, residual); }
+  Modes modes = {};
+
+  void archive(Archive& a) { a(n_iterations, n_newton, n_substeps, n_rejected, stable_step, residual, modes); }
 };
 
 /// What a stepper makes of inertia.

@@ -125,20 +125,38 @@ void Level::make_diagonal() {
   }
 }
 
-void Level::invert_diagonal() {
+Mat3 Level::inverse_block(const std::size_t corner) const { return block_of(&inverse[2 * corner]); }
+void Level::put_inverse_block(const std::size_t corner, const Mat3& block) { put_block(block, &inverse[2 * corner]); }
+
+void Level::invert_diagonal(const std::function<Mat3(std::uint32_t corner, const Mat3& block)>& inverse_where_held) {
   inverse.resize(2 * n_corners());
-  std::vector<std::uint32_t> spring_of;
-  if (!springs.empty()) {
-    spring_of.assign(n_corners(), CellsOfLevel::unused);
-    for (std::uint32_t k = 0; k < springs.size(); ++k)
-      spring_of[springs[k].corner] = k;
-  }
   for_each_corner([&](const std::size_t i) {
-    Mat3 B = block_of(&diagonal[2 * i]) + double(mass[i]) * Mat3::Identity();
-    if (!springs.empty() && spring_of[i] != CellsOfLevel::unused)
-      B += springs[spring_of[i]].block;
-    put_block(fem::inverse(B), &inverse[2 * i]);
+    put_inverse_block(i, block_of(&diagonal[2 * i]) + double(mass[i]) * Mat3::Identity());
   });
+  const auto add = [&](const std::uint32_t corner, const Mat3& block) {
+    put_inverse_block(corner, inverse_block(corner) + block);
+  };
+  for (const Spring& spring : springs)
+    add(spring.corner, spring.block);
+  clusters = Clusters(points, n_corners());
+  clusters.add_bound(points, add);
+  std::map<std::uint32_t, Mat3> free;
+  std::vector<Spring> where_held;
+  for (const Spring& one : held) {
+    free[one.corner] = one.block;
+    where_held.push_back({one.corner, inverse_where_held(one.corner, inverse_block(one.corner))});
+  }
+  clusters.invert([&](const std::uint32_t corner) { return inverse_block(corner); },
+                  [&](const std::uint32_t corner) {
+                    const auto it = free.find(corner);
+                    return it == free.end() ? Mat3(Mat3::Identity()) : it->second;
+                  });
+  for_each_corner([&](const std::size_t i) { put_inverse_block(i, fem::inverse(inverse_block(i))); });
+  for (const Spring& one : where_held)
+    put_inverse_block(one.corner, one.block);
+  clusters.for_each(
+    [](std::uint32_t) { return Eigen::Vector3f::Zero(); },
+    [&](const std::uint32_t corner, const Eigen::Vector3f&) { put_inverse_block(corner, Mat3::Zero()); });
 }
 
 /// t += A d but for the masses.
@@ -156,6 +174,22 @@ void Level::add_products() {
     add(t[line.a], 1);
     add(t[line.b], -2);
     add(t[line.c], 1);
+  }
+  for (std::size_t i = 0; i < points.blocks.size(); ++i) {
+    Eigen::Vector3f u = Eigen::Vector3f::Zero();
+    const auto for_each = [&](const auto& function) {
+      for (std::uint32_t k = points.rows.begin[i]; k < points.rows.begin[i + 1]; ++k)
+        function(points.rows.column[k], points.rows.weight[k]);
+    };
+    for_each([&](const std::uint32_t corner, const float w) {
+      u += w * Eigen::Vector3f(d[corner].x, d[corner].y, d[corner].z);
+    });
+    const Eigen::Vector3f f = points.blocks[i] * u;
+    for_each([&](const std::uint32_t corner, const float w) {
+      t[corner].x += w * f.x();
+      t[corner].y += w * f.y();
+      t[corner].z += w * f.z();
+    });
   }
   for (const Spring& spring : springs) {
     FloatRow& row = t[spring.corner];
@@ -180,12 +214,24 @@ FloatRow scaled(const float s, const FloatRow& a) { return {s * a.x, s * a.y, s 
 
 } // namespace
 
+/// What a step does at the corners of clusters, by their own blocks.
+void Level::add_of_clusters(const float after) {
+  clusters.for_each([&](const std::uint32_t corner) { return Eigen::Vector3f(r[corner].x, r[corner].y, r[corner].z); },
+                    [&](const std::uint32_t corner, const Eigen::Vector3f& v) {
+                      const FloatRow step = {after * v.x(), after * v.y(), after * v.z()};
+                      d[corner] = sum(d[corner], step);
+                      x[corner] = sum(x[corner], step);
+                      t[corner] = sum(t[corner], scaled(mass[corner], step));
+                    });
+}
+
 void Level::smooth_from_zero() {
   const auto steps = chebyshev_steps(bound);
   for_each_corner([&](const std::size_t i) {
     d[i] = x[i] = scaled(steps[0].after, product(&inverse[2 * i], r[i]));
     t[i] = scaled(mass[i], d[i]);
   });
+  add_of_clusters(steps[0].after);
   for (int k = 1; k < n_steps; ++k) {
     add_products();
     for_each_corner([&](const std::size_t i) {
@@ -194,6 +240,7 @@ void Level::smooth_from_zero() {
       x[i] = sum(x[i], d[i]);
       t[i] = scaled(mass[i], d[i]);
     });
+    add_of_clusters(steps[k].after);
   }
   add_products();
   for_each_corner([&](const std::size_t i) { r[i] = difference(r[i], t[i]); });
@@ -213,6 +260,7 @@ void Level::smooth_after_change() {
       x[i] = sum(x[i], d[i]);
       t[i] = scaled(mass[i], d[i]);
     });
+    add_of_clusters(step.after);
   }
 }
 

@@ -3,8 +3,11 @@
 /// One level of multigrid.h: its operator, its smoother, its vectors.
 
 #include "fem/batches.h"
+#include "fem/clusters.h"
 #include "fem/coarsening.h"
 #include "fem/ghost_penalty.h"
+
+#include <functional>
 
 namespace kerf::fem {
 
@@ -38,6 +41,8 @@ struct Level {
   // The equation, over its stiffness factor.
   std::vector<float> mass;
   std::vector<Spring> springs;
+  PointSprings points;
+  Clusters clusters;                ///< whose corners have zeros in `inverse`
   std::vector<Row<float>> diagonal; ///< of K and the penalties, two rows a corner (kernels.h)
   std::vector<Row<float>> inverse;  ///< of all blocks among the free directions, likewise
   std::vector<Spring> held;         ///< projectors onto the free directions of corners that are held
@@ -49,7 +54,8 @@ struct Level {
   void resize();
   /// From rotations, masses and springs.
   void make_diagonal();
-  void invert_diagonal();
+  /// Of all blocks; `inverse_where_held` gives those of corners that are held, among their free directions.
+  void invert_diagonal(const std::function<Mat3(std::uint32_t corner, const Mat3& block)>& inverse_where_held);
 
   /// Smooths x = 0 towards A x = r, and leaves in r what is left.
   void smooth_from_zero();
@@ -59,6 +65,9 @@ struct Level {
  private:
   template <class Function>
   void for_each_corner(const Function& f) const;
+  Mat3 inverse_block(std::size_t corner) const;
+  void put_inverse_block(std::size_t corner, const Mat3& block);
+  void add_of_clusters(float after);
   void add_products();
 };
 

@@ -127,6 +127,20 @@ std::vector<Spring> restricted(const std::vector<Spring>& fine, const Weights& p
   return coarse;
 }
 
+/// What loads resist at points.
+PointSprings point_springs(const dynamics::LinearEquation& equation) {
+  PointSprings springs;
+  equation.loads.for_each_point([&](const Interpolation& points, const std::size_t i, const Mat3& block) {
+    for (auto k = points.start[i]; k < points.start[i + 1]; ++k) {
+      springs.rows.column.push_back(points.corners[k]);
+      springs.rows.weight.push_back(float(points.values[k]));
+    }
+    springs.rows.begin.push_back(static_cast<std::uint32_t>(springs.rows.column.size()));
+    springs.blocks.push_back((block / equation.stiffness_factor).cast<float>());
+  });
+  return springs;
+}
+
 /// A projector with values in a row.
 void project(const std::vector<Spring>& held, std::vector<Row<float>>& rows) {
   for (const Spring& one : held) {
@@ -182,6 +196,12 @@ void add_entries(const Level& level, const std::function<Matrix24(std::size_t co
   }
   for (const Spring& spring : level.springs)
     add(spring.corner, spring.corner, spring.block);
+  const auto& [rows, blocks] = level.points;
+  for (std::size_t i = 0; i < blocks.size(); ++i)
+    for (std::uint32_t k = rows.begin[i]; k < rows.begin[i + 1]; ++k)
+      for (std::uint32_t l = rows.begin[i]; l < rows.begin[i + 1]; ++l)
+        add(rows.column[k], rows.column[l],
+            Mat3(double(rows.weight[k]) * double(rows.weight[l]) * blocks[i].cast<double>()));
   constexpr double unseen = 1e-5;
   for (std::uint32_t i = 0; i < level.n_corners(); ++i) {
     const Row<float>& d = level.diagonal[2 * std::size_t(i)];
@@ -286,14 +306,10 @@ void Multigrid::prepare(const dynamics::LinearEquation& equation, const std::spa
   put_masses(equation);
   hold(equation);
   for (Level& level : levels_)
-    level.invert_diagonal();
-  for (std::size_t i = 0; i < levels_[0].n_corners(); ++i) // exactly, and among the free directions alone
-    if (!equation.constraints.is_free(i)) {
-      const Mat3 S = dynamics::inverse_factor(equation.blocks[i] / stiffness_factor_, equation.constraints.freedom(i)),
-                 inverse = S.transpose() * S;
-      levels_[0].inverse[2 * i] = {float(inverse(0, 0)), float(inverse(1, 1)), float(inverse(2, 2))};
-      levels_[0].inverse[2 * i + 1] = {float(inverse(0, 1)), float(inverse(1, 2)), float(inverse(2, 0))};
-    }
+    level.invert_diagonal([&](const std::uint32_t corner, const Mat3& block) { // of the finest one
+      const Mat3 S = dynamics::inverse_factor(block, equation.constraints.freedom(corner));
+      return Mat3(S.transpose() * S);
+    });
   coarsest_->factorise(levels_.back(), levels_.back().rotations);
 }
 
@@ -302,15 +318,15 @@ void Multigrid::put_rotations(const std::span<const Lanes9<double>> finest) {
     Level& level = levels_[l];
     const bool is_last = l + 1 == levels_.size();
     std::vector<Mat3> sums(is_last ? 0 : levels_[l + 1].cells.n_copies(), Mat3::Zero());
-    if (l == 0)
-      level.rotations.resize(level.cells.n_copies());
     for (std::size_t i = 0; i < level.batching.batches().size(); ++i) {
       const BatchOfCopies& batch = level.batching.batches()[i];
       for (std::size_t lane = 0; lane < n_lanes; ++lane) {
         const std::uint32_t c = batch.copies[lane];
         if (c == BatchOfCopies::none)
           continue;
-        Mat3& R = level.rotations[c];
+        Mat3 R;
+        if (l > 0)
+          R = level.rotations[c];
         for (int k = 0; k < 9 && l == 0; ++k)
           R.data()[k] = finest[i].row[k][lane];
         for (int k = 0; k < 9; ++k)
@@ -352,11 +368,17 @@ void Multigrid::hold(const dynamics::LinearEquation& equation) {
   Level& finest = levels_[0];
   finest.springs.clear();
   finest.held.clear();
+  finest.points = point_springs(equation);
+  std::vector<Mat3> pairs; // of points that loads join
+  if (!equation.loads.empty()) {
+    pairs.assign(finest.n_corners(), Mat3::Zero());
+    equation.loads.add_bound_of_pairs(pairs);
+  }
   std::vector<Spring> springs; // for the coarse levels
   for (std::uint32_t i = 0; i < finest.n_corners(); ++i) {
     Mat3 coarse = Mat3::Zero();
-    if (!equation.loads.empty() && equation.loads[i].cwiseAbs().maxCoeff() > 0) {
-      coarse = equation.loads[i] / equation.stiffness_factor;
+    if (!pairs.empty() && pairs[i].cwiseAbs().maxCoeff() > 0) {
+      coarse = pairs[i] / equation.stiffness_factor;
       finest.springs.push_back({i, coarse});
     }
     if (!equation.constraints.is_free(i)) {
@@ -371,6 +393,7 @@ void Multigrid::hold(const dynamics::LinearEquation& equation) {
   for (std::size_t l = 1; l < levels_.size(); ++l) {
     springs = restricted(springs, levels_[l - 1].to_coarse.prolongation, levels_[l].n_corners());
     levels_[l].springs = springs;
+    levels_[l].points = coarsened(levels_[l - 1].points, levels_[l - 1].to_coarse.prolongation, levels_[l].n_corners());
   }
 }
 

@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <fstream>
 #include <sstream>
+#include <string_view>
 #include <vector>
 
 namespace kerf::geometry {
@@ -155,18 +156,51 @@ std::optional<std::string> fault_of_lists(Lines& lines, const Promise& promise) 
   return std::nullopt;
 }
 
-/// OBJ and STL in text: vertices are named.
-std::optional<std::string> fault_of_named_vertices(Lines& lines, const std::string& name, const std::string& last) {
-  bool has_ended = last.empty();
-  while (lines.next()) {
-    if (lines.words()[0] == name)
+/// A face of an OBJ, whose vertices count from 1, or back from the last with a minus: "f 1/4/2 2//5 -1".
+std::optional<std::string> fault_of_face(const Lines& lines, const double n_vertices) {
+  const Words& words = lines.words();
+  if (words.size() < 4)
+    return in_line(lines.number(), "a face must have 3 corners and more");
+  for (std::size_t i = 1; i < words.size(); ++i)
+    if (const double v = number_of(words[i]); !(v >= 1 && v <= n_vertices) && !(v >= -n_vertices && v <= -1))
+      return in_line(lines.number(), "there is no vertex " + words[i].substr(0, 40));
+  return std::nullopt;
+}
+
+/// Vertices may stand behind the faces that name them.
+std::optional<std::string> fault_of_obj(const std::string& path) {
+  double n_vertices = 0;
+  for (Lines lines(path); lines.next();)
+    if (lines.words()[0] == "v") {
+      n_vertices += 1;
       if (const auto fault = fault_of_numbers(lines, 1, 3))
         return fault;
-    has_ended = has_ended || lines.words()[0] == last;
+    }
+  for (Lines lines(path); lines.next();)
+    if (lines.words()[0] == "f")
+      if (const auto fault = fault_of_face(lines, n_vertices))
+        return fault;
+  return std::nullopt;
+}
+
+/// STL in text: vertices are named.
+std::optional<std::string> fault_of_stl(Lines& lines) {
+  bool has_ended = false;
+  while (lines.next()) {
+    if (lines.words()[0] == "vertex")
+      if (const auto fault = fault_of_numbers(lines, 1, 3))
+        return fault;
+    has_ended = has_ended || lines.words()[0] == "endsolid";
   }
   if (!has_ended)
-    return "it ends in line " + std::to_string(lines.number()) + ", without '" + last + "'";
+    return "it ends in line " + std::to_string(lines.number()) + ", without 'endsolid'";
   return std::nullopt;
+}
+
+bool begins_with_byte_order_mark(const std::string& path) {
+  std::array<char, 3> head{};
+  std::ifstream(path, std::ios::binary).read(head.data(), head.size());
+  return std::string_view(head.data(), head.size()) == "\xEF\xBB\xBF";
 }
 
 std::optional<Promise> header_of(const std::string& path, Lines& lines) {
@@ -199,6 +233,8 @@ void require_room_for_header(const std::string& path) {
 }
 
 std::optional<std::string> find_fault(const std::string& path) {
+  if (begins_with_byte_order_mark(path))
+    return "line 1: it begins with a byte order mark, which the readers of meshes do not know: save it as plain text";
   Lines lines(path);
   const std::string suffix = suffix_of(path);
   const auto promise = header_of(path, lines);
@@ -207,9 +243,9 @@ std::optional<std::string> find_fault(const std::string& path) {
   if (!promise->is_text)
     return std::nullopt;
   if (suffix == ".obj")
-    return fault_of_named_vertices(lines, "v", "");
+    return fault_of_obj(path);
   if (suffix == ".stl")
-    return fault_of_named_vertices(lines, "vertex", "endsolid");
+    return fault_of_stl(lines);
   return fault_of_lists(lines, *promise);
 }
 

@@ -65,6 +65,9 @@ Soup read_soup(const std::string& path) {
   }
   if (!read)
     refuse(path, "the mesh cannot be read: " + find_fault(path).value_or(reason), remedy);
+  if (extension(path) == ".obj") // whose reader leaves out in silence what it does not understand
+    if (const auto fault = find_fault(path))
+      refuse(path, "the mesh cannot be read: " + *fault, remedy);
   if (soup.points.empty() || soup.polygons.empty())
     refuse(path,
            "the mesh is empty: " + std::to_string(soup.points.size()) + " vertices, " +

@@ -159,6 +159,7 @@ ResultsFolder::ResultsFolder(fs::path folder, const Earlier earlier, const Names
   fs::create_directories(folder_, error);
   if (error)
     refuse(folder_, error);
+  const bool is_new = !fs::exists(folder_ / list_name, error);
   descriptor_ = open((folder_ / list_name).c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
   if (descriptor_ < 0)
     refuse(folder_, std::error_code(errno, std::generic_category()));
@@ -182,6 +183,8 @@ ResultsFolder::ResultsFolder(fs::path folder, const Earlier earlier, const Names
     else
       names_ = all;
   } catch (...) {
+    if (is_new)
+      fs::remove(folder_ / list_name, error);
     close(descriptor_);
     throw;
   }

@@ -73,6 +73,7 @@ struct Body {
   std::optional<InitialState> initial = {}; ///< empty: at rest
   dynamics::Loads loads = {};
   dynamics::StepReport report = {}; ///< of the last step
+  int n_modes = 0;                  ///< that the integrator modal finds in each step
   int n_divided = 0;                ///< steps so far that were taken again in substeps
   std::vector<SupportRegion> regions = {};
   std::vector<LoadMaker> load_makers = {};

@@ -1,6 +1,7 @@
 #include "scene/compose_body.h"
 
 #include "cut/embed.h"
+#include "dynamics/modal.h"
 #include "geometry/shapes.h"
 #include "geometry/solid.h"
 #include "material/elastic.h"
@@ -63,6 +64,14 @@ geometry::TriangleMesh read_body_mesh(const Section& section, const BodyParamete
 
 namespace {
 
+/// The keys that make a body another size.
+std::string size_keys(const BodyParameters& parameters) {
+  return parameters.shape == "mesh"   ? "Mesh unit [m]"
+         : parameters.shape == "box"  ? "Sides [m]"
+         : parameters.shape == "ball" ? "Radius [m]"
+                                      : "Radius [m] and Height [m]";
+}
+
 /// Of a slab that lies between two layers of nodes: the offset that puts one into its middle.
 std::string how_to_reach(const geometry::TriangleMesh& mesh, const double cube_edge) {
   const Box box = geometry::bounding_box(mesh);
@@ -80,15 +89,16 @@ cut::Embedding embed_mesh(const Section& section, const BodyParameters& paramete
   const double n_cells = geometry::volume(mesh) / std::pow(parameters.cube_edge, 3);
   if (n_cells > most_cells)
     throw section.complaint("Cube edge [m]",
-                            line("would fill the mesh with ", n_cells, " cells, more than ", most_cells),
-                            "Use larger cubes, or check Mesh unit [m]");
+                            line("would fill the body with ", n_cells, " cells, more than ", most_cells),
+                            "Use larger cubes, or check " + size_keys(parameters));
   try {
     return cut::embed(mesh, parameters.cube_edge, parameters.lattice_offset);
   } catch (const ParameterError& error) { // about one of the last two, which embed calls as the scene does
     throw section.complaint(error.complaint().path, error.complaint().rule, error.complaint().remedy);
   } catch (const DataError&) {
-    throw section.complaint("Cube edge [m]", "no grid node is inside the mesh, it is smaller than a cube",
-                            "Use smaller cubes, or check Mesh unit [m]" + how_to_reach(mesh, parameters.cube_edge));
+    throw section.complaint(
+      "Cube edge [m]", "no grid node is inside the body, it is smaller than a cube",
+      "Use smaller cubes, or check " + size_keys(parameters) + how_to_reach(mesh, parameters.cube_edge));
   }
 }
 
@@ -157,6 +167,8 @@ Body compose_body(const Section& section, const GravityParameters* gravity, cons
   body.loads.mass_damping = damping.mass;
   body.loads.stiffness_damping = damping.stiffness;
   compose_loads(section, floors, body);
+  if (parameters.integrator == "modal")
+    body.n_modes = read_if_written<dynamics::ModalParameters>(section, "Modal").n_modes;
   body.fronts = compose_crack_fronts(section, parameters.cube_edge, parameters.backend);
   if (const std::size_t n_cuts = world.blades.size() + world.cut_surfaces.size(); n_cuts > 0)
     body.cutter = std::make_unique<cut::Cutter>(n_cuts, cut::Release::queued, fronts_of(parameters.backend));

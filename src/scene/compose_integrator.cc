@@ -70,6 +70,13 @@ Integrator quasi_static(const Section& body) {
   }};
 }
 
+Integrator modal(const Section& body) {
+  const auto parameters = read_if_written<dynamics::ModalParameters>(body, "Modal");
+  return {[=](ElasticModel& model, const PiecesOfParticles&) {
+    return std::make_unique<dynamics::Modal>(model, parameters);
+  }};
+}
+
 /// Nothing damps what rings: corners of hardly any mass get some of their neighbours', as with explicit integrators.
 Implicit undamped(Implicit implicit) {
   implicit.integrator.inertia = fem::Inertia::extended;
@@ -121,6 +128,8 @@ Integrator with_adaptive_step(const Section& body, const Implicit& implicit) {
 Integrator compose_integrator(const Section& body, const std::string& name) {
   if (name == "quasi-static")
     return quasi_static(body);
+  if (name == "modal")
+    return modal(body);
   if (name == "symplectic Euler")
     return explicit_integrator<dynamics::SymplecticEuler>(body, "Symplectic Euler");
   if (name == "velocity Verlet")

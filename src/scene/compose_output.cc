@@ -55,9 +55,14 @@ void require_fields(const Section& section, const World& world) {
       throw section.complaint("Fields", "'" + *it + "' is named twice", "Name it once");
     for (const Body& body : world.bodies)
       if (!has_field(body, *it))
-        throw section.complaint("Fields",
-                                "'" + *it + "' is known of finite elements only, and 'Body " + body.name + "' has none",
-                                "Remove it, or write 'set Backend = fem' there");
+        throw *it == "modes"
+          ? section.complaint("Fields",
+                              "'modes' are known with the integrator modal of elements and springs only, and 'Body " +
+                                body.name + "' has none",
+                              "Remove it, or write 'set Integrator = modal' there")
+          : section.complaint("Fields",
+                              "'" + *it + "' is known of finite elements only, and 'Body " + body.name + "' has none",
+                              "Remove it, or write 'set Backend = fem' there");
   }
 }
 

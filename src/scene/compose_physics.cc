@@ -23,11 +23,11 @@ fem::Boundary boundary_named(const std::string& name) {
 PhysicsMaker make_elements(const Section& section, const BodyParameters& parameters) {
   const Integrator integrator = compose_integrator(section, parameters.integrator);
   const auto& implicit = implicit_integrator_names();
-  if (parameters.mass == "consistent" &&
+  if (parameters.mass == "consistent" && parameters.integrator != "modal" &&
       std::find(implicit.begin(), implicit.end(), parameters.integrator) == implicit.end())
-    throw section.complaint("Mass",
-                            "'consistent' is for implicit integrators, and this body has " + parameters.integrator,
-                            "Write 'set Mass = lumped', or take another integrator");
+    throw section.complaint(
+      "Mass", "'consistent' is for implicit integrators and modal, and this body has " + parameters.integrator,
+      "Write 'set Mass = lumped', or take another integrator");
   const fem::HexahedraOptions options{
     .material = read_if_written<material::Elastic>(section, "Material"),
     .boundary = boundary_named(parameters.integration),
@@ -100,7 +100,7 @@ lattice::MatchingOptions matching_options(const Section& section, const LatticeP
 }
 
 PhysicsMaker make_lattice(const Section& section, const BodyParameters& parameters, const double dt) {
-  if (parameters.integrator == "quasi-static")
+  if (parameters.integrator == "quasi-static" || parameters.integrator == "modal")
     throw section.complaint(
       "Integrator", "the backend 'lattice' moves in time only",
       "Take another integrator (any: shape matching is its own) and let damping bring it to rest");

@@ -74,16 +74,25 @@ double length_behind(const cut::Shape& shape, const Station& at, const double h,
 
 /// What parts the body is known to its end: discs, rectangles, and skin near the front.
 bool is_known(const World& world) {
-  return world.blades.empty() && std::all_of(world.cut_surfaces.begin(), world.cut_surfaces.end(),
-                                             [](const TimedSurface& one) {
-                                               return is_on(one.surface.shape, Vec3::Zero(), 0).has_value();
-                                             });
+  return world.blades.empty() &&
+         std::all_of(world.cut_surfaces.begin(), world.cut_surfaces.end(),
+                     [](const TimedSurface& one) { return is_on(one.surface.shape, Vec3::Zero(), 0).has_value(); });
 }
 
 bool is_notched(const Body& body, const Station& at) {
   const double h = body.solid.grid.h();
   return std::any_of(body.surface.rest.begin(), body.surface.rest.end(),
                      [&](const Vec3& X) { return (X - at.point).norm() < 2 * h; });
+}
+
+/// Whether a cut has revealed a face near a point at rest.
+bool is_revealed(const Body& body, const Vec3& p, const double near) {
+  const auto& [rest, triangles, labels, copies, weights] = body.surface;
+  for (std::size_t t = 0; t < triangles.size(); ++t)
+    if (labels[t] != grid::skin_label && std::any_of(triangles[t].begin(), triangles[t].end(),
+                                                     [&](const auto v) { return (rest[v] - p).norm() < near; }))
+      return true;
+  return false;
 }
 
 /// Empty where nothing is wrong.
@@ -120,6 +129,28 @@ std::vector<std::string> warn_of_fronts(const Body& body, const World& world) {
         break;
       }
   return warnings;
+}
+
+std::vector<std::string> fronts_that_cuts_missed(const Body& body) {
+  const double h = body.solid.grid.h(), near = 1.5 * h; // a revealed face ends up to a cube before its front
+  std::vector<std::string> missed;
+  for (const NamedFront& front : body.fronts) {
+    const std::vector<Station> all = stations(front.front);
+    const auto any = [&](const double ahead) {
+      return std::any_of(all.begin(), all.end(),
+                         [&](const Station& at) { return is_revealed(body, at.point + ahead * at.growth, near); });
+    };
+    const bool is_there = std::all_of(all.begin(), all.end(), [&](const Station& at) {
+      return is_revealed(body, at.point - h * at.growth, near) || is_notched(body, at);
+    });
+    if (!is_there)
+      missed.push_back(
+        line("crack front ", front.name, ": no cut has come to it: its figures are those of whatever is there"));
+    else if (any(3 * h))
+      missed.push_back(
+        line("crack front ", front.name, ": a cut has gone beyond it: its figures are wrong since then"));
+  }
+  return missed;
 }
 
 } // namespace kerf::scene

@@ -15,4 +15,8 @@ namespace kerf::scene {
 /// ends. The body is not cut yet.
 std::vector<std::string> warn_of_fronts(const Body& body, const World& world);
 
+/// Of a body that has been cut, also by what has no known end, as blades: says which front no cut has come to, and
+/// which one a cut has gone beyond. At most a line each.
+std::vector<std::string> fronts_that_cuts_missed(const Body& body);
+
 } // namespace kerf::scene

@@ -14,10 +14,11 @@ struct Kind {
   const char *name, *dataset, *unit;
   std::size_t n_components;
 };
-constexpr std::array<Kind, 4> kinds = {{{"displacement", "displacement", "m", 3},
+constexpr std::array<Kind, 5> kinds = {{{"displacement", "displacement", "m", 3},
                                         {"strain", "strain", "1", 6},
                                         {"stress", "stress", "Pa", 6},
-                                        {"von Mises stress", "von_mises_stress", "Pa", 1}}};
+                                        {"von Mises stress", "von_mises_stress", "Pa", 1},
+                                        {"modes", "mode_", "1", 3}}};
 
 const Kind* find_kind(const std::string& name) {
   const auto it = std::find_if(kinds.begin(), kinds.end(), [&](const Kind& kind) { return kind.name == name; });
@@ -41,6 +42,15 @@ std::vector<double> displacements(const Body& body) {
     for (int axis = 0; axis < 3; ++axis)
       values.push_back(corners(body)[c][axis] - rest[c][axis]);
   return values;
+}
+
+/// Of a mode; none before the first step.
+std::vector<double> shape_of(const Body& body, const std::size_t mode) {
+  const auto& shapes = body.report.modes.shapes;
+  if (mode >= shapes.size())
+    return std::vector<double>(3 * body.solid.complex.n_corners(), 0.0);
+  const auto numbers = dynamics::flat(shapes[mode]);
+  return {numbers.begin(), numbers.end()};
 }
 
 std::vector<double> values_of(const Body& body, const std::string& name) {
@@ -70,21 +80,34 @@ std::string field_names() {
 
 bool is_field(const std::string& name) { return find_kind(name) != nullptr; }
 
-bool has_field(const Body& body, const std::string& name) { return name == "displacement" || elements_of(body); }
+bool has_field(const Body& body, const std::string& name) {
+  if (name == "modes")
+    return body.n_modes > 0 && body.physics->particles_are_corners();
+  return name == "displacement" || elements_of(body);
+}
 
-std::vector<output::Field> announced(const std::vector<std::string>& names) {
+std::vector<output::Field> announced(const Body& body, const std::vector<std::string>& names) {
   std::vector<output::Field> fields;
   for (const std::string& name : names) {
     const Kind& kind = *find_kind(name);
-    fields.push_back({kind.dataset, kind.unit, kind.n_components, {}});
+    if (name != "modes")
+      fields.push_back({kind.dataset, kind.unit, kind.n_components, {}});
+    else
+      for (int i = 1; i <= body.n_modes; ++i)
+        fields.push_back({kind.dataset + std::to_string(i), kind.unit, kind.n_components, {}});
   }
   return fields;
 }
 
 std::vector<output::Field> fields_at_corners(const Body& body, const std::vector<std::string>& names) {
-  std::vector<output::Field> fields = announced(names);
-  for (std::size_t i = 0; i < names.size(); ++i)
-    fields[i].values = values_of(body, names[i]);
+  std::vector<output::Field> fields = announced(body, names);
+  auto field = fields.begin();
+  for (const std::string& name : names)
+    if (name != "modes")
+      (field++)->values = values_of(body, name);
+    else
+      for (std::size_t i = 0; i < static_cast<std::size_t>(body.n_modes); ++i)
+        (field++)->values = shape_of(body, i);
   return fields;
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 
-/// Fields over a body for its files: displacement, and of finite elements Green's strain and Cauchy's stress as
-/// fem/fields.h recovers them. Each is known at the corners; at a vertex of the surface it is W times that.
+/// Fields over a body for its files: displacement; of finite elements Green's strain and Cauchy's stress as fem/fields.h
+/// recovers them; modes of vibration, a field each. Each is known at the corners; at a vertex of the surface it is W times that.
 
 #include "output/records.h"
 #include "scene/body.h"
@@ -25,6 +25,6 @@ std::vector<output::Field> fields_at_corners(const Body& body, const std::vector
 std::vector<output::Field> at_vertices(const surface::Surface& surface, const std::vector<output::Field>& of_corners);
 
 /// The fields without values, to announce them.
-std::vector<output::Field> announced(const std::vector<std::string>& names);
+std::vector<output::Field> announced(const Body& body, const std::vector<std::string>& names);
 
 } // namespace kerf::scene

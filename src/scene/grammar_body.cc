@@ -76,7 +76,9 @@ void BodyParameters::describe(Parameters& p) {
     "Backend fem: a mass for each corner, or the mass matrix of the shape functions, whose frequencies are nearer to "
     "those of the body in bending; for implicit integrators only.");
   p.choice("Integrator", integrator, integrator_names(),
-           "How time advances; lattice shape matching is an integrator by itself.");
+           "How time advances; lattice shape matching is an integrator by itself. Quasi-static: each step is the "
+           "equilibrium of its "
+           "end. Modal: nothing moves; each step finds the lowest frequencies of the body as cuts have left it.");
 }
 
 void DampingParameters::describe(Parameters& p) {

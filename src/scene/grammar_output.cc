@@ -17,7 +17,9 @@ void OutputParameters::describe(Parameters& p) {
   p.text("Fields", fields,
          "Fields over the body, separated by commas, for each corner in the frames of run.h5 and each vertex in the "
          "surface file: " +
-           field_names() + ". All but displacement are of the backend fem. Or none.");
+           field_names() +
+           ". Strain and stress are of the backend fem; modes, a field each (mode_1, ...), of the integrator modal. Or "
+           "none.");
   p.number(
     "Checkpoint interval [s]", checkpoint_interval, non_negative,
     "Time on the clock between two checkpoints, from which --resume goes on after a kill; longer where they would "

@@ -10,9 +10,16 @@ const std::vector<std::string>& backend_names() {
 }
 
 const std::vector<std::string>& integrator_names() {
-  static const std::vector<std::string> names = {"implicit Euler",    "BDF2",           "Newmark",
-                                                 "generalised alpha", "quasi-static",   "symplectic Euler",
-                                                 "velocity Verlet",   "explicit Euler", "midpoint Runge-Kutta"};
+  static const std::vector<std::string> names = {"implicit Euler",
+                                                 "BDF2",
+                                                 "Newmark",
+                                                 "generalised alpha",
+                                                 "quasi-static",
+                                                 "symplectic Euler",
+                                                 "velocity Verlet",
+                                                 "explicit Euler",
+                                                 "midpoint Runge-Kutta",
+                                                 "modal"};
   return names;
 }
 
@@ -38,6 +45,7 @@ std::vector<SectionKind> physics_kinds() {
     {"Newmark", Occurrence::once, settings, keys_of<dynamics::NewmarkParameters>(), {}},
     {"Generalised alpha", Occurrence::once, settings, keys_of<dynamics::GeneralisedAlphaParameters>(), {}},
     {"Quasi-static", Occurrence::once, settings, keys_of<QuasiStaticSceneParameters>(), {}},
+    {"Modal", Occurrence::once, settings, keys_of<dynamics::ModalParameters>(), {}},
     {"Symplectic Euler", Occurrence::once, settings, keys_of<dynamics::ExplicitParameters>(), {}},
     {"Velocity Verlet", Occurrence::once, settings, keys_of<dynamics::ExplicitParameters>(), {}},
     {"Explicit Euler", Occurrence::once, settings, keys_of<dynamics::ExplicitParameters>(), {}},

@@ -4,6 +4,7 @@
 
 #include "dynamics/adaptive.h"
 #include "dynamics/generalised_alpha.h"
+#include "dynamics/modal.h"
 #include "dynamics/quasi_static.h"
 #include "dynamics/stable_step.h"
 #include "scene/text_grammar.h"

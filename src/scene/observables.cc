@@ -227,6 +227,17 @@ std::vector<Observable> stress_intensities(const Body& body, const ToolNames&) {
   return series;
 }
 
+std::vector<Observable> frequencies(const Body& body, const ToolNames&) {
+  std::vector<Observable> series;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(body.n_modes); ++i)
+    series.push_back({"frequency " + std::to_string(i + 1), "Hz",
+                      "of the mode, by ascending frequency (dynamics/modal.h)", [i](const Body& b) {
+                        const auto& found = b.report.modes.frequencies;
+                        return i < found.size() ? found[i] : 0.0;
+                      }});
+  return series;
+}
+
 Vec3 momentum(const Body& body) {
   return dynamics::momentum(model(body), body.state) + body.physics->crumbs().momentum(body.state);
 }
@@ -358,6 +369,8 @@ const std::vector<ObservableGroup>& observable_groups() {
      energy_release_rates},
     {"stress intensities", "Pa m^(1/2)",
      "sqrt(G E / (1 - nu^2)) of each crack front: K of a crack that opens in plane strain", stress_intensities},
+    {"frequencies", "Hz", "of the lowest modes, one each, with the integrator modal; 0 before the first step",
+     frequencies},
     {"probe strains", "1", "Green's strain at each probe, six components", probe_strains},
   };
   return all;

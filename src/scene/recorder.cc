@@ -82,7 +82,7 @@ output::Colours to_record(const texture::Atlas& atlas, const std::size_t first) 
 
 /// What every step of a body's surface file brings.
 std::vector<output::Field> announced_of(const Body& body, const std::vector<std::string>& names) {
-  std::vector<output::Field> fields = announced(names);
+  std::vector<output::Field> fields = announced(body, names);
   if (body.interior)
     fields.push_back({"colour", "1", 3, {}});
   return fields;

@@ -75,6 +75,17 @@ std::vector<std::string> faces_on_layers(const Body& body, const Region& region)
   return faces;
 }
 
+/// Whether a support holds corners, and all of them lie outside of the material.
+bool holds_no_material(const Body& body, const std::vector<std::uint32_t>& held) {
+  std::vector<std::uint8_t> is_material(body.physics->rest().size(), 0);
+  for (const grid::Copy& copy : body.solid.complex.copies)
+    for (int v = 0; v < 8; ++v)
+      if ((copy.nodes >> v & 1) != 0)
+        is_material[copy.corners[v].value] = 1;
+  return !held.empty() &&
+         std::none_of(held.begin(), held.end(), [&](const std::uint32_t i) { return is_material[i] != 0; });
+}
+
 } // namespace
 
 std::string extent(const Points& points) {
@@ -108,6 +119,12 @@ std::vector<std::string> describe_supports(const Body& body) {
       held[i] = 1;
     for (const std::string& warning : warn_of_layers(body, "support " + region.name, region.region))
       warnings.push_back(warning);
+    if (body.physics->particles_are_corners() && holds_no_material(body, corners))
+      warnings.push_back(
+        line("warning: body ", body.name, ": all corners that support ", region.name,
+             " holds lie outside of the material, which hangs by them too softly, as if it were up to some "
+             "cubes longer. Write 'set Hold at = skin', or move a layer of nodes to the skin with Lattice "
+             "offset"));
   }
   if (!body.physics->particles_are_corners() &&
       std::all_of(held.begin(), held.end(), [](const auto h) { return h != 0; }))

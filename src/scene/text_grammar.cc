@@ -100,6 +100,10 @@ class Checker {
                   is_title ? "a name must be letters, digits, '_', '-', '.' and blanks"
                            : "a name must be letters, digits, '_' and '-'",
                   "Write for example 'subsection " + match.kind->kind + " first'");
+    constexpr std::size_t most = 100; // of the 255 bytes of a file's name
+    if (match.name.size() > most)
+      throw error(section.origin, path, "", "a name must have at most " + std::to_string(most) + " characters",
+                  "Write a shorter one");
   }
 
   void check_keys(const WrittenSection& section, const std::vector<Parameter>& allowed, const std::string& path) const {

@@ -54,7 +54,7 @@ TEST_F(RefusedScene, ValueOutOfItsRange) {
     {"Time step [s] = 0.01", "Time/Time step [s]", "1e-30", "must lead to the end within 1e9 steps"},
     {"Cube edge [m] = 0.05", "Body cube/Cube edge [m]", "0", "must be > 0"},
     {"Cube edge [m] = 0.05", "Body cube/Cube edge [m]", "-0.1", "must be > 0"},
-    {"Cube edge [m] = 0.05", "Body cube/Cube edge [m]", "1e-12", "would fill the mesh with 8e+33 cells"},
+    {"Cube edge [m] = 0.05", "Body cube/Cube edge [m]", "1e-12", "would fill the body with 8e+33 cells"},
     {"Cube edge [m] = 0.05", "Body cube/Cube edge [m]", "3", "smaller than a cube"},
   };
   for (const Bad& b : bad) {

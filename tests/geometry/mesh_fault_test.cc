@@ -54,6 +54,14 @@ TEST(MeshFault, NamesTheLine) {
   expect(error_of("index.off", with(off, "3 0 1 3", "3 0 1 9")), "line 9: there is no vertex 9");
   expect(error_of("nan.ply", with(ply, "1 0 0", "1 inf 0")), "line 11: 'inf' is no finite number");
   expect(error_of("nan.obj", "v 0 0 0\nv 1 0 0\nv 0 nan 0\nf 1 2 3\n"), "line 3: 'nan' is no finite number");
+  const std::string points = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n", faces = "f 1 3 2\nf 1//1 2/1 -1\nf 2 3 4\n";
+  EXPECT_EQ(error_of("whole.obj", points + faces + "f 1 4 3\n"), "");
+  expect(error_of("zero.obj", points + faces + "f 1 0 3\n"), "line 8: there is no vertex 0");
+  expect(error_of("beyond.obj", points + faces + "f 1 5 3\n"), "line 8: there is no vertex 5");
+  expect(error_of("far.obj", points + faces + "f 1 999999999999 3\n"), "line 8: there is no vertex 999999999999");
+  expect(error_of("two.obj", points + faces + "f 1 4\n"), "line 8: a face must have 3 corners and more");
+  expect(error_of("marked.off", "\xEF\xBB\xBF" + off), "line 1: it begins with a byte order mark");
+  expect(error_of("marked.obj", "\xEF\xBB\xBF" + points + faces + "f 1 4 3\n"), "line 1: it begins with a byte order");
 }
 
 /// The library that reads them writes past the end of a list there.

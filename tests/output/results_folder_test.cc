@@ -70,6 +70,15 @@ TEST(ResultsFolder, AsksBeforeItReplaces) {
   EXPECT_TRUE(fs::exists(out / "notes.txt"));
 }
 
+TEST(ResultsFolder, LeavesNothingInAFolderThatItRefuses) {
+  const TemporaryFolder folder;
+  const auto out = folder / "out";
+  write(out / "run.h5", "the user's");
+  EXPECT_NE(error_of(out, Earlier::replace, names).find("is not known to be Kerf's"), std::string::npos);
+  EXPECT_FALSE(fs::exists(out / ".kerf"));
+  EXPECT_TRUE(fs::exists(out / "run.h5"));
+}
+
 /// Else its own files would be strangers to the next run.
 TEST(ResultsFolder, IsNotTakenWhereItsListCannotBeWritten) {
   const TemporaryFolder folder;

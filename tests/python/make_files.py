@@ -86,6 +86,8 @@ def main():
     make("study", FILES / "energy.prm", "--output", FILES / "energy", "--threads", "1")
     (FILES / "block.prm").write_text(STABILITY.format(scene=SOURCES / "params/stability/block.prm"))
     make("study", FILES / "block.prm", "--output", FILES / "block", "--threads", "1")
+    words = ["--largest", "216", "--samples", "1", "--only", "energy"]
+    make("bench", *words, "--output", FILES / "bench")
     make("table", "--output", FILES / "table.h5")
 
 

@@ -1,6 +1,7 @@
 """What kerf.open gives, against the HDF5 itself and against known answers."""
 
 import io
+import re
 import shutil
 import struct
 import tempfile
@@ -11,7 +12,7 @@ import h5py
 import numpy as np
 
 import kerf
-from kerf import files, runs, studies
+from kerf import files, inspect_file, runs, studies
 
 
 class Runs(unittest.TestCase):
@@ -120,6 +121,15 @@ class Studies(unittest.TestCase):
         study = kerf.open(FILES / "block")
         self.assertEqual(study.n_rows, 8)
         self.assertIn("refused", study.columns["outcome"].values)
+
+
+class Benches(unittest.TestCase):
+    def test_inspect_tells_paths_sizes_and_rates(self):
+        lines = "\n".join(inspect_file.described(FILES / "bench"))
+        self.assertIn("a benchmark", lines)
+        with h5py.File(FILES / "bench/bench.h5") as file:
+            rate = file["bench/rows/rate"][0]
+        self.assertRegex(lines, "energy, elements +216 cells +216 elements .* " + re.escape(f"{rate:.3g} /s"))
 
 
 def with_journal(content):

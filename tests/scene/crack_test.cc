@@ -1,6 +1,7 @@
 // What a scene reports of cuts and cracks, against closed forms.
 
 #include "base/error.h"
+#include "scene/crack_report.h"
 #include "tests/scene/trials.h"
 
 #include <gtest/gtest.h>
@@ -188,10 +189,11 @@ TEST(Crack, RefusesWhatIsNoFront) {
 
 std::vector<std::string> warnings_of(const Keys& front, const std::string& held, const std::string& cut) {
   const World world =
-    world_of(steps(1, 1) + section("Body bar", of_box({1, 0.2, 0.2}, 0.05, "0.3, 0.3, 0.3"),
-                                   material(1e4, 0.3) + free_statics() +
-                                     section("Support end", box("-9, -9, -9", "0.03, 9, 9") + Keys{"Hold = " + held}) +
-                                     section("Crack front tip", front)) +
+    world_of(steps(1, 1) +
+             section("Body bar", of_box({1, 0.2, 0.2}, 0.05, "0.3, 0.3, 0.3"),
+                     material(1e4, 0.3) + free_statics() +
+                       section("Support end", box("-9, -9, -9", "0.03, 9, 9") + Keys{"Hold = " + held}) +
+                       section("Crack front tip", front)) +
              cut);
   std::vector<std::string> warnings;
   for (const std::string& said : world.composition)
@@ -214,7 +216,8 @@ TEST(Crack, WarnsOfFrontsWhoseFiguresAreWrong) {
   EXPECT_NE(too_long[0].find("is 2 m long"), std::string::npos) << too_long[0];
   ASSERT_EQ(near_support.size(), 1u);
   EXPECT_NE(near_support[0].find("support end holds corners in its outer tube"), std::string::npos) << near_support[0];
-  EXPECT_TRUE(warnings_of(front(0.205, "0.2"), "yz", to(0.205)).empty()); // what slides along x does no work as it grows
+  EXPECT_TRUE(
+    warnings_of(front(0.205, "0.2"), "yz", to(0.205)).empty()); // what slides along x does no work as it grows
   const auto expect_one = [&](const double x, const std::string& cut, const std::string& words) {
     const auto found = warnings_of(front(x, "0.2"), "yz", cut);
     ASSERT_EQ(found.size(), 1u) << words;
@@ -225,6 +228,29 @@ TEST(Crack, WarnsOfFrontsWhoseFiguresAreWrong) {
   expect_one(0.15, to(0.15), "the skin is 0.15 m behind it, inside of its outer tube of 0.2 m");
   expect_one(0.85, to(0.85), "ahead of it, inside of its outer tube");
   expect_one(0.5, rectangle({0.375, 0.1, 0.1}, 0.25, 9), "shorter than both tubes, 0.3 m");
+}
+
+/// A blade's end is not known before it has cut: it comes along the bar's middle plane to x = 0.5.
+TEST(Crack, TellsAfterwardsWhichFrontNoBladeHasReachedOrLeft) {
+  const auto said_of = [](const double x) {
+    const std::string at = to_text(x);
+    const Trial bar(
+      steps(0.1, 5) +
+      section("Body bar", bar_keys(6) + statics(),
+              material(1e5, 0.3) + section("Support end", box("0.99, -1, -1", "2, 1, 1")) +
+                section("Crack front tip", {"First [m] = " + at + ", 0, 0.1", "Second [m] = " + at + ", 0.2, 0.1",
+                                            "Growth [1] = 1, 0, 0", "Inner radius [1] = 1", "Outer radius [1] = 2"})) +
+      section("Blade knife", {"Edge [m] = 0, -0.1, 0; 0, 0.3, 0", "Spine [m] = -2, 0, 0", "Times [s] = 0, 0.4",
+                              "Positions [m] = -0.1, 0, 0.1; 0.5, 0, 0.1"}));
+    return fronts_that_cuts_missed(bar.body());
+  };
+  EXPECT_TRUE(said_of(0.5).empty());
+  EXPECT_TRUE(said_of(0.48).empty());
+  for (const auto& [x, words] : {std::pair(0.7, "no cut has come to it"), std::pair(0.3, "a cut has gone beyond it")}) {
+    const auto said = said_of(x);
+    ASSERT_EQ(said.size(), 1u) << x;
+    EXPECT_NE(said[0].find(words), std::string::npos) << said[0];
+  }
 }
 
 } // namespace

@@ -217,6 +217,8 @@ TEST(ParameterFile, BrokenSyntax) {
                    "Write 'end'");
   expect_complaint(complaint_of("subsection Time\nend\nend\n"), 3, "", "end", "no open subsection", "Remove this line");
   expect_complaint(complaint_of("subsection Time\nend Time\n"), 2, "Time", "end Time", "must stand alone", "next line");
+  expect_complaint(complaint_of("subsection Body " + std::string(101, 'x') + "\nend\n"), 1,
+                   "Body " + std::string(101, 'x'), "", "at most 100 characters", "shorter");
   expect_complaint(complaint_of("subsection\nend\n"), 1, "", "", "must have a heading", "subsection Time");
   expect_complaint(complaint_of("subsection Time\nset Steps 7\nend\n"), 2, "Time", "set Steps 7",
                    "must be 'set KEY = VALUE'", "Write the missing part");

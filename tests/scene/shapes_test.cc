@@ -96,7 +96,8 @@ TEST(BodyShapes, WhatIsNoBodyIsRefused) {
   refuse({"Shape = ball", "Radius [m] = 0"}, {"Radius [m]", "must be > 0"});
   refuse({"Shape = ball", "Radius [m] = 1e300"}, {"Cube edge [m]", "Use larger cubes"});
   refuse({"Shape = ball", "Radius [m] = 100"}, {"Cube edge [m]", "more than"});
-  refuse({"Shape = ball", "Radius [m] = 0.001"}, {"no grid node is inside"});
+  refuse({"Shape = ball", "Radius [m] = 0.001"}, {"no grid node is inside", "or check Radius [m]"});
+  refuse({"Shape = box", "Sides [m] = 1, 1, 0.01"}, {"no grid node is inside", "Sides [m]", "set Lattice offset"});
   refuse({"Shape = ball", "Radius [m] = 0.2", "Height [m] = 1"}, {"Height [m]", "does not read this key"});
   refuse({"Shape = ball", "Radius [m] = 0.2", "Mesh = x.off"}, {"Mesh", "does not read this key"});
   refuse({"Shape = box", "Sides [m] = 1, 0, 1"}, {"Sides [m]", "must all be > 0"});

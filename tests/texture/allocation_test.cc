@@ -20,6 +20,11 @@ std::atomic<std::size_t> n_allocations = 0;
     return p;
   throw std::bad_alloc();
 }
+/// What std::stable_sort asks for.
+[[gnu::noinline]] void* operator new(const std::size_t n, const std::nothrow_t&) noexcept {
+  ++n_allocations;
+  return std::malloc(n);
+}
 [[gnu::noinline]] void operator delete(void* const p) noexcept { std::free(p); }
 [[gnu::noinline]] void operator delete(void* const p, std::size_t) noexcept { std::free(p); }
 
