@@ -2,14 +2,12 @@
 
 #include "base/error.h"
 #include "output/checkpoint_file.h"
+#include "output/csv_file.h"
 #include "output/names.h"
 #include "output/run_info.h"
-#include "output/table_columns.h"
 
 #include <array>
 #include <cmath>
-#include <cstdio>
-#include <fstream>
 #include <limits>
 #include <utility>
 
@@ -152,21 +150,6 @@ void write_rows(const h5::Object& root, const StudyTable& table) {
   write_points(root, table);
 }
 
-/// As a spreadsheet reads it: in quotes, quotes doubled.
-std::string quoted(const std::string& text) {
-  std::string all = "\"";
-  for (const char c : text)
-    all += c == '"' ? "\"\"" : std::string(1, c);
-  return all + "\"";
-}
-std::string csv_text(const std::string& text) { return quoted(text); }
-std::string csv_text(const std::int64_t value) { return std::to_string(value); }
-std::string csv_text(const double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.17g", value);
-  return std::isfinite(value) ? text.data() : "";
-}
-
 } // namespace
 
 void write_study_file(const std::filesystem::path& path, const StudyTable& table, const RunInfo& info) {
@@ -206,25 +189,11 @@ StudyTable read_study_file(const std::filesystem::path& path) {
 }
 
 void write_study_csv(const std::filesystem::path& path, const StudyTable& table) {
-  std::string head;
-  std::vector<std::string> lines(table.rows.size());
+  CsvTable csv(table.rows.size());
   for_each_column(table, [&](const auto& column) {
-    const bool has_unit = column.unit != "1";
-    head += (head.empty() ? "" : ",") + quoted(column.name + (has_unit ? " [" + column.unit + "]" : ""));
-    for (std::size_t i = 0; i < lines.size(); ++i) {
-      StudyRow row = table.rows[i];
-      lines[i] += (lines[i].empty() ? "" : ",") + csv_text(column.field(row));
-    }
+    csv.add(csv_text(column.name + (column.unit == "1" ? "" : " [" + column.unit + "]")), column, table.rows);
   });
-  std::ofstream file(name_beside(path));
-  file << head << '\n';
-  for (const std::string& line : lines)
-    file << line << '\n';
-  if (!file.flush())
-    throw DataError(Complaint{.file = path.string(),
-                              .rule = "cannot be written",
-                              .remedy = "Free disk space or raise the quota, or choose another folder with --output"});
-  take_name(path);
+  csv.write(path);
 }
 
 } // namespace kerf::output
