@@ -35,18 +35,16 @@ Sample sample_at(const Space<dim>& space, const Vec3& X) {
   dealii::Point<dim> point;
   for (int d = 0; d < dim; ++d)
     point[d] = X[d];
-  try {
-    const auto [cell, place] = dealii::GridTools::find_active_cell_around_point(space.mapping, space.dofs, point);
-    std::vector<dealii::types::global_dof_index> unknowns(space.element.n_dofs_per_cell());
-    cell->get_dof_indices(unknowns);
-    Sample sample;
-    for (unsigned int i = 0; i < unknowns.size(); ++i)
-      sample.terms.push_back(
-        {unknowns[i], space.element.system_to_component_index(i).first, space.element.shape_value(i, place)});
-    return sample;
-  } catch (const dealii::ExceptionBase&) {
+  const auto [cell, place] = dealii::GridTools::find_active_cell_around_point(space.mapping, space.dofs, point);
+  if (cell.state() != dealii::IteratorState::valid)
     throw DataError("a point that a reference motion is asked at lies outside of its body");
-  }
+  std::vector<dealii::types::global_dof_index> unknowns(space.element.n_dofs_per_cell());
+  cell->get_dof_indices(unknowns);
+  Sample sample;
+  for (unsigned int i = 0; i < unknowns.size(); ++i)
+    sample.terms.push_back(
+      {unknowns[i], space.element.system_to_component_index(i).first, space.element.shape_value(i, place)});
+  return sample;
 }
 
 /// Chung and Hulbert's, as functions of the spectral radius.
