@@ -210,8 +210,10 @@ void require_affordable_colours(const Section& section, const geometry::Triangle
   const Box box = geometry::bounding_box(mesh);
   const Vec3 sides = box.upper - box.lower;
   const double area = 2 * sides.prod() / sides.minCoeff() + (p.skin_image.empty() ? 0 : surface_area(mesh));
-  const double bytes = texture::n_samples_of(area, p.resolution) * texture::Atlas::bytes_a_sample(p.relief);
-  const double finest = std::max(cube_edge / texture::Atlas::max_parts, p.resolution * std::sqrt(bytes / most));
+  const double a_sample = texture::Atlas::bytes_a_sample(p.relief), side = 0.5 * cube_edge;
+  const double bytes = texture::n_samples_of(area, p.resolution, cube_edge) * a_sample;
+  const double parts = std::sqrt(most / a_sample / area) * side - 1.5; // (n + 1) (n + 2) < (n + 1.5)^2
+  const double finest = std::max(cube_edge / texture::Atlas::max_parts, bytes > most ? side / std::max(1.0, parts) : 0);
   if (p.resolution >= finest)
     return;
   throw section.complaint(

@@ -3,7 +3,8 @@
 namespace kerf::scene {
 
 void InteriorParameters::describe(Parameters& p) {
-  p.number("Resolution [m]", resolution, positive, "Largest distance between the colours of a revealed face.");
+  p.number("Resolution [m]", resolution, positive,
+           "Revealed faces are as fine as pictures with square pixels of this side.");
   p.require_last();
   p.choice(
     "Morph", morph, {"first order", "exact inverse", "blend", "nearest"},

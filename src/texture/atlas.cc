@@ -28,16 +28,21 @@ Corners corners_of(const SurfaceView& surface, const std::size_t t) {
   return {surface.rest[v[0]], surface.rest[v[1]], surface.rest[v[2]]};
 }
 
-double longest_side(const Corners& corners) {
-  double longest = 0;
-  for (int i = 0; i < 3; ++i)
-    longest = std::max(longest, (corners[(i + 1) % 3] - corners[i]).norm());
-  return longest;
+/// The side of the squares that a triangle is halves of, area for area; of slivers, those that are as long across. Parts
+/// of a triangle with n of them a side are halves of squares n times smaller. The same bits for any order of corners.
+double square_side(const Corners& corners) {
+  double longest = 0, twice_area = 0;
+  for (int i = 0; i < 3; ++i) {
+    const Vec3 next = corners[(i + 1) % 3] - corners[i], last = corners[(i + 2) % 3] - corners[i];
+    longest = std::max(longest, next.norm());
+    twice_area = std::max(twice_area, next.cross(last).norm());
+  }
+  return std::max(std::sqrt(twice_area), longest / std::sqrt(2));
 }
 
-int parts_for(const Corners& corners, const double resolution) {
-  const double n = std::min(std::ceil(longest_side(corners) / resolution), double(Atlas::max_parts));
-  return std::max(static_cast<int>(n), 1);
+double parts_for(const double square_side, const double resolution) {
+  constexpr double rounding = 1e-9;
+  return std::max(1.0, std::ceil(square_side / resolution - rounding));
 }
 
 } // namespace
@@ -65,14 +70,20 @@ void Atlas::fill_triangle(const std::size_t t, const SurfaceView& surface, const
   });
 }
 
+double n_samples_of(const double area, const double resolution, const double cube_edge) {
+  const double side = 0.5 * cube_edge, n = parts_for(side, resolution);
+  return area / (side * side) * (n + 1) * (n + 2);
+}
+
 std::size_t Atlas::n_coarse() const {
   std::size_t n = 0;
   for (std::size_t t = 0; t < parts_.size(); ++t)
-    n += parts_[t] == max_parts && longest_side(filled_[t]) > max_parts * resolution_ ? 1 : 0;
+    n += parts_[t] == max_parts && square_side(filled_[t]) > max_parts * resolution_ ? 1 : 0;
   return n;
 }
 
-std::size_t Atlas::fill(const SurfaceView& surface, const Paint& paint) {
+/// Samples for what is new, which is returned; not yet their colours.
+std::vector<std::size_t> Atlas::lay_out(const SurfaceView& surface, const Paint& paint) {
   const std::size_t n = surface.triangles.size();
   first_.resize(n, none);
   parts_.resize(n, 0);
@@ -90,7 +101,7 @@ std::size_t Atlas::fill(const SurfaceView& surface, const Paint& paint) {
     if (first_[t] != none && filled_[t] == corners && labels_[t] == surface.labels[t])
       continue;
     first_[t] = static_cast<std::uint32_t>(end);
-    parts_[t] = static_cast<std::uint16_t>(parts_for(corners, resolution_));
+    parts_[t] = static_cast<std::uint16_t>(std::min(parts_for(square_side(corners), resolution_), double(max_parts)));
     filled_[t] = corners;
     labels_[t] = surface.labels[t];
     end += n_samples(parts_[t]);
@@ -99,7 +110,30 @@ std::size_t Atlas::fill(const SurfaceView& surface, const Paint& paint) {
   colours_.resize(end);
   if (paint.relief != 0)
     slopes_.resize(end, {0, 0});
-  parallel_for(fresh.size(), [&](const std::size_t i) { fill_triangle(fresh[i], surface, paint); });
+  return fresh;
+}
+
+/// What rises along the edges from the first's first corner rises along the twin's as their differences do.
+void Atlas::copy(const Twin& twin) {
+  const int n = parts_[twin.number];
+  const auto& [a, b, c] = twin.corner;
+  std::size_t sample = first_[twin.number];
+  for_each_sample(n, [&](const int i, const int j) {
+    const std::size_t from = first_[twin.first] + sample_of_first(twin, n, i, j);
+    colours_[sample] = colours_[from];
+    if (!slopes_.empty()) {
+      const std::array<float, 3> rise = {0, slopes_[from][0], slopes_[from][1]};
+      slopes_[sample] = {rise[b] - rise[a], rise[c] - rise[a]};
+    }
+    ++sample;
+  });
+}
+
+std::size_t Atlas::fill(const SurfaceView& surface, const Paint& paint) {
+  const std::vector<std::size_t> fresh = lay_out(surface, paint);
+  const Sides sides = find_sides(fresh, filled_, labels_);
+  parallel_for(sides.painted.size(), [&](const std::size_t i) { fill_triangle(sides.painted[i], surface, paint); });
+  parallel_for(sides.twins.size(), [&](const std::size_t i) { copy(sides.twins[i]); });
   return fresh.size();
 }
 

@@ -5,11 +5,12 @@
 /// A triangle that is divided into n parts a side has a colour at each of the (n + 1)(n + 2) / 2 points of its lattice,
 /// its corners included: so neighbours agree at what they share, and nothing is packed or distorted. Samples are only
 /// ever appended. A triangle is filled when it appears, and again only if its corners have moved in the rest
-/// configuration or its label has changed.
+/// configuration or its label has changed. Both sides of a cut lie on each other at rest: one is copied from the other.
 
 #include "base/archive.h"
 #include "texture/paint.h"
 #include "texture/skin.h"
+#include "texture/twins.h"
 
 #include <cstdint>
 #include <span>
@@ -36,7 +37,7 @@ class Atlas {
   static constexpr std::uint32_t none = 0xffffffff;
   static constexpr int max_parts = 64; ///< a side; larger triangles than this allows are coarser, and counted
 
-  /// Samples are at most `resolution` apart [m].
+  /// Samples are as fine as square pixels with sides of `resolution` [m].
   explicit Atlas(const double resolution) : resolution_(resolution) {}
 
   static double bytes_a_sample(const double relief) { return relief != 0 ? 11 : 3; } ///< colour, and slopes
@@ -55,23 +56,25 @@ class Atlas {
   const std::vector<std::array<float, 2>>& slopes() const { return slopes_; }
 
  private:
+  std::vector<std::size_t> lay_out(const SurfaceView& surface, const Paint& paint);
   void fill_triangle(std::size_t t, const SurfaceView& surface, const Paint& paint);
+  void copy(const Twin& twin);
 
   double resolution_;
   std::vector<std::uint32_t> first_;
   std::vector<std::uint16_t> parts_;
   std::vector<std::array<std::uint8_t, 3>> colours_;
   std::vector<std::array<float, 2>> slopes_;
-  std::vector<std::array<Vec3, 3>> filled_; // the corners that each triangle was filled for
+  std::vector<Corners> filled_; // the corners that each triangle was filled for
   std::vector<std::uint16_t> labels_;
 };
 
 /// Samples of a triangle with n parts a side.
 inline std::size_t n_samples(const int n) { return static_cast<std::size_t>(n + 1) * (n + 2) / 2; }
 
-/// About how many samples revealed faces of that area take [m^2]: right-angled triangles with two equal sides would
-/// take 2 a square of the resolution.
-inline double n_samples_of(const double area, const double resolution) { return 3 * area / (resolution * resolution); }
+/// How many samples revealed faces of that area take [m^2] where a plane cuts cubes along a layer of them: in triangles
+/// with two sides of half a cube's edge at a right angle. Elsewhere there are more and smaller triangles.
+double n_samples_of(double area, double resolution, double cube_edge);
 
 /// Calls f(i, j) for each sample in their order: the point a + i/n (b - a) + j/n (c - a) of the triangle a, b, c.
 template <class Function>

@@ -11,7 +11,7 @@ namespace kerf::texture {
 
 namespace {
 
-constexpr std::uint64_t version = 8;                   ///< of the file and of the methods that find maps
+constexpr std::uint64_t version = 10;                  ///< of the file and of the methods that find maps
 constexpr std::uint64_t magic = 0x5350414d4652454bull; // "KERFMAPS"
 
 class Hash {

@@ -4,6 +4,7 @@
 #include "image/filters.h"
 #include "image/spline.h"
 #include "texture/outline.h"
+#include "texture/section_pixels.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,32 +15,6 @@ namespace kerf::texture {
 namespace {
 
 using image::Grey;
-
-constexpr double margin = 3; ///< pixels around the section
-
-/// The box of the body's section, in pixels of the picture.
-struct PixelBox {
-  Vec2 lower = Vec2::Constant(1e300), upper = Vec2::Constant(-1e300);
-};
-
-std::vector<Segment> in_pixels(const std::vector<Segment>& outline, const SectionPlane& plane) {
-  std::vector<Segment> result;
-  for (const Segment& segment : outline)
-    result.push_back({plane.to_pixels(segment[0]), plane.to_pixels(segment[1])});
-  return result;
-}
-
-PixelBox box_of(const std::vector<Segment>& curves) {
-  PixelBox box;
-  for (const Segment& segment : curves)
-    for (const Vec2& p : segment) {
-      box.lower = box.lower.cwiseMin(p);
-      box.upper = box.upper.cwiseMax(p);
-    }
-  box.lower = (box.lower.array().floor() - margin).matrix();
-  box.upper = (box.upper.array().ceil() + margin).matrix();
-  return box;
-}
 
 void check_size(const PixelBox& box) {
   constexpr double most = 8192;
@@ -53,7 +28,7 @@ void check_size(const PixelBox& box) {
 template <class ToPicture>
 void paint(const image::Image& picture, const Grey& mask, const ToPicture& to_picture, Chart& chart) {
   const int width = chart.inside.width, height = chart.inside.height;
-  const image::Colours there = image::filled(picture.colours, mask);
+  const image::Colours there = image::spline_coefficients(image::filled(picture.colours, mask));
   image::Colours colours(width, height, image::Rgb::Zero());
   chart.shown = Grey(width, height, 0);
   for (int r = 0; r < height; ++r)
@@ -61,7 +36,7 @@ void paint(const image::Image& picture, const Grey& mask, const ToPicture& to_pi
       const Vec2 p = to_picture(Vec2(c, r));
       const bool is_in = p[0] >= -0.5 && p[1] >= -0.5 && p[0] <= mask.width - 0.5 && p[1] <= mask.height - 0.5;
       const auto x = static_cast<float>(p[0]), y = static_cast<float>(p[1]);
-      colours(c, r) = image::sample(there, x, y);
+      colours(c, r) = image::sample_spline(there, x, y).max(0.0f).min(1.0f);
       chart.shown(c, r) = is_in && image::sample(mask, x, y) >= 0.5f ? 1.0f : 0.0f;
     }
   double n_inside = 0, n_shown = 0;
@@ -99,34 +74,24 @@ Vec3 in_plane(const Mat3& axes, const Vec3& normal) {
   return (axis - normal.dot(axis) * normal).normalized();
 }
 
+double sense(const Mat3& axes, const Vec3& v) { return (axes * Vec3(0.8, 0.5, 0.33)).dot(v) < 0 ? -1 : 1; }
+
 Chart make_chart(const Exemplar& exemplar, const geometry::TriangleMesh& body,
                  const std::optional<warp::LatticeMap>& known, std::optional<warp::LatticeMap>& used) {
   const Grey mask = mask_of(exemplar.picture, exemplar.background);
   const SectionPlane& plane = exemplar.plane;
-  const auto curves = in_pixels(slice(body, frame_of(plane)), plane);
-  if (curves.empty())
+  const Mat3 axes = axes_of(body);
+  const std::vector<Segment> section = slice(body, frame_of(plane));
+  if (section.empty())
     throw ParameterError(Complaint{.path = "Origin [m]",
                                    .rule = "the plane of this exemplar misses the body",
                                    .remedy = "Move the plane into the body, rest frame"});
-  const PixelBox box = box_of(curves);
+  const SectionPlane lattice = exemplar.fit == Fit::none ? plane : along_section(section, plane, axes);
+  const PixelBox box = box_of(slice(body, frame_of(lattice)), lattice);
   check_size(box);
-  std::vector<Segment> shifted;
-  for (const Segment& segment : curves)
-    shifted.push_back({segment[0] - box.lower, segment[1] - box.lower});
-  const Vec2 size = box.upper - box.lower;
-  const auto step = [&](const Vec2& pixels) { return Vec3(plane.point(plane.to_local(pixels))); };
-  Chart chart{SectionPlane(step(box.lower), step(box.lower + Vec2(1, 0)) - step(box.lower),
-                           step(box.lower + Vec2(0, 1)) - step(box.lower)),
-              {},
-              {},
-              {},
-              {},
-              inside_of(shifted, static_cast<int>(size[0]) + 1, static_cast<int>(size[1]) + 1),
-              {},
-              1,
-              {},
-              axes_of(body)};
+  Chart chart{moved(lattice, box.lower), {}, {}, {}, {}, {}, {}, 1, {}, axes};
   chart.outline = slice(body, frame_of(chart.plane));
+  chart.inside = inside_of(in_pixels(chart.outline, chart.plane), box.width(), box.height());
   used.reset();
   if (std::accumulate(chart.inside.values.begin(), chart.inside.values.end(), 0.0) < 16)
     throw ParameterError(Complaint{.path = "Column [m]",
@@ -137,11 +102,13 @@ Chart make_chart(const Exemplar& exemplar, const geometry::TriangleMesh& body,
       exemplar.picture, mask, [&](const Vec2& p) { return Vec2(p + box.lower); }, chart);
     return chart;
   }
-  const Outlines outlines = outlines_of(chart.inside, mask);
+  const Relaid picture = relaid(mask, plane, chart.plane);
+  const Outlines outlines = outlines_of(chart.inside, picture.mask);
   const auto inside = exemplar.fit == Fit::rigid ? warp::Regularity::rigid : warp::Regularity::jacobian;
   used = known ? *known : fitted(outlines, {.inside = inside});
   chart.fit_error = gap_after(*used, outlines);
-  paint(exemplar.picture, mask, *used, chart);
+  paint(
+    exemplar.picture, mask, [&](const Vec2& p) { return pixels_of(plane, picture.plane, (*used)(p)); }, chart);
   return chart;
 }
 

@@ -42,7 +42,7 @@ struct Exemplar {
 };
 
 /// A fitted exemplar. Its pixels are those of the picture's plane, moved by whole pixels so that they cover the
-/// section.
+/// section; where the picture is drawn to the section, they lie along the section instead (section_pixels.h).
 struct Chart {
   SectionPlane plane;                    ///< pixel (0, 0) of the chart is its origin
   image::Raster<Eigen::Array4f> colours; ///< red, green, blue, luminance; defined everywhere
@@ -52,7 +52,7 @@ struct Chart {
   image::Grey inside;                    ///< 1 where the body's own section is
   std::vector<Segment> outline;          ///< of the body's section, local coordinates [m]
   double shown_share = 1;                ///< of the body's own section, what the picture shows
-  warp::Gap fit_error;                   ///< between the fitted outlines [pixels of the picture]; 0 without a fit
+  warp::Gap fit_error;                   ///< between the fitted outlines [pixels]; 0 without a fit
   Mat3 body_axes = Mat3::Identity();     ///< columns: axes that turn along with the body
 };
 
@@ -62,6 +62,10 @@ Mat3 axes_of(const geometry::TriangleMesh& body);
 /// The unit vector in a plane with that normal that lies along the first of some axes, or where that is nearly the
 /// normal along the second.
 Vec3 in_plane(const Mat3& axes, const Vec3& normal);
+
+/// 1 or -1, by which side of the axes a vector points to: the same for both normals of a plane once either has been
+/// multiplied by its own.
+double sense(const Mat3& axes, const Vec3& v);
 
 /// Fits an exemplar to the body. `known` is the map found earlier for the same input; the map that was used is left in
 /// `used` (none for Fit::none). Throws ParameterError about the key "Origin [m]" if the plane misses the body, and as

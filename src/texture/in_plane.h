@@ -3,17 +3,16 @@
 /// Colours in the plane of a triangle, with small features and relief.
 ///
 /// What windows see lies on a lattice of points that belongs to the plane, not to the triangle: neighbours in one plane
-/// see the same. It is as fine as the exemplars' pixels; there, source points and weights are found at every sixth
+/// see the same. It is as fine as the exemplars' pixels; there, source points and weights are found at every eighth
 /// point each way, for the cells of the points around it, and are bilinear in between. A colour itself is exact: only
 /// what small features add to it, and the height of the relief, come from the lattice.
 
+#include "texture/twins.h"
 #include "texture/windows.h"
 
 #include <deque>
 
 namespace kerf::texture {
-
-using Corners = std::array<Vec3, 3>;
 
 class InPlane {
  public:
@@ -51,7 +50,7 @@ class InPlane {
   Vec3 point(const int column, const int row) const { return origin_ + pixel_ * (column * x_ + row * y_); }
   Vec2 on_lattice(const Vec3& p) const { return Vec2(x_.dot(p - origin_), y_.dot(p - origin_)) / pixel_; }
 
-  static constexpr int step = 6; ///< points of the lattice from blend to blend, at most n_lanes
+  static constexpr int step = 8; ///< points of the lattice from blend to blend, at most n_lanes
 
   const Interior& inside_;
   Vec3 origin_ = Vec3::Zero(), x_ = Vec3::Zero(), y_ = Vec3::Zero();

@@ -150,20 +150,21 @@ warp::Curve outline_of(const Grey& mask) {
 }
 
 Outlines outlines_of(const Grey& section, const Grey& picture) {
-  warp::Curve from = outline_of(section), to = outline_of(picture);
+  const warp::Curve from = outline_of(section), to = outline_of(picture);
   const Mat2 linear = warp::affine_between(from, to).linear;
+  const auto around = [&](const Grey& within, const Grey& shown, std::vector<warp::Pin> rays) {
+    return Outlines{outline_of(within), outline_of(shown), within, size_of(section) / size_of(within), std::move(rays)};
+  };
   std::vector<warp::Pin> rays = by_rays(star_of(section, from, Mat2::Identity()), star_of(picture, to, linear));
   if (!rays.empty())
-    return {std::move(from), std::move(to), largest_component(section), std::move(rays)};
+    return around(largest_component(section), picture, std::move(rays));
   constexpr double least = 0.05, most = 0.2, enough = 0.9;
   for (double part = least; part <= most; part *= 1.5) {
-    Whole a = whole(section, part);
-    const Whole b = whole(picture, part);
+    const Whole a = whole(section, part), b = whole(picture, part);
     if (std::min(a.share, b.share) >= enough)
-      return {outline_of(a.mask), outline_of(b.mask), std::move(a.mask), {}};
+      return around(a.mask, b.mask, {});
   }
-  Whole a = whole(section, least);
-  return {outline_of(a.mask), outline_of(whole(picture, least).mask), std::move(a.mask), {}};
+  return around(whole(section, least).mask, whole(picture, least).mask, {});
 }
 
 warp::Gap gap_after(const warp::LatticeMap& map, const Outlines& outlines) {
@@ -174,8 +175,10 @@ warp::Gap gap_after(const warp::LatticeMap& map, const Outlines& outlines) {
   return {std::max(a.mean, b.mean), std::max(a.largest, b.largest)};
 }
 
-warp::LatticeMap fitted(const Outlines& outlines, const warp::FitOptions& options) {
+warp::LatticeMap fitted(const Outlines& outlines, warp::FitOptions options) {
   const Vec2 lower = Vec2::Zero(), upper(outlines.within.width - 1, outlines.within.height - 1);
+  // As fine as on a section of one part, where others widen the box.
+  options.n_cells *= std::max(1.0, 0.25 * std::lround(4 * outlines.wider)); // closing may widen it
   return outlines.by_rays.empty()
            ? warp::fit(outlines.section, outlines.picture, outlines.within, lower, upper, options)
            : warp::fit(outlines.by_rays, warp::affine_between(outlines.section, outlines.picture), lower, upper,

@@ -16,6 +16,7 @@ warp::Curve outline_of(const image::Grey& mask);
 struct Outlines {
   warp::Curve section, picture; ///< pixels of each mask
   image::Grey within;           ///< what `section` bounds
+  double wider = 1;             ///< the box of all that is section, over that of `within`, by their longer sides [1]
   /// The middles, and points of both that lie in the same direction from them, once the affine map between both has
   /// been taken out; empty where one is no star.
   std::vector<warp::Pin> by_rays;
@@ -33,7 +34,7 @@ Outlines outlines_of(const image::Grey& section, const image::Grey& picture);
 /// How far apart the outlines lie in the picture once a map has been applied, seen from both [pixels].
 warp::Gap gap_after(const warp::LatticeMap& map, const Outlines& outlines);
 
-/// Draws one outline to the other.
-warp::LatticeMap fitted(const Outlines& outlines, const warp::FitOptions& options);
+/// Draws one outline to the other. Cells of the lattice are counted along what `within` bounds.
+warp::LatticeMap fitted(const Outlines& outlines, warp::FitOptions options);
 
 } // namespace kerf::texture

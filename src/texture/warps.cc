@@ -138,9 +138,6 @@ int joining_end(const ExemplarPin& pin, const Face& from, const Face& to, const 
            : -1;
 }
 
-/// 1 or -1, by which side of the body's axes a vector points to: the same for a pair of faces either way round.
-double sense(const Mat3& axes, const Vec3& v) { return (axes * Vec3(0.8, 0.5, 0.33)).dot(v) < 0 ? -1 : 1; }
-
 } // namespace
 
 AlignedPair align(const Face& from, const Chart& from_chart, const Face& to, const Chart& to_chart, const int pixels) {

@@ -113,7 +113,7 @@ LatticeMap fit(const std::vector<Pin>& pairs, const Affine& start, const Vec2& l
 
 LatticeMap fit(const Curve& from, const Curve& to, const image::Grey& section, const Vec2& lower, const Vec2& upper,
                const FitOptions& options) {
-  constexpr int n_points = 256, denser = 4;
+  constexpr int n_points = 512, denser = 4;
   constexpr double softer = 0.3, hardest = 10; // what is no star has more to bend
   constexpr int n_rounds = 3;
   const Affine start = affine_between(from, to);

@@ -86,7 +86,7 @@ TEST_F(Inside, SaysHowMuchOfASectionAPictureShows) {
   EXPECT_EQ(said(""),
             "exemplar one: shows 77 % of the body's section; what lacks goes on from its border, as it is not "
             "fitted (key Fit)");
-  EXPECT_NE(said("      set Fit = rigid\n").find("% of the body's section, drawn to it to 0."), std::string::npos);
+  EXPECT_NE(said("      set Fit = rigid\n").find("% of the body's section, drawn to it to 0"), std::string::npos);
 }
 
 TEST_F(Inside, TheBodyIsNamed) {
@@ -147,12 +147,12 @@ TEST_F(Inside, ResolutionsThatWouldTakeAllMemory) {
         EXPECT_NE(said.find(part), std::string::npos) << "no '" << part << "' in: " << said;
     }
   };
-  // Two sides of 0.04 m^2, three samples a square of 1e-7 m, 3 bytes each.
-  expect({"1e-7", "68000 GiB", "at least 0.00079"}, "1e-7", "0.05");
+  // Two sides of 0.04 m^2, a sample a square of 1e-7 m, 3 bytes each; in triangles of half a cube some more.
+  expect({"1e-7", "23000 GiB", "at least 0.00079"}, "1e-7", "0.05");
   expect({"0.0006", "at least 0.00079"}, "0.0006", "0.05");
-  expect({"6.8 GiB", "at least 2.6e-5"}, "1e-5", "0.0005");
-  expect({"25 GiB", "at least 5e-5"}, "1e-5", "0.0005", "    set Relief [m] = 0.001\n");
-  expect({"27 GiB", "at least 5.2e-5"}, "1e-5", "0.0005", "    set Skin image = good.png\n");
+  expect({"2.6 GiB", "at least 1.7e-5"}, "1e-5", "0.0005");
+  expect({"9.3 GiB", "at least 3.5e-5"}, "1e-5", "0.0005", "    set Relief [m] = 0.001\n");
+  expect({"11 GiB", "at least 3.7e-5"}, "1e-5", "0.0005", "    set Skin image = good.png\n");
   EXPECT_NE(world("0.0008", "0.05").bodies.front().interior, nullptr);
 }
 

@@ -54,6 +54,31 @@ TEST(Atlas, SlopesAreThoseOfTheRelief) {
   }
 }
 
+TEST(Atlas, BothSidesOfACutShowTheSame) {
+  // A triangle, all other orders of its corners, and one that shares but two of them: as each is painted alone.
+  const Interior& inside = five();
+  const Detail detail(inside);
+  const Paint paint = {&inside, &detail, nullptr, 0.001};
+  const Points rest = {Vec3(0.003, 0.001, 0.002), Vec3(0.012, 0, 0.001), Vec3(0.002, 0.009, 0.004),
+                       Vec3(0.011, 0.01, 0)};
+  const std::vector<Triangle> triangles = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}, {1, 3, 2}};
+  const std::vector<std::uint16_t> labels(triangles.size(), 1);
+  Atlas together(0.001);
+  EXPECT_EQ(together.fill({rest, triangles, labels}, paint), triangles.size());
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    Atlas alone(0.001);
+    alone.fill({rest, std::span(triangles).subspan(t, 1), std::span(labels).first(1)}, paint);
+    ASSERT_EQ(together.parts()[t], alone.parts()[0]);
+    for (std::size_t i = 0; i < alone.colours().size(); ++i) {
+      const std::size_t at = together.first()[t] + i;
+      for (int k = 0; k < 3; ++k)
+        EXPECT_NEAR(together.colours()[at][k], alone.colours()[i][k], 1); // round-off
+      for (int k = 0; k < 2; ++k)
+        EXPECT_NEAR(together.slopes()[at][k], alone.slopes()[i][k], 6e-4); // differences over two pixels
+    }
+  }
+}
+
 /// What two triangles that meet at an angle show differently along their common side, of 255: the largest, the mean.
 std::array<double, 2> step_at_a_side(const Paint& paint, const double angle) {
   double largest = 0, sum = 0, n = 0;
@@ -64,7 +89,7 @@ std::array<double, 2> step_at_a_side(const Paint& paint, const double angle) {
     const std::vector<std::uint16_t> labels = {1, 1};
     Atlas atlas(0.001);
     atlas.fill({rest, triangles, labels}, paint);
-    const int parts = atlas.parts()[0]; // of both: their longest side is the common one
+    const int parts = atlas.parts()[0]; // of both: they are as large as each other
     std::vector<std::uint32_t> first_side, second_side;
     for (std::size_t t = 0; t < 2; ++t) {
       std::uint32_t sample = atlas.first()[t];
@@ -134,11 +159,11 @@ TEST(Atlas, CountsTrianglesThatAreTooLargeForTheirResolution) {
   const Points rest = {Vec3(0, 0, 0), Vec3(0.02, 0, 0), Vec3(0, 0.02, 0), Vec3(0.001, 0.001, 0)};
   const std::vector<Triangle> triangles = {{0, 1, 2}, {0, 1, 3}, {0, 3, 2}};
   const std::vector<std::uint16_t> labels = {1, 1, 0};
-  Atlas atlas(0.0004);
+  Atlas atlas(0.0003);
   atlas.fill({rest, triangles, labels}, {&five()});
-  EXPECT_EQ(atlas.n_coarse(), 1u); // its longest side, 28.3 mm, would need 71 parts
+  EXPECT_EQ(atlas.n_coarse(), 1u); // half a square of 20 mm, which would need 67 parts
   EXPECT_EQ(atlas.parts()[0], Atlas::max_parts);
-  EXPECT_EQ(atlas.parts()[1], 50);
+  EXPECT_EQ(atlas.parts()[1], 48); // a sliver: 20 mm over the square root of 2
 }
 
 } // namespace

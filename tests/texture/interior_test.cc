@@ -101,10 +101,10 @@ TEST(Interior, SameBitsWithAnyNumberOfThreadsAndInAnyOrder) {
     ASSERT_TRUE((forward[i] == backward[points.size() - 1 - i]).all());
 }
 
-TEST(Interior, TurningAllOfItChangesNothing) {
+/// The largest change of a colour when a body and its exemplars are turned and shifted together.
+double change_by_turning(std::vector<Exemplar> exemplars) {
   const Mat3 turn = Eigen::AngleAxisd(0.8, Vec3(1, 2, -0.5).normalized()).toRotationMatrix();
   const Vec3 shift(0.3, -0.2, 0.1);
-  auto exemplars = axis_exemplars(onion, 3, 100);
   auto body = ball(3);
   const Interior before(exemplars, body, {});
   for (Exemplar& e : exemplars) {
@@ -118,7 +118,15 @@ TEST(Interior, TurningAllOfItChangesNothing) {
   for (const Vec3& p : points_inside(1000, 7))
     largest = std::max(largest, difference(before.colour(p), after.colour(turn * p + shift)));
   std::printf("largest change of a colour when all is turned and shifted: %.1e\n", largest);
-  EXPECT_LT(largest, 1e-5);
+  return largest;
+}
+
+TEST(Interior, TurningAllOfItChangesNothing) {
+  auto exemplars = axis_exemplars(onion, 3, 100);
+  EXPECT_LT(change_by_turning(exemplars), 1e-5);
+  for (Exemplar& e : exemplars)
+    e.fit = Fit::rigid;
+  EXPECT_LT(change_by_turning(exemplars), 1e-3); // found by descents, from round-off on
 }
 
 TEST(Interior, MirroredInputGivesMirroredOutput) {
