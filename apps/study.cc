@@ -4,9 +4,11 @@
 
 #include "base/parallel.h"
 #include "scene/recorder.h"
+#include "study/measure.h"
 #include "study/stability.h"
 #include "study/study.h"
 
+#include <algorithm>
 #include <cstdio>
 
 namespace kerf::apps {
@@ -38,6 +40,16 @@ void run_row(const study::Plan& plan, const SceneArguments& parsed, const output
   std::printf("row %d of %zu: %s: %s\n", parsed.row, plan.rows.size(), row.name.c_str(), row.outcome.c_str());
 }
 
+/// The exit code tells the worst of the rows; the table has all of them, with their reasons.
+void require_completed(const output::StudyTable& table) {
+  const auto has_failed = [](const output::StudyRow& row) { return row.outcome != "completed"; };
+  const auto first = std::find_if(table.rows.begin(), table.rows.end(), has_failed);
+  if (first != table.rows.end())
+    throw NumericalError(std::to_string(std::count_if(first, table.rows.end(), has_failed)) + " of " +
+                         std::to_string(table.rows.size()) + " rows have failed. The first, " + first->name + ", " +
+                         first->outcome);
+}
+
 } // namespace
 
 int study(const Arguments& arguments) {
@@ -60,6 +72,12 @@ int study(const Arguments& arguments) {
     return 0;
   }
   output::require_claimable(parsed.output, parsed.earlier);
+  if (parsed.earlier != output::Earlier::resume)
+    study::require_changes_read(plan);
+  if (!study::has_reference(plan))
+    std::printf(
+      "no errors will be told: the study has no reference. Write 'set Reference', a section Truth, or 'set Reference "
+      "row'\n");
   std::size_t n = 0;
   const auto say = [&](const output::StudyRow& row) {
     std::printf("row %zu of %zu: %s: %s\n", ++n, plan.rows.size(), row.name.c_str(), row.outcome.c_str());
@@ -70,6 +88,7 @@ int study(const Arguments& arguments) {
                                                      : study::run_study(plan, parsed.output, info, parsed.earlier, say);
   std::printf("\n%s\nvalue: %s\n\n%s\nresults in %s\n", table.title.c_str(), table.answer.c_str(),
               study::aligned(table).c_str(), parsed.output.c_str());
+  require_completed(table);
   return 0;
 }
 

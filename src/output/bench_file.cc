@@ -1,14 +1,9 @@
 #include "output/bench_file.h"
 
-#include "base/parameters.h"
-
 #include "output/checkpoint_file.h"
+#include "output/csv_file.h"
 #include "output/names.h"
 #include "output/run_info.h"
-#include "output/table_columns.h"
-
-#include <cmath>
-#include <fstream>
 
 namespace kerf::output {
 
@@ -32,10 +27,6 @@ void for_each_column(const Action& action) {
   columns.number("of_bandwidth", &Row::of_bandwidth, "1", "bytes needed, over what it moves; NaN: not counted");
 }
 
-std::string csv_value(const std::string& text) { return '"' + text + '"'; } // names without quotes
-std::string csv_value(const std::int64_t value) { return std::to_string(value); }
-std::string csv_value(const double value) { return std::isnan(value) ? "" : to_text(value); }
-
 } // namespace
 
 void write_bench_file(const std::filesystem::path& path, const BenchTable& table, const RunInfo& info) {
@@ -57,21 +48,9 @@ void write_bench_file(const std::filesystem::path& path, const BenchTable& table
 }
 
 void write_bench_csv(const std::filesystem::path& path, const BenchTable& table) {
-  std::string header;
-  std::vector<std::string> lines(table.rows.size());
-  for_each_column([&](const auto& column) {
-    header += (header.empty() ? "" : ",") + std::string(column.name);
-    for (std::size_t i = 0; i < lines.size(); ++i)
-      lines[i] += (lines[i].empty() ? "" : ",") + csv_value(table.rows[i].*column.field);
-  });
-  std::ofstream out(path);
-  out << header << '\n';
-  for (const std::string& line : lines)
-    out << line << '\n';
-  if (!out.flush())
-    throw DataError(Complaint{.file = path.string(),
-                              .rule = "cannot be written",
-                              .remedy = "Free disk space, or choose another folder with --output"});
+  CsvTable csv(table.rows.size());
+  for_each_column([&](const auto& column) { csv.add(column.name, column, table.rows); });
+  csv.write(path);
 }
 
 BenchTable read_bench_file(const std::filesystem::path& path) {

@@ -7,6 +7,7 @@
 #include "output/h5_array.h"
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -16,8 +17,8 @@ namespace kerf::output {
 /// A field of a row; T is std::string, double, or std::int64_t.
 template <class Row, class T>
 struct Column {
-  const char* name;
-  T Row::*field;
+  std::string name;
+  std::function<T&(Row&)> field;
   std::string unit, description;
 };
 
@@ -27,25 +28,29 @@ struct Columns {
   const Action& action;
 
   void text(const char* name, std::string Row::*field, const char* description) const {
-    action(Column<Row, std::string>{name, field, "1", description});
+    action(Column<Row, std::string>{name, std::mem_fn(field), "1", description});
   }
   void number(const char* name, double Row::*field, const std::string& unit, const char* description) const {
-    action(Column<Row, double>{name, field, unit, description});
+    number(name, std::mem_fn(field), unit, description);
+  }
+  void number(const std::string& name, std::function<double&(Row&)> field, const std::string& unit,
+              const std::string& description) const {
+    action(Column<Row, double>{name, std::move(field), unit, description});
   }
   void count(const char* name, std::int64_t Row::*field, const char* description) const {
-    action(Column<Row, std::int64_t>{name, field, "1", description});
+    action(Column<Row, std::int64_t>{name, std::mem_fn(field), "1", description});
   }
 };
 
-inline std::string column_path(const std::string& group, const char* column) { return group + "/" + column; }
+inline std::string column_path(const std::string& group, const std::string& column) { return group + "/" + column; }
 
 /// Below a group that is there.
 template <class Row, class T>
 void write_column(const h5::Object& root, const std::string& group, const Column<Row, T>& column,
                   const std::vector<Row>& rows) {
   std::vector<T> values;
-  for (const Row& row : rows)
-    values.push_back(row.*column.field);
+  for (Row row : rows)
+    values.push_back(column.field(row));
   const h5::Object dataset = [&] {
     if constexpr (std::is_same_v<T, std::string>)
       return h5::write_lines(root, column_path(group, column.name), values);
@@ -73,7 +78,7 @@ void read_column(const h5::Object& root, const std::string& group, const Column<
                      .rule = "must have an entry for each of the " + std::to_string(rows.size()) + " rows",
                      .remedy = "Read a file that Kerf wrote"});
   for (std::size_t i = 0; i < values.size(); ++i)
-    rows[i].*column.field = values[i];
+    column.field(rows[i]) = values[i];
 }
 
 } // namespace kerf::output

@@ -50,6 +50,22 @@ void add_core(Mesh& mesh, const double radius) {
   add_cell(mesh, {up, corner, on_circle(radius, 2), on_circle(radius, 1)}, Sides::blended);
 }
 
+/// A quarter, turned around the z axis.
+Mesh four_of(const Mesh& quarter) {
+  Mesh mesh;
+  for (int turn = 0; turn < 4; ++turn)
+    for (std::size_t c = 0; c < quarter.cells.size(); ++c) {
+      std::array<Vec3, 4> corners;
+      for (std::size_t i = 0; i < 4; ++i) {
+        const Vec3& X = quarter.vertices[quarter.cells[c][i]];
+        const std::array<Vec3, 4> turned = {X, Vec3(-X[1], X[0], 0), -X, Vec3(X[1], -X[0], 0)};
+        corners[i] = turned[static_cast<std::size_t>(turn)];
+      }
+      add_cell(mesh, corners, quarter.sides[c]);
+    }
+  return mesh;
+}
+
 } // namespace
 
 std::vector<double> graded(const double lower, const double upper, const int n, const double ratio) {
@@ -96,20 +112,10 @@ Mesh quarter_disc(const std::vector<double>& radii) {
   return mesh;
 }
 
-Mesh disc(const std::vector<double>& radii) {
-  const Mesh quarter = quarter_disc(radii);
-  Mesh mesh;
-  for (int turn = 0; turn < 4; ++turn)
-    for (std::size_t c = 0; c < quarter.cells.size(); ++c) {
-      std::array<Vec3, 4> corners;
-      for (std::size_t i = 0; i < 4; ++i) {
-        const Vec3& X = quarter.vertices[quarter.cells[c][i]];
-        const std::array<Vec3, 4> turned = {X, Vec3(-X[1], X[0], 0), -X, Vec3(X[1], -X[0], 0)};
-        corners[i] = turned[static_cast<std::size_t>(turn)];
-      }
-      add_cell(mesh, corners, quarter.sides[c]);
-    }
-  return mesh;
+Mesh disc(const std::vector<double>& radii) { return four_of(quarter_disc(radii)); }
+
+Mesh disc_in_square(const std::vector<double>& radii, const double width) {
+  return four_of(quarter_disc_in_square(radii, width));
 }
 
 Mesh quarter_disc_in_square(const std::vector<double>& radii, const double width) {

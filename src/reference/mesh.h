@@ -42,6 +42,8 @@ Mesh disc(const std::vector<double>& radii);
 Mesh quarter_disc(const std::vector<double>& radii);
 /// The same quarter, within the square of edge `width` [m], its corner in the origin.
 Mesh quarter_disc_in_square(const std::vector<double>& radii, double width);
+/// The disc within the square of edge 2 `width`, its centre in the origin.
+Mesh disc_in_square(const std::vector<double>& radii, double width);
 
 /// Hexahedra over each cell of a plane mesh, between the ascending coordinates z [m].
 Mesh extruded(const Mesh& plane, const std::vector<double>& z);

@@ -19,6 +19,12 @@ struct Support {
   Field displacement = nullptr; ///< [m]; none: 0
 };
 
+/// Holds the vertex that is nearest to a point in some directions: against what tractions leave free.
+struct Pin {
+  Vec3 at = Vec3::Zero(); ///< [m]
+  std::array<bool, 3> held = {true, true, true};
+};
+
 /// Pulls at a part of the skin.
 struct Traction {
   Region where;
@@ -31,6 +37,7 @@ struct Problem {
   double poissons_ratio = 0; ///< [1]
   double density = 1;        ///< [kg/m^3]
   std::vector<Support> supports;
+  std::vector<Pin> pins;
   std::vector<Traction> tractions;
   Field body_force = nullptr; ///< [N/m^3]; none: 0
 };

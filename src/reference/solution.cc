@@ -5,10 +5,8 @@
 
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/fe/fe_values.h>
-#include <deal.II/grid/grid_refinement.h>
 #include <deal.II/lac/arpack_solver.h>
 #include <deal.II/lac/sparse_direct.h>
-#include <deal.II/numerics/error_estimator.h>
 #include <deal.II/numerics/vector_tools_integrate_difference.h>
 #include <deal.II/numerics/vector_tools_point_value.h>
 
@@ -22,43 +20,11 @@ namespace {
 using Vector = dealii::Vector<double>;
 
 template <int dim>
-Vector solve_system(const Space<dim>& space) {
-  System<dim> system(space);
-  dealii::SparseDirectUMFPACK factors;
-  Vector u(space.dofs.n_dofs());
-  try {
-    factors.initialize(system.K);
-    factors.vmult(u, system.f);
-  } catch (const dealii::ExceptionBase& error) {
-    throw NumericalError("the reference problem cannot be solved: its body is free to move, or it is too large");
-  }
-  Vector left(system.f.size());
-  constexpr double solved = 1e-6; // what a regular matrix leaves is far below
-  if (!(system.K.residual(left, u, system.f) <= solved * system.f.l2_norm()))
-    throw NumericalError("the reference problem cannot be solved: its body is free to move");
-  space.constraints.distribute(u);
-  return u;
-}
-
-template <int dim>
-dealii::Vector<float> estimate(const Space<dim>& space, const Vector& u) {
-  dealii::Vector<float> errors(space.triangulation.n_active_cells());
-  dealii::KellyErrorEstimator<dim>::estimate(space.mapping, space.dofs, space.face_quadrature(), {}, u, errors);
-  return errors;
-}
-
-template <int dim>
 class Found : public Solution {
  public:
   Found(const Problem& problem, const Discretisation& discretisation) : space_(problem, discretisation) {
-    u_ = solve_system(space_);
-    for (int i = 0; i < discretisation.n_adaptations; ++i) {
-      dealii::GridRefinement::refine_and_coarsen_fixed_number(space_.triangulation, estimate(space_, u_),
-                                                              discretisation.refined_part, 0);
-      space_.triangulation.execute_coarsening_and_refinement();
-      space_.distribute();
-      u_ = solve_system(space_);
-    }
+    adapt(space_, discretisation);
+    u_ = equilibrium(space_);
   }
 
   Vec3 displacement(const Vec3& X) const override {

@@ -10,7 +10,9 @@
 #include <deal.II/numerics/vector_tools_boundary.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
 namespace kerf::reference {
 
@@ -119,6 +121,21 @@ void require_met(const std::vector<Claims>& claims, const Problem& problem) {
     throw ParameterError("a support or traction of the reference problem meets no face of its mesh");
 }
 
+/// The unknowns of the vertex that is nearest to X.
+template <int dim>
+std::array<dealii::types::global_dof_index, dim> unknowns_at(const dealii::DoFHandler<dim>& dofs, const Vec3& X) {
+  std::array<dealii::types::global_dof_index, dim> unknowns{};
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const auto& cell : dofs.active_cell_iterators())
+    for (const auto v : cell->vertex_indices())
+      if (const double distance = (to_vec<dim>(cell->vertex(v)) - X).norm(); distance < nearest) {
+        nearest = distance;
+        for (int d = 0; d < dim; ++d)
+          unknowns[d] = cell->vertex_dof_index(v, d);
+      }
+  return unknowns;
+}
+
 const Problem& checked(const Problem& problem, const Discretisation& discretisation) {
   if (discretisation.degree < 1 || discretisation.degree > 4)
     throw ParameterError("reference elements have a degree from 1 to 4, not " + std::to_string(discretisation.degree));
@@ -157,6 +174,12 @@ void Space<dim>::distribute() {
       if (claims[id].supports >> i & 1)
         dealii::VectorTools::interpolate_boundary_values(mapping, dofs, static_cast<dealii::types::boundary_id>(id),
                                                          displacement, constraints, mask);
+  }
+  for (const Pin& pin : problem.pins) {
+    const auto unknowns = unknowns_at(dofs, pin.at);
+    for (int d = 0; d < dim; ++d)
+      if (pin.held[d] && !constraints.is_constrained(unknowns[d]))
+        constraints.add_line(unknowns[d]);
   }
   constraints.close();
 }

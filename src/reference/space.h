@@ -78,6 +78,16 @@ struct System {
 template <int dim>
 void assemble_mass(const Space<dim>& space, const System<dim>& system, dealii::SparseMatrix<double>& M);
 
+/// Displacements [m] in equilibrium, of all unknowns. Throws NumericalError where the body is free to move.
+template <int dim>
+dealii::Vector<double> equilibrium(const Space<dim>& space);
+/// The estimate of the error of each cell.
+template <int dim>
+dealii::Vector<float> estimate(const Space<dim>& space, const dealii::Vector<double>& u);
+/// Refines where the error in equilibrium is largest, as often as the discretisation says.
+template <int dim>
+void adapt(Space<dim>& space, const Discretisation& discretisation);
+
 extern template struct Space<2>;
 extern template struct Space<3>;
 extern template struct System<2>;

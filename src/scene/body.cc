@@ -64,6 +64,10 @@ void make_loads(Body& body) {
     maker.make(body, body.loads.acting);
     body.first_load.push_back(body.loads.acting.size());
   }
+  find_probes(body);
+}
+
+void find_probes(Body& body) {
   for (Probe& probe : body.probes)
     probe.copy = grid::copy_at(body.solid, probe.rest);
 }

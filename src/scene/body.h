@@ -109,6 +109,8 @@ void start(Body& body, const geometry::TriangleMesh& mesh, const PhysicsMaker& m
 
 /// Makes supports and loads of what the body is now; those of forceps are made by hold().
 void make_loads(Body& body);
+/// Finds the copy whose material each probe lies in; not valid for one outside.
+void find_probes(Body& body);
 
 /// All that steps and cuts have made of a body; into one that has just been composed.
 void archive(Archive& a, Body& body);

@@ -3,13 +3,12 @@
 #include "scene/text_suggest.h"
 
 #include <algorithm>
-#include <cctype>
 
 namespace kerf::scene {
 namespace {
 
 std::string heading_of(const SectionKind& kind) {
-  return kind.kind + (kind.occurrence == Occurrence::named ? " NAME" : "");
+  return kind.kind + (kind.occurrence == Occurrence::once ? "" : " NAME");
 }
 
 /// What stands in `heading` after as many words as `kind` has; "NAME" when nothing does.
@@ -95,11 +94,11 @@ class Checker {
       throw error(section.origin, path, "", "the section must have a name",
                   "Write for example 'subsection " + match.kind->kind + " first'");
     // Names become groups of an HDF5 file and parts of file names.
-    const auto allowed = [](const char c) {
-      return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '-';
-    };
-    if (!std::all_of(match.name.begin(), match.name.end(), allowed))
-      throw error(section.origin, path, match.name, "a name must be letters, digits, '_' and '-'",
+    const bool is_title = match.kind->occurrence == Occurrence::titled;
+    if (match.name.find_first_not_of(is_title ? title_characters() : name_characters()) != std::string::npos)
+      throw error(section.origin, path, match.name,
+                  is_title ? "a name must be letters, digits, '_', '-', '.' and blanks"
+                           : "a name must be letters, digits, '_' and '-'",
                   "Write for example 'subsection " + match.kind->kind + " first'");
     constexpr std::size_t most = 100; // of the 255 bytes of a file's name
     if (match.name.size() > most)
@@ -144,6 +143,16 @@ class Checker {
 
 } // namespace
 
+const std::string& name_characters() {
+  static const std::string all = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-";
+  return all;
+}
+
+const std::string& title_characters() {
+  static const std::string all = name_characters() + ". ";
+  return all;
+}
+
 std::vector<Parameter> keys(const SectionKind& kind) {
   Parameters parameters;
   if (kind.describe)
@@ -157,7 +166,7 @@ Heading match_heading(const std::string& heading, const std::vector<SectionKind>
     if (heading == kind.kind)
       return {&kind, ""};
     // "Body force left" is a 'Body force', not a 'Body' called "force left".
-    if (kind.occurrence == Occurrence::named && heading.starts_with(kind.kind + " ") &&
+    if (kind.occurrence != Occurrence::once && heading.starts_with(kind.kind + " ") &&
         (!best.kind || kind.kind.size() > best.kind->kind.size()))
       best = {&kind, heading.substr(kind.kind.size() + 1)};
   }

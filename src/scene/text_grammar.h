@@ -11,8 +11,9 @@
 
 namespace kerf::scene {
 
-/// `subsection Time`, or as often as one likes, each with a name of its own: `subsection Body liver`.
-enum class Occurrence { once, named };
+/// `subsection Time`, or as often as one likes, each with a name of its own: `subsection Body liver`. Titled: the name may hold
+/// blanks and dots.
+enum class Occurrence { once, named, titled };
 
 /// A node of the grammar.
 struct SectionKind {
@@ -28,6 +29,10 @@ template <class... Fields>
 std::function<void(Parameters&)> keys_of() {
   return [](Parameters& p) { (Fields().describe(p), ...); };
 }
+
+/// What names, and names of titled sections, may be made of.
+const std::string& name_characters();
+const std::string& title_characters();
 
 /// The keys of a kind, to check and to print, not to assign.
 std::vector<Parameter> keys(const SectionKind& kind);

@@ -36,7 +36,7 @@ void print_kinds(std::ostream& out, const std::vector<SectionKind>& kinds, const
   for (const auto& kind : kinds) {
     if (&kind != &kinds.front())
       out << "\n";
-    const bool named = kind.occurrence == Occurrence::named;
+    const bool named = kind.occurrence != Occurrence::once;
     print_comment(out, kind.text, indent);
     if (named)
       print_comment(out, "As often as needed, each with a name of its own in place of NAME.", indent);

@@ -2,8 +2,10 @@
 
 #include "scene/composing.h"
 #include "scene/grammar.h"
+#include "study/ranges.h"
 
 #include <algorithm>
+#include <set>
 
 namespace kerf::study {
 
@@ -11,20 +13,8 @@ using scene::Section;
 
 namespace {
 
-std::vector<std::string> split(const std::string& list) {
-  std::vector<std::string> parts;
-  for (std::size_t begin = 0; begin <= list.size();) {
-    const std::size_t end = std::min(list.find('|', begin), list.size());
-    const std::string part = list.substr(begin, end - begin);
-    const auto first = part.find_first_not_of(' ');
-    parts.push_back(first == std::string::npos ? "" : part.substr(first, part.find_last_not_of(' ') - first + 1));
-    begin = end + 1;
-  }
-  return parts;
-}
-
 Choice read_choice(const Section& section) {
-  Choice choice{section.name(), &section, {}, read_reference(section)};
+  Choice choice{section.name(), &section, "Set", {}, read_reference(section)};
   const std::string set = section.read<SettingParameters>().set;
   if (!set.empty())
     choice.sets = split(set);
@@ -42,7 +32,26 @@ Axis read_axis(const std::string& name, const std::vector<const Section*>& secti
   return axis;
 }
 
+void require_different_names(const Axis& axis, const Section& section) {
+  std::set<std::string> names;
+  for (const Choice& choice : axis.choices)
+    if (!names.insert(choice.name).second)
+      throw section.complaint("there are two cases '" + choice.name + "'", "Leave out one of them");
+}
+
 } // namespace
+
+std::vector<std::string> split(const std::string& list) {
+  std::vector<std::string> parts;
+  for (std::size_t begin = 0; begin <= list.size();) {
+    const std::size_t end = std::min(list.find('|', begin), list.size());
+    const std::string part = list.substr(begin, end - begin);
+    const auto first = part.find_first_not_of(' ');
+    parts.push_back(first == std::string::npos ? "" : part.substr(first, part.find_last_not_of(' ') - first + 1));
+    begin = end + 1;
+  }
+  return parts;
+}
 
 Reference read_reference(const Section& section) {
   const auto parameters = section.read<ReferenceParameters>();
@@ -59,9 +68,12 @@ std::vector<Axis> read_axes(const Section& root) {
   root.require("Variant");
   std::vector<Axis> axes = {read_axis("", root.all("Variant"))};
   for (const Section* change : root.all("Change")) {
-    change->mark_read();
-    change->require("Case");
     axes.push_back(read_axis(change->name(), change->all("Case")));
+    const std::vector<Choice> values = read_values(*change);
+    axes.back().choices.insert(axes.back().choices.end(), values.begin(), values.end());
+    if (axes.back().choices.empty())
+      change->require("Case");
+    require_different_names(axes.back(), *change);
   }
   return axes;
 }
@@ -90,7 +102,8 @@ scene::SceneText changed_scene(const std::string& path, const std::vector<const 
     for (const Choice* choice : choices)
       for (const std::string& set : choice->sets)
         if (complaint.file == "--set \"" + set + "\"")
-          throw choice->section->complaint("Set", scene::line("in '", set, "', ", complaint.path, ": ", complaint.rule),
+          throw choice->section->complaint(choice->key,
+                                           scene::line("in '", set, "', ", complaint.path, ": ", complaint.rule),
                                            scene::clause(complaint.remedy));
     throw;
   }

@@ -1,6 +1,7 @@
 #pragma once
 
-/// What the rows of a study choose from: variants, and cases of changes, each with its changes of the scene.
+/// What the rows of a study choose from: variants, and cases of changes, each with its changes of the scene. The values of a
+/// change's key are cases too (study/ranges.h).
 
 #include "scene/parameter_file.h"
 #include "study/plan.h"
@@ -11,6 +12,7 @@ namespace kerf::study {
 struct Choice {
   std::string name;
   const scene::Section* section = nullptr;
+  std::string key; ///< of the section, that says the changes
   std::vector<std::string> sets;
   Reference reference = {};
 };
@@ -22,6 +24,9 @@ struct Axis {
 };
 
 Reference read_reference(const scene::Section& section);
+
+/// What stands between the '|' of a list, without blanks around it.
+std::vector<std::string> split(const std::string& list);
 
 /// The variants, then the changes in their order. Throws ParameterError for what is not there or is empty.
 std::vector<Axis> read_axes(const scene::Section& root);

@@ -13,7 +13,7 @@
 namespace kerf::study {
 
 /// The table of a study while its rows come in, in whatever order. FOLDER/study.h5 holds those so far at any time,
-/// FOLDER/rows/NAME/run.h5 the series of each, and row.h5 beside it a row that was run alone.
+/// study.csv the same as text; FOLDER/rows/NAME/run.h5 the series of each, and row.h5 beside it a row that was run alone.
 class StudyRows {
  public:
   /// Takes the folder. To resume, rows that study.h5 or a row.h5 holds are taken as they are. Throws as output::ResultsFolder,
@@ -26,13 +26,13 @@ class StudyRows {
   void put(std::size_t k, output::StudyRow row);
   /// What a process of its own has left in row.h5.
   output::StudyRow read_row(std::size_t k) const;
-  void interrupt() { write(output::Outcome::interrupted); }
+  void interrupt() { write(table(output::Outcome::interrupted)); }
   /// The whole table, written as completed. Throws NumericalError when all rows have failed.
   output::StudyTable finish();
 
  private:
   output::StudyTable table(output::Outcome outcome) const;
-  void write(output::Outcome outcome) const;
+  void write(const output::StudyTable& table) const;
 
   const Plan& plan_;
   const std::filesystem::path folder_;
@@ -54,6 +54,10 @@ output::StudyTable run_study(const Plan& plan, const std::filesystem::path& fold
 /// taken as it is. Several may run at a time, of one study into one folder.
 output::StudyRow run_row(const Plan& plan, std::size_t k, const std::filesystem::path& folder,
                          const output::RunInfo& info, output::Earlier earlier);
+
+/// Fills what is not known of the references of rows from the row that the study names, or 'finest': of each family the completed
+/// one with the smallest h. Then tells errors anew. An empty name: nothing.
+void tell_references(const std::string& name, std::vector<output::StudyRow>& rows);
 
 /// Fills the orders: log |e_1 / e_2| / log(h_1 / h_2) in each row of a family but its first, for the rows of the family
 /// that have errors, in the order in which they stand; unknown (NaN) where h is the same.

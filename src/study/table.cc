@@ -1,5 +1,6 @@
 #include "study/study.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -24,6 +25,30 @@ struct TextColumn {
   std::function<std::string(const StudyRow&)> text;
   bool to_the_left = false; ///< words begin below each other, numbers end there
 };
+
+/// Errors of norms, and of displacements at points, in the order of the table's file.
+std::vector<TextColumn> error_columns(const output::StudyTable& table) {
+  std::vector<TextColumn> columns;
+  if (!table.points.empty()) {
+    columns.push_back({"L2", "%", [](const StudyRow& r) { return number(100 * r.error_l2, "%.2f"); }});
+    columns.push_back({"max", "%", [](const StudyRow& r) { return number(100 * r.error_max, "%.2f"); }});
+  }
+  for (std::size_t k = 0; k < table.norms.size(); ++k)
+    columns.push_back(
+      {table.norms[k].name, "%", [k](const StudyRow& r) { return number(100 * r.norms[k].error, "%+.2f"); }});
+  return columns;
+}
+
+/// How far the times of repetitions lie apart, where there are any.
+std::vector<TextColumn> spread_columns(const output::StudyTable& table) {
+  const auto is_repeated = [](const StudyRow& row) { return row.n_repetitions > 1; };
+  if (std::none_of(table.rows.begin(), table.rows.end(), is_repeated))
+    return {};
+  return {{"runs", "1", [](const StudyRow& r) { return std::to_string(r.n_repetitions); }},
+          {"set-up +-", "s", [](const StudyRow& r) { return number(r.setup_spread / 2, "%.3f"); }},
+          {"stepping +-", "s", [](const StudyRow& r) { return number(r.stepping_spread / 2, "%.2f"); }},
+          {"CPU +-", "s", [](const StudyRow& r) { return number(r.cpu_spread / 2, "%.2f"); }}};
+}
 
 std::vector<TextColumn> columns(const std::string& unit) {
   const auto count = [](const std::int64_t n) { return std::to_string(n); };
@@ -50,10 +75,21 @@ std::vector<TextColumn> columns(const std::string& unit) {
   };
 }
 
+std::vector<TextColumn> all_columns(const output::StudyTable& table) {
+  std::vector<TextColumn> all = columns(table.unit);
+  const auto insert_behind = [&](const std::string& name, const std::vector<TextColumn>& more) {
+    const auto at = std::find_if(all.begin(), all.end(), [&](const TextColumn& c) { return c.name == name; });
+    all.insert(at + 1, more.begin(), more.end());
+  };
+  insert_behind("order", error_columns(table));
+  insert_behind("CPU", spread_columns(table));
+  return all;
+}
+
 } // namespace
 
 std::string aligned(const output::StudyTable& table) {
-  const std::vector<TextColumn> all = columns(table.unit);
+  const std::vector<TextColumn> all = all_columns(table);
   std::vector<std::vector<std::string>> lines(2 + table.rows.size());
   std::vector<std::size_t> width;
   for (const TextColumn& column : all) {

@@ -1,30 +1,29 @@
 #include "study/truth.h"
 
 #include "base/sha256.h"
+#include "reference/motion.h"
 #include "reference/solution.h"
-
-#include <Eigen/Geometry>
+#include "study/measure.h"
+#include "study/truth_problem.h"
 
 #include <unistd.h>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
 #include <span>
+#include <sstream>
 
 namespace kerf::study {
 
 namespace {
 
-using scene::keys_of;
-using scene::Occurrence;
 using scene::Section;
 
 /// Changes where the same section would give another number, so that old files of the cache do not count.
-constexpr char version[] = "1\n";
+constexpr char version[] = "2\n";
 
 std::string text_of(const char* format, const double value) {
   std::array<char, 64> text{};
@@ -32,113 +31,137 @@ std::string text_of(const char* format, const double value) {
   return text.data();
 }
 
-/// The unit square onto the quadrilateral.
-Vec3 bilinear(const Points& corner, const Vec3& s) {
-  const Vec3 low = (1 - s[0]) * corner[0] + s[0] * corner[1], high = (1 - s[0]) * corner[3] + s[0] * corner[2];
-  return Vec3((1 - s[1]) * low + s[1] * high) + Vec3(0, 0, s[2]);
-}
-
-bool is_convex(const Points& corner) {
-  for (std::size_t i = 0; i < 4; ++i) {
-    const Vec3 a = corner[(i + 1) % 4] - corner[i], b = corner[(i + 2) % 4] - corner[(i + 1) % 4];
-    if (!(a.cross(b)[2] > 0))
-      return false;
-  }
-  return true;
-}
-
-void require_shape(const TruthParameters& p, const Section& section) {
-  if (p.corners.size() != 4 || !is_convex(p.corners))
-    throw section.complaint("Corners [m]", "must be the four corners of a convex quadrilateral, counter-clockwise",
-                            "Write four points: 0, 0, 0; 1, 0, 0; 1, 1, 0; 0, 1, 0");
-  if (!p.heights.empty() && (p.heights.size() != 2 || !(p.heights[0] < p.heights[1])))
-    throw section.complaint("Heights [m]", "must be two, the lower one first, or none",
-                            "Write 0, 1; none: plane strain");
-  const std::size_t n = p.heights.empty() ? 2 : 3;
-  if (p.cells.size() < n || std::any_of(p.cells.begin(), p.cells.end(), [](double c) { return c != std::floor(c); }))
-    throw section.complaint("Cells [1]", "must be whole numbers, one a direction", "Write 4, 4 or 4, 4, 2");
-}
-
-reference::Mesh mesh_of(const TruthParameters& p) {
-  const auto n = [&](const std::size_t i) { return static_cast<int>(p.cells[i]); };
-  reference::Mesh mesh = reference::rectangles(reference::equal(0, 1, n(0)), reference::equal(0, 1, n(1)));
-  if (!p.heights.empty())
-    mesh = reference::extruded(mesh, reference::equal(p.heights[0], p.heights[1], n(2)));
-  reference::map_vertices(mesh, [&](const Vec3& s) { return bilinear(p.corners, s); });
-  return mesh;
-}
-
-reference::Region within(const Box& box) {
-  return [box](const Vec3& X) { return box.contains(X); };
-}
-
-void crack(reference::Mesh& mesh, const Section& section) {
-  const auto p = section.read<TruthCrackParameters>();
-  if (!(p.normal.norm() > 0))
-    throw section.complaint("Normal [1]", "must not be zero", "Write a direction");
-  if (reference::split(mesh, p.point, p.normal, within(p.box)) == 0)
-    throw section.complaint("no faces of the mesh lie in it",
-                            "Choose cells whose faces do, or move it to where they are");
-}
-
-/// Throws where the part meets no face, at its section.
-void require_met(const reference::Mesh& mesh, const Box& box, const Section& section) {
-  const auto is_inside = [&](const Vec3& X) { return box.contains(X); };
-  if (std::none_of(mesh.vertices.begin(), mesh.vertices.end(), is_inside))
-    throw section.complaint("no vertex of the mesh lies in its box",
-                            "Give it the bounds of a side of the body, with room");
-}
-
-reference::Problem problem_of(const TruthParameters& p, const Section& section) {
+/// A section, what is asked beside it, and how finely it is solved.
+struct Task {
+  TruthParameters body;
+  TruthAnswerParameters answer;
   reference::Problem problem;
-  problem.mesh = mesh_of(p);
-  for (const Section* one : section.all("Crack"))
-    crack(problem.mesh, *one);
-  problem.youngs_modulus = p.youngs_modulus;
-  problem.poissons_ratio = p.poissons_ratio;
-  for (const Section* one : section.all("Held")) {
-    const auto held = one->read<TruthHeldParameters>();
-    require_met(problem.mesh, held.box, *one);
-    const auto has = [&](const char axis) { return held.axes.find(axis) != std::string::npos; };
-    problem.supports.push_back({within(held.box), {has('x'), has('y'), has('z')}});
-  }
-  for (const Section* one : section.all("Pulled")) {
-    const auto pulled = one->read<TruthPulledParameters>();
-    require_met(problem.mesh, pulled.box, *one);
-    problem.tractions.push_back({within(pulled.box), [t = pulled.traction](const Vec3&, const Vec3&) { return t; }});
-  }
-  if (p.force.norm() > 0)
-    problem.body_force = [f = p.force](const Vec3&) { return f; };
-  return problem;
+  Points points;             ///< Point, Minus point, then those of the study, in the section's frame [m]
+  bool has_minus, frequency; ///< whether they are asked for
+};
+
+struct Fineness {
+  int degree;
+  double time_step; ///< [s]
+};
+
+/// Which axis of the scene each axis of the section stands for.
+std::array<int, 3> scene_axes(const TruthAnswerParameters& p) {
+  return {p.axes[0] - 'x', p.axes[1] - 'x', p.axes[2] - 'x'};
 }
 
-double asked(const reference::Solution& solution, const TruthParameters& p, const Section& section) {
-  const int axis = p.axis[0] - 'x';
-  const double value = solution.displacement(p.point)[axis];
-  return section.writes("Minus point [m]") ? value - solution.displacement(p.minus_point)[axis] : value;
+Vec3 from_scene(const TruthAnswerParameters& p, const Vec3& X) {
+  const auto axis = scene_axes(p);
+  return {X[axis[0]], X[axis[1]], X[axis[2]]};
 }
 
-Reference solve(const reference::Problem& problem, const TruthParameters& p, const Section& section) {
-  const auto with = [&](const int degree) { return reference::solve(problem, {degree, 0, p.n_adaptations, 0.1}); };
-  const auto best = with(p.degree);
-  const double value = asked(*best, p, section), other = asked(*with(p.degree - 1), p, section);
-  const double difference = std::abs(other / value - 1);
-  const std::string told = "degree " + std::to_string(p.degree - 1) + " differs by " + text_of("%.1e", difference);
-  if (!(difference <= p.tolerance))
+Vec3 to_scene(const TruthAnswerParameters& p, const Vec3& u) {
+  const auto axis = scene_axes(p);
+  Vec3 turned;
+  for (int d = 0; d < 3; ++d)
+    turned[axis[d]] = u[d];
+  return turned;
+}
+
+double asked(const Task& task, const Points& u) {
+  const int axis = task.answer.axis[0] - 'x';
+  return task.has_minus ? u[0][axis] - u[1][axis] : u[0][axis];
+}
+
+/// What is known of a problem's points: how the answer moves, and where they are at the end [m].
+struct Answer {
+  double value = 0;
+  Points displacements;
+};
+
+Answer end_of(const Task& task, const std::vector<Points>& u) {
+  std::vector<double> series;
+  for (const Points& at_time : u)
+    series.push_back(asked(task, at_time));
+  AnswerParameters how;
+  how.take = task.answer.take;
+  return {take(series, how, task.body.time_step), u.back()};
+}
+
+std::unique_ptr<reference::Solution> in_equilibrium(const Task& task, const int degree) {
+  return reference::solve(task.problem, {degree, 0, task.answer.n_adaptations, 0.1});
+}
+
+Answer answer_of(const Task& task, const reference::Solution& solution) {
+  Points u;
+  for (const Vec3& X : task.points)
+    u.push_back(solution.displacement(X));
+  return end_of(task, {u});
+}
+
+Answer in_motion(const Task& task, const Fineness& fineness) {
+  const int n_steps = static_cast<int>(std::lround(task.body.end_time / fineness.time_step));
+  return end_of(task, reference::motion(task.problem, {fineness.degree, 0, task.answer.n_adaptations, 0.1},
+                                        {task.body.end_time / n_steps, n_steps, task.body.mass_damping}, task.points));
+}
+
+void require_agreement(const double difference, const Task& task, const std::string& told) {
+  if (!(difference <= task.answer.tolerance))
     throw NumericalError("the section Truth has no answer within its tolerance: " + told +
-                         ". Use more adaptations or cells");
-  return {value, "deal.II, degree " + std::to_string(p.degree) + ", " + std::to_string(best->n_unknowns()) +
-                   " unknowns; " + told};
+                         ". Use more adaptations or cells, or a smaller time step");
+}
+
+Reference told(const Task& task, const Answer& best, const double other, const std::string& how) {
+  const double difference = std::abs(other / best.value - 1);
+  const std::string differs = "degree " + std::to_string(task.answer.degree - 1) +
+                              (task.body.end_time > 0 ? " and twice the time step differ by " : " differs by ") +
+                              text_of("%.1e", difference);
+  require_agreement(difference, task, differs);
+  Reference found;
+  found.value = best.value;
+  found.source = "deal.II, degree " + std::to_string(task.answer.degree) + ", " + how + "; " + differs;
+  for (std::size_t i = task.has_minus ? 2 : 1; i < task.points.size(); ++i)
+    found.displacements.push_back(to_scene(task.answer, best.displacements[i]));
+  return found;
+}
+
+Reference solve(const Task& task) {
+  const int degree = task.answer.degree;
+  Reference found;
+  if (task.body.end_time > 0) {
+    const double dt = task.body.time_step;
+    found = told(task, in_motion(task, {degree, dt}), in_motion(task, {degree - 1, 2 * dt}).value,
+                 "time step " + text_of("%.3g", dt) + " s");
+  } else {
+    const auto best = in_equilibrium(task, degree);
+    found = told(task, answer_of(task, *best), answer_of(task, *in_equilibrium(task, degree - 1)).value,
+                 std::to_string(best->n_unknowns()) + " unknowns");
+    found.energy = best->energy() * task.answer.energy_factor;
+  }
+  if (task.frequency)
+    found.frequency = reference::lowest_frequencies(task.problem, {degree, 1, 0}, 1).front();
+  return found;
+}
+
+/// Numbers in a line; what is not known is 0.
+std::string text_of(const Reference& found) {
+  const auto number = [](const double value) { return text_of("%.17g ", std::isfinite(value) ? value : 0.0); };
+  std::string text = number(found.value) + number(found.energy) + number(found.frequency);
+  for (const Vec3& u : found.displacements)
+    text += number(u[0]) + number(u[1]) + number(u[2]);
+  return text;
 }
 
 std::optional<Reference> kept(const std::filesystem::path& file) {
   std::ifstream in(file);
+  std::string numbers, end;
   Reference found;
-  std::string end;
-  if (in >> found.value && in.ignore() && std::getline(in, found.source) && std::getline(in, end) && end == "end" &&
-      found.value != 0)
-    return found;
-  return std::nullopt;
+  if (!std::getline(in, numbers) || !std::getline(in, found.source) || !std::getline(in, end) || end != "end")
+    return std::nullopt;
+  std::istringstream values(numbers);
+  if (!(values >> found.value >> found.energy >> found.frequency) || found.value == 0)
+    return std::nullopt;
+  for (double* other : {&found.energy, &found.frequency})
+    if (*other == 0)
+      *other = std::numeric_limits<double>::quiet_NaN();
+  for (Vec3 u; values >> u[0] >> u[1] >> u[2];)
+    found.displacements.push_back(u);
+  return found;
 }
 
 /// Beside its name first, so that what is there is whole; what cannot be written is not kept.
@@ -146,73 +169,38 @@ void keep(const std::filesystem::path& file, const Reference& found) {
   std::error_code error;
   std::filesystem::create_directories(file.parent_path(), error);
   const std::filesystem::path beside = file.string() + "." + std::to_string(getpid());
-  std::ofstream(beside) << text_of("%.17g", found.value) << "\n" << found.source << "\nend\n";
+  std::ofstream(beside) << text_of(found) << "\n" << found.source << "\nend\n";
   std::filesystem::rename(beside, file, error);
+}
+
+Task task_of(const Section& section, const TruthAsked& asked) {
+  Task task{section.read<TruthParameters>(), section.read<TruthAnswerParameters>(), {}, {}, false, asked.frequency};
+  task.problem = problem_of(task.body, section);
+  task.has_minus = section.writes("Minus point [m]");
+  task.points = {task.answer.point};
+  if (task.has_minus)
+    task.points.push_back(task.answer.minus_point);
+  for (const Vec3& X : asked.points)
+    task.points.push_back(from_scene(task.answer, X));
+  return task;
+}
+
+std::filesystem::path name_of(const Section& section, const Task& task) {
+  std::string text =
+    version + scene::effective_text(section) + (task.has_minus ? "-" : "") + (task.frequency ? "f" : "");
+  for (const Vec3& X : task.points)
+    text += text_of("%.17g,", X[0]) + text_of("%.17g,", X[1]) + text_of("%.17g;", X[2]);
+  return sha256(std::as_bytes(std::span(text))) + ".txt";
 }
 
 } // namespace
 
-void TruthParameters::describe(Parameters& p) {
-  p.points("Corners [m]", corners, "The body in the plane z = 0: four corners, counter-clockwise.");
-  p.require_last();
-  p.numbers("Heights [m]", heights, any_number, "It reaches from the first to the second. None: plane strain.");
-  p.numbers("Cells [1]", cells, positive, "Cells along the first side, the second, and the height, before adaptation.");
-  p.number("Young's modulus [Pa]", youngs_modulus, positive, "Of the material.");
-  p.require_last();
-  p.number("Poisson's ratio [1]", poissons_ratio, {.min = -1, .max = 0.5, .min_excluded = true, .max_excluded = true},
-           "Of the material.");
-  p.vector("Force [N/m^3]", force, "On every volume, as gravity times the density is.");
-  p.vector("Point [m]", point, "Its displacement in equilibrium, at small strain, is the reference.");
-  p.require_last();
-  p.vector("Minus point [m]", minus_point, "Written: the displacement of this point is subtracted.");
-  p.choice("Axis", axis, {"x", "y", "z"}, "The component that is asked for.");
-  p.integer("Degree [1]", degree, {.min = 2, .max = 4}, "Of the elements.");
-  p.integer("Adaptations [1]", n_adaptations, {.min = 0, .max = 40},
-            "How often a tenth of the cells, with the largest estimate of the error, are refined.");
-  p.number("Tolerance [1]", tolerance, positive, "By how much the same with a degree less may differ.");
-}
-
-void TruthPartParameters::describe(Parameters& p) {
-  p.vector("Lower [m]", box.lower, "Of the box that it lies in.");
-  p.vector("Upper [m]", box.upper, "Of the box that it lies in.");
-}
-
-void TruthHeldParameters::describe(Parameters& p) {
-  TruthPartParameters::describe(p);
-  p.choice("Hold", axes, {"xyz", "xy", "xz", "yz", "x", "y", "z"}, "The directions that are held.");
-}
-
-void TruthPulledParameters::describe(Parameters& p) {
-  TruthPartParameters::describe(p);
-  p.vector("Traction [N/m^2]", traction, "Force per area; it keeps its direction.");
-  p.require_last();
-}
-
-void TruthCrackParameters::describe(Parameters& p) {
-  TruthPartParameters::describe(p);
-  p.vector("Point [m]", point, "Of the plane that it lies in, which faces of the cells must lie in too.");
-  p.require_last();
-  p.vector("Normal [1]", normal, "Of that plane.");
-}
-
 scene::SectionKind truth_grammar() {
-  return {
-    "Truth",
-    Occurrence::once,
-    "A reference for all rows that have no other, found by deal.II on a mesh that is fitted to the body: elements of "
-    "high degree, refined where their error is. It is a displacement at small strain.",
-    keys_of<TruthParameters>(),
-    {{"Held",
-      Occurrence::named,
-      "Sides of the body whose middles (of each cell's face) lie in a box.",
-      keys_of<TruthHeldParameters>(),
-      {}},
-     {"Pulled", Occurrence::named, "Sides of the body under a traction.", keys_of<TruthPulledParameters>(), {}},
-     {"Crack",
-      Occurrence::named,
-      "A plane cut between cells, whose front is where its box ends.",
-      keys_of<TruthCrackParameters>(),
-      {}}}};
+  return {"Truth", scene::Occurrence::once,
+          "A reference, found by deal.II on a mesh that is fitted to the body: elements of high degree, refined where "
+          "their error "
+          "is. It is a displacement at small strain. That of the study counts for all rows that have no other.",
+          scene::keys_of<TruthParameters, TruthAnswerParameters>(), truth_parts()};
 }
 
 std::filesystem::path truth_cache() {
@@ -223,21 +211,20 @@ std::filesystem::path truth_cache() {
   return {};
 }
 
-Reference find_truth(const Section& section, const std::filesystem::path& cache) {
-  const auto p = section.read<TruthParameters>();
-  require_shape(p, section);
-  const std::string text = version + scene::effective_text(section);
-  const std::filesystem::path file = cache / (sha256(std::as_bytes(std::span(text))) + ".txt");
-  const reference::Problem problem = problem_of(p, section); // whatever is in the cache, so that what is wrong is told
+Reference find_truth(const Section& section, const TruthAsked& asked, const std::filesystem::path& cache) {
+  const Task task = task_of(section, asked); // whatever is in the cache, so that what is wrong is told
+  const std::filesystem::path file = cache / name_of(section, task);
   if (const auto found = cache.empty() ? std::nullopt : kept(file))
     return *found;
   try {
-    const Reference found = solve(problem, p, section);
+    const Reference found = solve(task);
     if (!cache.empty())
       keep(file, found);
     return found;
   } catch (const DataError&) {
-    throw section.complaint("Point [m]", "lies outside of the body", "Write a point of it");
+    throw section.complaint("Point [m]",
+                            "this point, the one that is subtracted or one of the study lies outside of the body",
+                            "Write a point of it");
   }
 }
 

@@ -20,7 +20,8 @@ std::string four_rows_a_case(const std::string& times, const int n_cases) {
     "subsection Study\n  set Scene = scene.prm\n  set Answer = elastic energy\n  set Unit = J\n"
     "  set Reference = 1e-3\n  set Reference source = a guess\n  set Times = " +
     times +
-    "\nend\n"
+    "\n  set Reference row = fem, 1\nend\n"
+    "subsection Points\n  set Points [m] = 0, 0, 0; 0.03, 0, 0.04\nend\n"
     "subsection Variant fem\nend\n"
     "subsection Variant enhanced\n  set Set = Body cube/Element=enhanced\nend\n"
     "subsection Variant springs\n  set Set = Body cube/Backend=mass-spring\nend\n"
@@ -62,6 +63,7 @@ class StudyJobs : public Program {
       EXPECT_EQ(a[i].name, b[i].name);
       EXPECT_EQ(a[i].value, b[i].value) << a[i].name;
       EXPECT_EQ(a[i].error, b[i].error) << a[i].name;
+      EXPECT_EQ(a[i].displacements, b[i].displacements) << a[i].name;
       EXPECT_EQ(a[i].n_steps, b[i].n_steps) << a[i].name;
       EXPECT_EQ(a[i].n_dof, b[i].n_dof) << a[i].name;
       EXPECT_EQ(a[i].n_iterations, b[i].n_iterations) << a[i].name;
@@ -140,7 +142,7 @@ TEST_F(StudyJobs, ARowWhoseProcessIsKilledHasFailed) {
   ::kill(child, SIGKILL);
   int status = 0;
   waitpid(id, &status, 0);
-  EXPECT_EQ(WEXITSTATUS(status), 0) << read_text(folder / "stderr");
+  EXPECT_EQ(WEXITSTATUS(status), 3) << read_text(folder / "stderr");
   EXPECT_NE(table("out").rows[0].outcome.find("failed: its process ended with exit code 137"), std::string::npos);
   EXPECT_EQ(table("out").rows[1].outcome, "completed");
 }

@@ -71,13 +71,39 @@ TEST_F(StudyProgram, RefusesBadStudiesBeforeAnythingIsWritten) {
   expect_error(study(replaced(study_text(), "scene.prm", "lost.prm")), 2, {"lost.prm", "cannot be read"});
 }
 
-TEST_F(StudyProgram, FailsWithTheWholeStudyOnly) {
+/// A failed row leaves the others; the exit code tells the worst of them.
+TEST_F(StudyProgram, TellsFailedRowsByItsExitCode) {
   const std::string no_mesh = replaced(study_text(), "Body cube/Backend=mass-spring", "Body cube/Mesh=lost.off");
   const Result one = study(no_mesh);
-  EXPECT_EQ(one.exit_code, 0) << one.err;
+  expect_error(one, 3, {"1 of 2 rows have failed", "springs", "lost.off"});
+  EXPECT_EQ(output::read_study_file(folder / "out/study.h5").outcome, output::Outcome::completed);
   EXPECT_NE(one.out.find("row 2 of 2: springs: failed: "), std::string::npos) << one.out;
   const Result all = study(replaced(no_mesh, "Variant fem\n", "Variant fem\n  set Set = Body cube/Mesh=lost.off\n"));
   expect_error(all, 3, {"every row of the study has failed", "lost.off"});
+}
+
+TEST_F(StudyProgram, SaysThatThereIsNoReference) {
+  std::string text = study_text();
+  const auto from = text.find("  set Reference ");
+  text.erase(from, text.find("end\n") - from);
+  const Result result = study(text);
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_NE(result.out.find("the study has no reference"), std::string::npos) << result.out;
+  EXPECT_EQ(study(study_text()).out.find("has no reference"), std::string::npos);
+}
+
+TEST_F(StudyProgram, RefusesAChangeThatNoRowReads) {
+  const std::string change =
+    "subsection Change spacing\n  set Key = Body cube/Phyxels/Spacing [m]\n  set Values = 0.03 | 0.04\nend\n";
+  expect_error(study(study_text() + change), 1, {"Change spacing/Values", "no row reads"});
+  EXPECT_FALSE(std::filesystem::exists(folder / "out"));
+}
+
+TEST_F(StudyProgram, WritesCsvBesideItsFile) {
+  EXPECT_EQ(study(study_text()).exit_code, 0) << read_text(folder / "stderr");
+  const std::string csv = read_text(folder / "out/study.csv");
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 3) << csv;
+  EXPECT_NE(csv.find("\"springs\""), std::string::npos) << csv;
 }
 
 TEST_F(StudyProgram, ListsItsKeys) {

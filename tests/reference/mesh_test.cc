@@ -23,6 +23,12 @@ TEST(Mesh, ADiscIsFourQuarters) {
   EXPECT_EQ(extruded(whole, {0, 1, 3}).vertices.size(), 75u);
 }
 
+TEST(Mesh, ADiscInASquareIsFourQuartersToo) {
+  const Mesh quarter = quarter_disc_in_square({1, 2}, 3), whole = disc_in_square({1, 2}, 3);
+  EXPECT_EQ(whole.cells.size(), 4 * quarter.cells.size());
+  EXPECT_EQ(whole.vertices.size(), 25u + 8) << "the square's corners and the middles of its sides";
+}
+
 /// A crack through all of a block doubles each vertex in it; one that ends inside leaves those of its front.
 TEST(Mesh, CracksHaveDoubleVerticesButAtTheirFronts) {
   const Mesh block = extruded(rectangles(equal(0, 4, 4), equal(0, 2, 2)), equal(0, 2, 2));

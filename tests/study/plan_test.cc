@@ -1,5 +1,6 @@
 // What a study may say, and what it is told when it says something else.
 
+#include "study/measure.h"
 #include "study/stability_plan.h"
 #include "tests/study/study_text.h"
 
@@ -114,6 +115,92 @@ TEST(Plan, TellsAWrongChangeOfTheSceneAtItsLine) {
   expect_refused(
     CubeStudy::head() + fem + "subsection Change grid\n  subsection Case a\n    set Set = A/B=1\n  end\nend\n", "A/B=1",
     {"Change grid/Case a/Set", "in 'A/B=1'"});
+}
+
+std::string change(const std::string& keys) { return "subsection Change grid\n" + keys + "end\n"; }
+
+TEST(Plan, ValuesAndRangesAreCases) {
+  const CubeStudy study;
+  const auto planned = [&](const std::string& keys) {
+    return names(study.plan(CubeStudy::head() + fem + change(keys)));
+  };
+  EXPECT_EQ(planned("  set Key = Body cube/Integrator\n  set Values = implicit Euler | generalised alpha\n"),
+            (std::vector<std::string>{"fem, implicit Euler", "fem, generalised alpha"}));
+  const std::string edge = "  set Key = Body cube/Cube edge [m]\n";
+  EXPECT_EQ(planned(edge + "  set Range = 0.05, 0.02\n  set Number [1] = 4\n"),
+            (std::vector<std::string>{"fem, 0.05", "fem, 0.04", "fem, 0.03", "fem, 0.02"}));
+  EXPECT_EQ(planned(edge + "  set Range = 0.08, 0.02\n  set Number [1] = 3\n  set Spacing = equal ratios\n"),
+            (std::vector<std::string>{"fem, 0.08", "fem, 0.04", "fem, 0.02"}));
+  EXPECT_EQ(
+    planned(edge +
+            "  set Values = 0.05\n  subsection Case fine one\n    set Set = Body cube/Cube edge [m]=0.01\n  end\n"),
+    (std::vector<std::string>{"fem, fine one", "fem, 0.05"}));
+  const Plan both = study.plan(CubeStudy::head() + fem +
+                               change("  set Key = Time/Time step [s] | Time/End time [s]\n  set Values = 0.01\n"));
+  EXPECT_EQ(both.rows[0].overrides, (std::vector<std::string>{"Time/Time step [s]=0.01", "Time/End time [s]=0.01"}));
+}
+
+TEST(Plan, RefusesRangesWithoutSense) {
+  const auto refuse = [](const std::string& keys, const std::string& line, const std::string& words) {
+    expect_refused(CubeStudy::head() + fem + change(keys), line, {words});
+  };
+  const std::string edge = "  set Key = Body cube/Cube edge [m]\n";
+  refuse(edge, "Key = Body", "the range is empty");
+  refuse(edge + "  set Range = 0.05, 0.02\n", "Change grid", "the range is empty");
+  refuse(edge + "  set Range = 0.05, 0.02\n  set Number [1] = 1\n", "Number", "the range is empty");
+  refuse(edge + "  set Range = 0.05, 0.05\n  set Number [1] = 3\n", "Number", "one number several times");
+  refuse(edge + "  set Range = 0.05\n  set Number [1] = 3\n", "Range", "two numbers");
+  refuse(edge + "  set Range = 0, 1\n  set Number [1] = 3\n  set Spacing = equal ratios\n", "Range", "one sign");
+  refuse(edge + "  set Range = 0.05, 0.02\n  set Values = 1\n", "Range", "there are values too");
+  refuse("  set Values = 1 | 2\n", "Values", "no key that takes them");
+  refuse(edge + "  set Values = 0.05 | | 0.02\n", "Values", "name of a case");
+  refuse(edge + "  set Values = 0.05 | 0.05\n", "Change grid", "two cases '0.05'");
+  refuse(edge + "  set Values = 50 mm\n", "Values", "50 mm");
+}
+
+/// What no backend, integrator or material of any row reads.
+TEST(Plan, RefusesChangesThatNoRowReads) {
+  const CubeStudy study;
+  const std::string spacing = change("  set Key = Body cube/Phyxels/Spacing [m]\n  set Values = 0.03\n");
+  try {
+    require_changes_read(study.plan(CubeStudy::head() + fem + spacing));
+    ADD_FAILURE() << "was accepted";
+  } catch (const ParameterError& error) {
+    EXPECT_NE(std::string(error.what()).find("Change grid/Values"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("no row reads"), std::string::npos) << error.what();
+    EXPECT_GT(error.complaint().line, 8);
+  }
+  EXPECT_NO_THROW(require_changes_read(
+    study.plan(CubeStudy::head() + fem + CubeStudy::variant("pba", "Body cube/Backend=pba") + spacing)))
+    << "one row reads it; the other fails with its reason";
+  EXPECT_NO_THROW(
+    require_changes_read(study.plan(CubeStudy::head() + fem +
+                                    change("  set Key = Body cube/Mesh\n  subsection Case lost\n"
+                                           "    set Set = Body cube/Mesh=lost.off\n  end\n  set Values = x.off\n"))))
+    << "a row's own fault is told by the row";
+}
+
+TEST(Plan, RefusesMixedUnitsAndReferencesOfNothing) {
+  const std::string norm =
+    "subsection Norm energy\n  set Answer = kinetic energy\n  set Unit = N\n  set Truth = elastic energy\nend\n";
+  expect_refused(CubeStudy::head() + fem + norm, "Unit = N", {"has the unit J"});
+  expect_refused(CubeStudy::head() + fem + "subsection Points\n  set Points [m] = 0, 0, 0\nend\n", "Points",
+                 {"no reference knows"});
+  expect_refused(CubeStudy::head("  set Reference row = fem, 7\n") + fem, "Reference row", {"no such row", "'fem'"});
+  expect_refused(CubeStudy::head("  set Reference row = finest\n") + fem, "Reference row", {"Order over"});
+  const std::string row = CubeStudy::head("  set Reference row = fem\n") + fem;
+  expect_refused(row + "subsection Points\n  set Counts [1] = 2, 2, 2\nend\n", "Points", {"two corners"});
+  expect_refused(row + "subsection Points\nend\n", "Points", {"no points"});
+}
+
+TEST(Plan, KnowsWhetherThereIsAReference) {
+  const CubeStudy study;
+  const std::string none =
+    "subsection Study\n  set Scene = scene.prm\n  set Answer = momentum z\n  set Unit = kg m/s\nend\n";
+  EXPECT_FALSE(has_reference(study.plan(none + fem)));
+  EXPECT_TRUE(has_reference(study.plan(CubeStudy::head() + fem)));
+  EXPECT_TRUE(
+    has_reference(study.plan(none + "subsection Variant one\n  set Reference = 1\n  set Reference source = b\nend\n")));
 }
 
 /// A mistake of the scene itself is told at the scene's own line.

@@ -158,15 +158,30 @@ TEST(Study, RefusesAnAnswerThatTheSceneDoesNotGive) {
   refuse("Body = cube", "Body = ball", "Body", "no such body");
 }
 
+double taken(const std::vector<double>& series, const std::string& how, const double last_part) {
+  AnswerParameters asked;
+  asked.take = how;
+  asked.last_part = last_part;
+  return take(series, asked, 0.5);
+}
+
 TEST(Take, StandsForASeries) {
   const std::vector<double> series = {5, 1, 2, 3};
-  EXPECT_EQ(take(series, "end", 0.1), 3);
-  EXPECT_EQ(take(series, "maximum", 0.1), 5);
-  EXPECT_EQ(take(series, "minimum", 0.1), 1);
-  EXPECT_EQ(take(series, "mean of the last part", 0.1), 3);
-  EXPECT_EQ(take(series, "mean of the last part", 0.5), 2.5);
-  EXPECT_EQ(take(series, "mean of the last part", 1), 2.75);
-  EXPECT_TRUE(std::isnan(take({}, "end", 0.1)));
+  EXPECT_EQ(taken(series, "end", 0.1), 3);
+  EXPECT_EQ(taken(series, "maximum", 0.1), 5);
+  EXPECT_EQ(taken(series, "minimum", 0.1), 1);
+  EXPECT_EQ(taken(series, "mean of the last part", 0.1), 3);
+  EXPECT_EQ(taken(series, "mean of the last part", 0.5), 2.5);
+  EXPECT_EQ(taken(series, "mean of the last part", 1), 2.75);
+  EXPECT_TRUE(std::isnan(taken({}, "end", 0.1)));
+}
+
+TEST(Take, FrequencyIsThatOfPassagesThroughTheMean) {
+  std::vector<double> series;
+  for (int i = 0; i <= 120; ++i)
+    series.push_back(3 + std::sin(2 * M_PI * i / 15));
+  EXPECT_NEAR(taken(series, "frequency", 1), 1 / (15 * 0.5), 1e-3) << "entries are half a second apart";
+  EXPECT_TRUE(std::isnan(taken({1, 2, 3}, "frequency", 1)));
 }
 
 output::StudyRow row_of(const std::string& family, const double h, const double error) {
