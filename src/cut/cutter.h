@@ -41,8 +41,9 @@ enum class Release { queued, at_once };
 
 /// Where cuts may end (fronts.h, advance.h).
 enum class Fronts {
-  at_faces,    ///< with the last cell that it parts
-  inside_cells ///< wherever it does, in cells whose copies are tied: for a physics that knows ties (grid/fronts.h)
+  at_faces,                 ///< with the last cell that they part
+  of_surfaces_inside_cells, ///< blades so; what cuts at once wherever it does, in cells whose copies are tied
+  inside_cells              ///< all of them so: for a physics that knows ties (grid/fronts.h)
 };
 
 class Cutter {

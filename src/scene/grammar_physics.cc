@@ -2,6 +2,8 @@
 
 #include "physics/phyxels.h"
 
+#include <algorithm>
+
 namespace kerf::scene {
 
 const std::vector<std::string>& backend_names() {
@@ -26,6 +28,12 @@ const std::vector<std::string>& integrator_names() {
 const std::vector<std::string>& implicit_integrator_names() {
   static const std::vector<std::string> names = {"implicit Euler", "BDF2", "Newmark", "generalised alpha"};
   return names;
+}
+
+bool is_explicit(const std::string& integrator) {
+  static const std::vector<std::string> names = {"symplectic Euler", "velocity Verlet", "explicit Euler",
+                                                 "midpoint Runge-Kutta"};
+  return std::find(names.begin(), names.end(), integrator) != names.end();
 }
 
 void LatticeParameters::describe(Parameters& p) {

@@ -16,6 +16,9 @@ const std::vector<std::string>& integrator_names();
 /// Those of them that solve equations for the end of each step, and have dynamics::NewtonParameters.
 const std::vector<std::string>& implicit_integrator_names();
 
+/// Those that take a step from forces alone, no longer than their stable one.
+bool is_explicit(const std::string& integrator);
+
 /// Newton's method for BDF2.
 struct ConvergedNewtonParameters {
   dynamics::NewtonParameters newton = dynamics::converged_newton();
