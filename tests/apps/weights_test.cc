@@ -2,6 +2,7 @@
 
 #include "output/h5_array.h"
 #include "tests/apps/program.h"
+#include "tests/support/checkout.h"
 
 namespace kerf::apps {
 namespace {
@@ -10,7 +11,7 @@ using WeightsCommand = Program;
 namespace h5 = output::h5;
 
 /// The thesis' figure with few pixels and parts.
-const Words small = {"weights",  std::string(KERF_SOURCE_DIR) + "/params/thesis/fig_2_9.prm",
+const Words small = {"weights",  support::checkout() + "/params/thesis/fig_2_9.prm",
                      "--output", "out",
                      "--set",    "Weights/Pixels [1]=40",
                      "--set",    "Weights/Parts [1]=40"};

@@ -8,6 +8,7 @@
 #include "geometry/solid.h"
 #include "surface/placement.h"
 #include "surface/surface.h"
+#include "tests/support/checkout.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -93,7 +94,7 @@ void measure(const geometry::TriangleMesh& mesh, const double h) {
 int main(const int argc, char** const argv) {
   if (argc > 1)
     set_n_threads(std::max(1, std::atoi(argv[1])));
-  const std::string path = KERF_SOURCE_DIR "/params/meshes/liver_25k.off";
+  const std::string path = support::checkout() + "/params/meshes/liver_25k.off";
   const geometry::TriangleMesh mesh = geometry::require_solid(geometry::read_mesh(path, 1e-3), path);
   std::printf("threads: %d (first argument); times in ms\n", n_threads());
   std::printf("%7s %9s %9s %8s %8s %8s %8s %8s %8s %8s %12s %10s\n", "h [mm]", "cells", "surface", "grid", "embed",

@@ -11,6 +11,7 @@
 #include "base/parallel.h"
 #include "image/compare.h"
 #include "image/file.h"
+#include "tests/support/checkout.h"
 #include "tests/texture/solids.h"
 
 #include <cstdio>
@@ -164,7 +165,7 @@ std::vector<BrainSection> brain_sections() {
 
 Exemplar brain_exemplar(const BrainSection& s) {
   constexpr double mm = 1e-3;
-  return {s.file, image::read_image(std::string(KERF_SOURCE_DIR) + "/params/sections/brain/" + s.file + ".png"),
+  return {s.file, image::read_image(support::checkout() + "/params/sections/brain/" + s.file + ".png"),
           Background::black, SectionPlane(mm * s.origin, mm * s.column, mm * s.row)};
 }
 
@@ -178,7 +179,7 @@ InteriorOptions brain_options(const Partners partners) {
 }
 
 void study_brain(const std::string& folder, const Sweep::Path path, const Partners partners) {
-  const auto body = geometry::read_mesh(std::string(KERF_SOURCE_DIR) + "/params/meshes/brain_40k.off", 1e-3);
+  const auto body = geometry::read_mesh(support::checkout() + "/params/meshes/brain_40k.off", 1e-3);
   const auto sections = brain_sections();
   std::vector<Score> means(methods.size() + 1);
   print_head();

@@ -8,6 +8,7 @@
 #include "base/parallel.h"
 #include "scene/compose.h"
 #include "scene/run.h"
+#include "tests/support/checkout.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -34,7 +35,7 @@ std::string interior(const std::string& more) {
 
 /// The liver's scene with an inside.
 World world_with(const std::string& more) {
-  const std::string file = std::string(KERF_SOURCE_DIR) + "/params/liver.prm";
+  const std::string file = support::checkout() + "/params/liver.prm";
   SceneText text = read_scene_text(file, {});
   std::string lines = text.text;
   const std::string before = "  subsection Support back";

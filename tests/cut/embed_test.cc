@@ -4,6 +4,7 @@
 #include "base/parallel.h"
 #include "geometry/solid.h"
 #include "tests/geometry/meshes.h"
+#include "tests/support/checkout.h"
 
 #include <gtest/gtest.h>
 
@@ -255,7 +256,7 @@ TEST(Embed, RefusesWhatIsTooSmallAndWhatIsNotClosed) {
 }
 
 TEST(Embed, LiverIsTheSameWithOneAndTwoThreads) {
-  const auto mesh = geometry::read_mesh(KERF_SOURCE_DIR "/params/meshes/liver_25k.off", 0.001);
+  const auto mesh = geometry::read_mesh(support::checkout() + "/params/meshes/liver_25k.off", 0.001);
   const double h = (geometry::bounding_box(mesh).upper - geometry::bounding_box(mesh).lower).maxCoeff() / 25;
   set_n_threads(1);
   const Embedding one = embed(mesh, h, midway);

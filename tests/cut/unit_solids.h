@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "geometry/box_tree.h"
 #include "geometry/solid.h"
+#include "tests/support/checkout.h"
 
 #include <algorithm>
 #include <cstdlib>
@@ -50,7 +51,7 @@ inline std::vector<std::pair<std::string, geometry::TriangleMesh>> unit_solids(c
 /// The one that KERF_STROKE_MESHES names, else that of the example scenes.
 inline std::filesystem::path folder_of_meshes() {
   const char* const folder = std::getenv("KERF_STROKE_MESHES");
-  return folder ? folder : KERF_SOURCE_DIR "/params/meshes";
+  return folder ? folder : support::checkout() + "/params/meshes";
 }
 
 } // namespace kerf::cut

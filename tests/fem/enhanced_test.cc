@@ -2,10 +2,10 @@
 
 #include "surface/placement.h"
 #include "tests/fem/samples.h"
+#include "tests/support/spectrum.h"
 
 #include <gtest/gtest.h>
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 
 namespace kerf::fem {
 namespace {
@@ -18,7 +18,7 @@ Matrix24 stiffness(const Moments& moments, const material::Elastic& material, co
 }
 
 Eigen::Matrix<double, 24, 1> eigenvalues(const Matrix24& K) {
-  return Eigen::SelfAdjointEigenSolver<Matrix24>(K, Eigen::EigenvaluesOnly).eigenvalues();
+  return support::spectrum(K);
 }
 
 /// Gradients of the 12 modes at y from the centroid: of y_j^2 / 2 in direction i, and dilatations along y_j y_k.

@@ -6,10 +6,10 @@
 #include "surface/placement.h"
 #include "tests/fem/models.h"
 #include "tests/support/placed.h"
+#include "tests/support/spectrum.h"
 
 #include <gtest/gtest.h>
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 
 #include <algorithm>
 #include <numeric>
@@ -141,7 +141,7 @@ Spectra spectra_of(support::Body& body, const double weight) {
     scaled.middleCols<3>(i) = (scaled.middleCols<3>(i) * inverse.transpose()).eval();
   }
   const auto eigenvalues = [](const Matrix& A) {
-    return Eigen::VectorXd(Eigen::SelfAdjointEigenSolver<Matrix>(A, Eigen::EigenvaluesOnly).eigenvalues());
+    return Eigen::VectorXd(support::spectrum(A));
   };
   const Eigen::VectorXd of_scaled = eigenvalues(scaled);
   for (Eigen::Index i = 0; i < n; ++i) {

@@ -1,6 +1,7 @@
 #include "tests/fuzz/specimens.h"
 
 #include "base/error.h"
+#include "tests/support/checkout.h"
 #include "tests/support/placed.h"
 
 #include <algorithm>
@@ -70,7 +71,7 @@ Specimens own_specimens() {
   all.large.push_back(box("large box", {1.4, 1.3, 1.2}, 0.1, Vec3::Zero()));
   all.large.push_back(sphere("large sphere", 0.13, Vec3::Zero()));
   all.large.push_back({"large liver", support::embedded(liver, 0.011, {0.5, 0.3, 0.1})});
-  add_meshes(KERF_SOURCE_DIR "/params/meshes", all);
+  add_meshes(support::checkout() + "/params/meshes", all);
   return all;
 }
 

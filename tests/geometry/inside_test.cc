@@ -3,6 +3,7 @@
 #include "geometry/inside.h"
 
 #include "geometry/solid.h"
+#include "tests/support/checkout.h"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +13,7 @@ namespace kerf::geometry {
 namespace {
 
 TriangleMesh mesh_of(const std::string& name) {
-  const std::string path = std::string(KERF_SOURCE_DIR) + "/params/meshes/" + name;
+  const std::string path = support::checkout() + "/params/meshes/" + name;
   return require_solid(read_mesh(path, 1), path);
 }
 

@@ -1,6 +1,7 @@
 #include "base/error.h"
 #include "geometry/solid.h"
 #include "tests/geometry/meshes.h"
+#include "tests/support/checkout.h"
 
 #include <gtest/gtest.h>
 
@@ -134,7 +135,7 @@ TEST(ReadMesh, RefusesWhatItCannotRead) {
 }
 
 TEST(Solid, AcceptsTheLiver) {
-  const std::string path = KERF_SOURCE_DIR "/params/meshes/liver_25k.off";
+  const std::string path = support::checkout() + "/params/meshes/liver_25k.off";
   const TriangleMesh mesh = require_solid(read_mesh(path, 0.001), path);
   EXPECT_EQ(mesh.triangles.size(), 25000u);
   EXPECT_GT(volume(mesh), 0);

@@ -5,6 +5,7 @@
 #include "geometry/solid.h"
 #include "tests/geometry/meshes.h"
 #include "tests/grid/complex_changes.h"
+#include "tests/support/checkout.h"
 
 #include <gtest/gtest.h>
 
@@ -89,7 +90,7 @@ TEST(Complex, AgreesWithItsDefinitionOnCutsOfTheSkin) {
 
 TEST(Complex, AgreesWithItsDefinitionOnEmbeddedBodies) {
   Random random(5);
-  const std::string liver = std::string(KERF_SOURCE_DIR) + "/params/meshes/liver_25k.off";
+  const std::string liver = support::checkout() + "/params/meshes/liver_25k.off";
   for (const auto& [mesh, h] : {std::pair(geometry::sphere_mesh(1, Vec3::Zero(), 3), 0.3),
                                 std::pair(geometry::require_solid(geometry::read_mesh(liver, 1e-3), liver), 0.022)}) {
     const Body body = cut::embed(mesh, h, {0.1, 0.5, 0.7}).solid;

@@ -16,6 +16,7 @@
 ///   KERF_GRINDER_SCENES=file.prm build/release/tests/test_grinder --gtest_filter=Grinder.Repeat
 
 #include "tests/grinder/grinder.h"
+#include "tests/support/checkout.h"
 
 #include <gtest/gtest.h>
 
@@ -34,7 +35,7 @@ std::string setting(const char* name, const std::string& otherwise) {
   return value ? value : otherwise;
 }
 
-std::filesystem::path mesh_folder() { return setting("KERF_GRINDER_MESHES", KERF_SOURCE_DIR "/params/meshes"); }
+std::filesystem::path mesh_folder() { return setting("KERF_GRINDER_MESHES", support::checkout() + "/params/meshes"); }
 
 /// "Section/Key=value;Section/Key=value"
 std::vector<std::string> changes() {
@@ -91,7 +92,7 @@ constexpr Size short_ones{.least_cells = 100, .most_cells = 250, .least_steps = 
 
 /// On six meshes.
 TEST(Grinder, Short) {
-  Solids solids = solids_in(KERF_SOURCE_DIR "/params/meshes");
+  Solids solids = solids_in(support::checkout() + "/params/meshes");
   const std::vector<std::string> names = {"apple", "ball", "bar", "cube", "liver_25k", "pear"};
   std::erase_if(solids.usable, [&](const Solid& solid) { return std::ranges::count(names, solid.name) == 0; });
   Harvest harvest(setting("KERF_GRINDER_FAILURES", ""));
@@ -101,7 +102,7 @@ TEST(Grinder, Short) {
 
 /// A soft ball that swings fast for its steps: one solution a step gave it 1.1 % of its energy.
 TEST(Grinder, ASwingingBallGainsNoEnergy) {
-  Solids solids = solids_in(KERF_SOURCE_DIR "/params/meshes");
+  Solids solids = solids_in(support::checkout() + "/params/meshes");
   std::erase_if(solids.usable, [](const Solid& solid) { return solid.name != "ball"; });
   Harvest harvest("");
   for (const Kind& kind : kinds())

@@ -9,6 +9,7 @@
 #include "scene/compose.h"
 #include "scene/run.h"
 #include "tests/grinder/cases.h"
+#include "tests/support/checkout.h"
 
 #include <gtest/gtest.h>
 
@@ -144,7 +145,7 @@ void expect_same_pieces(const Solids& solids, const unsigned n_seeds) {
 }
 
 TEST(SamePieces, WhateverMovesTheBody) {
-  Solids solids = solids_in(KERF_SOURCE_DIR "/params/meshes");
+  Solids solids = solids_in(support::checkout() + "/params/meshes");
   const std::vector<std::string> names = {"apple", "bar", "cube", "pear"};
   std::erase_if(solids.usable, [&](const Solid& solid) { return std::ranges::count(names, solid.name) == 0; });
   expect_same_pieces(solids, 3);
@@ -152,7 +153,7 @@ TEST(SamePieces, WhateverMovesTheBody) {
 
 TEST(SamePieces, Long) {
   const char* const folder = std::getenv("KERF_GRINDER_MESHES");
-  expect_same_pieces(solids_in(folder ? folder : KERF_SOURCE_DIR "/params/meshes"), 4);
+  expect_same_pieces(solids_in(folder ? folder : support::checkout() + "/params/meshes"), 4);
 }
 
 } // namespace

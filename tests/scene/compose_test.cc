@@ -8,6 +8,7 @@
 #include "dynamics/symplectic_euler.h"
 #include "physics/on_corners.h"
 #include "tests/scene/worlds.h"
+#include "tests/support/checkout.h"
 
 #include <gtest/gtest.h>
 
@@ -109,7 +110,7 @@ TEST(Compose, TakesTheLawAndTheElementThatAreNamed) {
 }
 
 TEST(Compose, AMeshPathStartsAtTheScene) {
-  const std::string file = std::string(KERF_SOURCE_DIR) + "/params/here.prm";
+  const std::string file = support::checkout() + "/params/here.prm";
   const World world = compose(scan_scene_text(cube_scene(), file, {"Body cube/Mesh=meshes/cube.off"}));
   EXPECT_NEAR(world.bodies.at(0).mesh_volume, 0.008, 1e-15);
 }

@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "scene/crack_report.h"
 #include "tests/scene/trials.h"
+#include "tests/support/checkout.h"
 
 #include <gtest/gtest.h>
 
@@ -146,7 +147,7 @@ TEST(Crack, APennyHasItsEnergyReleaseRateAndOpening) { penny(5); }
 /// How far the mouth of a crack from the side of a plate opens by points that see each other by a criterion, with 14 cubes
 /// over the width, 2 through the thickness: the scene of the study.
 double mouth_of_points(const std::string& criterion) {
-  std::ifstream scene(std::string(KERF_SOURCE_DIR) + "/params/compare/edge_crack.prm");
+  std::ifstream scene(support::checkout() + "/params/compare/edge_crack.prm");
   const Trial plate(
     {std::istreambuf_iterator<char>(scene), {}},
     {"Body plate/Backend=pba", "Body plate/Integrator=quasi-static", "Time/Time step [s]=1", "Time/End time [s]=1",

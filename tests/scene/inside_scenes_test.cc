@@ -1,6 +1,7 @@
 // The scenes that say what is inside, with their photographs.
 
 #include "scene/compose_interior.h"
+#include "tests/support/checkout.h"
 #include "tests/texture/probes.h"
 
 #include <gtest/gtest.h>
@@ -9,7 +10,7 @@ namespace kerf::scene {
 namespace {
 
 LookedInto look_into(const std::string& scene) {
-  return compose_inside(read_scene_text(std::string(KERF_SOURCE_DIR) + "/params/" + scene, {}));
+  return compose_inside(read_scene_text(support::checkout() + "/params/" + scene, {}));
 }
 
 constexpr std::array scenes = {"brain.prm", "thesis/fig_3_28.prm", "thesis/fig_3_29.prm", "thesis/fig_3_30.prm",

@@ -2,6 +2,8 @@
 
 /// Scenes that tests write themselves.
 
+#include "tests/support/checkout.h"
+
 #include <string>
 #include <vector>
 
@@ -10,9 +12,7 @@ namespace kerf::scene {
 using Overrides = std::vector<std::string>;
 
 /// A mesh of the example scenes.
-inline std::string mesh_path(const std::string& name) {
-  return std::string(KERF_SOURCE_DIR) + "/params/meshes/" + name;
-}
+inline std::string mesh_path(const std::string& name) { return support::checkout() + "/params/meshes/" + name; }
 
 /// A free cube of edge 0.2 m around the origin, 4 cubes an edge, skin midway between nodes; five steps, and no more.
 inline std::string cube_scene() {

@@ -7,6 +7,7 @@
 #include "scene/run.h"
 #include "tests/output/samples.h"
 #include "tests/scene/scene_text.h"
+#include "tests/support/checkout.h"
 
 #include <algorithm>
 #include <random>
@@ -45,7 +46,7 @@ inline void set_in_motion(Body& body, const Vec3& common, const double deviation
 /// The parameter files anywhere below a folder of params/, sorted.
 inline std::vector<std::filesystem::path> parameter_files(const std::string& folder = "") {
   std::vector<std::filesystem::path> files;
-  const auto root = std::filesystem::path(KERF_SOURCE_DIR) / "params" / folder;
+  const auto root = std::filesystem::path(support::checkout()) / "params" / folder;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(root))
     if (entry.path().extension() == ".prm")
       files.push_back(entry.path());

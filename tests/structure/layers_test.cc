@@ -1,6 +1,8 @@
 /// What goodwill does not keep: which room includes which, no include cycles, heavy headers in their rooms, no function
 /// that ends the process, no file too long to read. A new room gets a row in `rooms`.
 
+#include "tests/support/checkout.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -224,7 +226,7 @@ Names violations(const std::vector<Source>& sources) {
 
 std::vector<Source> read_sources() {
   namespace fs = std::filesystem;
-  const fs::path root = fs::path(KERF_SOURCE_DIR) / "src";
+  const fs::path root = fs::path(support::checkout()) / "src";
   std::vector<Source> sources;
   for (const auto& entry : fs::recursive_directory_iterator(root)) {
     const auto extension = entry.path().extension();
@@ -264,7 +266,7 @@ TEST(Layers, RoomsUseOnlyRoomsBeforeThem) {
 
 TEST(Layers, TheSourcesKeepTheRules) {
   const auto sources = read_sources();
-  ASSERT_GT(sources.size(), 10u) << "no sources below " << KERF_SOURCE_DIR << "/src";
+  ASSERT_GT(sources.size(), 10u) << "no sources below " << support::checkout() << "/src";
   const auto found = violations(sources);
   EXPECT_TRUE(found.empty()) << joined(found);
 }

@@ -1,5 +1,7 @@
 /// What the README shows is what the checkout holds: its scene is a scene that runs, and its links lead somewhere.
 
+#include "tests/support/checkout.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path root = KERF_SOURCE_DIR;
+const fs::path root = support::checkout();
 
 std::string text_of(const fs::path& file) {
   std::ifstream in(file);

@@ -2,6 +2,7 @@
 
 #include "study/measure.h"
 #include "tests/study/study_text.h"
+#include "tests/support/checkout.h"
 
 #include <gtest/gtest.h>
 
@@ -13,8 +14,7 @@ namespace {
 /// The error of a row of a study in params/studies.
 double error_of(const std::string& study, const std::string& row) {
   const output::TemporaryFolder folder;
-  const Plan plan =
-    make_plan(scene::read_scene_text(std::string(KERF_SOURCE_DIR) + "/params/studies/" + study + ".prm", {}));
+  const Plan plan = make_plan(scene::read_scene_text(support::checkout() + "/params/studies/" + study + ".prm", {}));
   for (const PlannedRow& planned : plan.rows)
     if (planned.name == row) {
       const output::StudyRow found =

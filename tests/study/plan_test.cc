@@ -3,6 +3,7 @@
 #include "study/measure.h"
 #include "study/stability_plan.h"
 #include "tests/study/study_text.h"
+#include "tests/support/checkout.h"
 
 #include <gtest/gtest.h>
 
@@ -218,7 +219,7 @@ TEST(Plan, TellsAWrongSceneAtItsLine) {
 
 TEST(Plan, OfEveryStudyInParams) {
   std::size_t n = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(std::string(KERF_SOURCE_DIR) + "/params/studies")) {
+  for (const auto& entry : std::filesystem::directory_iterator(support::checkout() + "/params/studies")) {
     SCOPED_TRACE(entry.path().string());
     const scene::SceneText text = scene::read_scene_text(entry.path().string(), {});
     EXPECT_GE(is_stability_study(text) ? make_stability_plan(text).cases.size() : make_plan(text).rows.size(), 4u);

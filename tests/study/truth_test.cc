@@ -4,6 +4,7 @@
 
 #include "study/grammar.h"
 #include "tests/study/study_text.h"
+#include "tests/support/checkout.h"
 
 #include <gtest/gtest.h>
 
@@ -159,7 +160,7 @@ TEST(Truth, IsTheReferenceOfRowsWithoutAnother) {
 
 /// Of the tables' 23.96774, at a hundredth of the length and 1e-4 of the strain.
 TEST(Truth, OfTheStudyOfCooksMembrane) {
-  const Plan plan = make_plan(scene::read_scene_text(std::string(KERF_SOURCE_DIR) + "/params/studies/cook.prm", {}));
+  const Plan plan = make_plan(scene::read_scene_text(support::checkout() + "/params/studies/cook.prm", {}));
   for (const PlannedRow& row : plan.rows)
     EXPECT_NEAR(row.reference.value, 23.96774e-6, 1e-11);
 }

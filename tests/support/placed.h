@@ -11,6 +11,7 @@
 #include "surface/surface.h"
 #include "tests/geometry/meshes.h"
 #include "tests/support/bodies.h"
+#include "tests/support/checkout.h"
 
 #include <Eigen/Geometry>
 
@@ -20,7 +21,7 @@ namespace kerf::support {
 
 /// The liver of the example scenes [m].
 inline geometry::TriangleMesh liver_mesh() {
-  const std::string path = std::string(KERF_SOURCE_DIR) + "/params/meshes/liver_25k.off";
+  const std::string path = support::checkout() + "/params/meshes/liver_25k.off";
   return geometry::require_solid(geometry::read_mesh(path, 1e-3), path);
 }
 

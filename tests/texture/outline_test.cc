@@ -4,6 +4,7 @@
 #include "base/error.h"
 #include "image/file.h"
 #include "image/filters.h"
+#include "tests/support/checkout.h"
 #include "tests/texture/solids.h"
 #include "tests/texture/stored.h"
 
@@ -132,12 +133,12 @@ struct Case {
 };
 
 geometry::TriangleMesh body_of(const Case& c) {
-  return geometry::read_mesh(KERF_SOURCE_DIR "/params/meshes/" + c.body + ".off", c.body == "apple" ? 1 : 1e-3);
+  return geometry::read_mesh(support::checkout() + "/params/meshes/" + c.body + ".off", c.body == "apple" ? 1 : 1e-3);
 }
 
 /// A picture of params/sections.
 Exemplar exemplar_of(const Case& c) {
-  return {c.picture, image::read_image(KERF_SOURCE_DIR "/params/sections/" + c.picture + ".png"),
+  return {c.picture, image::read_image(support::checkout() + "/params/sections/" + c.picture + ".png"),
           c.picture[0] == 'b' ? Background::black : Background::alpha, SectionPlane(c.origin, c.column, c.row),
           Fit::rigid};
 }

@@ -2,6 +2,7 @@
 
 #include "image/file.h"
 #include "image/filters.h"
+#include "tests/support/checkout.h"
 #include "tests/texture/probes.h"
 #include "tests/texture/stored.h"
 
@@ -28,7 +29,7 @@ std::vector<Exemplar> each(const std::vector<Exemplar>& all, const One& one) {
 
 /// Blurred, so that what lies between pixels is no noise.
 Exemplar photograph(const std::string& name, const double height, const double pixel) {
-  Exemplar e{name, image::read_image(std::string(KERF_SOURCE_DIR) + "/params/sections/fruit/" + name + "_whole.png"),
+  Exemplar e{name, image::read_image(support::checkout() + "/params/sections/fruit/" + name + "_whole.png"),
              Background::alpha, SectionPlane(Vec3::Zero(), Vec3::UnitX(), Vec3::UnitY())};
   e.picture.colours = image::blurred(image::filled(e.picture.colours, mask_of(e.picture, e.background)), 1.5);
   const Vec3 step(0.5 * pixel * e.picture.width(), 0.5 * pixel * e.picture.height(), 0);

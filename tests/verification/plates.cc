@@ -2,6 +2,7 @@
 
 #include "fem/energy_release.h"
 #include "grid/opening.h"
+#include "tests/support/spectrum.h"
 
 #include <Eigen/Dense>
 
@@ -134,8 +135,7 @@ Condition condition(const double depth, const fem::HexahedraOptions& options) {
     S.block<3, 3>(3 * i, 3 * i) = L.inverse();
   }
   const auto ratio = [](const Eigen::MatrixXd& matrix) {
-    const Eigen::VectorXd values =
-      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(matrix, Eigen::EigenvaluesOnly).eigenvalues();
+    const Eigen::VectorXd values = support::spectrum(matrix);
     return values[values.size() - 1] / values[0];
   };
   return {smallest_fraction(model), ratio(A), ratio(S * A * S.transpose())};
