@@ -1,5 +1,6 @@
 #include "study/grammar.h"
 
+#include "study/closed_form.h"
 #include "study/reference_file.h"
 #include "study/truth.h"
 
@@ -77,6 +78,7 @@ void RangeParameters::describe(Parameters& p) {
 std::vector<scene::SectionKind> grammar() {
   return {{"Study", Occurrence::once, "What is run and asked.", keys_of<StudyParameters, ReferenceParameters>(), {}},
           truth_grammar(),
+          closed_form_grammar(),
           reference_file_grammar(),
           {"Norm",
            Occurrence::titled,
@@ -96,7 +98,7 @@ std::vector<scene::SectionKind> grammar() {
            Occurrence::titled,
            "One way to run the scene.",
            keys_of<SettingParameters, ReferenceParameters>(),
-           {truth_grammar(), reference_file_grammar()}},
+           {truth_grammar(), closed_form_grammar(), reference_file_grammar()}},
           {"Change",
            Occurrence::titled,
            "Cases that every variant is run in; several changes make a grid. Without this section there is one row a "
@@ -106,7 +108,7 @@ std::vector<scene::SectionKind> grammar() {
              Occurrence::titled,
              "One case of the change.",
              keys_of<SettingParameters, ReferenceParameters>(),
-             {truth_grammar(), reference_file_grammar()}}}}};
+             {truth_grammar(), closed_form_grammar(), reference_file_grammar()}}}}};
 }
 
 } // namespace kerf::study

@@ -4,6 +4,7 @@
 #include "scene/grammar.h"
 #include "scene/inputs.h"
 #include "study/choices.h"
+#include "study/closed_form.h"
 #include "study/reference_file.h"
 #include "study/truth.h"
 
@@ -45,11 +46,14 @@ class Truths {
 /// What a choice, or the study, says its answer should be: as a number, or in one of its sections; `otherwise` where it says nothing.
 Reference said_by(const Plan& plan, const Section& section, const Reference& said, Truths& truths,
                   Reference otherwise) {
-  const Section *truth = section.find("Truth"), *file = section.find("Reference file");
-  if ((said.value != 0) + (truth != nullptr) + (file != nullptr) > 1)
+  const Section *truth = section.find("Truth"), *form = section.find("Closed form"),
+                *file = section.find("Reference file");
+  if ((said.value != 0) + (truth != nullptr) + (form != nullptr) + (file != nullptr) > 1)
     throw(section.kind().empty() ? plan.study : section)
-      .complaint("Reference", "there are two references: a number, a section Truth or a section Reference file",
+      .complaint("Reference", "there are two references: a number, a section Truth, Closed form or Reference file",
                  "Leave out all but one of them");
+  if (form)
+    return evaluate_closed_form(*form, plan.parameters.unit);
   if (file)
     return read_reference_file(*file, plan.parameters.unit);
   return truth ? truths.of(*truth) : said.value != 0 ? said : otherwise;
