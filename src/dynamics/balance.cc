@@ -359,11 +359,13 @@ int BalanceSolver::correct_by_cg(const Problem& problem, const Points& guess, co
   correction_.assign(n, Vec3::Zero());
   for (std::size_t i = 0; i < n && !guess.empty(); ++i)
     correction_[i] = problem.constraints.freedom(i).project * guess[i];
-  const double of_own = 0.5 * options_.step_tolerance; // the step's own error is half the way from the guess
+  const double of_own = 0.5 * options_.step_tolerance; // the step's own error is half the way from free motion
   const double left = options_.n_mixed > 0 ? 1e-3 * scaled_residual() : 0; // where other corrections follow
-  const CgStop stop{.residual = std::max({options_.cg_tolerance * scale, left, scaled_round_off()}),
-                    .error = of_own * way_,
-                    .of_way = guess.empty() ? 0 : of_own};
+  CgStop stop{.residual = std::max({options_.cg_tolerance * scale, left, scaled_round_off()}),
+              .error = of_own * way_,
+              .of_way = guess.empty() ? 0 : of_own};
+  if (stop.of_way > 0)
+    stop.from = potential_of_free_motion(problem);
   const Product A = [&](const auto p, const auto y) { apply(problem, p, y); }, J = [&](const auto r, const auto z) {
     apply_inverse_blocks(r, z);
     problem.balance.free.relieve_motion(z);
@@ -381,6 +383,15 @@ int BalanceSolver::correct_by_cg(const Problem& problem, const Points& guess, co
   if (!guess.empty())
     way_ = report.way;
   return report.n_iterations;
+}
+
+double BalanceSolver::potential_of_free_motion(const Problem& problem) {
+  const Balance& b = problem.balance;
+  Points d(force_.size()), Ad(force_.size());
+  for (std::size_t i = 0; i < d.size(); ++i)
+    d[i] = problem.constraints.freedom(i).project * (-1 / b.mass_factor * b.acceleration[i]);
+  apply(problem, flat(d), flat(Ad));
+  return product(d, Ad) - 2 * product(residual_, d);
 }
 
 void BalanceSolver::correct_directly(const Problem& problem, const Tangent kind) {

@@ -41,8 +41,8 @@
 /// no second correction. Nothing is gone on for that conjugate gradients would not see.
 ///
 /// Half the way from free motion to x is the error of the step itself: x_1 - x_0 - dt v_0 = dt^2 a_1, and implicit Euler
-/// is wrong by dt^2 a / 2. Conjugate gradients know the way from their guess in the energy norm, which is that or, of a
-/// better guess, less; they need not be much better. Nothing is solved below the round-off of forces.
+/// is wrong by dt^2 a / 2. Conjugate gradients know that way in the energy norm, wherever they start, and need not be much
+/// better. Nothing is solved below the round-off of forces.
 ///
 /// Where nothing resists some rigid motions, K is singular: residuals are relieved of what goes along them, and
 /// corrections of what moves along them (FreeMotions).
@@ -97,8 +97,8 @@ struct Balance {
   double mass_factor = 0;     ///< kappa [1/s^2]
   double velocity_factor = 0; ///< omega [1/s]
   Points start, velocity, acceleration;
-  Points guess = {};  ///< first guess of x - start [m]; empty: zero
-  Points offset = {}; ///< a force on each corner [N]; empty: none
+  Points guess = {};     ///< first guess of x - start [m]; empty: zero
+  Points offset = {};    ///< a force on each corner [N]; empty: none
   FreeMotions free = {}; ///< that A does not resist
 };
 
@@ -158,7 +158,7 @@ class BalanceSolver {
   static bool flies(const Problem& problem);
   /// A displacement, without its uniform part where the body flies freely, as anything follows that.
   static Points unlike_flight(const Problem& problem, const Points& d);
-  /// Whether what is left to correct is small beside the way from the guess.
+  /// Whether what is left to correct is small beside the way from free motion.
   bool is_small(const Problem& problem);
   /// Returns the iterations of the linear solver.
   int correct(const Problem& problem, const Points& guess, double scale);
@@ -167,6 +167,8 @@ class BalanceSolver {
   void apply_inverse_blocks(std::span<const double> r, std::span<double> z) const;
   /// The model's, for A; null: none.
   Preconditioner* preconditioner(const Problem& problem);
+  /// d.Ad - 2 r.d of the displacement d with which nothing accelerates.
+  double potential_of_free_motion(const Problem& problem);
   void correct_directly(const Problem& problem, Tangent kind);
   /// Mixes the correction with those before, where that leads downhill and far; returns how much of it to take.
   double mixed_search(const Problem& problem, const Points& x, Mixing& mixing);
@@ -189,7 +191,7 @@ class BalanceSolver {
   std::vector<Mat3> scaling_; // L^-1 from the free directions' basis, a row of zeros for each that is held
   std::vector<double> load_product_, mass_product_;
   double most_work_ = 0; // of what is out of balance, in the step at hand [J]
-  double way_ = 0;       // from the guess to the first iterate, in the energy norm; 0: unknown
+  double way_ = 0;       // from free motion to the first iterate, in the energy norm; 0: unknown
 };
 
 } // namespace kerf::dynamics

@@ -3,6 +3,7 @@
 #include "base/parallel.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 
@@ -19,24 +20,38 @@ class Estimate {
   /// `delay`: how many of the last iterations an error is told by.
   Estimate(const CgStop& stop, const std::size_t delay) : stop_(stop), last_(delay) {}
 
+  /// y.Ay - 2 b.y of the x that was given.
+  void start_at(const double given) { farther_ = stop_.from.value_or(given) - given; }
   /// The start is nearer than what was given by so much, in squares.
   void start_nearer(const double excess) { all_ += excess; }
-  void take_off(const double square) {
-    all_ += square;
-    last_[n_++ % last_.size()] = square;
+  void take_off(const double alpha, const double rz) {
+    all_ += alpha * rz;
+    last_[n_++ % last_.size()] = alpha * rz;
+    largest_alpha_ = std::max(largest_alpha_, alpha);
   }
-  double way() const { return std::sqrt(all_); }
+  double way() const { return std::sqrt(square_of_way()); }
+  /// By what the last iterations took: those left before them.
   bool says_enough() const {
-    const double most = std::max(stop_.error * stop_.error, stop_.of_way * stop_.of_way * all_);
     constexpr double bound_is_low = 10; // squared: what these iterations left may be more than what they took
-    return n_ >= last_.size() && bound_is_low * std::accumulate(last_.begin(), last_.end(), 0.0) <= most;
+    return n_ >= last_.size() && bound_is_low * std::accumulate(last_.begin(), last_.end(), 0.0) <= most();
+  }
+  /// By r.Br of the iterate at hand, to be called once for each, where B is more than J.
+  bool says_enough(const double rz) {
+    constexpr double bound_is_low = 4; // squared, see the header
+    const double factor = std::max(rz / rz_[1], rz_[1] / rz_[0]);
+    rz_ = {rz_[1], rz};
+    return n_ >= 2 && factor < 1 && bound_is_low * largest_alpha_ * rz <= (1 - factor) * most();
   }
 
  private:
+  double square_of_way() const { return std::max(0.0, all_ + farther_); }
+  double most() const { return std::max(stop_.error * stop_.error, stop_.of_way * stop_.of_way * square_of_way()); }
+
   CgStop stop_;
   std::vector<double> last_;
+  std::array<double, 2> rz_ = {0, 0}; // of the last two iterates
   std::size_t n_ = 0;
-  double all_ = 0;
+  double all_ = 0, farther_ = 0, largest_alpha_ = 0;
 };
 
 } // namespace
@@ -71,15 +86,17 @@ CgReport conjugate_gradients(const CgEquation& equation, const std::span<const d
   std::vector<double> r(n), z(n), p(n), Ap(n);
   Estimate estimate(stop, equation.J ? 3 : 8); // one iteration with more than block Jacobi is worth many
   const auto is_zero = [](const double value) { return value == 0; };
+  double excess = 0; // of the error's square over that of zero
   if (!std::all_of(x.begin(), x.end(), is_zero)) {
     equation.A(x, Ap);
-    const double excess = dot(x, Ap) - 2 * dot(b, x); // of the error's square over that of zero
+    excess = dot(x, Ap) - 2 * dot(b, x);
     if (excess > 0) {
       estimate.start_nearer(excess);
       std::fill(x.begin(), x.end(), 0);
       std::fill(Ap.begin(), Ap.end(), 0);
     }
   }
+  estimate.start_at(excess);
   for (std::size_t i = 0; i < n; ++i)
     r[i] = b[i] - Ap[i];
   CgReport report{.way = estimate.way()};
@@ -94,6 +111,9 @@ CgReport conjugate_gradients(const CgEquation& equation, const std::span<const d
     if (equation.J)
       equation.B(r, z);
     const double rz_new = equation.J ? dot(r, z) : square, beta = rz > 0 ? rz_new / rz : 0;
+    report.converged = equation.J && estimate.says_enough(rz_new);
+    if (report.converged)
+      return;
     rz = rz_new;
     parallel_ranges(n, worth_blocks * block, [&](const std::size_t begin, const std::size_t end) {
       for (std::size_t i = begin; i < end; ++i)
@@ -117,7 +137,7 @@ CgReport conjugate_gradients(const CgEquation& equation, const std::span<const d
         r[i] -= alpha * Ap[i];
       }
     });
-    estimate.take_off(alpha * rz);
+    estimate.take_off(alpha, rz);
     ++report.n_iterations;
     report.way = estimate.way();
     measure();
@@ -135,7 +155,8 @@ CgReport patient_conjugate_gradients(const CgEquation& equation, const std::span
     return first;
   CgReport report = conjugate_gradients({equation.A, equation.J, {}}, b, stop, max_iterations - first.n_iterations, x);
   report.n_iterations += first.n_iterations;
-  report.way = std::hypot(report.way, first.way);
+  if (!stop.from)
+    report.way = std::hypot(report.way, first.way);
   return report;
 }
 

@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -20,13 +21,15 @@ double dot(std::span<const double> a, std::span<const double> b);
 struct CgStop {
   double residual = 0; ///< of b - A x, in the measure of the equation
   double error = 0;    ///< of x
-  double of_way = 0;   ///< error of x over the way from the x that was given to the solution [1]
+  double of_way = 0;   ///< error of x over the way to the solution [1]
+  /// y.Ay - 2 b.y of the y from which the way counts; none: from the x that was given.
+  std::optional<double> from = {};
 };
 
 struct CgReport {
   int n_iterations = 0;
   double residual = 0;     ///< of b - A x, in the measure of the equation
-  double way = 0;          ///< |x - x that was given|_A
+  double way = 0;          ///< |x - y|_A for the y of the stop
   bool converged = false;  ///< as the stop says
   bool indefinite = false; ///< stopped by a direction that the matrix does not resist
 };
@@ -46,6 +49,11 @@ struct CgEquation {
 /// last few took is a lower bound for the error before them that round-off does not spoil (Strakos and Tichy 2002, On
 /// error estimation in the conjugate gradient method and why it works in finite precision computations, ETNA 13), and
 /// the sum of all is the square of the way.
+///
+/// Where B is more than J, the error of the iterate at hand is told too: its square is the sum of all alpha r.Br to come. With
+/// alpha at most that of any iteration so far, and r.Br falling at least by the factor q that was the larger of the last two,
+/// that is alpha r.Br / (1 - q). Multigrid's B is good for that: in 8,300 iterations of seven scenes, soft and stiff, cut
+/// and not, nu up to .49, the square of the error was more than four times that in six.
 CgReport conjugate_gradients(const CgEquation& equation, std::span<const double> b, const CgStop& stop,
                              int max_iterations, std::span<double> x);
 

@@ -33,6 +33,8 @@ class ForceModel {
   virtual const MassCoupling* mass_coupling() const { return nullptr; }
   /// Elastic energy [J] at current positions x [m].
   virtual double energy(const Points& x) const = 0;
+  /// The same, where forces are wanted next: a model may find them on the way, and keep them for force().
+  virtual double energy_ahead(const Points& x) const { return energy(x); }
   /// forces = -dE/dx [N].
   virtual void force(const Points& x, Points& forces) const = 0;
 };

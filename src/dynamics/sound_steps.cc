@@ -176,7 +176,7 @@ double ElasticEnergies::at(const Points& x) {
     return known_[0].energy;
   std::swap(known_[0], known_[1]);
   if (known_[0].x != x)
-    known_[0] = {x, model_.energy(x)};
+    known_[0] = {x, model_.energy_ahead(x)};
   return known_[0].energy;
 }
 

@@ -23,7 +23,9 @@ struct ForceLoops : ElementLoops<T, W> {
 
   /// R^-T times its determinant, which is returned.
   [[gnu::always_inline]] static V cofactors(const V (&R)[9], V (&C)[9]) {
+#pragma GCC unroll 3
     for (int j = 0; j < 3; ++j)
+#pragma GCC unroll 3
       for (int i = 0; i < 3; ++i) {
         const int j1 = (j + 1) % 3, j2 = (j + 2) % 3, i1 = (i + 1) % 3, i2 = (i + 2) % 3;
         C[3 * j + i] = R[3 * j1 + i1] * R[3 * j2 + i2] - R[3 * j1 + i2] * R[3 * j2 + i1];
@@ -36,6 +38,7 @@ struct ForceLoops : ElementLoops<T, W> {
     constexpr int most = 12;
     constexpr T well_conditioned = T(1e-3), stands = T(1e-28);
     V C[9], size = V{};
+#pragma GCC unroll 9
     for (int i = 0; i < 9; ++i) {
       R[i] = F[i];
       size += F[i] * F[i];
@@ -45,8 +48,10 @@ struct ForceLoops : ElementLoops<T, W> {
     auto is_done = is_bad;
     for (int n = 0; n < most; ++n) {
       V change = V{};
+      const V half_inverse = T(0.5) / det;
+#pragma GCC unroll 9
       for (int i = 0; i < 9; ++i) {
-        const V next = T(0.5) * (R[i] + C[i] / det);
+        const V next = T(0.5) * R[i] + half_inverse * C[i];
         change += (next - R[i]) * (next - R[i]);
         R[i] = is_done ? R[i] : next;
       }
@@ -70,6 +75,7 @@ struct ForceLoops : ElementLoops<T, W> {
     read_shape(batch.corners, lane, x, c);
     Loops::template mean_gradient<is_partial>(cube, batch, lane, c, F);
     const unsigned unknown = nearest_rotation(F, R);
+#pragma GCC unroll 9
     for (int i = 0; i < 9; ++i) {
       store(turns.F[i] + lane, F[i]);
       store(turns.R[i] + lane, R[i]);
@@ -87,18 +93,17 @@ struct ForceLoops : ElementLoops<T, W> {
 
   // --- Forces ------------------------------------------------------------------------------------------------------
 
-  /// Y_m = R^T c_m of the shape, u_m without the cube at rest, and f_m = dE/du_m.
+  /// u_m = R^T c_m of the shape without the cube at rest, and f_m = dE/du_m.
   template <bool is_partial>
   [[gnu::always_inline]] static void strain(const CubeConstants<T>& cube, const Batch<T>& batch, const int lane,
-                                            const V (&R)[9], const MeanPart mean, const Row<T>* const x, V (&Y)[8][3],
-                                            V (&u)[8][3], V (&f)[8][3]) {
+                                            const V (&R)[9], const MeanPart mean, const Row<T>* const x, V (&u)[8][3],
+                                            V (&f)[8][3]) {
     V G[9], P[9];
-    read_shape(batch.corners, lane, x, Y);
-    for (int m = 0; m < 8; ++m) {
-      turn_back(R, Y[m]);
-      for (int i = 0; i < 3; ++i)
-        u[m][i] = Y[m][i];
-    }
+    read_shape(batch.corners, lane, x, u);
+#pragma GCC unroll 7
+    for (int m = 1; m < 8; ++m)
+      turn_back(R, u[m]);
+#pragma GCC unroll 3
     for (int k = 0; k < 3; ++k)
       u[linear_modes[k]][k] -= 4 * cube.h;
     Loops::template hourglass<is_partial>(cube, batch, lane, u, f);
@@ -106,15 +111,18 @@ struct ForceLoops : ElementLoops<T, W> {
       Loops::template mean_gradient<is_partial>(cube, batch, lane, u, G);
       Loops::template hooke<is_partial>(cube, batch, lane, G, P);
     } else {
-      for (V& p : P)
-        p = V{};
+#pragma GCC unroll 9
+      for (int i = 0; i < 9; ++i)
+        P[i] = V{};
     }
     Loops::template put_stress<is_partial>(cube, batch, lane, P, f);
+#pragma GCC unroll 3
     for (int i = 0; i < 3; ++i)
       f[0][i] = V{};
   }
   /// a x b.
   [[gnu::always_inline]] static void cross(const V (&a)[3], const V (&b)[3], V (&c)[3]) {
+#pragma GCC unroll 3
     for (int i = 0; i < 3; ++i)
       c[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
   }
@@ -122,84 +130,115 @@ struct ForceLoops : ElementLoops<T, W> {
   [[gnu::always_inline]] static void spin(const V (&R)[9], const V (&F)[9], const V (&t)[3], V (&z)[3]) {
     constexpr T collapsed = T(1e-6);
     V A[9], C[9];
+#pragma GCC unroll 3
     for (int j = 0; j < 3; ++j)
+#pragma GCC unroll 3
       for (int i = 0; i < 3; ++i)
         A[3 * j + i] = -(R[3 * i] * F[3 * j] + R[3 * i + 1] * F[3 * j + 1] + R[3 * i + 2] * F[3 * j + 2]);
     const V trace = -(A[0] + A[4] + A[8]);
+#pragma GCC unroll 3
     for (int i = 0; i < 3; ++i)
       A[4 * i] += trace;
-    const V det = cofactors(A, C);
+    const V det = cofactors(A, C), inverse = T(1) / det;
     const auto is_sound = det > collapsed;
+#pragma GCC unroll 3
     for (int i = 0; i < 3; ++i) { // A^-1 = C^T / det
-      const V value = (C[3 * i] * t[0] + C[3 * i + 1] * t[1] + C[3 * i + 2] * t[2]) / det;
+      const V value = (C[3 * i] * t[0] + C[3 * i + 1] * t[1] + C[3 * i + 2] * t[2]) * inverse;
       z[i] = is_sound ? value : V{};
     }
+  }
+  /// E = u.f / 2.
+  [[gnu::always_inline]] static V half_product(const V (&u)[8][3], const V (&f)[8][3]) {
+    V sum = V{};
+#pragma GCC unroll 7
+    for (int m = 1; m < 8; ++m)
+#pragma GCC unroll 3
+      for (int i = 0; i < 3; ++i)
+        sum += u[m][i] * f[m][i];
+    return T(0.5) * sum;
   }
   template <bool is_partial>
   [[gnu::always_inline]] static void force_of(const CubeConstants<T>& cube, const Batch<T>& batch, const int lane,
                                               const Turns& turns, const MeanPart mean, const T (*const stress)[n_lanes],
-                                              const T spins, const Row<T>* const x, Row<T>* const forces) {
-    V R[9], F[9], P[9], Y[8][3], u[8][3], f[8][3], t[3] = {V{}, V{}, V{}}, z[3], w[3];
+                                              const T spins, const Row<T>* const x, Row<T>* const forces,
+                                              T* const energies) {
+    V R[9], F[9], P[9], u[8][3], f[8][3], t[3] = {V{}, V{}, V{}}, z[3], w[3];
     load_nine(turns.R, lane, R);
-    load_nine(turns.F, lane, F);
-    strain<is_partial>(cube, batch, lane, R, mean, x, Y, u, f);
+    strain<is_partial>(cube, batch, lane, R, mean, x, u, f);
+    if (energies)
+      store(energies + lane, half_product(u, f));
+#pragma GCC unroll 7
     for (int m = 1; m < 8; ++m) {
-      cross(Y[m], f[m], w);
+      cross(u[m], f[m], w);
+#pragma GCC unroll 3
       for (int i = 0; i < 3; ++i)
         t[i] += w[i];
     }
+#pragma GCC unroll 3
+    for (int k = 0; k < 3; ++k) { // the cube at rest, 4 h e_k, of the shape
+      const int next = (k + 1) % 3, after = (k + 2) % 3;
+      t[next] -= 4 * cube.h * f[linear_modes[k]][after];
+      t[after] += 4 * cube.h * f[linear_modes[k]][next];
+    }
+    load_nine(turns.F, lane, F);
     spin(R, F, t, z);
     for (V& component : z)
       component *= spins;
+#pragma GCC unroll 3
     for (int k = 0; k < 3; ++k) { // z x e_k / (4 h)
       const int next = (k + 1) % 3, after = (k + 2) % 3;
       f[linear_modes[k]][next] -= T(0.25) / cube.h * z[after];
       f[linear_modes[k]][after] += T(0.25) / cube.h * z[next];
     }
     if constexpr (is_partial)
+#pragma GCC unroll 4
       for (int k = 0; k < 4; ++k) {
         const V b[3] = {load(batch.partial->gradient[3 * k] + lane), load(batch.partial->gradient[3 * k + 1] + lane),
                         load(batch.partial->gradient[3 * k + 2] + lane)};
         cross(z, b, w);
+#pragma GCC unroll 3
         for (int i = 0; i < 3; ++i)
           f[hourglass_modes[k]][i] -= w[i];
       }
+#pragma GCC unroll 7
     for (int m = 1; m < 8; ++m)
       turn(R, f[m]);
     if (stress) {
       load_nine(stress, lane, P);
+#pragma GCC unroll 3
       for (int j = 0; j < 3; ++j)
+#pragma GCC unroll 3
         for (int i = 0; i < 3; ++i) {
           f[linear_modes[j]][i] += T(0.25) / cube.h * P[3 * j + i];
           if constexpr (is_partial)
+#pragma GCC unroll 4
             for (int k = 0; k < 4; ++k)
               f[hourglass_modes[k]][i] += load(batch.partial->gradient[3 * k + j] + lane) * P[3 * j + i];
         }
     }
+#pragma GCC unroll 7
     for (int m = 1; m < 8; ++m)
+#pragma GCC unroll 3
       for (int i = 0; i < 3; ++i)
         f[m][i] = -f[m][i];
     add_modes(f, batch.corners, lane, forces);
   }
   [[gnu::always_inline]] static void force(const CubeConstants<T>& cube, const Batch<T>& batch, const Turns& turns,
                                            const MeanPart mean, const T (*const stress)[n_lanes], const T spins,
-                                           const Row<T>* const x, Row<T>* const forces) {
+                                           const Row<T>* const x, Row<T>* const forces, T* const energies) {
     for (int lane = 0; lane < int(n_lanes); lane += W)
       if (batch.partial)
-        force_of<true>(cube, batch, lane, turns, mean, stress, spins, x, forces);
+        force_of<true>(cube, batch, lane, turns, mean, stress, spins, x, forces, energies);
       else
-        force_of<false>(cube, batch, lane, turns, mean, stress, spins, x, forces);
+        force_of<false>(cube, batch, lane, turns, mean, stress, spins, x, forces, energies);
   }
   template <bool is_partial>
   [[gnu::always_inline]] static V energy_of(const CubeConstants<T>& cube, const Batch<T>& batch, const int lane,
                                             const Turns& turns, const MeanPart mean, const Row<T>* const x) {
-    V R[9], Y[8][3], u[8][3], f[8][3], sum = V{};
+    V R[9], u[8][3], f[8][3];
     load_nine(turns.R, lane, R);
-    strain<is_partial>(cube, batch, lane, R, mean, x, Y, u, f);
-    for (int m = 1; m < 8; ++m)
-      for (int i = 0; i < 3; ++i)
-        sum += u[m][i] * f[m][i];
-    return T(0.5) * sum;
+    strain<is_partial>(cube, batch, lane, R, mean, x, u, f);
+    return half_product(u, f);
   }
   [[gnu::always_inline]] static void energy(const CubeConstants<T>& cube, const Batch<T>& batch, const Turns& turns,
                                             const MeanPart mean, const Row<T>* const x, T* const energies) {

@@ -87,6 +87,16 @@ void Hexahedra::update(const grid::Solid& solid, const std::span<const grid::Cop
 
 void Hexahedra::follow(const grid::Solid& solid, const std::span<const grid::CopyId> changed,
                        const std::span<const std::uint32_t> corners) {
+  known_.forget();
+  if (multigrid_) {
+    former_levels_ = multigrid_->give_way();
+    multigrid_ = nullptr;
+  }
+  if (!former_levels_.coarse.empty()) {
+    former_levels_.same_copy.resize(solid.complex.n_copies(), CellsOfLevel::unused);
+    for (const grid::CopyId c : changed)
+      former_levels_.same_copy[c.value] = CellsOfLevel::unused;
+  }
   batch(solid);
   sum_mass(corners);
   ghost_penalty_.update( // to which a crumb's copies are as good as full
@@ -100,7 +110,6 @@ void Hexahedra::batch(const grid::Solid& solid) {
   std::vector<std::uint32_t> order; // by cell
   order.reserve(n_elements());
   places_.resize(n_elements());
-  multigrid_ = nullptr;
   for (const auto cell : ids<grid::CellId>(solid.grid.n_cells())) {
     const Index3 place = solid.grid.index(solid.grid.nodes(cell)[0]);
     for (const grid::CopyId c : solid.complex.copies_of(cell)) {
@@ -176,37 +185,69 @@ Turns Hexahedra::turns(const std::size_t batch, const Row<double>* const x) cons
     return all;
   }
   const unsigned unknown = force_kernels().turn(batched_.cube, batched_.batch(batching_, batch), x, all);
-  for (std::size_t lane = 0; lane < n_lanes; ++lane)
+  for_each_lane(batch, [&](const std::size_t lane, std::uint32_t) {
     if ((unknown >> lane & 1) != 0)
       put(lane, material::rotation_of(gradient_of(all, lane)));
+  });
   return all;
 }
 
+double Hexahedra::sum_energies(const Points& x, const std::vector<double>& of_batches) const {
+  return std::accumulate(of_batches.begin(), of_batches.end(), ghost_penalty_.energy(x) + ties_.energy(x));
+}
+
+/// Adds what lanes have, and what the law says of them.
+void Hexahedra::add_energies(const std::size_t batch, const Turns& turns, const double* const of_lanes,
+                             double& sum) const {
+  for_each_lane(batch, [&](const std::size_t lane, const std::uint32_t copy) {
+    sum += of_lanes[lane];
+    if (!is_hookean())
+      sum += elements_[copy].volume *
+             std::visit([&](const auto& law) { return law.energy(gradient_of(turns, lane)); }, law_);
+  });
+}
+
 double Hexahedra::energy(const Points& x) const {
+  if (const auto known = known_.energy(x))
+    return *known;
   Rows rows = scratch_.borrow(batching_.n_rows());
   put_rows(dynamics::flat(x), rows);
-  const std::size_t n = batching_.batches().size();
-  std::vector<double> energies(n);
+  std::vector<double> energies(batching_.batches().size());
   batching_.for_each([&](const std::size_t i) {
     const Turns turns = this->turns(i, rows.data());
     alignas(64) double of_lanes[n_lanes];
     force_kernels().energy(batched_.cube, batched_.batch(batching_, i), turns, mean_part(), rows.data(), of_lanes);
-    for_each_lane(i, [&](const std::size_t lane, const std::uint32_t copy) {
-      energies[i] += of_lanes[lane];
-      if (!is_hookean())
-        energies[i] += elements_[copy].volume *
-                       std::visit([&](const auto& law) { return law.energy(gradient_of(turns, lane)); }, law_);
-    });
+    add_energies(i, turns, of_lanes, energies[i]);
   });
-  return std::accumulate(energies.begin(), energies.end(), ghost_penalty_.energy(x) + ties_.energy(x));
+  return sum_energies(x, energies);
+}
+
+double Hexahedra::energy_ahead(const Points& x) const {
+  if (known_.are_known(x)) {
+    const double energy = this->energy(x);
+    known_.put_energy(x, energy);
+    return energy;
+  }
+  Points forces;
+  const double energy = *force(x, forces, WithEnergy::always);
+  known_.put(x, forces, energy);
+  return energy;
 }
 
 void Hexahedra::force(const Points& x, Points& forces) const {
+  if (known_.forces(x, forces))
+    return;
+  const auto energy = force(x, forces, WithEnergy::where_cheap);
+  known_.put(x, forces, energy);
+}
+
+std::optional<double> Hexahedra::force(const Points& x, Points& forces, const WithEnergy with_energy) const {
   Rows rows = scratch_.borrow(batching_.n_rows());
   put_rows(dynamics::flat(x), rows);
   Rows sums = scratch_.borrow(batching_.n_rows());
   clear(sums.data(), batching_.n_rows());
   const double spins = frame_ == Frame::turning ? 1 : 0;
+  std::vector<double> energies(with_energy == WithEnergy::always || is_hookean() ? batching_.batches().size() : 0);
   batching_.for_each_in_order([&](const std::size_t i) {
     const Turns turns = this->turns(i, rows.data());
     Lanes9<double> stress{};
@@ -217,13 +258,20 @@ void Hexahedra::force(const Points& x, Points& forces) const {
         for (int k = 0; k < 9; ++k)
           stress.row[k][lane] = P.data()[k];
       });
+    alignas(64) double of_lanes[n_lanes];
     force_kernels().force(batched_.cube, batched_.batch(batching_, i), turns, mean_part(),
-                          is_hookean() ? nullptr : stress.row, spins, rows.data(), sums.data());
+                          is_hookean() ? nullptr : stress.row, spins, rows.data(), sums.data(),
+                          energies.empty() ? nullptr : of_lanes);
+    if (!energies.empty())
+      add_energies(i, turns, of_lanes, energies[i]);
   });
   forces.resize(mass_.size());
   write(sums.data(), dynamics::flat(forces));
   ghost_penalty_.add_force(x, forces);
   ties_.add_force(x, forces);
+  if (energies.empty() && !batching_.batches().empty())
+    return std::nullopt;
+  return sum_energies(x, energies);
 }
 
 void Hexahedra::linearise(const Points& x) {
@@ -277,10 +325,13 @@ void Hexahedra::stiffness_diagonal(std::vector<Mat3>& blocks) const {
 void Hexahedra::make_multigrid() {
   CellsOfLevel cells{places_, {}, incidence_.n_corners()};
   cells.corners.assign(incidence_.corners(0), incidence_.corners(0) + 8 * n_elements());
-  multigrid_ = std::make_unique<Multigrid>(FinestLevel{
-    std::move(cells), h_, material_, elements_.full(), [this](const std::uint32_t copy) { return kind(copy); },
-    [this](const std::uint32_t copy) -> const Element& { return elements_[copy]; }, batching_, ghost_penalty_.faces(),
-    ties_.all()});
+  multigrid_ = std::make_unique<Multigrid>(
+    FinestLevel{std::move(cells), h_, material_, elements_.full(),
+                [this](const std::uint32_t copy) { return kind(copy); },
+                [this](const std::uint32_t copy) -> const Element& { return elements_[copy]; }, batching_,
+                ghost_penalty_.faces(), ties_.all()},
+    former_levels_);
+  former_levels_ = {};
 }
 
 dynamics::Preconditioner* Hexahedra::preconditioner(const dynamics::LinearEquation& equation) {

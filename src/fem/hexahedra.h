@@ -28,6 +28,7 @@
 #include "fem/element_table.h"
 #include "fem/ghost_penalty.h"
 #include "fem/incidence.h"
+#include "fem/known_forces.h"
 #include "fem/multigrid.h"
 #include "fem/scratch.h"
 #include "fem/ties.h"
@@ -71,6 +72,7 @@ class Hexahedra : public dynamics::ElasticModel, public dynamics::StiffnessMatri
   }
   const dynamics::MassCoupling* mass_coupling() const override { return consistent_mass_.get(); }
   double energy(const Points& x) const override;
+  double energy_ahead(const Points& x) const override;
   void force(const Points& x, Points& forces) const override;
   void linearise(const Points& x) override;
   void apply_stiffness(std::span<const double> p, std::span<double> y) const override;
@@ -117,6 +119,11 @@ class Hexahedra : public dynamics::ElasticModel, public dynamics::StiffnessMatri
   /// Calls f(lane, copy) for each lane of a batch that is used.
   template <class Function>
   void for_each_lane(std::size_t batch, const Function& f) const;
+  enum class WithEnergy { always, where_cheap };
+  /// With the energy, where it costs nothing (laws other than Hooke's take time for it) or is asked for.
+  std::optional<double> force(const Points& x, Points& forces, WithEnergy with_energy) const;
+  void add_energies(std::size_t batch, const Turns& turns, const double* of_lanes, double& sum) const;
+  double sum_energies(const Points& x, const std::vector<double>& of_batches) const;
   MeanPart mean_part() const { return is_hookean() ? MeanPart::hooke : MeanPart::none; }
 
   double h_;
@@ -135,7 +142,9 @@ class Hexahedra : public dynamics::ElasticModel, public dynamics::StiffnessMatri
   std::unique_ptr<ConsistentMass> consistent_mass_; // none where mass is lumped
   std::vector<Index3> places_;                      // of the copies' cells
   std::unique_ptr<Multigrid> multigrid_;            // none until it is asked for
+  FormerLevels former_levels_;                      // when it was asked for last, if a cut came since
   mutable Scratch<Row<double>> scratch_;
+  mutable KnownForces known_;
 };
 
 } // namespace kerf::fem

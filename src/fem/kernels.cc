@@ -31,8 +31,9 @@ namespace {
 [[gnu::target("arch=x86-64-v4")]] void force_wide(const CubeConstants<double>& cube, const Batch<double>& batch,
                                                   const Turns& turns, const MeanPart mean,
                                                   const double (*const P)[n_lanes], const double spins,
-                                                  const Row<double>* const x, Row<double>* const forces) {
-  ForceLoops<double, 8>::force(cube, batch, turns, mean, P, spins, x, forces);
+                                                  const Row<double>* const x, Row<double>* const forces,
+                                                  double* const energies) {
+  ForceLoops<double, 8>::force(cube, batch, turns, mean, P, spins, x, forces, energies);
 }
 [[gnu::target("arch=x86-64-v4")]] void energy_wide(const CubeConstants<double>& cube, const Batch<double>& batch,
                                                    const Turns& turns, const MeanPart mean, const Row<double>* const x,
@@ -65,8 +66,9 @@ namespace {
 [[gnu::target("arch=x86-64-v3")]] void force_middle(const CubeConstants<double>& cube, const Batch<double>& batch,
                                                     const Turns& turns, const MeanPart mean,
                                                     const double (*const P)[n_lanes], const double spins,
-                                                    const Row<double>* const x, Row<double>* const forces) {
-  ForceLoops<double, 4>::force(cube, batch, turns, mean, P, spins, x, forces);
+                                                    const Row<double>* const x, Row<double>* const forces,
+                                                    double* const energies) {
+  ForceLoops<double, 4>::force(cube, batch, turns, mean, P, spins, x, forces, energies);
 }
 [[gnu::target("arch=x86-64-v3")]] void energy_middle(const CubeConstants<double>& cube, const Batch<double>& batch,
                                                      const Turns& turns, const MeanPart mean,
@@ -96,8 +98,8 @@ unsigned turn_narrow(const CubeConstants<double>& cube, const Batch<double>& bat
 }
 void force_narrow(const CubeConstants<double>& cube, const Batch<double>& batch, const Turns& turns,
                   const MeanPart mean, const double (*const P)[n_lanes], const double spins, const Row<double>* const x,
-                  Row<double>* const forces) {
-  ForceLoops<double, 4>::force(cube, batch, turns, mean, P, spins, x, forces);
+                  Row<double>* const forces, double* const energies) {
+  ForceLoops<double, 4>::force(cube, batch, turns, mean, P, spins, x, forces, energies);
 }
 void energy_narrow(const CubeConstants<double>& cube, const Batch<double>& batch, const Turns& turns,
                    const MeanPart mean, const Row<double>* const x, double* const energies) {

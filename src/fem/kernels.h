@@ -85,9 +85,9 @@ struct ForceKernels {
   /// far from a rotation.
   unsigned (*turn)(const CubeConstants<double>& cube, const Batch<double>& batch, const Row<double>* x, Turns& turns);
   /// forces -= dE/dx, dR/dx included where `spins` is 1 (and not where it is 0), with P, 9 rows, the stress of a law
-  /// times the volume, beside (null: none).
+  /// times the volume, beside (null: none). `energies`: as energy() has them, to the last bit; null: none.
   void (*force)(const CubeConstants<double>& cube, const Batch<double>& batch, const Turns& turns, MeanPart mean,
-                const double (*P)[n_lanes], double spins, const Row<double>* x, Row<double>* forces);
+                const double (*P)[n_lanes], double spins, const Row<double>* x, Row<double>* forces, double* energies);
   /// E of each lane [J].
   void (*energy)(const CubeConstants<double>& cube, const Batch<double>& batch, const Turns& turns, MeanPart mean,
                  const Row<double>* x, double* energies);

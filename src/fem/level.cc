@@ -1,5 +1,6 @@
 #include "fem/level.h"
 
+#include "fem/row_of_floats.h"
 #include "grid/cube.h"
 
 #include <Eigen/LU>
@@ -37,10 +38,7 @@ Mat3 inverse(const Mat3& B) {
   return B.determinant() > singular * size * size * size ? Mat3(B.inverse()) : Mat3(Mat3::Identity() / (3 * size));
 }
 
-/// Steps d = before d + after D^-1 r of a Chebyshev polynomial, small on [lower, upper].
-struct ChebyshevStep {
-  float before, after;
-};
+/// Of a Chebyshev polynomial, small on [lower, upper].
 constexpr int n_steps = 3;
 std::array<ChebyshevStep, n_steps> chebyshev_steps(const double lower, const double upper) {
   const double middle = (upper + lower) / 2, half = (upper - lower) / 2, sigma = middle / half;
@@ -55,7 +53,7 @@ std::array<ChebyshevStep, n_steps> chebyshev_steps(const double lower, const dou
   return steps;
 }
 std::array<ChebyshevStep, n_steps> chebyshev_steps(const double bound) {
-  constexpr double part = 1.0 / 16; // of the spectrum's range that the coarse level sees to
+  constexpr double part = 1.0 / 30; // of the spectrum's range that the coarse level sees to
   return chebyshev_steps(part * bound, bound);
 }
 
@@ -120,6 +118,9 @@ void Level::resize() {
   for (auto* const values : {&r, &x, &d, &t})
     values->assign(batching.n_rows(), {});
   mass.resize(n_corners());
+  lines_of_product_.clear();
+  for (const GhostLine& line : lines)
+    lines_of_product_.push_back({line.a, line.b, line.c, float(line.stiffness)});
 }
 
 template <class Function>
@@ -186,24 +187,17 @@ void Level::invert_diagonal(const std::function<Mat3(std::uint32_t corner, const
 
 /// t += A d but for the masses.
 void Level::add_products() {
-  const auto add = [](FloatRow& row, const float times, const FloatRow& f) {
-    row.x += times * f.x;
-    row.y += times * f.y;
-    row.z += times * f.z;
-  };
   add_product(batching, elements, d.data(), t.data());
-  for (const GhostLine& line : lines) {
-    const FloatRow &a = d[line.a], &b = d[line.b], &c = d[line.c];
-    const auto k = float(line.stiffness);
-    const FloatRow f = {k * (a.x - 2 * b.x + c.x), k * (a.y - 2 * b.y + c.y), k * (a.z - 2 * b.z + c.z)};
-    add(t[line.a], 1, f);
-    add(t[line.b], -2, f);
-    add(t[line.c], 1, f);
+  for (const LineOfProduct& line : lines_of_product_) {
+    const Four f = line.stiffness * (load(d[line.a]) - 2 * load(d[line.b]) + load(d[line.c]));
+    add(t[line.a], f);
+    add(t[line.b], -2 * f);
+    add(t[line.c], f);
   }
   for (const Tie& tie : ties) {
-    const FloatRow &a = d[tie.a], &b = d[tie.b], jump = {a.x - b.x, a.y - b.y, a.z - b.z};
-    add(t[tie.a], float(tie.stiffness), jump);
-    add(t[tie.b], -float(tie.stiffness), jump);
+    const Four f = float(tie.stiffness) * (load(d[tie.a]) - load(d[tie.b]));
+    add(t[tie.a], f);
+    add(t[tie.b], -f);
   }
   for (std::size_t i = 0; i < points.blocks.size(); ++i) {
     Eigen::Vector3f u = Eigen::Vector3f::Zero();
@@ -234,13 +228,11 @@ void Level::add_products() {
 namespace {
 
 /// D^-1 r.
-FloatRow product(const FloatRow* const inverse, const FloatRow& r) {
-  const FloatRow &d = inverse[0], &s = inverse[1];
-  return {d.x * r.x + s.x * r.y + s.z * r.z, s.x * r.x + d.y * r.y + s.y * r.z, s.z * r.x + s.y * r.y + d.z * r.z};
+Four product(const FloatRow* const inverse, const Four& r) {
+  const Four diagonal = load(inverse[0]), beside = load(inverse[1]); // xy, yz, zx
+  return diagonal * r + beside * __builtin_shufflevector(r, r, 1, 2, 0, 3) +
+         __builtin_shufflevector(beside, beside, 2, 0, 1, 3) * __builtin_shufflevector(r, r, 2, 0, 1, 3);
 }
-FloatRow difference(const FloatRow& a, const FloatRow& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-FloatRow sum(const FloatRow& a, const FloatRow& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-FloatRow scaled(const float s, const FloatRow& a) { return {s * a.x, s * a.y, s * a.z}; }
 
 } // namespace
 
@@ -248,49 +240,52 @@ FloatRow scaled(const float s, const FloatRow& a) { return {s * a.x, s * a.y, s 
 void Level::add_of_clusters(const float after) {
   clusters.for_each([&](const std::uint32_t corner) { return Eigen::Vector3f(r[corner].x, r[corner].y, r[corner].z); },
                     [&](const std::uint32_t corner, const Eigen::Vector3f& v) {
-                      const FloatRow step = {after * v.x(), after * v.y(), after * v.z()};
-                      d[corner] = sum(d[corner], step);
-                      x[corner] = sum(x[corner], step);
-                      t[corner] = sum(t[corner], scaled(mass[corner], step));
+                      const Four step = {after * v.x(), after * v.y(), after * v.z(), 0};
+                      add(d[corner], step);
+                      add(x[corner], step);
+                      add(t[corner], mass[corner] * step);
                     });
+}
+
+/// r -= t, d = before d + after D^-1 r, x += d, t = M d.
+void Level::step(const ChebyshevStep& step) {
+  for_each_corner([&](const std::size_t i) {
+    const Four left = load(r[i]) - load(t[i]),
+               change = step.before * load(d[i]) + step.after * product(&inverse[2 * i], left);
+    store(r[i], left);
+    store(d[i], change);
+    add(x[i], change);
+    store(t[i], mass[i] * change);
+  });
+  add_of_clusters(step.after);
 }
 
 void Level::smooth_from_zero() {
   const auto steps = chebyshev_steps(bound);
   for_each_corner([&](const std::size_t i) {
-    d[i] = x[i] = scaled(steps[0].after, product(&inverse[2 * i], r[i]));
-    t[i] = scaled(mass[i], d[i]);
+    const Four change = steps[0].after * product(&inverse[2 * i], load(r[i]));
+    store(d[i], change);
+    store(x[i], change);
+    store(t[i], mass[i] * change);
   });
   add_of_clusters(steps[0].after);
-  for (int k = 1; k < n_steps; ++k) {
+  for (std::size_t k = 1; k < steps.size(); ++k) {
     add_products();
-    for_each_corner([&](const std::size_t i) {
-      r[i] = difference(r[i], t[i]);
-      d[i] = sum(scaled(steps[k].before, d[i]), scaled(steps[k].after, product(&inverse[2 * i], r[i])));
-      x[i] = sum(x[i], d[i]);
-      t[i] = scaled(mass[i], d[i]);
-    });
-    add_of_clusters(steps[k].after);
+    step(steps[k]);
   }
   add_products();
-  for_each_corner([&](const std::size_t i) { r[i] = difference(r[i], t[i]); });
+  for_each_corner([&](const std::size_t i) { store(r[i], load(r[i]) - load(t[i])); });
 }
 
 void Level::smooth_after_change() {
-  const auto steps = chebyshev_steps(bound);
   for_each_corner([&](const std::size_t i) {
-    x[i] = sum(x[i], d[i]);
-    t[i] = scaled(mass[i], d[i]);
+    const Four change = load(d[i]);
+    add(x[i], change);
+    store(t[i], mass[i] * change);
   });
-  for (const ChebyshevStep& step : steps) {
+  for (const ChebyshevStep& one : chebyshev_steps(bound)) {
     add_products();
-    for_each_corner([&](const std::size_t i) {
-      r[i] = difference(r[i], t[i]);
-      d[i] = sum(scaled(step.before, d[i]), scaled(step.after, product(&inverse[2 * i], r[i])));
-      x[i] = sum(x[i], d[i]);
-      t[i] = scaled(mass[i], d[i]);
-    });
-    add_of_clusters(step.after);
+    step(one);
   }
 }
 

@@ -33,6 +33,11 @@ struct Spring {
   Mat3 block;
 };
 
+/// d = before d + after D^-1 r.
+struct ChebyshevStep {
+  float before, after;
+};
+
 struct Level {
   CellsOfLevel cells;
   Batching batching;
@@ -56,6 +61,7 @@ struct Level {
 
   std::size_t n_corners() const { return cells.n_corners; }
 
+  /// When cells, batches and lines are there.
   void resize();
   /// From rotations, masses and springs.
   void make_diagonal();
@@ -74,6 +80,13 @@ struct Level {
   void put_inverse_block(std::size_t corner, const Mat3& block);
   void add_of_clusters(float after);
   void add_products();
+  void step(const ChebyshevStep& step);
+
+  struct LineOfProduct {
+    std::uint32_t a, b, c;
+    float stiffness;
+  };
+  std::vector<LineOfProduct> lines_of_product_;
 };
 
 } // namespace kerf::fem

@@ -1,8 +1,9 @@
 #include "fem/multigrid.h"
 
 #include "base/parallel.h"
-#include "fem/coarse_elements.h"
 #include "fem/level.h"
+#include "fem/level_elements.h"
+#include "fem/row_of_floats.h"
 #include "fem/turned.h"
 #include "material/polar.h"
 
@@ -19,18 +20,6 @@ namespace {
 
 constexpr std::size_t worth = 8192; // corners from which on a second thread pays
 constexpr std::size_t few = 48;     // corners that are factorised as they are
-
-/// What a level is made of.
-struct Elements {
-  Element full;
-  std::vector<Kind> kind;           // of each copy
-  std::vector<std::uint32_t> which; // of `made`, for partial copies
-  std::vector<Element> made;
-
-  const Element& operator[](const std::size_t copy) const {
-    return kind[copy] == Kind::full ? full : made[which[copy]];
-  }
-};
 
 void fill(Level& level, const std::function<const Element&(std::uint32_t)>& element, const Element& full,
           const double h, const material::Elastic& material) {
@@ -52,60 +41,14 @@ void fill(Level& level, const std::function<const Element&(std::uint32_t)>& elem
   level.resize();
 }
 
-/// `fine(copy)`: any that is used, `is_full(copy)` or not.
-Elements coarse_elements(const Coarsening& coarsening, const std::function<const Element&(std::uint32_t)>& fine,
-                         const std::function<bool(std::uint32_t)>& is_full, const Element& full, const double h,
-                         const material::Elastic& material) {
-  const std::size_t n = coarsening.coarse.n_copies();
-  std::vector<std::uint32_t> begin(n + 1, 0), order, n_full(n, 0); // children by parent
-  for (const std::uint32_t parent : coarsening.parent)
-    if (parent != CellsOfLevel::unused)
-      ++begin[parent + 1];
-  std::partial_sum(begin.begin(), begin.end(), begin.begin());
-  order.resize(begin[n]);
-  std::vector<std::uint32_t> end(begin.begin(), begin.end() - 1);
-  for (std::uint32_t c = 0; c < coarsening.parent.size(); ++c)
-    if (const std::uint32_t parent = coarsening.parent[c]; parent != CellsOfLevel::unused) {
-      order[end[parent]++] = c;
-      n_full[parent] += is_full(c) ? 1 : 0;
-    }
-  std::vector<Child> eight;
-  for (int octant = 0; octant < 8; ++octant)
-    eight.push_back({&full, octant});
-  Elements coarse{coarse_element(eight, h, material), std::vector<Kind>(n), std::vector<std::uint32_t>(n), {}};
-  std::vector<std::uint32_t> partial;
-  for (std::uint32_t c = 0; c < n; ++c) {
-    coarse.kind[c] = n_full[c] == 8 ? Kind::full : Kind::partial;
-    coarse.which[c] = static_cast<std::uint32_t>(partial.size());
-    if (coarse.kind[c] == Kind::partial)
-      partial.push_back(c);
-  }
-  coarse.made.resize(partial.size());
-  parallel_for(
-    partial.size(),
-    [&](const std::size_t i) {
-      std::vector<Child> children;
-      for (std::uint32_t k = begin[partial[i]]; k < begin[partial[i] + 1]; ++k)
-        children.push_back({&fine(order[k]), coarsening.octant[order[k]]});
-      coarse.made[i] = coarse_element(children, h, material);
-    },
-    64);
-  return coarse;
-}
-
 void multiply(const Weights& weights, const std::vector<Row<float>>& from, std::vector<Row<float>>& to) {
   parallel_for(
     weights.begin.size() - 1,
     [&](const std::size_t i) {
-      Row<float> sum;
-      for (std::uint32_t k = weights.begin[i]; k < weights.begin[i + 1]; ++k) {
-        const Row<float>& row = from[weights.column[k]];
-        const float w = weights.weight[k];
-        sum.x += w * row.x;
-        sum.y += w * row.y;
-        sum.z += w * row.z;
-      }
-      to[i] = sum;
+      Four sum = {};
+      for (std::uint32_t k = weights.begin[i]; k < weights.begin[i + 1]; ++k)
+        sum += weights.weight[k] * load(from[weights.column[k]]);
+      store(to[i], sum);
     },
     worth);
 }
@@ -154,9 +97,8 @@ void project(const std::vector<Spring>& held, std::vector<Row<float>>& rows) {
 
 /// A factorisation of the coarsest level, shifted by what single precision does not see: a free body's motion is singular.
 struct Multigrid::Coarsest {
-  Coarsest(Elements made, const material::Elastic& of) : elements(std::move(made)), material(of) {}
+  explicit Coarsest(const material::Elastic& of) : material(of) {}
 
-  Elements elements;
   material::Elastic material;
   Eigen::LLT<Eigen::MatrixXd> dense;
   Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> sparse;
@@ -170,6 +112,7 @@ struct Multigrid::Coarsest {
 
 struct Multigrid::Level : fem::Level {
   std::vector<Mat3> rotations; // of each copy; of coarse levels
+  LevelElements made_of;       // of coarse levels
 };
 
 namespace {
@@ -221,7 +164,7 @@ void Multigrid::Coarsest::factorise(const Multigrid::Level& level, const std::sp
   if (is_too_large(level))
     return;
   const auto matrix = [&](const std::size_t c) {
-    return turned_stiffness(stiffness(elements[c], material), rotations[c]);
+    return turned_stiffness(stiffness(level.made_of[c], material), rotations[c]);
   };
   const auto n = static_cast<Eigen::Index>(3 * level.n_corners());
   if (is_dense(level)) {
@@ -260,7 +203,7 @@ Multigrid::~Multigrid() = default;
 
 std::size_t Multigrid::n_levels() const { return levels_.size(); }
 
-Multigrid::Multigrid(const FinestLevel& finest) {
+Multigrid::Multigrid(const FinestLevel& finest, const FormerLevels& former) {
   constexpr double stands_still = 0.7; // corners over those of the level before
   const auto finest_element = [&](const std::uint32_t c) -> const Element& {
     return finest.kind(c) == Kind::full ? finest.full : finest.element(c);
@@ -272,28 +215,33 @@ Multigrid::Multigrid(const FinestLevel& finest) {
   levels_[0].lines = lines_of(finest.faces);
   levels_[0].ties.assign(finest.ties.begin(), finest.ties.end());
   fill(levels_[0], finest_element, finest.full, h, finest.material);
-  Elements elements;
   while (levels_.back().n_corners() > few) {
     Level& fine = levels_.back();
-    const bool is_finest = levels_.size() == 1;
+    const std::size_t n = levels_.size();
     Coarsening coarsening = coarsened(fine.cells);
     if (double(coarsening.coarse.n_corners) > stands_still * double(fine.n_corners()))
       break;
-    elements =
-      is_finest
-        ? coarse_elements(
-            coarsening, finest_element, [&](const std::uint32_t c) { return finest.kind(c) == Kind::full; },
-            finest.full, h, finest.material)
-        : coarse_elements(
-            coarsening, [&](const std::uint32_t c) -> const Element& { return elements[c]; },
-            [&](const std::uint32_t c) { return elements.kind[c] == Kind::full; }, elements.full, h, finest.material);
-    h *= 2;
+    const LevelElements& of_fine = fine.made_of;
+    const FineElements children =
+      n == 1
+        ? FineElements{finest_element, [&](const std::uint32_t c) { return finest.kind(c) == Kind::full; }, finest.full}
+        : FineElements{[&](const std::uint32_t c) -> const Element& { return of_fine[c]; },
+                       [&](const std::uint32_t c) { return of_fine.kind[c] == Kind::full; }, of_fine.full};
     Level coarse;
+    if (former.coarse.size() >= n) {
+      const auto& [parent, elements] = former.coarse[n - 1];
+      const CoarseBefore known{n == 1 ? former.same_copy : of_fine.same_as, parent, elements};
+      coarse.made_of = coarse_elements(coarsening, children, h, finest.material, &known);
+    } else {
+      coarse.made_of = coarse_elements(coarsening, children, h, finest.material, nullptr);
+    }
+    h *= 2;
     coarse.cells = coarsening.coarse;
     coarse.lines = coarsened(fine.lines, fine.cells, coarsening);
     coarse.ties = coarsened(fine.ties, coarsening.prolongation);
     std::vector<std::uint32_t> order(coarse.cells.n_copies());
     std::iota(order.begin(), order.end(), 0);
+    const LevelElements& elements = coarse.made_of;
     coarse.batching = Batching(
       order, [&](const std::uint32_t c) { return elements.kind[c]; }, coarse.cells.corners.data(),
       coarse.cells.n_corners);
@@ -302,7 +250,16 @@ Multigrid::Multigrid(const FinestLevel& finest) {
     fine.to_coarse = std::move(coarsening);
     levels_.push_back(std::move(coarse));
   }
-  coarsest_ = std::make_unique<Coarsest>(std::move(elements), finest.material);
+  coarsest_ = std::make_unique<Coarsest>(finest.material);
+}
+
+FormerLevels Multigrid::give_way() {
+  FormerLevels former;
+  for (std::size_t l = 1; l < levels_.size(); ++l)
+    former.coarse.push_back({std::move(levels_[l - 1].to_coarse.parent), std::move(levels_[l].made_of)});
+  former.same_copy.resize(levels_[0].cells.n_copies());
+  std::iota(former.same_copy.begin(), former.same_copy.end(), 0);
+  return former;
 }
 
 void Multigrid::prepare(const dynamics::LinearEquation& equation, const std::span<const Lanes9<double>> rotations) {

@@ -25,6 +25,7 @@
 #include "fem/batches.h"
 #include "fem/coarsening.h"
 #include "fem/ghost_penalty.h"
+#include "fem/level_elements.h"
 #include "fem/ties.h"
 
 #include <memory>
@@ -44,13 +45,28 @@ struct FinestLevel {
   std::span<const Tie> ties;
 };
 
+/// What is kept of a hierarchy when a cut makes another one.
+struct FormerLevels {
+  struct OfLevel {
+    std::vector<std::uint32_t> parent; ///< of the copies of the level below
+    LevelElements elements;
+  };
+  std::vector<OfLevel> coarse;
+  std::vector<std::uint32_t>
+    same_copy; ///< of each finest copy its own number; CellsOfLevel::unused: it has changed since
+};
+
 class Multigrid : public dynamics::Preconditioner {
  public:
-  explicit Multigrid(const FinestLevel& finest);
+  /// Building anew gives the same bits.
+  explicit Multigrid(const FinestLevel& finest, const FormerLevels& former = {});
   ~Multigrid() override;
 
   /// With one there is nothing coarser, and nothing gained.
   std::size_t n_levels() const;
+
+  /// For one that takes its place; it is of no use any more.
+  FormerLevels give_way();
 
   /// Takes over an equation. `rotations`: of the finest batches, at the linearisation point.
   void prepare(const dynamics::LinearEquation& equation, std::span<const Lanes9<double>> rotations);

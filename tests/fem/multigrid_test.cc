@@ -268,6 +268,87 @@ TEST(Multigrid, SeesCutsOnEveryLevel) {
   EXPECT_LE(*std::max_element(counts.begin(), counts.end()), 100) << all;
 }
 
+/// Where the error over the way is to end an iteration, it ends by what is left, at most two iterations late.
+TEST(Multigrid, TellsWhatErrorIsLeft) {
+  constexpr int most = 24;
+  int n_late = 0, n_all = 0;
+  for (int n = 0; n < 3; ++n) {
+    Draw draw(335 + n);
+    Body body = make_block({8, 7, 7}, 0.1, draw, {0.2, 0.8});
+    cut_at_random(body, 0.05 * n, draw, {0.2, 0.8});
+    Hexahedra model(body, {.material = rubber(n == 0 ? 0.45 : 0.3)});
+    Equation equation(model, clamped_below(body, 0.3), body.rest(), 36);
+    auto& own = equation.multigrid();
+    Points b(equation.blocks.size());
+    for (std::size_t i = 0; i < b.size(); ++i)
+      b[i] = model.lumped_mass()[i] * draw.vector();
+    equation.project(flat(b));
+    const auto solved = [&](const dynamics::CgStop& stop, const int n_most, dynamics::CgReport& report) {
+      Points x(b.size(), Vec3::Zero());
+      const dynamics::CgEquation cg{[&](const auto p, const auto y) { equation.apply(p, y); },
+                                    [&](const auto r, const auto y) { own.apply(r, y); },
+                                    [&](const auto r, const auto y) { equation.apply_inverse_blocks(r, y); }};
+      report = dynamics::conjugate_gradients(cg, flat(b), stop, n_most, flat(x));
+      return x;
+    };
+    const auto size = [&](const Points& e) {
+      Points Ae(e.size());
+      equation.apply(flat(e), flat(Ae));
+      return std::sqrt(dynamics::dot(flat(e), flat(Ae)));
+    };
+    dynamics::CgReport report;
+    const Points exact = solved({.residual = 1e-13}, 60, report);
+    std::vector<double> left; // after so many iterations
+    for (int k = 0; k < most; ++k) {
+      Points e = solved({}, k, report);
+      for (std::size_t i = 0; i < e.size(); ++i)
+        e[i] -= exact[i];
+      left.push_back(size(e));
+    }
+    for (const double part : {1e-1, 1e-2, 1e-3, 1e-4}) {
+      solved({.of_way = part}, 60, report);
+      ASSERT_TRUE(report.converged);
+      ASSERT_LT(report.n_iterations, most);
+      EXPECT_LE(left[report.n_iterations], part * left[0]) << n;
+      const auto enough = std::ranges::find_if(left, [&](const double e) { return e <= part * left[0]; });
+      const auto late = report.n_iterations - std::max(2, static_cast<int>(enough - left.begin()));
+      EXPECT_LE(late, 2) << n << ' ' << part;
+      n_late += late;
+      ++n_all;
+    }
+  }
+  RecordProperty("late_by", std::to_string(double(n_late) / n_all));
+  EXPECT_LT(n_late, n_all);
+}
+
+/// The way may count from elsewhere than from the guess: from where nothing would be, as here from zero.
+TEST(Multigrid, CountsTheWayFromWhereItIsTold) {
+  Draw draw(347);
+  Body body = make_block({7, 7, 7}, 0.1, draw, {0.3, 0.7});
+  Hexahedra model(body, {.material = rubber(0.3)});
+  Equation equation(model, clamped_below(body, 0.3), body.rest(), 36);
+  auto& own = equation.multigrid();
+  Points b(equation.blocks.size());
+  for (std::size_t i = 0; i < b.size(); ++i)
+    b[i] = model.lumped_mass()[i] * draw.vector();
+  equation.project(flat(b));
+  const dynamics::CgEquation cg{[&](const auto p, const auto y) { equation.apply(p, y); },
+                                [&](const auto r, const auto y) { own.apply(r, y); },
+                                [&](const auto r, const auto y) { equation.apply_inverse_blocks(r, y); }};
+  Points exact(b.size(), Vec3::Zero());
+  const auto full = dynamics::conjugate_gradients(cg, flat(b), {.residual = 1e-12}, 60, flat(exact));
+  Points near = exact; // a hundredth of the way is left
+  for (Vec3& x : near)
+    x *= 0.99;
+  Points x = near;
+  const auto of_all = dynamics::conjugate_gradients(cg, flat(b), {.of_way = 1e-3, .from = 0}, 60, flat(x));
+  EXPECT_NEAR(of_all.way, full.way, 1e-3 * full.way);
+  x = near;
+  const auto of_rest = dynamics::conjugate_gradients(cg, flat(b), {.of_way = 1e-3}, 60, flat(x));
+  EXPECT_NEAR(of_rest.way, 0.01 * full.way, 1e-5 * full.way);
+  EXPECT_LT(of_all.n_iterations, of_rest.n_iterations);
+}
+
 /// A plane that parts a body parts its coarse copies: two halves know nothing of each other, at any level.
 TEST(Multigrid, HalvesKnowNothingOfEachOther) {
   Draw draw(340);
@@ -346,6 +427,85 @@ TEST(Multigrid, GivesTheSameBitsByAnyWay) {
       EXPECT_EQ(z, reference) << n;
     }
   set_n_threads(n_before);
+}
+
+/// Cuts that reach little of a body, one after the other, and one that is followed only with the next.
+TEST(Multigrid, FollowsSmallCutsBitByBit) {
+  Draw draw(352);
+  Body body = make_block({11, 10, 11}, 0.1, draw, {0.3, 0.7});
+  Hexahedra followed(body, {.material = rubber(0.3)});
+  const auto inner = inner_edges(body);
+  for (int n = 0; n < 4; ++n) {
+    if (n != 2)
+      Equation(followed, clamped_below(body, 0.3), body.rest(), 36).multigrid();
+    std::vector<grid::EdgeId> edges;
+    const std::size_t first = inner.size() * static_cast<std::size_t>(n + 1) / 6;
+    for (std::size_t k = first; k < first + 20; ++k) {
+      body.cuts.add(body.grid, {inner[k], draw(0.1, 0.9), draw.vector().normalized(), 1});
+      edges.push_back(inner[k]);
+    }
+    surface::place(body, {});
+    followed.update(body, grid::update_complex(body, edges).reshaped);
+    Hexahedra anew(body, {.material = rubber(0.3)});
+    const Points x = disturbed(body, 0.01, draw);
+    Points r(x.size()), by_following(x.size()), by_building(x.size());
+    for (Vec3& value : r)
+      value = draw.vector();
+    if (n != 1)
+      Equation(followed, clamped_below(body, 0.3), x, 36).multigrid().apply(flat(r), flat(by_following));
+    Equation(anew, clamped_below(body, 0.3), x, 36).multigrid().apply(flat(r), flat(by_building));
+    EXPECT_EQ(n == 1 ? by_building : by_following, by_building) << n;
+  }
+}
+
+/// 8 x 8 x 8 cubes, each with material of its own, of which one changes: one of the 64 coarse elements is summed anew, and all
+/// are what they are without those before.
+TEST(LevelElements, TakeOverWhatHasNotChanged) {
+  constexpr int n = 8;
+  Draw draw(353);
+  const material::Elastic material = rubber(0.3);
+  CellsOfLevel cells;
+  const auto corner = [](const int i, const int j, const int k) {
+    return static_cast<std::uint32_t>(i + (n + 1) * (j + (n + 1) * k));
+  };
+  std::vector<Element> fine;
+  const auto any_element = [&] {
+    Moments moments = full_cube_moments();
+    for (double& m : moments)
+      m *= 1 + 0.1 * draw(-1, 1);
+    return make_element(moments, 0.1, material, {});
+  };
+  for (int k = 0; k < n; ++k)
+    for (int j = 0; j < n; ++j)
+      for (int i = 0; i < n; ++i) {
+        cells.place.push_back({i, j, k});
+        fine.push_back(any_element());
+        for (int v = 0; v < 8; ++v)
+          cells.corners.push_back(corner(i + (v & 1), j + (v >> 1 & 1), k + (v >> 2)));
+      }
+  cells.n_corners = static_cast<std::size_t>(n + 1) * (n + 1) * (n + 1);
+  const Coarsening coarsening = coarsened(cells);
+  ASSERT_EQ(coarsening.coarse.n_copies(), 64u);
+  const Element full = make_element(full_cube_moments(), 0.1, material, {});
+  const FineElements children{[&](const std::uint32_t c) -> const Element& { return fine[c]; },
+                              [](std::uint32_t) { return false; }, full};
+  const LevelElements before = coarse_elements(coarsening, children, 0.1, material, nullptr);
+  std::vector<std::uint32_t> same(fine.size());
+  for (std::uint32_t c = 0; c < same.size(); ++c)
+    same[c] = c;
+  fine[100] = any_element();
+  same[100] = CellsOfLevel::unused;
+  const CoarseBefore known{same, coarsening.parent, before};
+  const LevelElements after = coarse_elements(coarsening, children, 0.1, material, &known),
+                      anew = coarse_elements(coarsening, children, 0.1, material, nullptr);
+  EXPECT_EQ(std::count(after.same_as.begin(), after.same_as.end(), CellsOfLevel::unused), 1);
+  EXPECT_EQ(after.same_as[coarsening.parent[100]], CellsOfLevel::unused);
+  for (std::size_t c = 0; c < 64; ++c) {
+    EXPECT_EQ(after[c].hourglass, anew[c].hourglass) << c;
+    EXPECT_EQ(after[c].gradient, anew[c].gradient) << c;
+    EXPECT_EQ(after[c].bound, anew[c].bound) << c;
+    EXPECT_EQ(after[c].hourglass == before[c].hourglass, c != coarsening.parent[100]) << c;
+  }
 }
 
 } // namespace

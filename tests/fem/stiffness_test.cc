@@ -263,6 +263,26 @@ TEST(Stiffness, KernelsAreTheMatricesOfTheirElements) {
   expect_kernels_are_the_matrices<float>(1e-6);
 }
 
+/// So a run is the same, whichever of the two has told the energy.
+TEST(Stiffness, EnergiesBesideForcesAreThoseAloneBitByBit) {
+  for (const MeanPart mean : {MeanPart::hooke, MeanPart::none})
+    for (const InstructionSet set : instruction_sets()) {
+      const AnyElements<double> all(false);
+      const ForceKernels& kernels = force_kernels(set);
+      std::vector<Row<double>> forces(all.p.size());
+      for (std::size_t i = 0; i < all.batching.batches().size(); ++i) {
+        const auto batch = all.batched.batch(all.batching, i);
+        Turns turns{};
+        kernels.turn(all.batched.cube, batch, all.p.data(), turns);
+        alignas(64) std::array<double, n_lanes> alone, beside;
+        kernels.energy(all.batched.cube, batch, turns, mean, all.p.data(), alone.data());
+        kernels.force(all.batched.cube, batch, turns, mean, nullptr, 1, all.p.data(), forces.data(), beside.data());
+        EXPECT_EQ(alone, beside) << static_cast<int>(set);
+        EXPECT_NE(alone[0], 0);
+      }
+    }
+}
+
 TEST(Stiffness, OneAndTwoThreadsGiveTheSameBits) {
   const int n_before = n_threads();
   std::array<std::vector<double>, 2> results;

@@ -71,6 +71,36 @@ TEST(Update, IsBuildingAnewBitByBit) {
     }
 }
 
+/// What a model remembers of the positions that it met last is what it would say anew, in any order, and nothing is
+/// remembered across a cut.
+TEST(Update, RemembersNothingButTheSame) {
+  for (const std::string& law : all_laws) {
+    Draw draw(95);
+    Body body = make_block({3, 3, 3}, 0.2, draw, {0.3, 0.7});
+    const HexahedraOptions options{.material = with_law(rubber, law)};
+    Hexahedra model = make_model(body, options);
+    const Points x = disturbed(body, draw), other = disturbed(body, draw);
+    Points f, f_alone;
+    make_model(body, options).force(x, f_alone);
+    const double alone = make_model(body, options).energy(x);
+    EXPECT_EQ(model.energy_ahead(x), alone) << law;
+    model.force(x, f);
+    EXPECT_EQ(f, f_alone) << law;
+    model.force(other, f);
+    EXPECT_EQ(model.energy(x), alone) << law;
+    model.force(x, f);
+    EXPECT_EQ(model.energy_ahead(x), alone) << law;
+    EXPECT_EQ(f, f_alone) << law;
+    const auto edge = inner_edges(body)[0];
+    body.cuts.add(body.grid, {edge, 0.4, Vec3::UnitX(), 1});
+    surface::place(body, {});
+    model.update(body, grid::update_complex(body, {edge}).reshaped);
+    ASSERT_EQ(body.complex.n_corners(), x.size()); // nothing but the model can tell that there was a cut
+    EXPECT_EQ(model.energy_ahead(x), make_model(body, options).energy(x)) << law;
+    EXPECT_NE(model.energy(x), alone) << law;
+  }
+}
+
 /// What was full and is partial now gets an element of its own, and the table does not grow when one is remade.
 /// Whatever corners the copies get, in whatever order they come, and crumb or not: who holds a corner is listed in the
 /// same order.
