@@ -27,4 +27,7 @@ using FrontsOfCells = std::map<grid::CellId, grid::Front>;
 /// Can the cell have this front, if others have those of `begun`?
 bool fits_in(const grid::Solid& solid, const grid::Front& front, const FrontsOfCells& begun);
 
+/// Does the front still say how its cell is to be parted? Not when its own blade has parted the cell, or has cut it otherwise.
+bool is_ahead(const grid::Solid& solid, const grid::Front& front);
+
 } // namespace kerf::cut

@@ -5,6 +5,7 @@
 #include "tests/cut/patient.h"
 
 #include <cmath>
+#include <iostream>
 #include <set>
 
 namespace kerf::cut {
@@ -131,6 +132,54 @@ TEST(Advance, LeavesThePiecesMassAndSurfaceAsTheyWere) {
   }
   EXPECT_GT(n_fronts[0], 200u);
   EXPECT_GT(n_fronts[1], 20u);
+}
+
+/// From one side of a body to the other in curves, turning, with an edge that reaches beyond it.
+Blade winding(support::Random& random) {
+  const Vec3 towards = random_direction(random), side = towards.unitOrthogonal(), up = side.cross(towards);
+  Blade blade{"blade", {-20 * side, 20 * side}, {}};
+  for (int k = 0; k <= 4; ++k)
+    blade.key_frames.push_back({0.25 * k, (4 * k - 8) * towards + uniform(random, -1, 1) * up,
+                                uniform(random, -15, 15) * random_direction(random)});
+  return blade;
+}
+
+/// What fronts had divided ahead of a blade is joined where the blade has gone on otherwise: copies, corners and surface of
+/// a completed cut are those without fronts.
+TEST(Advance, LeavesACompletedCutAsItIsWithoutFronts) {
+  support::Random random(11);
+  std::size_t n_begun = 0, n_lapsed = 0, n_left = 0, n_same = 0;
+  constexpr int n_bodies = 24;
+  for (int i = 0; i < n_bodies; ++i) {
+    const Body whole =
+      support::with_copies(support::with_placed_skin(support::ball(3 + 0.05 * i, 1, support::random_offset(random))));
+    Cutting with(whole, Fronts::inside_cells), without(whole, Fronts::at_faces);
+    const Blade blade = winding(random);
+    const double height = i % 2 == 0 ? 0 : 0.3;
+    const int n_steps = std::array{7, 17, 40}[i % 3];
+    for (int k = 0; k < n_steps || with.cutter.n_waiting() + without.cutter.n_waiting() > 0; ++k) {
+      for (Cutting* const cutting : {&with, &without})
+        cutting->step(blade, std::min(1.0, double(k) / n_steps), std::min(1.0, double(k + 1) / n_steps),
+                      swung(cutting->body, height, double(k) / n_steps));
+      n_begun += with.body.cuts.fronts().size();
+    }
+    SCOPED_TRACE(i);
+    n_lapsed += with.body.complex.lapsed.size();
+    n_left += with.body.cuts.fronts().size();
+    expect_alike(with, without);
+    expect_as_built(with);
+    if (!with.body.cuts.fronts().empty())
+      continue;
+    const auto names = support::renaming(with.body.complex, without.body.complex);
+    ASSERT_TRUE(names);
+    EXPECT_TRUE(support::is_same(with.surface, without.surface, *names));
+    ++n_same;
+  }
+  std::cout << n_same << " of " << n_bodies << " bodies the same; " << n_begun << " fronts in all steps, " << n_lapsed
+            << " corners lapsed, " << n_left << " fronts left\n";
+  EXPECT_GE(n_same, n_bodies - 2u);
+  EXPECT_GT(n_begun, 400u);
+  EXPECT_GT(n_lapsed, 10u);
 }
 
 /// Which cells have fronts, and how far these have come, is hardly a matter of the length of steps.
