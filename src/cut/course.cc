@@ -51,13 +51,13 @@ Points known_points(const Solid& solid, const CellId c, const std::vector<Polygo
   return points;
 }
 
-/// The plane nearest to points, and how far they stray from it [m].
+/// The plane nearest to points, and how far they stray from it [m]; where they span little, how far they would in a cell.
 struct Course {
   Plane plane;
   double stray;
 };
 std::optional<Course> course_of(const Points& points, const double h) {
-  constexpr double least_width = 0.1; // as a standard deviation, in cubes
+  constexpr double wide = 0.1, least_width = 1e-3; // as standard deviations, in cubes
   Vec3 middle = Vec3::Zero();
   for (const Vec3& p : points)
     middle += p / double(points.size());
@@ -70,6 +70,7 @@ std::optional<Course> course_of(const Points& points, const double h) {
   Course course{{middle, axes.eigenvectors().col(0)}, 0};
   for (const Vec3& p : points)
     course.stray = std::max(course.stray, std::abs(course.plane.normal.dot(p - middle)));
+  course.stray *= std::max(1.0, wide * h / std::sqrt(axes.eigenvalues()[1]));
   return course;
 }
 

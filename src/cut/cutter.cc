@@ -72,8 +72,7 @@ CutChange Cutter::at_once(Solid& solid, const CutSurface& surface, const Points&
   const SweepCuts found = cut_edges(surface, solid, x, &*boxes_);
   counts_.n_double_crossings += found.n_double_crossings;
   const Added added = add(solid, found);
-  return part(solid, added,
-              fronts_ != Fronts::at_faces ? find_fronts(surface, solid, x) : std::vector<grid::Front>());
+  return part(solid, added, fronts_ != Fronts::at_faces ? find_fronts(surface, solid, x) : std::vector<grid::Front>());
 }
 
 CutChange Cutter::cut(Solid& solid, const SweepCuts& cuts) { return part(solid, add(solid, cuts), {}); }

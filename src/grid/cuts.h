@@ -193,8 +193,8 @@ class Cuts {
   SparseIndex<FaceId> face_point_;
   SparseIndex<CellId> cell_point_;
   SparseIndex<CellId> front_of_cell_; // into fronts_
-  SparseIndex<FaceId> skin_of_face_; // into faces_
-  SparseIndex<CellId> skin_of_cell_; // into cells_
+  SparseIndex<FaceId> skin_of_face_;  // into faces_
+  SparseIndex<CellId> skin_of_cell_;  // into cells_
   std::vector<FaceEntries> faces_;
   std::vector<CellEntries> cells_;
   std::vector<Front> fronts_;
