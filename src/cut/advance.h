@@ -13,7 +13,7 @@
 /// Cells in which cuts wait (pending.h) get no front before they are cut.
 ///
 /// Errors: a texel is .04 cubes wide; within a cell the map of its copy is taken as affine. A blade that turns leaves
-/// the fronts that it had.
+/// the fronts that it had, until it cuts their cells: then they are taken back (course.h).
 
 #include "cut/course.h"
 #include "cut/edge_boxes.h"

@@ -51,13 +51,13 @@ Points known_points(const Solid& solid, const CellId c, const std::vector<Polygo
   return points;
 }
 
-/// The plane nearest to points, and how far they stray from it [m].
+/// The plane nearest to points, and how far they stray from it [m]; where they span little, how far they would in a cell.
 struct Course {
   Plane plane;
   double stray;
 };
 std::optional<Course> course_of(const Points& points, const double h) {
-  constexpr double least_width = 0.1; // as a standard deviation, in cubes
+  constexpr double wide = 0.1, least_width = 1e-3; // as standard deviations, in cubes
   Vec3 middle = Vec3::Zero();
   for (const Vec3& p : points)
     middle += p / double(points.size());
@@ -70,6 +70,7 @@ std::optional<Course> course_of(const Points& points, const double h) {
   Course course{{middle, axes.eigenvectors().col(0)}, 0};
   for (const Vec3& p : points)
     course.stray = std::max(course.stray, std::abs(course.plane.normal.dot(p - middle)));
+  course.stray *= std::max(1.0, wide * h / std::sqrt(axes.eigenvalues()[1]));
   return course;
 }
 
@@ -146,6 +147,21 @@ std::optional<Front> front_ahead(const Solid& solid, const CellId c, const std::
 
 bool fits_in(const Solid& solid, const Front& front, const FrontsOfCells& begun) {
   return agrees_with_neighbours(solid, front, begun) && !leaves_shreds(solid, front, begun);
+}
+
+bool is_ahead(const Solid& solid, const Front& front) {
+  grid::CellCuts cuts = grid::cuts_of(solid, front.cell);
+  cuts.blades = grid::cut_by(solid, front.cell, front.label);
+  if (grid::whole_parts_of(cuts).n > 1)
+    return false;
+  const grid::Parts parts = grid::whole_parts_of(grid::with(cuts, front.ahead));
+  const auto part_of = [&](const int item) {
+    return std::ranges::find_if(parts, [&](const grid::Part& part) { return (part.items() >> item & 1) != 0; });
+  };
+  for (grid::Segments left = cuts.blades; left != 0; left &= left - 1)
+    if (const auto& [a, b] = cuts.skeleton().segment[std::countr_zero(left)].ends; part_of(a) == part_of(b))
+      return false;
+  return parts.n == 2;
 }
 
 } // namespace kerf::cut

@@ -4,7 +4,8 @@
 /// it has swept in the cell and to where it has cut edges around it, all at rest.
 ///
 /// That is taken as certain where no node and no point of the skin lies nearer to the plane than twice what strays farthest
-/// from it (of what lies right in it, where nothing strays, the predicates know the side), where what is cut already is
+/// from it, and more where the blade has not come far yet (of what lies right in it, where nothing strays, the predicates
+/// know the side), where what is cut already is
 /// parted by it, and where each of the two parts has a node. Cells are parted one by
 /// one, but share what they part: so one that is to have a front has to divide its faces as those beside it do, as far as
 /// they divide them at all, and may leave nothing that hangs together with hardly anything (shreds.h). Where a blade turns
@@ -26,5 +27,8 @@ using FrontsOfCells = std::map<grid::CellId, grid::Front>;
 
 /// Can the cell have this front, if others have those of `begun`?
 bool fits_in(const grid::Solid& solid, const grid::Front& front, const FrontsOfCells& begun);
+
+/// Does the front still say how its cell is to be parted? Not when its own blade has parted the cell, or has cut it otherwise.
+bool is_ahead(const grid::Solid& solid, const grid::Front& front);
 
 } // namespace kerf::cut

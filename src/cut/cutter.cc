@@ -1,7 +1,9 @@
 #include "cut/cutter.h"
 
+#include "cut/course.h"
 #include "cut/fronts.h"
 #include "cut/shreds.h"
+#include "grid/touched.h"
 
 #include <algorithm>
 
@@ -70,8 +72,7 @@ CutChange Cutter::at_once(Solid& solid, const CutSurface& surface, const Points&
   const SweepCuts found = cut_edges(surface, solid, x, &*boxes_);
   counts_.n_double_crossings += found.n_double_crossings;
   const Added added = add(solid, found);
-  return part(solid, added,
-              fronts_ != Fronts::at_faces ? find_fronts(surface, solid, x) : std::vector<grid::Front>());
+  return part(solid, added, fronts_ != Fronts::at_faces ? find_fronts(surface, solid, x) : std::vector<grid::Front>());
 }
 
 CutChange Cutter::cut(Solid& solid, const SweepCuts& cuts) { return part(solid, add(solid, cuts), {}); }
@@ -109,6 +110,11 @@ CutChange Cutter::part(Solid& solid, const Added& added, const std::span<const g
     solid.cuts.set(front);
     cells.push_back(front.cell);
   }
+  for (const grid::CellId c : grid::touched_cells(solid.grid, added.edges, added.segments))
+    if (const grid::Front* const front = solid.cuts.front(c); front && !is_ahead(solid, *front)) {
+      solid.cuts.take_back_front(c);
+      cells.push_back(c);
+    }
   CutChange change = grid::update_complex(solid, added.edges, added.segments, cells);
   grid::inherit(change, x_before_);
   return change;

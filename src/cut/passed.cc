@@ -127,16 +127,7 @@ class Search {
   bool is_cut_by_label(const grid::CellId cell) const {
     if (std::ranges::binary_search(met_, cell))
       return true;
-    const auto edges = solid_.grid.edges(cell);
-    for (grid::Segments left = grid::cuts_of(solid_, cell).blades; left != 0; left &= left - 1) {
-      const int segment = std::countr_zero(left);
-      const grid::CutLabel label = segment < grid::skeleton::first_half
-                                     ? solid_.cuts.find(edges[segment])->label
-                                     : solid_.cuts.find(grid::skin_segment(solid_.grid, cell, segment))->label;
-      if (label == label_)
-        return true;
-    }
-    return false;
+    return grid::cut_by(solid_, cell, label_) != 0;
   }
 
   bool passes(const grid::Copy& copy, const std::array<Vec3, 8>& corners, const std::array<Vec3, 3>& triangle) const {

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <iterator>
 #include <stdexcept>
 
 namespace kerf::grid {
@@ -25,15 +26,6 @@ struct CutCell {
   CellId cell;
   Parts parts;
 };
-
-/// A vertex of the cube that an item touches: any will do for a middle.
-int vertex_at(const int item) {
-  if (item < skeleton::first_on_line)
-    return item;
-  if (item < skeleton::first_on_arc)
-    return cube::line_vertices[item - skeleton::first_on_line][0];
-  return item < skeleton::first_middle ? cube::face_vertices[(item - skeleton::first_on_arc) / 2][0] : 0;
-}
 
 /// Parts come in this order.
 int rank(const Copy& copy) { return std::countr_zero(copy.items()); }
@@ -164,14 +156,18 @@ class Update {
   }
 
   CutChange run(std::vector<EdgeId> new_edges, std::vector<SkinSegment> new_segments,
-                const std::span<const CellId> new_fronts) {
+                const std::span<const CellId> with_other_fronts) {
     change_.edges = std::move(new_edges);
     change_.segments = std::move(new_segments);
     change_.cells = touched_cells(solid_.grid, change_.edges, change_.segments);
-    change_.cells.insert(change_.cells.end(), new_fronts.begin(), new_fronts.end());
+    change_.cells.insert(change_.cells.end(), with_other_fronts.begin(), with_other_fronts.end());
     sort_unique(change_.cells);
+    std::vector<CellId> without_fronts;
+    std::ranges::copy_if(with_other_fronts, std::back_inserter(without_fronts),
+                         [&](const CellId cell) { return solid_.cuts.front(cell) == nullptr; });
+    std::ranges::sort(without_fronts);
     for (const CellId cell : change_.cells)
-      split(cell);
+      std::ranges::binary_search(without_fronts, cell) ? divide_anew(cell) : split(cell);
     std::sort(slots_.begin(), slots_.end());
     for (auto slot = slots_.begin(); slot != slots_.end();) {
       const NodeId node = slot->node;
@@ -181,6 +177,7 @@ class Update {
       cells.complete(solid_.grid);
       rename(node, CornerClasses(solid_.complex, cells));
     }
+    lapse();
     sort_unique(change_.copies);
     change_.reshaped = change_.copies;
     for (const CellId cell : change_.cells)
@@ -209,10 +206,44 @@ class Update {
     }
     if (splits) {
       sort_copies(cell);
-      const auto nodes = solid_.grid.nodes(cell);
-      for (int v = 0; v < 8; ++v)
-        slots_.push_back({nodes[v], v, cell});
+      add_slots(cell);
     }
+  }
+
+  void add_slots(const CellId cell) {
+    const auto nodes = solid_.grid.nodes(cell);
+    for (int v = 0; v < 8; ++v)
+      slots_.push_back({nodes[v], v, cell});
+  }
+
+  /// Where a front is taken back: parts may join what its copies were. A part goes on as the copy that had its lowest
+  /// item, if that does not go on as a lower one.
+  void divide_anew(const CellId cell) {
+    std::vector<CopyId> before, now;
+    std::vector<Copy> were;
+    for (const CopyId c : solid_.complex.copies_of(cell)) {
+      before.push_back(c);
+      were.push_back(solid_.complex.copies[c]);
+    }
+    for (const Part& part : parts_of(cuts_of(solid_, cell))) {
+      const Items lowest = part.items() & -part.items();
+      const auto from = std::ranges::find_if(were, [&](const Copy& copy) { return (copy.items() & lowest) != 0; });
+      const CopyId old = before[static_cast<std::size_t>(from - were.begin())];
+      const bool is_taken = std::ranges::find(now, old) != now.end();
+      now.push_back(is_taken ? solid_.complex.copies.push_back(*from) : old);
+      if (is_taken || part != from->part())
+        set_part(now.back(), part);
+    }
+    for (std::size_t i = 0; i < now.size(); ++i)
+      solid_.complex.copies[now[i]].next = i + 1 < now.size() ? now[i + 1] : CopyId();
+    solid_.complex.first_copy[cell] = now[0];
+    for (std::size_t i = 0; i < before.size(); ++i)
+      if (std::ranges::find(now, before[i]) == now.end()) {
+        const auto heir = std::ranges::find_if(
+          now, [&](const CopyId c) { return (solid_.complex.copies[c].items() & were[i].items()) != 0; });
+        lapsing_.push_back({before[i], heir == now.end() ? now[0] : *heir});
+      }
+    add_slots(cell);
   }
 
   /// Where blades have cut at the skin of a cell for the first time, what its copies were, points of the skin included;
@@ -291,6 +322,9 @@ class Update {
         corner = std::find(corner_of.begin(), end, old) == end ? old : new_corner(node, old);
       }
     for (const auto& slot : classes.slots())
+      note_lapse(solid_.complex.copies[slot.copy].corners[slot.vertex], corner_of[slot.class_number],
+                 std::span(corner_of).first(static_cast<std::size_t>(classes.n_classes())));
+    for (const auto& slot : classes.slots())
       if (CornerId& corner = solid_.complex.copies[slot.copy].corners[slot.vertex];
           corner != corner_of[slot.class_number]) {
         corner = corner_of[slot.class_number];
@@ -303,9 +337,54 @@ class Update {
     return solid_.complex.node.push_back(node);
   }
 
+  void note_lapse(const CornerId corner, const CornerId heir, const std::span<const CornerId> at_node) {
+    const auto is_known = [&] {
+      return std::ranges::find(change_.lapsed, corner, &Lapse::corner) != change_.lapsed.end();
+    };
+    if (std::ranges::find(at_node, corner) == at_node.end() && !is_known())
+      change_.lapsed.push_back({corner, heir});
+  }
+
+  std::vector<CornerId> corners_at(const CellId cell, const int vertex) const {
+    CellsAround around;
+    around.add(cell, vertex);
+    around.complete(solid_.grid);
+    std::vector<CornerId> corners;
+    for (int v = 0; v < 8; ++v)
+      if (around.at(v).valid())
+        for (const CopyId c : solid_.complex.copies_of(around.at(v)))
+          corners.push_back(solid_.complex.copies[c].corners[v]);
+    return corners;
+  }
+
+  /// A lapsed copy stands at a real corner, which never lapses.
+  void lapse() {
+    for (const auto& [c, heir] : lapsing_) {
+      Copy& copy = solid_.complex.copies[c];
+      for (int v = 0; v < 8; ++v)
+        note_lapse(copy.corners[v], solid_.complex.copies[heir].corners[v], corners_at(copy.cell, v));
+      const int lowest = std::countr_zero(solid_.complex.copies[solid_.complex.first_copy[copy.cell]].nodes);
+      copy.corners.fill(solid_.complex.real_corner[solid_.grid.nodes(copy.cell)[lowest]]);
+      copy.next = CopyId();
+      set_part(c, {});
+      solid_.crumbs.of_copy.resize(solid_.complex.n_copies(), 0);
+      solid_.crumbs.of_copy[c.value] = 1;
+    }
+    for (const Lapse& now : change_.lapsed)
+      for (Lapse& earlier : solid_.complex.lapsed)
+        if (earlier.heir == now.corner)
+          earlier.heir = now.heir;
+    solid_.complex.lapsed.insert(solid_.complex.lapsed.end(), change_.lapsed.begin(), change_.lapsed.end());
+  }
+
+  struct Lapsing {
+    CopyId copy, heir;
+  };
+
   Solid& solid_;
   CutChange change_;
   std::vector<Slot> slots_; // of the cells that split
+  std::vector<Lapsing> lapsing_;
 };
 
 } // namespace
@@ -343,8 +422,8 @@ CellComplex build_complex(const Solid& solid) {
 }
 
 CutChange update_complex(Solid& solid, std::vector<EdgeId> new_edges, std::vector<SkinSegment> new_segments,
-                         const std::span<const CellId> new_fronts) {
-  CutChange change = Update(solid).run(std::move(new_edges), std::move(new_segments), new_fronts);
+                         const std::span<const CellId> with_other_fronts) {
+  CutChange change = Update(solid).run(std::move(new_edges), std::move(new_segments), with_other_fronts);
   std::vector<CellId> cells = change.cells; // and those whose copies were tied before: all others are as they were
   for (const auto& [c, d] : solid.complex.tied)
     cells.push_back(solid.complex.copies[c].cell);
@@ -354,12 +433,11 @@ CutChange update_complex(Solid& solid, std::vector<EdgeId> new_edges, std::vecto
 }
 
 Pieces pieces(const CellComplex& complex) {
-  // All copies around an item that hold it are glued: they share corners there.
   UnionFind corners(complex.n_corners());
-  const auto first = [](const Copy& copy) { return copy.corners[vertex_at(std::countr_zero(copy.items()))].value; };
+  const auto first = [](const Copy& copy) { return copy.corners[0].value; };
   for (const Copy& copy : complex.copies)
-    for (Items left = copy.items(); left != 0; left &= left - 1)
-      corners.unite(first(copy), copy.corners[vertex_at(std::countr_zero(left))].value);
+    for (const CornerId corner : copy.corners) // that others have too where they are glued, and only there
+      corners.unite(first(copy), corner.value);
   for (const auto& [c, d] : complex.tied)
     corners.unite(first(complex.copies[c]), first(complex.copies[d]));
   Pieces result;

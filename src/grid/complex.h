@@ -9,6 +9,10 @@
 /// update looks at the cells around the new cut edges and at the nodes of those that split; all that is there keeps its
 /// name: a copy the part (parts.h) with its lowest item, a corner the class with the node's own material,
 /// else the first one; what is new comes last. Names depend on the sequence of cuts, the complex up to names does not.
+///
+/// Where a front is taken back (fronts.h), copies are joined again, and corners with them. Those whose names are not
+/// needed any more *lapse*: they stand in the tables, but a lapsed copy holds nothing and belongs to no cell's copies, and
+/// no copy has a lapsed corner.
 
 #include "grid/parts.h"
 
@@ -28,6 +32,7 @@ struct Copy {
 
   Part part() const { return {nodes, skin}; }
   Items items() const { return part().items(); }
+  bool is_lapsed() const { return nodes == 0 && skin == 0; }
   void archive(Archive& a) { a(cell, nodes, skin, corners, next); }
 };
 
@@ -54,12 +59,19 @@ class CopiesOfCell {
   CopyId first_;
 };
 
+/// A corner that no copy has any more, and the one at its node that took its place.
+struct Lapse {
+  CornerId corner, heir;
+  void archive(Archive& a) { a(corner, heir); }
+};
+
 struct CellComplex {
   Table<CopyId, Copy> copies;
   Table<CellId, CopyId> first_copy;        ///< the copy with the cell's lowest material vertex
   Table<CornerId, NodeId> node;            ///< which node a corner is an instance of
   Table<NodeId, CornerId> real_corner;     ///< the one corner that holds a material node; invalid for empty nodes
   std::vector<std::array<CopyId, 2>> tied; ///< of one cell, held together ahead of a front (fronts.h)
+  std::vector<Lapse> lapsed;               ///< no heir is lapsed itself
 
   std::size_t n_copies() const { return copies.size(); }
   std::size_t n_corners() const { return node.size(); }
@@ -71,7 +83,7 @@ struct CellComplex {
   CopyId copy_with(CellId cell, int item) const;
   /// Memory of all tables [B].
   std::size_t n_bytes() const;
-  void archive(Archive& a) { a(copies, first_copy, node, real_corner, tied); }
+  void archive(Archive& a) { a(copies, first_copy, node, real_corner, tied, lapsed); }
 };
 
 /// Of what is cut. Copies are ordered by cell, then as their parts are (parts.h); corners by node.
@@ -83,18 +95,20 @@ struct CutChange {
   std::vector<SkinSegment> segments; ///< of the skin, that are cut now
   std::vector<CellId> cells;         ///< around them, and with fronts that are new; ascending
   std::size_t n_copies_before = 0, n_corners_before = 0;
-  std::vector<CopyId> copies;    ///< new, or divided, or with other items or corners than before; ascending
+  std::vector<CopyId> copies;    ///< new, or divided, or joined, or with other items or corners than before; ascending
   std::vector<CopyId> reshaped;  ///< these, and all whose material has another shape: those in the cells; ascending
   std::vector<CornerId> parents; ///< of the corners n_corners_before, ... in their order: where they came from
+  std::vector<Lapse> lapsed;     ///< corners that lapse now
 
   /// Whether anything is cut.
   bool any() const { return !cells.empty(); }
 };
 
-/// Brings the complex up to date with edges and segments of the skin that are cut, and with cells that have fronts, but
-/// were and had not when it was built or updated last. What it costs depends on these alone.
+/// Brings the complex up to date with edges and segments of the skin that are cut, but were not when it was built or updated
+/// last, and with cells whose fronts are others since, or are taken back. What it costs depends on these alone. Lapsed copies
+/// are marked like those of crumbs: no physics knows them.
 CutChange update_complex(Solid& solid, std::vector<EdgeId> new_edges, std::vector<SkinSegment> new_segments = {},
-                         std::span<const CellId> new_fronts = {});
+                         std::span<const CellId> with_other_fronts = {});
 
 /// Appends for each new corner what its parent has.
 template <class T>

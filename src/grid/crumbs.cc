@@ -229,7 +229,9 @@ void update_crumbs_by(const Rule& rule, Solid& solid, CutChange& change) {
     crumbs.of_corner.resize(change.n_corners_before, 0);
     inherit(change, crumbs.of_corner);
   }
-  std::vector<Crumb> found = crumbs_at(solid, rule, change.reshaped);
+  std::vector<CopyId> in_use = change.reshaped;
+  std::erase_if(in_use, [&](const CopyId c) { return solid.complex.copies[c].is_lapsed(); });
+  std::vector<Crumb> found = crumbs_at(solid, rule, in_use);
   if (found.empty())
     return;
   std::vector<CopyId> fresh;

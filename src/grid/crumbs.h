@@ -38,7 +38,7 @@ struct Crumb {
 /// None, until somebody looks for them.
 struct Crumbs {
   std::vector<Crumb> all;            ///< by ascending name
-  std::vector<std::uint8_t> of_copy; ///< 1: in a crumb
+  std::vector<std::uint8_t> of_copy; ///< 1: in a crumb, or lapsed (complex.h): no physics deforms it
   std::vector<std::uint8_t> of_corner;
   std::uint32_t n_named = 0;
 

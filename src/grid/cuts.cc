@@ -47,6 +47,15 @@ void Cuts::set(const Front& front) {
     fronts_[index] = front;
 }
 
+void Cuts::take_back_front(const CellId c) {
+  const std::uint32_t index = front_of_cell_[c];
+  fronts_[index] = fronts_.back();
+  fronts_.pop_back();
+  if (index < fronts_.size())
+    front_of_cell_.at(fronts_[index].cell) = index;
+  front_of_cell_.at(c) = none;
+}
+
 std::uint32_t Cuts::index(const SkinSegment& segment) const {
   if (segment.face.valid()) {
     const std::uint32_t i = skin_of_face_[segment.face];

@@ -125,10 +125,12 @@ class Cuts {
     const std::uint32_t i = front_of_cell_[c];
     return i == none ? nullptr : &fronts_[i];
   }
-  /// In the order in which they were set first.
+  /// In no order that says anything.
   std::span<const Front> fronts() const { return fronts_; }
   /// In place of the cell's earlier one.
   void set(const Front& front);
+  /// The cell is then as cuts have left it.
+  void take_back_front(CellId c);
 
   /// What has been cut since settle() was called last: its vertices are yet to be placed.
   bool is_new(EdgeId e) const { return edge_cut_[e] != none && edge_cut_[e] >= n_settled_; }
@@ -191,8 +193,8 @@ class Cuts {
   SparseIndex<FaceId> face_point_;
   SparseIndex<CellId> cell_point_;
   SparseIndex<CellId> front_of_cell_; // into fronts_
-  SparseIndex<FaceId> skin_of_face_; // into faces_
-  SparseIndex<CellId> skin_of_cell_; // into cells_
+  SparseIndex<FaceId> skin_of_face_;  // into faces_
+  SparseIndex<CellId> skin_of_cell_;  // into cells_
   std::vector<FaceEntries> faces_;
   std::vector<CellEntries> cells_;
   std::vector<Front> fronts_;

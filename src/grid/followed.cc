@@ -42,7 +42,7 @@ void spread(const CellComplex& complex, std::vector<Followed>& copies, std::map<
 std::vector<Followed> followed_nodes(const Solid& solid) {
   std::vector<Followed> result;
   for (const auto c : ids<CopyId>(solid.complex.n_copies()))
-    if (solid.complex.copies[c].nodes == 0)
+    if (const Copy& copy = solid.complex.copies[c]; copy.nodes == 0 && !copy.is_lapsed())
       result.push_back({c, NodeId()});
   if (result.empty())
     return result;

@@ -15,7 +15,10 @@
 /// front that moves on gives and takes no energy at once. c is measured: at .12 the stiffness of a double cantilever
 /// tells where its front is to .07 h, wherever that is in a cell.
 ///
-/// A blade that turns after its front has begun may leave a third part, of skin without a node. That is no front: it is held
+/// A front is provisional: when its blade cuts the cell, it is taken back, as far as it said otherwise (complex.h), and what
+/// the blade leaves is the same as without.
+///
+/// A surface, or another blade, may leave a third part of the cell, of skin without a node. That is no front: it is held
 /// to what it belongs to, by springs as stiff as its own material is: stiffer ones would do no more, and conjugate gradients
 /// would feel them.
 ///

@@ -41,7 +41,9 @@ class Divisions {
   }
 
  private:
-  bool is_ahead(const int line) const { return front_ != nullptr && (front_->ahead >> line & 1) != 0; }
+  bool is_ahead(const int line) const {
+    return front_ != nullptr && (front_->ahead >> line & 1) != 0 && solid_.cuts.can_be_cut(solid_.grid, edges_[line]);
+  }
 
   /// Of the divisions on lines that are cut, or ahead of the front.
   Vec3 mean(const std::span<const int> lines, const Vec3& if_none) const {

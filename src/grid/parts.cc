@@ -78,6 +78,18 @@ CellCuts cuts_of_copies(const Solid& solid, const CellId c) {
   return front ? with(cuts_of(solid, c), front->ahead) : cuts_of(solid, c);
 }
 
+Segments cut_by(const Solid& solid, const CellId c, const CutLabel label) {
+  const auto edges = solid.grid.edges(c);
+  Segments found = 0;
+  for (Segments left = cuts_of(solid, c).blades; left != 0; left &= left - 1) {
+    const int segment = std::countr_zero(left);
+    const CutLabel by = segment < skeleton::first_half ? solid.cuts.find(edges[segment])->label
+                                                       : solid.cuts.find(skin_segment(solid.grid, c, segment))->label;
+    found |= by == label ? left & -left : 0;
+  }
+  return found;
+}
+
 CellCuts cuts_of(const Solid& solid, const CellId c, const unsigned cut_lines) {
   CellCuts result{material_of(solid.grid, c), cut_lines, cut_lines};
   if (result.has_skin())

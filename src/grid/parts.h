@@ -29,6 +29,9 @@ CellCuts with(CellCuts cell, Segments ahead);
 /// What the cell's copies follow: where a cut ends in it, what is ahead of the front too.
 CellCuts cuts_of_copies(const Solid& solid, CellId c);
 
+/// The segments of a cell that blades of a label have cut.
+Segments cut_by(const Solid& solid, CellId c, CutLabel label);
+
 /// The segment of the skin that a segment of a cell is, from skeleton::first_half on.
 SkinSegment skin_segment(const Grid& grid, CellId c, int segment);
 

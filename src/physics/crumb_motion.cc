@@ -247,7 +247,7 @@ std::vector<std::vector<Crumbs::Hold>> Crumbs::holds(const dynamics::Loads& load
   std::vector<std::vector<Hold>> all(crumbs_.size());
   for (std::size_t s = 0; s < loads.supports.size(); ++s)
     for (std::size_t i = 0; i < loads.supports[s].corners.size(); ++i)
-      if (const auto particle = loads.supports[s].corners[i]; carried_[particle] != 0) {
+      if (const auto particle = loads.supports[s].corners[i]; crumb_of_[particle] != CrumbParticles::none) {
         const Crumb& crumb = crumbs_[crumb_of_[particle]];
         const auto place = std::find(crumb.particles.begin(), crumb.particles.end(), particle);
         const auto index = static_cast<std::size_t>(place - crumb.particles.begin());

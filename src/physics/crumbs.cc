@@ -34,7 +34,7 @@ void weigh(const double mass, CrumbBody& crumb) {
 
 void Crumbs::follow(const grid::Solid& solid, const CrumbParticles* const particles,
                     const std::function<Motion()>& motion_of_corners, dynamics::State& state) {
-  if (!solid.crumbs.any() && crumbs_.empty())
+  if (!solid.crumbs.any() && crumbs_.empty() && (particles || solid.complex.lapsed.empty()))
     return;
   std::vector<Crumb> crumbs;
   Motions motions;
@@ -84,6 +84,8 @@ void Crumbs::take_particles(const grid::Solid& solid, const CrumbParticles* cons
         take(i, crumb, particles->rest[i], particles->mass[i]);
     return;
   }
+  for (const grid::Lapse& lapse : solid.complex.lapsed)
+    carried_[lapse.corner.value] = 1;
   for (std::uint32_t b = 0; b < crumbs_.size(); ++b)
     for (std::size_t i = 0; i < crumbs_[b].corners.size(); ++i)
       take(crumbs_[b].corners[i], b, crumbs_[b].rest_of_corners[i], crumbs_[b].mass_of_corners[i]);

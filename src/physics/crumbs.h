@@ -55,7 +55,7 @@ class Crumbs {
   bool any() const { return !crumbs_.empty(); }
   std::size_t size() const { return crumbs_.size(); }
   const dynamics::RigidBody& body(const std::size_t i) const { return crumbs_[i].body; }
-  /// Loads::carried, by particle.
+  /// Loads::carried, by particle: those of crumbs, and lapsed corners (grid/complex.h).
   const std::vector<std::uint8_t>& carried() const { return carried_; }
   bool carries(const std::size_t particle) const { return particle < carried_.size() && carried_[particle] != 0; }
   /// Mass that each particle would have of its crumb [kg]; empty without crumbs.

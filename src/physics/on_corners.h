@@ -9,6 +9,8 @@
 #include "physics/physics.h"
 #include "spring/mass_spring.h"
 
+#include <map>
+
 namespace kerf::physics {
 
 /// Elements whose integrator takes no energy: corners of hardly any mass ring for ever once a cut has moved them, take up
@@ -51,12 +53,14 @@ class OnCorners : public Physics {
       report = stepper_->step(state, loads, dt);
     }
     crumbs_.step(loads, dt, stepper_->motion(), state);
+    follow_heirs(state);
     return report;
   }
 
   void follow_cut(const CutBody& body, const grid::CutChange& change, dynamics::State& state) override {
     for (Points* of_corners : {&rest_, &state.x, &state.v})
       grid::inherit(change, *of_corners);
+    join_lapsed(change, state);
     for (auto& [name, values] : state.history)
       if (values.size() == change.n_corners_before)
         grid::inherit(change, values);
@@ -64,6 +68,7 @@ class OnCorners : public Physics {
     follow_cut_with_model(body, change);
     follow_crumbs(body, state);
     make_stepper(body);
+    follow_heirs(state);
   }
 
   /// Models are the same bits, however the body came to be what it is.
@@ -83,6 +88,29 @@ class OnCorners : public Physics {
   const dynamics::Stepper& stepper() const { return *stepper_; }
 
  private:
+  /// Corners that lapse bring their heirs what they had of the momentum, and of the place: by mass as it was.
+  void join_lapsed(const grid::CutChange& change, dynamics::State& state) const {
+    std::map<std::uint32_t, double> mass_of_heir;
+    const auto mass_of = [&](const std::uint32_t corner) {
+      return corner < change.n_corners_before ? model_->lumped_mass()[corner] : 0;
+    };
+    for (const auto& [corner, heir] : change.lapsed) {
+      double& mass = mass_of_heir.try_emplace(heir.value, mass_of(heir.value)).first->second;
+      const double more = mass_of(corner.value), all = mass + more;
+      if (more > 0)
+        for (Points* of_corners : {&state.x, &state.v}) {
+          Vec3& value = (*of_corners)[heir.value];
+          value += more / all * ((*of_corners)[corner.value] - value);
+        }
+      mass = all;
+    }
+  }
+  void follow_heirs(dynamics::State& state) const {
+    for (const auto& [corner, heir] : lapsed_) {
+      state.x[corner.value] = state.x[heir.value];
+      state.v[corner.value] = state.v[heir.value];
+    }
+  }
   void follow_cut_with_model(const CutBody& body, const grid::CutChange&) { model_ = make_model_(body); }
   void follow_crumbs(const CutBody& body, dynamics::State& state) {
     crumbs_.follow(
@@ -92,8 +120,9 @@ class OnCorners : public Physics {
       },
       state);
   }
-  /// Both are made again from what the body is now.
+  /// All that is made again from what the body is now.
   void make_stepper(const CutBody& body) {
+    lapsed_ = body.solid.complex.lapsed;
     // The complex outlives the call, as the stepper asks at once.
     stepper_ = make_integrator_(*model_, [&body] { return corner_pieces(body.solid.complex); });
     riders_ = riders_of(*model_, body);
@@ -106,6 +135,7 @@ class OnCorners : public Physics {
   Crumbs crumbs_;
   std::unique_ptr<dynamics::Stepper> stepper_;
   lattice::Riders riders_;
+  std::vector<grid::Lapse> lapsed_;
 };
 
 /// Elements are brought up to date where the cut is, and stay elsewhere.

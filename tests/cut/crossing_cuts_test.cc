@@ -7,6 +7,7 @@
 #include <bit>
 #include <iostream>
 #include <map>
+#include <numbers>
 #include <optional>
 
 namespace kerf::cut {
@@ -144,6 +145,47 @@ TEST(AtSkin, TheOrderOfThreeCutsLeavesTheSameNodesTogether) {
   }
   std::cout << n_bodies << " bodies, up to " << most_pieces << " pieces; " << n_other << " with other nodes together\n";
   EXPECT_EQ(n_other, 0);
+}
+
+/// Two planes that cross at a small angle, by blades and at once: four pieces, but where the wedge between them is thinner
+/// than a cube, the nodes that lie in it here and there are splinters of it.
+TEST(AtSkin, StrokesAtASmallAngleLeaveFourPiecesAndSplinters) {
+  Random random(111);
+  for (const double degrees : {5.0, 15.0, 30.0, 60.0}) {
+    const double angle = degrees * std::numbers::pi / 180;
+    int n_bodies = 0, n_of_four = 0;
+    double largest_splinter = 0;
+    for (int i = 0; i < 8; ++i) {
+      const Body body = i % 2
+                          ? box_body(random)
+                          : support::embedded(geometry::sphere_mesh(0.4, Vec3::Zero(), 3), h, random_offset(random));
+      const Vec3 middle = i % 2 ? Vec3(0.5 * (box.lower + box.upper)) : Vec3::Zero();
+      const Vec3 through = middle + 0.05 * support::random_vector(random), first = random_direction(random);
+      const std::array normals = {
+        first, Vec3(std::cos(angle) * first + std::sin(angle) * across(first, uniform(random, 0, 6.3)).u)};
+      for (const bool at_once : {true, false}) {
+        Patient patient{body};
+        for (const int k : {0, 1}) {
+          const auto label = static_cast<grid::CutLabel>(k + 1);
+          const Frame frame = across(normals[k], uniform(random, 0, 6.3));
+          if (at_once)
+            patient.cut_through(Plane{through, normals[k]}, label);
+          else
+            patient.pass(straight(through, frame.u, frame.v, 2, 2, label), steps(i), Release::queued);
+        }
+        const auto volumes = patient.volumes();
+        ASSERT_GE(volumes.size(), 4u);
+        ++n_bodies;
+        n_of_four += volumes.size() == 4;
+        if (volumes.size() > 4)
+          largest_splinter = std::max(largest_splinter, volumes.end()[-5] / cube);
+      }
+    }
+    std::cout << degrees << " degrees: four pieces in " << n_of_four << " of " << n_bodies
+              << " bodies, in the others splinters of at most " << largest_splinter << " h^3\n";
+    EXPECT_LT(largest_splinter, 1);
+    EXPECT_GE(n_of_four, degrees < 20 ? 0 : degrees < 45 ? n_bodies / 4 : n_bodies * 3 / 4);
+  }
 }
 
 } // namespace

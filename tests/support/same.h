@@ -34,9 +34,16 @@ class Pairs {
   Table<Key, Key> to_b_, to_a_;
 };
 
-/// Nothing when the complexes differ. The copies of a cell are told apart by their parts, and come in a fixed order.
+inline std::size_t n_in_use(const grid::CellComplex& complex) {
+  return static_cast<std::size_t>(
+    std::ranges::count_if(complex.copies, [](const grid::Copy& copy) { return !copy.is_lapsed(); }));
+}
+
+/// Nothing when the complexes differ. The copies of a cell are told apart by their parts, and come in a fixed order. What
+/// has lapsed does not count.
 inline std::optional<Renaming> renaming(const grid::CellComplex& a, const grid::CellComplex& b) {
-  if (a.n_copies() != b.n_copies() || a.n_corners() != b.n_corners() || a.first_copy.size() != b.first_copy.size())
+  if (n_in_use(a) != n_in_use(b) || a.n_corners() - a.lapsed.size() != b.n_corners() - b.lapsed.size() ||
+      a.first_copy.size() != b.first_copy.size())
     return std::nullopt;
   Pairs<grid::CopyId> copies(a.n_copies(), b.n_copies());
   Pairs<grid::CornerId> corners(a.n_corners(), b.n_corners());
@@ -59,7 +66,7 @@ inline std::optional<Renaming> renaming(const grid::CellComplex& a, const grid::
     if (p.valid() != q.valid() || (p.valid() && corners.to_b()[p] != q))
       return std::nullopt;
   }
-  if (n_found != a.n_copies())
+  if (n_found != n_in_use(a))
     return std::nullopt;
   return Renaming{copies.to_b(), corners.to_b()};
 }
