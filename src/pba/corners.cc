@@ -28,7 +28,7 @@ Table<grid::NodeId, std::uint32_t> rows_of(const grid::CellComplex& complex, con
 }
 
 /// The phyxels that each row sees, and those that carry rows that see none.
-void fill_rows(const grid::CellComplex& complex, const Phyxels& phyxels, std::span<const grid::CopyId> copies,
+void fill_rows(const grid::Solid& solid, const Phyxels& phyxels, std::span<const grid::CopyId> copies,
                const NodePairs& pairs, std::span<const Sight> sights, CornerMap& map) {
   std::vector<double> weights, sums(pairs.nodes.size(), 0.0);
   for (std::size_t p = 0; p < pairs.pairs.size(); ++p) {
@@ -40,7 +40,7 @@ void fill_rows(const grid::CellComplex& complex, const Phyxels& phyxels, std::sp
     if (!(sums[r] > 0))
       blind.push_back(r);
   map.n_blind = blind.size();
-  const Reached reached = reach(complex, pairs.nodes, pairs.rest, phyxels.rest, copies, blind);
+  const Reached reached = reach(solid, pairs.nodes, pairs.rest, phyxels.rest, copies, blind);
   map.n_orphans = reached.n_orphans;
 
   map.start.push_back(0);
@@ -123,7 +123,7 @@ CornerMap build_corner_map(const grid::Solid& solid, const Phyxels& phyxels, con
   CornerMap map;
   map.rest = phyxels.rest;
   map.corners = grid::rest_positions(solid);
-  fill_rows(solid.complex, phyxels, copies, pairs, sights, map);
+  fill_rows(solid, phyxels, copies, pairs, sights, map);
   fill_sources(solid, pairs, map);
   return map;
 }

@@ -2,8 +2,12 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "material/polar.h"
 #include "pba/kernel.h"
 
+#include <Eigen/LU>
+
+#include <algorithm>
 #include <numeric>
 
 namespace kerf::pba {
@@ -18,6 +22,12 @@ void require(const Range& range, const double value, const char* const name) {
     throw ParameterError({.path = name, .value = to_text(value), .rule = range.rule()});
 }
 
+/// F^-1 v; where F has hardly any volume, what its rotation leaves.
+Vec3 undone(const Mat3& F, const Vec3& v) {
+  constexpr double flat = 0.1;
+  return F.determinant() > flat ? Vec3(F.inverse() * v) : Vec3(material::rotation_of(F).transpose() * v);
+}
+
 void check(const ModelOptions& options) {
   require(non_negative, options.stabilisation, "Stabilisation [1]");
   require({.min = 0, .max = 1}, options.volume_share, "Volume share [1]");
@@ -27,8 +37,12 @@ void check(const ModelOptions& options) {
 } // namespace
 
 PhyxelModel::PhyxelModel(Phyxels phyxels, const material::Elastic& material, const ModelOptions& options)
+  : PhyxelModel(phyxels, find_neighbours(phyxels), material, options) {}
+
+PhyxelModel::PhyxelModel(Phyxels phyxels, Neighbours neighbours, const material::Elastic& material,
+                         const ModelOptions& options)
   : phyxels_(std::move(phyxels)),
-    neighbours_(find_neighbours(phyxels_)),
+    neighbours_(std::move(neighbours)),
     options_(options),
     density_(material.density),
     youngs_modulus_(material.youngs_modulus),
@@ -38,6 +52,7 @@ PhyxelModel::PhyxelModel(Phyxels phyxels, const material::Elastic& material, con
   for (const double volume : phyxels_.volume)
     mass_.push_back(material.density * volume);
   weights_.assign(neighbours_.pairs.size(), -1.0); // none yet: the first update makes all
+  links_ = neighbours_of({}, n);
   bonds_.resize(neighbours_.phyxel.size());
   fits_.resize(n);
   kappa_.assign(n, 0.0);
@@ -52,7 +67,8 @@ PhyxelModel::PhyxelModel(Phyxels phyxels, const material::Elastic& material, con
 }
 
 std::span<const PhyxelModel::Bond> PhyxelModel::bonds(const std::size_t i) const {
-  return std::span(bonds_).subspan(neighbours_.start[i], neighbours_.start[i + 1] - neighbours_.start[i]);
+  const auto first = neighbours_.start[i] + links_.start[i];
+  return std::span(bonds_).subspan(first, neighbours_.start[i + 1] + links_.start[i + 1] - first);
 }
 
 void PhyxelModel::update(const std::span<const Sight> sights) {
@@ -74,12 +90,47 @@ void PhyxelModel::update(const std::span<const Sight> sights) {
     worth);
 }
 
+void PhyxelModel::link(const std::span<const Link> links, const Points& x) {
+  if (links.empty() && links_.pairs.empty())
+    return;
+  std::vector<Link> sorted(links.begin(), links.end());
+  std::sort(sorted.begin(), sorted.end(), [](const Link& a, const Link& b) { return a.pair < b.pair; });
+  std::vector<Mat3> F;
+  deformation(x, F);
+  const auto size = [&](const std::uint32_t i) { return reference_[i] > 0 ? phyxels_.volume[i] / reference_[i] : 0.0; };
+  std::vector<Pair> pairs;
+  std::vector<double> weights;
+  Points offsets;
+  for (const auto& [pair, length, area] : sorted) {
+    const auto [i, j] = pair;
+    const double weight = std::min(1.0, area / (length * (size(i) + size(j))));
+    const auto known = std::lower_bound(links_.pairs.begin(), links_.pairs.end(), pair);
+    const auto before = static_cast<std::size_t>(known - links_.pairs.begin());
+    const bool is_new = known == links_.pairs.end() || *known != pair;
+    const Vec3 way = x[j] - x[i];
+    offsets.push_back(is_new ? Vec3(0.5 * (undone(F[i], way) + undone(F[j], way))) : link_offsets_[before]);
+    weights.push_back(is_new ? weight : std::min(weight, link_weights_[before]));
+    pairs.push_back(pair);
+  }
+  links_ = neighbours_of(std::move(pairs), phyxels_.size());
+  link_weights_ = std::move(weights);
+  link_offsets_ = std::move(offsets);
+  make_all();
+}
+
 void PhyxelModel::archive(Archive& a) {
   a.name("phyxels");
-  a(mass_, weights_);
-  if (a.reads())
-    parallel_for(
-      phyxels_.size(), [&](const std::size_t i) { make(i); }, worth);
+  a(mass_, weights_, links_.pairs, link_weights_, link_offsets_);
+  if (!a.reads())
+    return;
+  links_ = neighbours_of(std::move(links_.pairs), phyxels_.size());
+  make_all();
+}
+
+void PhyxelModel::make_all() {
+  bonds_.resize(neighbours_.phyxel.size() + links_.phyxel.size());
+  parallel_for(
+    phyxels_.size(), [&](const std::size_t i) { make(i); }, worth);
 }
 
 void PhyxelModel::carry(const std::span<const std::uint8_t> carried) {
@@ -89,12 +140,19 @@ void PhyxelModel::carry(const std::span<const std::uint8_t> carried) {
 
 void PhyxelModel::make(const std::size_t i) {
   Mat3 moment = Mat3::Zero();
+  Bond* bond = &bonds_[neighbours_.start[i] + links_.start[i]];
+  const auto add = [&](const std::uint32_t j, const double weight, const Vec3& offset) {
+    *bond = {weight * offset, weight, offset, j};
+    moment += bond->moment * offset.transpose();
+    ++bond;
+  };
   for (auto k = neighbours_.start[i]; k < neighbours_.start[i + 1]; ++k) {
     const std::uint32_t j = neighbours_.phyxel[k];
-    const double weight = weights_[neighbours_.pair[k]];
-    const Vec3 offset = phyxels_.rest[j] - phyxels_.rest[i];
-    bonds_[k] = {weight * offset, weight, j};
-    moment += bonds_[k].moment * offset.transpose();
+    add(j, weights_[neighbours_.pair[k]], phyxels_.rest[j] - phyxels_.rest[i]);
+  }
+  for (auto k = links_.start[i]; k < links_.start[i + 1]; ++k) {
+    const std::uint32_t j = links_.phyxel[k], l = links_.pair[k];
+    add(j, link_weights_[l], i < j ? link_offsets_[l] : Vec3(-link_offsets_[l]));
   }
   fits_[i] = fit(moment, reference_[i], options_.rank_threshold);
   kappa_[i] = reference_[i] > 0 ? options_.stabilisation * youngs_modulus_ * phyxels_.volume[i] / reference_[i] : 0.0;
@@ -142,8 +200,7 @@ double PhyxelModel::energy(const Points& x) const {
       const Fit& fit = fits_[i];
       double residual = 0;
       for (const Bond& bond : bonds(i))
-        residual +=
-          bond.weight * (x[bond.other] - x[i] - B * (phyxels_.rest[bond.other] - phyxels_.rest[i])).squaredNorm();
+        residual += bond.weight * (x[bond.other] - x[i] - B * bond.offset).squaredNorm();
       const Mat3 F = B * fit.used;
       energies[i] =
         phyxels_.volume[i] * energy_density(law_, {F, fit.used, fit.determinant}) + 0.5 * kappa_[i] * residual;

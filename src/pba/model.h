@@ -21,6 +21,11 @@
 ///
 /// The law of material::Elastic is not asked for: it is Green's strain with Hooke's law whatever its name.
 ///
+/// Links (links.h) are bonds beside those of neighbours, for parts of a piece that no neighbours join. With w_ij
+/// (V_i / m_i + V_j / m_j) = area / length, m_i = tr(A_i) / 3 with nothing in sight, the second sum makes them as stiff as
+/// the material along their way, c E area / length; no link weighs more than 1. A link is unstrained as it finds its
+/// phyxels: with offset X = (F_i^-1 + F_j^-1) (x_j - x_i) / 2 for X_ij it brings hardly any energy.
+///
 /// Limits: nodal integration passes the patch test of equilibrium only where the phyxels lie on a lattice; Green's
 /// strain with Hooke's law softens in strong compression.
 
@@ -29,6 +34,7 @@
 #include "material/elastic.h"
 #include "pba/fit.h"
 #include "pba/law.h"
+#include "pba/links.h"
 #include "pba/neighbours.h"
 
 namespace kerf::pba {
@@ -53,15 +59,20 @@ struct ModelOptions {
 
 class PhyxelModel : public dynamics::ElasticModel {
  public:
-  /// Nothing in sight. Throws ParameterError for an option out of its range.
+  /// Nothing is in sight but neighbours. Throws ParameterError for an option out of its range.
+  PhyxelModel(Phyxels phyxels, Neighbours neighbours, const material::Elastic& material, const ModelOptions& options);
+  /// Of a cloud without a body: all that are near are neighbours.
   PhyxelModel(Phyxels phyxels, const material::Elastic& material, const ModelOptions& options);
 
   /// What stands between the phyxels now: one sight for each of neighbours().pairs. Only what changed is made anew.
   void update(std::span<const Sight> sights);
+  /// These links and no others count as bonds now, new ones unstrained at x. Those that did before keep their offsets,
+  /// and their weights where these would grow.
+  void link(std::span<const Link> links, const Points& x);
   /// Leaves the mass of these (1) to whoever carries them; their sights must be none.
   void carry(std::span<const std::uint8_t> carried);
 
-  /// Its sights and who is carried; into a model of the same phyxels and options. The linearisation is lost.
+  /// Its sights, its links and who is carried; into a model of the same phyxels and options. The linearisation is lost.
   void archive(Archive& a);
 
   const Phyxels& phyxels() const { return phyxels_; }
@@ -70,6 +81,9 @@ class PhyxelModel : public dynamics::ElasticModel {
   const std::vector<Fit>& fits() const { return fits_; }
   /// Weight of each pair [1].
   std::span<const double> weights() const { return weights_; }
+  /// The links that count, without supports, and the weight of each [1].
+  const Neighbours& links() const { return links_; }
+  std::span<const double> link_weights() const { return link_weights_; }
 
   std::span<const double> lumped_mass() const override { return mass_; }
   double energy(const Points& x) const override;
@@ -86,10 +100,12 @@ class PhyxelModel : public dynamics::ElasticModel {
   struct Bond {
     Vec3 moment; ///< w_ij X_ij [m]
     double weight;
+    Vec3 offset; ///< X_ij [m]
     std::uint32_t other;
   };
 
   void make(std::size_t i);
+  void make_all();
   std::span<const Bond> bonds(std::size_t i) const;
   /// B_i for any field of points, positions or changes of them.
   template <class At>
@@ -105,7 +121,10 @@ class PhyxelModel : public dynamics::ElasticModel {
   Law law_;
   std::vector<double> mass_, weights_;
   std::vector<double> reference_, kappa_; // by phyxel: tr(A) / 3 with nothing in sight; [N/m]
-  std::vector<Bond> bonds_;
+  Neighbours links_; // by their pairs
+  std::vector<double> link_weights_;
+  Points link_offsets_;     // from the first to the second phyxel [m]
+  std::vector<Bond> bonds_; // of each phyxel: to neighbours, then links
   std::vector<Fit> fits_;
   std::vector<Linearised> linearised_;
 };

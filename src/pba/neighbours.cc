@@ -1,11 +1,8 @@
 #include "pba/neighbours.h"
 
-#include "base/union_find.h"
 #include "pba/point_grid.h"
 
 #include <algorithm>
-#include <limits>
-#include <map>
 
 namespace kerf::pba {
 
@@ -29,54 +26,19 @@ std::vector<Pair> find_pairs(const Phyxels& phyxels) {
   return pairs;
 }
 
-/// Phyxels of one piece that pairs join, ascending.
-using Part = std::vector<std::uint32_t>;
-constexpr double holding = 1.1; ///< support of a pair that holds, in its distances [1]: from a weight of .005 on
-constexpr double widened = 1.5; ///< of a pair that is to hold: a weight of .17
-
-/// All parts of pieces that pairs leave in several, but the largest of each.
-std::vector<Part> lesser_parts(const std::span<const std::uint32_t> pieces, const Phyxels& phyxels) {
-  UnionFind sets(phyxels.size());
-  for (const auto& [i, j] : find_pairs(phyxels))
-    if (pieces[i] == pieces[j] && holding * (phyxels.rest[j] - phyxels.rest[i]).norm() < pair_support(phyxels, i, j))
-      sets.unite(i, j);
-  std::map<std::uint32_t, std::map<std::uint32_t, Part>> parts; // by piece and root
-  for (std::uint32_t i = 0; i < phyxels.size(); ++i)
-    parts[pieces[i]][sets.root(i)].push_back(i);
-  std::vector<Part> lesser;
-  for (auto& [piece, all] : parts) {
-    const auto smaller = [](const auto& a, const auto& b) { return a.second.size() < b.second.size(); };
-    all.erase(std::max_element(all.begin(), all.end(), smaller));
-    for (auto& [root, part] : all)
-      lesser.push_back(std::move(part));
-  }
-  return lesser;
-}
-
-/// The two nearest phyxels of a part and of what else its piece holds.
-Pair nearest_outside(const Part& part, const std::span<const std::uint32_t> pieces, const Points& rest) {
-  Pair found{};
-  double least = std::numeric_limits<double>::max();
-  for (std::uint32_t j = 0; j < rest.size(); ++j) {
-    if (pieces[j] != pieces[part.front()] || std::binary_search(part.begin(), part.end(), j))
-      continue;
-    for (const auto i : part)
-      if (const double distance = (rest[j] - rest[i]).squaredNorm(); distance < least) {
-        least = distance;
-        found = {i, j};
-      }
-  }
-  return found;
-}
-
 } // namespace
 
 Neighbours find_neighbours(const Phyxels& phyxels) {
-  Neighbours neighbours;
-  neighbours.pairs = find_pairs(phyxels);
+  Neighbours neighbours = neighbours_of(find_pairs(phyxels), phyxels.size());
   for (const auto& [i, j] : neighbours.pairs)
     neighbours.support.push_back(pair_support(phyxels, i, j));
-  neighbours.start.assign(phyxels.size() + 1, 0);
+  return neighbours;
+}
+
+Neighbours neighbours_of(std::vector<Pair> pairs, const std::size_t n) {
+  Neighbours neighbours;
+  neighbours.pairs = std::move(pairs);
+  neighbours.start.assign(n + 1, 0);
   for (const Pair& pair : neighbours.pairs)
     for (const auto i : pair)
       ++neighbours.start[i + 1];
@@ -93,16 +55,6 @@ Neighbours find_neighbours(const Phyxels& phyxels) {
       neighbours.pair[at] = p;
     }
   return neighbours;
-}
-
-void join_pieces(const std::span<const std::uint32_t> pieces, Phyxels& phyxels) {
-  for (std::vector<Part> parts; parts = lesser_parts(pieces, phyxels), !parts.empty();)
-    for (const Part& part : parts) {
-      const auto [i, j] = nearest_outside(part, pieces, phyxels.rest);
-      const double support = widened * (phyxels.rest[j] - phyxels.rest[i]).norm();
-      for (const auto end : {i, j})
-        phyxels.support[end] = std::max(phyxels.support[end], support);
-    }
 }
 
 std::vector<Sight> clear_sights(const Points& from, const Points& to, const std::span<const Pair> pairs) {

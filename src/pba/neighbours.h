@@ -26,10 +26,8 @@ struct Neighbours {
 /// All pairs of phyxels closer than the mean of their supports.
 Neighbours find_neighbours(const Phyxels& phyxels);
 
-/// Widens supports until pairs that hold join all phyxels of each piece: beside a thin place with no phyxel, the nearest
-/// ones may all lie on one side of it, and what the grid holds together would fall apart. Of two parts the nearest phyxels
-/// take a support of half as far again as they are apart. `pieces`: of each phyxel.
-void join_pieces(std::span<const std::uint32_t> pieces, Phyxels& phyxels);
+/// The neighbours that these pairs of `n` phyxels make, ascending; without supports.
+Neighbours neighbours_of(std::vector<Pair> pairs, std::size_t n);
 
 /// The sights of pairs (one of `from`, one of `to`) with nothing between them [m].
 std::vector<Sight> clear_sights(const Points& from, const Points& to, std::span<const Pair> pairs);

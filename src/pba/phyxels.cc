@@ -3,8 +3,6 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "grid/locate.h"
-#include "pba/corners.h"
-#include "pba/neighbours.h"
 #include "pba/point_grid.h"
 #include "pba/region.h"
 
@@ -94,8 +92,6 @@ Phyxels fill(const grid::Solid& solid, const PhyxelOptions& options) {
                           .remedy = "Use a smaller spacing"});
   phyxels.volume = voronoi_volumes(phyxels.rest, crumbs(solid, 0.5 * sampling.spacing));
   phyxels.support = make_supports(phyxels.rest, options);
-  if (options.support == 0)
-    join_pieces(phyxel_pieces(solid.complex, grid::copies_around(solid, phyxels.rest)), phyxels);
   return phyxels;
 }
 

@@ -35,8 +35,7 @@ struct PhyxelOptions {
   }
 };
 
-/// Fills the material of a body; where supports are by neighbours, pairs hold each of its pieces together
-/// (join_pieces()). Throws ParameterError for fewer than 4 phyxels, and where make_supports() does.
+/// Fills the material of a body. Throws ParameterError for fewer than 4 phyxels, and where make_supports() does.
 Phyxels fill(const grid::Solid& solid, const PhyxelOptions& options);
 
 /// Volume [m^3] of each point: that of the parts of which it is the nearest point. A point that is the nearest of none

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
 
 namespace kerf::physics {
 
@@ -64,6 +65,15 @@ std::vector<visibility::Pair> pairs_of(const Points& from, const Points& to, con
 
 } // namespace
 
+Phyxels::Made Phyxels::make(const CutBody& body, const PhyxelsOptions& options) {
+  pba::Phyxels phyxels = pba::fill(body.solid, options.phyxels);
+  const auto copies = grid::copies_around(body.solid, phyxels.rest);
+  const auto reached = pba::reached_copies(body.solid, phyxels, copies);
+  pba::NodePairs node_pairs = pba::reached_node_pairs(body.solid, phyxels, reached);
+  pba::Neighbours neighbours = pba::reached_neighbours(phyxels, copies, reached);
+  return {{std::move(phyxels), std::move(neighbours), options.material, options.model}, std::move(node_pairs)};
+}
+
 bool Phyxels::ByCoordinates::operator()(const Face& a, const Face& b) const {
   for (int k = 0; k < 3; ++k)
     if (a[k] != b[k])
@@ -72,11 +82,15 @@ bool Phyxels::ByCoordinates::operator()(const Face& a, const Face& b) const {
 }
 
 Phyxels::Phyxels(const CutBody& body, const PhyxelsOptions& options, StepperMaker make_stepper)
+  : Phyxels(body, options, std::move(make_stepper), make(body, options)) {}
+
+Phyxels::Phyxels(const CutBody& body, const PhyxelsOptions& options, StepperMaker make_stepper, Made made)
   : options_(options),
     make_stepper_(std::move(make_stepper)),
-    model_(pba::fill(body.solid, options.phyxels), options.material, options.model),
-    node_pairs_(pba::find_node_pairs(body.solid.grid, model_.phyxels())),
-    crumbs_(body.density) {
+    model_(std::move(made.model)),
+    node_pairs_(std::move(made.node_pairs)),
+    crumbs_(body.density),
+    now_(rest()) {
   const auto& neighbours = model_.neighbours();
   sights_of_phyxels_ = pba::clear_sights(rest(), rest(), neighbours.pairs);
   sights_of_nodes_ = pba::clear_sights(node_pairs_.rest, rest(), node_pairs_.pairs);
@@ -128,34 +142,28 @@ void Phyxels::find_pieces(const CutBody& body) {
   node_pieces_ = pba::node_pieces(body.solid.complex, node_pairs_);
 }
 
-bool Phyxels::hold_together(std::vector<pba::Sight>& sights) const {
-  constexpr double counts = 0.3; // part of the direction along a bond that one of its ends knows
-  constexpr double weak = 0.3;   // enough to be known; a bond that comes back stretched brings energy, so no more
-  constexpr double least = 5e-3; // weight that holds: what is lighter falls as if it were free
-  constexpr double near = 1.5;   // supports of a bond that comes back, in its distances, at least: a weight of .05
+std::vector<pba::Link> Phyxels::missing_links(const CutBody& body) const {
+  constexpr double least = 0.1; // weight that holds: what a link of a quarter of a cube weighs across two of them
   const auto& pairs = model_.neighbours().pairs;
   UnionFind parts(rest().size());
-  std::vector<std::pair<double, std::size_t>> idle; // distance at rest or now, what is more; pair
-  for (std::size_t p = 0; p < pairs.size(); ++p) {
-    const auto [i, j] = pairs[p];
-    const Vec3 X = (rest()[j] - rest()[i]).normalized();
-    const double known = std::max(X.dot(model_.fits()[i].used * X), X.dot(model_.fits()[j].used * X));
-    if (model_.weights()[p] > least && known > counts)
-      parts.unite(i, j);
-    else if (phyxel_pieces_[i] == phyxel_pieces_[j] && !crumbs_.carries(i))
-      idle.emplace_back(std::max((rest()[i] - rest()[j]).norm(), (now_[i] - now_[j]).norm()), p);
-  }
-  std::sort(idle.begin(), idle.end());
-  bool has_changed = false;
-  for (const auto& [distance, p] : idle) { // so that what comes back is stretched least
-    const auto [i, j] = pairs[p];
-    if (parts.root(i) == parts.root(j))
-      continue;
-    parts.unite(i, j);
-    sights[p] = {std::min((rest()[i] - rest()[j]).norm(), model_.neighbours().support[p] / near), weak};
-    has_changed = true;
-  }
-  return has_changed;
+  for (std::size_t p = 0; p < pairs.size(); ++p)
+    if (model_.weights()[p] > least)
+      parts.unite(pairs[p][0], pairs[p][1]);
+  std::map<std::uint32_t, std::uint32_t> part_of; // of pieces
+  bool is_joined = true;
+  for (std::uint32_t i = 0; i < rest().size() && is_joined; ++i)
+    if (copies_[i].valid() && !crumbs_.carries(i))
+      is_joined = part_of.try_emplace(phyxel_pieces_[i], parts.root(i)).first->second == parts.root(i);
+  if (is_joined)
+    return {};
+  std::vector<pba::Link> links = pba::find_links(body.solid, rest(), copies_);
+  std::erase_if(links, [&](const pba::Link& link) {
+    return parts.root(link.pair[0]) == parts.root(link.pair[1]) || crumbs_.carries(link.pair[0]);
+  });
+  const double h = body.solid.grid.h();
+  for (pba::Link& link : links)
+    link.area = std::max(link.area, grid::well_filled * h * h);
+  return links;
 }
 
 void Phyxels::build_map(const CutBody& body) {
@@ -168,8 +176,7 @@ void Phyxels::build_map(const CutBody& body) {
   pba::part(model_.neighbours().pairs, phyxel_pieces_, phyxel_pieces_, parted);
   leave_out_crumbs(model_.neighbours().pairs, parted);
   model_.update(parted);
-  if (sights_ && hold_together(parted))
-    model_.update(parted);
+  model_.link(missing_links(body), now_);
   is_stale_ = false;
 }
 

@@ -3,10 +3,10 @@
 /// Point-based animation as a backend: the particles are phyxels, the corners follow those that they see (thesis §2.6.1),
 /// and a criterion says what the cut leaves to see (§2.3.1, §2.6.2).
 ///
-/// A piece that the cut has left whole may have lost all bonds between parts of it, or be of so few phyxels that they
-/// know no direction (fit.h). Then pairs that join its parts see each other again, weakly: what the copies hold together
-/// does not drift apart. They are the shortest by their length at rest or now, what is more, since a pair that comes back
-/// stretched brings energy. Bonds too light to hold count as lost.
+/// A piece may hang together by less than its phyxels can tell: by copies in which none lies, or by what a cut has left
+/// behind its front. Parts of a piece that no bond joins are linked (pba/links.h) wherever the copies join them, as
+/// stiffly as a web of that material, though not less than of a quarter of a cube, as near-empty copies of elements are.
+/// Bonds too light to hold join nothing.
 ///
 /// After a cut, its faces come between pairs of phyxels, and between corners and phyxels, under a budget of pairs a
 /// step: catch_up(). What lies in different pieces is parted at once, whatever the criterion has seen. Nothing of all
@@ -71,14 +71,20 @@ class Phyxels : public Physics {
 
  private:
   using Face = visibility::Face;
+  struct Made {
+    pba::PhyxelModel model;
+    pba::NodePairs node_pairs;
+  };
+
+  static Made make(const CutBody& body, const PhyxelsOptions& options);
+  Phyxels(const CutBody& body, const PhyxelsOptions& options, StepperMaker make_stepper, Made made);
 
   void begin_to_look(const surface::Surface& surface);
   /// Those that are new come between the pairs.
   void add_faces(const std::vector<Face>& faces);
   void find_pieces(const CutBody& body);
-  /// Gives back the shortest bonds that join parts of a piece which no bond joins whose direction the model knows; says
-  /// whether there were any.
-  bool hold_together(std::vector<pba::Sight>& sights) const;
+  /// Between parts of a piece that no bond joins.
+  std::vector<pba::Link> missing_links(const CutBody& body) const;
   void build_map(const CutBody& body);
   /// Leaves no sight to phyxels that crumbs carry.
   void leave_out_crumbs(const std::vector<pba::Pair>& pairs, std::vector<pba::Sight>& sights) const;

@@ -5,6 +5,7 @@
 #include "grid/opening.h"
 #include "grid/shape.h"
 #include "physics/phyxels.h"
+#include "scene/soundness.h"
 
 #include <Eigen/Geometry>
 
@@ -288,6 +289,7 @@ const std::vector<Observable>& body_observables() {
      "skin gained or lost",
      [](const Body& b) { return rest_volume(b) - b.first_volume; }},
     {"largest displacement", "m", "of a surface vertex from its rest position", largest_displacement},
+    {"largest stretch", "1", "longest edge of a copy's cube over that at rest", [](const Body& b) { return largest_stretch(b).factor; }},
     {"pieces", "1", "connected components of the copies",
      [](const Body& b) { return count(grid::n_pieces(b.solid.complex)); }},
     {"crumbs", "1", "pieces too small for the grid to deform, which move as rigid bodies (grid/crumbs.h)",

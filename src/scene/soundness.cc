@@ -173,6 +173,20 @@ void require_sound_motion(const Body& body, const Points& before, const double d
                          " J) could move an eighth of a cube. Use a smaller time step");
 }
 
+Stretch largest_stretch(const Body& body) {
+  const Points& x = corners(body);
+  Stretch most;
+  for (std::size_t c = 0; c < body.solid.complex.n_copies(); ++c) {
+    if (body.solid.crumbs.holds(grid::CopyId(static_cast<std::uint32_t>(c))))
+      continue;
+    const auto& corner = copy_of(body, c).corners;
+    for (const auto& [a, b] : grid::cube::line_vertices)
+      if (const double squared = (x[corner[b].value] - x[corner[a].value]).squaredNorm(); squared > most.factor)
+        most = {c, squared};
+  }
+  return {most.copy, std::sqrt(most.factor) / body.solid.grid.h()};
+}
+
 void require_sound_volume(const Body& body, Watch& watch) {
   bring_up_to_date(body, watch);
   const std::string what = unsound_volume(body, watch);

@@ -26,6 +26,14 @@ struct Watch {
 /// After a step of dt [s] from `before` [m], before the surface follows. Velocities may ring where nothing damps them, and statics
 /// go far without any: the less of a velocity and of the way over dt counts. Throws NumericalError that names the particle and its place.
 void require_sound_motion(const Body& body, const Points& before, double dt);
+/// The copy whose cube is drawn out most.
+struct Stretch {
+  std::size_t copy = 0;
+  double factor = 0; ///< its longest edge over that at rest [1]
+};
+/// Of all copies but those of crumbs, which are rigid.
+Stretch largest_stretch(const Body& body);
+
 /// After the surface followed. Pieces below a cube's volume are left out. Throws NumericalError that names the piece,
 /// its worst copy and its place.
 void require_sound_volume(const Body& body, Watch& watch);

@@ -106,7 +106,8 @@ void Harvest::add(const std::string& name, const std::string& kind, const Scene&
   Figures& most = healthy_[kind];
   if (!outcome.failure) {
     const Figures& f = outcome.figures;
-    most = {std::max(most.fastest, f.fastest),      std::max(most.runaway, f.runaway),
+    most = {std::max(most.fastest, f.fastest),      std::max(most.stretch, f.stretch),
+            std::max(most.runaway, f.runaway),
             std::max(most.outlier, f.outlier),      std::max(most.volume, f.volume),
             std::max(most.reach, f.reach),          std::max(most.energy, f.energy),
             std::max(most.cut_energy, f.cut_energy)};
@@ -136,7 +137,7 @@ std::string Harvest::summary() const {
       const Figures& f = it->second;
       out << " of those that passed, the largest over what is allowed: speed " << f.runaway << ", outlier " << f.outlier
           << ", volume " << f.volume << ", reach " << f.reach << ", energy " << f.energy << ", of cuts "
-          << f.cut_energy;
+          << f.cut_energy << "; stretched " << f.stretch << " times";
     }
     out << '\n';
   }

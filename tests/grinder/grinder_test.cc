@@ -73,7 +73,7 @@ void grind(const Solids& solids, const std::size_t n_cases, const Size& size, Ha
               << (outcome.refused   ? "refused"
                   : outcome.failure ? outcome.failure->reason
                                     : "well")
-              << ", " << outcome.figures.fastest << " m/s\n";
+              << ", " << outcome.figures.fastest << " m/s, stretched " << outcome.figures.stretch << " times\n";
     harvest.add(name_of(one), one.kind->name, scene, outcome);
   }
 }

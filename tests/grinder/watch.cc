@@ -4,6 +4,7 @@
 #include "geometry/triangle_mesh.h"
 #include "material/elastic.h"
 #include "scene/observables.h"
+#include "scene/soundness.h"
 
 #include <algorithm>
 #include <cmath>
@@ -78,6 +79,7 @@ std::optional<Failure> Watch::watch_speeds(const scene::Body& body, const Look& 
 
 std::optional<Failure> Watch::watch_shapes(const scene::Body& body, const Look& look, const int step) {
   const double h = body.solid.grid.h(), least_volume = 1e-9 * h * h * h;
+  figures_.stretch = std::max(figures_.stretch, scene::largest_stretch(body).factor);
   std::optional<Failure> failure;
   for (const PieceLook& piece : look.pieces) {
     if (piece.rest_volume < least_volume)

@@ -21,6 +21,7 @@ struct Failure {
 /// The largest of each figure so far, over what is allowed: 1 fails.
 struct Figures {
   double fastest = 0; ///< speed [m/s]
+  double stretch = 0; ///< of a copy's edge, as it is [1]
   double runaway = 0, outlier = 0, volume = 0, reach = 0, energy = 0, cut_energy = 0;
 };
 

@@ -123,44 +123,6 @@ TEST(Supports, HoldTheNearestPoints) {
   }
 }
 
-/// Which parts pairs of some weight leave, by walking.
-std::size_t n_reached(const Phyxels& phyxels, const double least_weight) {
-  std::vector<std::uint32_t> found = {0};
-  std::vector<bool> seen(phyxels.size(), false);
-  seen[0] = true;
-  for (std::size_t next = 0; next < found.size(); ++next)
-    for (std::uint32_t j = 0; j < phyxels.size(); ++j) {
-      const double distance = (phyxels.rest[j] - phyxels.rest[found[next]]).norm();
-      const double support = 0.5 * (phyxels.support[j] + phyxels.support[found[next]]);
-      if (!seen[j] && kernel(distance, support) > least_weight) {
-        seen[j] = true;
-        found.push_back(j);
-      }
-    }
-  return found.size();
-}
-
-/// Two lumps with a gap wider than supports reach, and a lone pair beside them: of one piece they are joined, of
-/// different ones left alone.
-TEST(Supports, HoldPiecesTogether) {
-  Draw draw(5);
-  Points points = grid_points({4, 4, 4}, 0.1, 0.5, draw);
-  for (const Vec3& p : grid_points({4, 4, 4}, 0.1, 0.5, draw))
-    points.push_back(p + Vec3(0.9, 0, 0));
-  points.insert(points.end(), {Vec3(0.2, 0.2, 0.8), Vec3(0.25, 0.2, 1)});
-  const Phyxels apart = make_phyxels(points, 1, 20);
-  EXPECT_EQ(n_reached(apart, 0.005), 64u);
-  Phyxels joined = apart;
-  join_pieces(std::vector<std::uint32_t>(points.size(), 3), joined);
-  EXPECT_EQ(n_reached(joined, 0.15), points.size());
-  std::vector<std::uint32_t> pieces(points.size(), 0);
-  std::fill(pieces.begin() + 64, pieces.begin() + 128, 1u);
-  std::fill(pieces.begin() + 128, pieces.end(), 2u);
-  Phyxels others = apart;
-  join_pieces(pieces, others);
-  EXPECT_EQ(others.support, apart.support);
-}
-
 TEST(Supports, RefuseWhatHoldsNoOther) {
   Draw draw(4);
   const Points points = grid_points({3, 3, 3}, 0.1, 0, draw);

@@ -97,36 +97,42 @@ TEST(Phyxels, CarryForcesWithTheirSumAfterAnyCuts) {
   EXPECT_GT(grid::n_pieces(block.body.complex), 2u);
 }
 
-/// Phyxels of one piece are joined by bonds of some weight whose direction the model knows, wherever pairs reach: what the
-/// copies hold together does not drift apart.
-TEST(Phyxels, PiecesThatStayWholeKeepABond) {
+/// Whatever is cut, phyxels of one piece are joined by bonds of some weight whose direction the model knows, or by links:
+/// what the copies hold together does not drift apart.
+TEST(Phyxels, PiecesStayTogether) {
   support::Random random(7);
   GrowingCut block(whole_block());
   Phyxels physics(block.seen(), options(), verlet);
   dynamics::State state = state_at_rest(physics);
-  for (int batch = 0; batch < 5; ++batch)
-    block.cut(support::with_skin(block.body, support::random_cuts(random, block.body, 0.15)), physics, state);
-  const auto copies = grid::copies_around(block.body, physics.rest());
-  const auto pieces = pba::phyxel_pieces(block.body.complex, copies);
   const pba::PhyxelModel& model = physics.model();
-  const auto& pairs = model.neighbours().pairs;
-  UnionFind parts(physics.rest().size());
-  std::size_t n_bonds = 0;
-  for (std::size_t p = 0; p < pairs.size(); ++p) {
-    const auto [i, j] = pairs[p];
-    const Vec3 X = (physics.rest()[j] - physics.rest()[i]).normalized();
-    const bool is_known = X.dot(model.fits()[i].used * X) > 0.3 || X.dot(model.fits()[j].used * X) > 0.3;
-    if (model.weights()[p] > 5e-3 && is_known) { // what is lighter holds nothing
+  EXPECT_TRUE(model.links().pairs.empty()) << "nothing is cut";
+  std::size_t n_links = 0;
+  for (int batch = 0; batch < 5; ++batch) {
+    block.cut(support::with_skin(block.body, support::random_cuts(random, block.body, 0.15)), physics, state);
+    const auto pieces = pba::phyxel_pieces(block.body.complex, grid::copies_around(block.body, physics.rest()));
+    UnionFind parts(physics.rest().size());
+    const auto join = [&](const pba::Pair& pair, const double weight) {
+      const auto [i, j] = pair;
+      const Vec3 X = (physics.rest()[j] - physics.rest()[i]).normalized();
+      const bool is_known = X.dot(model.fits()[i].used * X) > 0.3 || X.dot(model.fits()[j].used * X) > 0.3;
+      if (weight < 5e-3 || !is_known) // what is lighter holds nothing
+        return;
       EXPECT_EQ(pieces[i], pieces[j]);
       parts.unite(i, j);
-      ++n_bonds;
-    }
+    };
+    for (std::size_t p = 0; p < model.weights().size(); ++p)
+      join(model.neighbours().pairs[p], model.weights()[p]);
+    for (std::size_t l = 0; l < model.link_weights().size(); ++l)
+      join(model.links().pairs[l], model.link_weights()[l]);
+    n_links += model.link_weights().size();
+    for (std::uint32_t i = 0; i < pieces.size(); ++i)
+      for (std::uint32_t j = 0; j < i; ++j)
+        if (pieces[i] == pieces[j]) {
+          EXPECT_EQ(parts.root(i), parts.root(j)) << i << ", " << j;
+        }
   }
-  EXPECT_LT(n_bonds, pairs.size());
-  for (const auto& [i, j] : pairs)
-    if (pieces[i] == pieces[j]) {
-      EXPECT_EQ(parts.root(i), parts.root(j)) << i << ", " << j;
-    }
+  EXPECT_GT(grid::n_pieces(block.body.complex), 2u);
+  EXPECT_GT(n_links, 10u);
 }
 
 /// Whether all phyxels that a corner follows know their gradient in all directions; a cut may have left some too few
