@@ -121,7 +121,7 @@ class PhyxelModel : public dynamics::ElasticModel {
   Law law_;
   std::vector<double> mass_, weights_;
   std::vector<double> reference_, kappa_; // by phyxel: tr(A) / 3 with nothing in sight; [N/m]
-  Neighbours links_; // by their pairs
+  Neighbours links_;                      // by their pairs
   std::vector<double> link_weights_;
   Points link_offsets_;     // from the first to the second phyxel [m]
   std::vector<Bond> bonds_; // of each phyxel: to neighbours, then links

@@ -106,11 +106,10 @@ void Harvest::add(const std::string& name, const std::string& kind, const Scene&
   Figures& most = healthy_[kind];
   if (!outcome.failure) {
     const Figures& f = outcome.figures;
-    most = {std::max(most.fastest, f.fastest),      std::max(most.stretch, f.stretch),
-            std::max(most.runaway, f.runaway),
-            std::max(most.outlier, f.outlier),      std::max(most.volume, f.volume),
-            std::max(most.reach, f.reach),          std::max(most.energy, f.energy),
-            std::max(most.cut_energy, f.cut_energy)};
+    most = {std::max(most.fastest, f.fastest), std::max(most.stretch, f.stretch),
+            std::max(most.runaway, f.runaway), std::max(most.outlier, f.outlier),
+            std::max(most.volume, f.volume),   std::max(most.reach, f.reach),
+            std::max(most.energy, f.energy),   std::max(most.cut_energy, f.cut_energy)};
     return;
   }
   ++counts[outcome.failure->reason];
@@ -136,8 +135,8 @@ std::string Harvest::summary() const {
     if (const auto it = healthy_.find(kind); it != healthy_.end()) {
       const Figures& f = it->second;
       out << " of those that passed, the largest over what is allowed: speed " << f.runaway << ", outlier " << f.outlier
-          << ", volume " << f.volume << ", reach " << f.reach << ", energy " << f.energy << ", of cuts "
-          << f.cut_energy << "; stretched " << f.stretch << " times";
+          << ", volume " << f.volume << ", reach " << f.reach << ", energy " << f.energy << ", of cuts " << f.cut_energy
+          << "; stretched " << f.stretch << " times";
     }
     out << '\n';
   }

@@ -74,6 +74,43 @@ TEST(Links, JoinPiecesAndNoMore) {
   }
 }
 
+/// Two prongs of 6 x 2 x 2 cubes beside each other, one cube apart, joined at their root: they are near, and nothing of
+/// one counts for the other. All that a solid block has, it keeps.
+TEST(Links, NothingIsSeenAcrossGaps) {
+  const double h = 0.1;
+  for (const bool is_open : {true, false}) {
+    std::vector<Index3> nodes = support::block_nodes({8, 5, 2});
+    if (is_open)
+      std::erase_if(nodes, [](const Index3& n) { return n[1] == 3 && n[0] > 2; });
+    const support::Body body =
+      support::with_copies(support::with_placed_skin(support::make_body({Vec3::Zero(), h}, nodes, support::midway)));
+    const Phyxels phyxels = fill(body, {.sampling = {.spacing = h}, .n_neighbours = 25});
+    const auto copies = grid::copies_around(body, phyxels.rest);
+    const auto reached = reached_copies(body, phyxels, copies);
+    const auto is_across = [&](const Vec3& a, const Vec3& b) {
+      return std::min(a[0], b[0]) > 4.5 * h && (a[1] - 3 * h) * (b[1] - 3 * h) < 0;
+    };
+    const auto n_across = [&](const Points& from, const std::vector<Pair>& pairs) {
+      return std::count_if(pairs.begin(), pairs.end(),
+                           [&](const Pair& pair) { return is_across(from[pair[0]], phyxels.rest[pair[1]]); });
+    };
+    const Neighbours all = find_neighbours(phyxels), kept = reached_neighbours(phyxels, copies, reached);
+    const NodePairs nodes_all = find_node_pairs(body.grid, phyxels),
+                    nodes_kept = reached_node_pairs(body, phyxels, reached);
+    EXPECT_GT(n_across(phyxels.rest, all.pairs), 10);
+    EXPECT_GT(n_across(nodes_all.rest, nodes_all.pairs), 10);
+    if (is_open) {
+      EXPECT_EQ(n_across(phyxels.rest, kept.pairs), 0);
+      EXPECT_EQ(n_across(nodes_kept.rest, nodes_kept.pairs), 0);
+    } else {
+      EXPECT_EQ(kept.pairs, all.pairs);
+      EXPECT_EQ(kept.support, all.support);
+      EXPECT_EQ(nodes_kept.pairs, nodes_all.pairs);
+    }
+    EXPECT_EQ(nodes_kept.nodes, nodes_all.nodes);
+  }
+}
+
 /// Two lumps of phyxels that see nothing of each other, with one link between them: of small moves along it and across
 /// it the model's energy is that of a spring of c E area / length, and more by what strains gradients.
 TEST(Links, AreAsStiffAsTheMaterialAlongThem) {

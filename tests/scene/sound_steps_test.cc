@@ -10,6 +10,7 @@
 #include <Eigen/Geometry>
 
 #include <cmath>
+#include <fstream>
 #include <random>
 
 namespace kerf::scene {
@@ -114,6 +115,65 @@ TEST(SoundScene, ABodyThatTurnsInsideOutEndsTheRun) {
   EXPECT_NE(why.find("body bar, step "), std::string::npos) << why;
   EXPECT_NE(why.find("rests a"), std::string::npos) << why;
   EXPECT_EQ(why.find("sliver"), std::string::npos) << why;
+}
+
+/// Drawn out to 20 times its length it may be rubber, to 40 it is nothing; volume and sides tell nothing of that.
+TEST(SoundScene, ACopyDrawnOutEndsTheRun) {
+  for (const std::string backend : {"fem", "pba"}) {
+    World world =
+      world_of(steps(1e-3, 1) + section("Body b", cube_keys() + Keys{"Backend = " + backend}, material(1e4, 0.3)));
+    Body& body = world.bodies[0];
+    const auto draw_out = [&](const double factor) {
+      for (std::size_t i = 0; i < body.state.x.size(); ++i)
+        body.state.x[i] =
+          body.physics->rest()[i].cwiseProduct(Vec3(factor, 1 / std::sqrt(factor), 1 / std::sqrt(factor)));
+      follow(body);
+      EXPECT_NEAR(largest_stretch(body).factor, factor, 1e-6 * factor) << backend;
+      Watch watch;
+      require_sound_volume(body, watch);
+    };
+    EXPECT_NO_THROW(draw_out(20)) << backend;
+    try {
+      draw_out(40);
+      ADD_FAILURE() << backend;
+    } catch (const NumericalError& error) {
+      EXPECT_NE(std::string(error.what()).find("is drawn out to 40 times"), std::string::npos) << error.what();
+      EXPECT_NE(std::string(error.what()).find("rests around ("), std::string::npos) << error.what();
+    }
+  }
+}
+
+/// A cube with a spike on each side, of which a ball takes the inside: spikes hang together by webs along the cube's edges
+/// that are thinner than the points are apart. They hang nearly as far down as those of elements; where nothing but
+/// weak bonds held them, they fell for three times that way.
+TEST(SoundScene, PointsHangByThinWebs) {
+  const output::TemporaryFolder folder;
+  const auto path = folder / "star.off";
+  {
+    std::ofstream file(path);
+    file << "OFF\n14 24 0\n";
+    for (int i = 0; i < 8; ++i)
+      file << (i & 1 ? 0.125 : -0.125) << ' ' << (i & 2 ? 0.125 : -0.125) << ' ' << (i & 4 ? 0.125 : -0.125) << '\n';
+    const int sides[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
+    for (int side = 0; side < 6; ++side)
+      for (int axis = 0; axis < 3; ++axis)
+        file << (axis == side / 2 ? (side % 2 ? 0.5 : -0.5) : 0) << (axis < 2 ? ' ' : '\n');
+    for (int side = 0; side < 6; ++side)
+      for (int k = 0; k < 4; ++k)
+        file << "3 " << sides[side][k] << ' ' << sides[side][(k + 1) % 4] << ' ' << 8 + side << '\n';
+  }
+  const auto stretch = [&](const std::string& backend) {
+    const Trial star(
+      steps(1.0 / 60, 45) + section("Gravity", {"Acceleration [m/s^2] = 0, 0, -9.81"}) +
+      section("Body b", {"Mesh = " + path.string(), "Cube edge [m] = 0.05", "Backend = " + backend},
+              material(2e4, 0.4) + section("Support held", {"Region = half space", "Plane normal [1] = 0, 0, -1",
+                                                            "Plane point [m] = 0, 0, 0.25"})) +
+      section("Cut surface ball", {"Shape = sphere", "Time [s] = 0.1", "Point [m] = 0, 0, 0", "Radius [m] = 0.16"}) +
+      observe("largest stretch, pieces"));
+    EXPECT_EQ(star.last("pieces"), 2) << backend;
+    return std::ranges::max(star.series("largest stretch"));
+  };
+  EXPECT_LT(stretch("pba"), 1.5 * stretch("fem"));
 }
 
 TEST(SoundScene, ARunawayCornerEndsTheRun) {
