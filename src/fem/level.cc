@@ -53,7 +53,9 @@ std::array<ChebyshevStep, n_steps> chebyshev_steps(const double lower, const dou
   return steps;
 }
 std::array<ChebyshevStep, n_steps> chebyshev_steps(const double bound) {
-  constexpr double part = 1.0 / 30; // of the spectrum's range that the coarse level sees to
+  // Of the spectrum's range that the coarse level sees to. Of 1/16, 1/30, 1/50, 1/80 that with the fewest iterations of a
+  // liver while it is cut: 6.6, 6.3, 6.3, 6.7 a step.
+  constexpr double part = 1.0 / 30;
   return chebyshev_steps(part * bound, bound);
 }
 
