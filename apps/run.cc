@@ -1,4 +1,5 @@
 #include "batch.h"
+#include "grid/in_use.h"
 #include "run_info.h"
 #include "scene_arguments.h"
 
@@ -18,7 +19,7 @@ void print_body(const scene::Body& body, const scene::Watch& watch) {
   const double volume = surface::enclosed_volume(body.positions, body.surface.triangles);
   const double rest = surface::enclosed_volume(body.surface.rest, body.surface.triangles);
   std::printf("body %s: %zu cells, %zu copies, %u pieces, %zu surface triangles\n", body.name.c_str(),
-              body.solid.grid.n_cells(), body.solid.complex.n_copies(), grid::n_pieces(body.solid.complex),
+              body.solid.grid.n_cells(), grid::n_copies_in_use(body.solid.complex), grid::n_pieces(body.solid.complex),
               body.surface.triangles.size());
   std::printf("  volume: mesh %.6e m^3; grid %+.3f %%; cuts changed the rest volume by %+.2e; deformed now %+.3f %%\n",
               body.mesh_volume, 100 * (body.first_volume / body.mesh_volume - 1), rest / body.first_volume - 1,

@@ -2,6 +2,7 @@
 
 #include "dynamics/forces.h"
 #include "geometry/box_tree.h"
+#include "grid/in_use.h"
 #include "grid/opening.h"
 #include "grid/shape.h"
 #include "physics/phyxels.h"
@@ -296,7 +297,7 @@ const std::vector<Observable>& body_observables() {
     {"crumbs", "1", "pieces too small for the grid to deform, which move as rigid bodies (grid/crumbs.h)",
      [](const Body& b) { return count(b.physics->crumbs().size()); }},
     {"copies", "1", "cells, once per connected component",
-     [](const Body& b) { return count(b.solid.complex.n_copies()); }},
+     [](const Body& b) { return count(grid::n_copies_in_use(b.solid.complex)); }},
     {"surface triangles", "1", "of the closed surface",
      [](const Body& b) { return count(b.surface.triangles.size()); }},
     {"cut edges", "1", "grid edges cut by blades and cut surfaces",

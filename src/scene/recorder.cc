@@ -56,6 +56,8 @@ output::Schema make_schema(const World& world) {
 output::Complex to_record(const Body& body) {
   output::Complex record;
   for (const grid::Copy& copy : body.solid.complex.copies) {
+    if (copy.is_lapsed())
+      continue;
     std::array<std::uint32_t, 8> corners;
     for (int v = 0; v < 8; ++v)
       corners[v] = copy.corners[v].value;

@@ -34,7 +34,7 @@ class CompareScenes : public testing::TestWithParam<std::string> {};
 
 TEST_P(CompareScenes, RunSomeSteps) {
   const auto files = compare_scenes();
-  ASSERT_EQ(files.size(), 6u);
+  ASSERT_EQ(files.size(), 7u);
   for (const fs::path& file : files) {
     SCOPED_TRACE(file.string());
     const output::TemporaryFolder folder;

@@ -1,6 +1,7 @@
 #include "cut/advance.h"
 
 #include "grid/fronts.h"
+#include "grid/in_use.h"
 #include "tests/cut/cutting.h"
 #include "tests/cut/patient.h"
 
@@ -148,7 +149,7 @@ Blade winding(support::Random& random) {
 /// a completed cut are those without fronts.
 TEST(Advance, LeavesACompletedCutAsItIsWithoutFronts) {
   support::Random random(11);
-  std::size_t n_begun = 0, n_lapsed = 0, n_left = 0, n_same = 0;
+  std::size_t n_begun = 0, n_lapsed = 0, n_lapsed_copies = 0, n_left = 0, n_same = 0;
   constexpr int n_bodies = 24;
   for (int i = 0; i < n_bodies; ++i) {
     const Body whole =
@@ -165,6 +166,7 @@ TEST(Advance, LeavesACompletedCutAsItIsWithoutFronts) {
     }
     SCOPED_TRACE(i);
     n_lapsed += with.body.complex.lapsed.size();
+    n_lapsed_copies += with.body.complex.n_copies() - grid::n_copies_in_use(with.body.complex);
     n_left += with.body.cuts.fronts().size();
     expect_alike(with, without);
     expect_as_built(with);
@@ -173,6 +175,7 @@ TEST(Advance, LeavesACompletedCutAsItIsWithoutFronts) {
     const auto names = support::renaming(with.body.complex, without.body.complex);
     ASSERT_TRUE(names);
     EXPECT_TRUE(support::is_same(with.surface, without.surface, *names));
+    EXPECT_EQ(grid::n_copies_in_use(with.body.complex), without.body.complex.n_copies());
     ++n_same;
   }
   std::cout << n_same << " of " << n_bodies << " bodies the same; " << n_begun << " fronts in all steps, " << n_lapsed
@@ -180,6 +183,7 @@ TEST(Advance, LeavesACompletedCutAsItIsWithoutFronts) {
   EXPECT_GE(n_same, n_bodies - 2u);
   EXPECT_GT(n_begun, 400u);
   EXPECT_GT(n_lapsed, 10u);
+  EXPECT_GT(n_lapsed_copies, 10u);
 }
 
 /// Which cells have fronts, and how far these have come, is hardly a matter of the length of steps.
