@@ -41,6 +41,15 @@ std::string long_blade() {
          "end\n";
 }
 
+/// A blade that goes in along one plane and on along others: fronts that it leaves ahead of a turn are taken back.
+std::string turning_blade() {
+  return "subsection Blade knife\n"
+         "  set Edge [m]      = 0, -0.2, 0; 0.01, 0.2, 0.04\n"
+         "  set Times [s]     = 0, 0.015, 0.025, 0.035, 0.05\n"
+         "  set Positions [m] = 0.03, 0, 0.14; 0.025, 0, 0.06; -0.03, 0, 0.03; 0.02, 0, -0.02; -0.02, 0, -0.14\n"
+         "end\n";
+}
+
 /// The blade's whole way, while the body holds still.
 void cut_through(World& world) {
   Body& body = world.bodies.at(0);
@@ -175,6 +184,21 @@ TEST(Recut, APieceMovedRigidlyIsWithoutForce) {
   for (const Vec3& f : force)
     EXPECT_LE(f.norm(), 1e-10); // against E h^2 = 6 N
   EXPECT_LE(body.physics->model().energy(body.state.x), 1e-12);
+}
+
+TEST(Recut, FrontsThatAreTakenBackKeepMassAndMomentum) {
+  World world = tumbling_world(turning_blade(), "octants");
+  world.n_steps = 40;
+  world.time_step = 0.05 / world.n_steps;
+  Body& body = world.bodies[0];
+  const Balance before = balance(body);
+  cut_through(world);
+  const Balance after = balance(body);
+  ASSERT_GT(body.solid.complex.lapsed.size(), 0u);
+  EXPECT_GT(grid::n_pieces(body.solid.complex), 1u);
+  EXPECT_NEAR(after.mass, before.mass, 1e-12 * before.mass);
+  EXPECT_NEAR(after.rest_volume, before.rest_volume, 1e-12 * before.rest_volume);
+  EXPECT_LE((after.momentum - before.momentum).norm(), 1e-12 * before.momentum.norm());
 }
 
 /// Cutting while the run goes on: nothing in the steps between cuts may break what cuts keep.
