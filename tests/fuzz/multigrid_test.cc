@@ -122,7 +122,7 @@ TEST(Fuzz, MultigridIsSymmetricAndPositive) {
   Tally tally;
   Random random(5);
   int n_judged = 0, most = 0, sum = 0, sum_of_jacobi = 0;
-  for (std::uint32_t seed = 700; seed < 760; ++seed)
+  for (std::uint32_t seed = 700; seed < 730; ++seed)
     EXPECT_EQ(run(whole_case(seed), specimens.small, tally,
                   [&](const grid::Solid& solid) {
                     Judge judge(solid, seed % 3 == 0 ? 0.45 : 0.3, random);
@@ -139,7 +139,7 @@ TEST(Fuzz, MultigridIsSymmetricAndPositive) {
       << "case " << seed;
   std::cout << n_judged << " bodies: " << double(sum) / n_judged << " iterations, at most " << most << "; block Jacobi "
             << double(sum_of_jacobi) / n_judged << '\n';
-  EXPECT_GT(n_judged, 20);
+  EXPECT_GT(n_judged, 10);
   EXPECT_LT(3 * sum, sum_of_jacobi);
 }
 
