@@ -161,22 +161,22 @@ Reference evaluate_closed_form(const scene::Section& section, const std::string&
   if (form->unit != unit)
     throw section.complaint("Name", "this is a number in " + form->unit + ", the answer's unit is " + unit,
                             "Choose another form, or ask for another answer");
-  const std::vector<std::pair<std::string, double>> numbers = {
+  const std::vector<std::pair<std::string, double>> needed = {
     {"Length [m]", p.length},     {"Thickness [m]", p.thickness},  {"Radius [m]", p.radius},
     {"Depth [m]", p.depth},       {"Width [m]", p.width},          {"Density [kg/m^3]", p.density},
     {"Weight [N/m^3]", p.weight}, {"Traction [N/m^2]", p.traction}};
-  for (const auto& [key, value] : numbers) {
+  const auto require_read = [&](const std::string& key, const bool is_read, const bool is_said) {
+    if (!is_read && is_said)
+      throw section.complaint(key, "'" + p.name + "' does not depend on it: " + form->formula, "Leave it out");
+  };
+  for (const auto& [key, value] : needed) {
     const bool is_read = std::find(form->reads.begin(), form->reads.end(), key) != form->reads.end();
     if (is_read && value == 0)
       throw section.complaint(key, "'" + p.name + "' needs this number: " + form->formula, "Say how large it is");
-    if (!is_read && value != 0)
-      throw section.complaint(key, "'" + p.name + "' does not depend on it: " + form->formula, "Leave it out");
+    require_read(key, is_read, value != 0);
   }
-  if (!form->reads_poisson && p.poisson != 0)
-    throw section.complaint("Poisson's ratio [1]", "'" + p.name + "' does not depend on it: " + form->formula,
-                            "Leave it out");
-  if (!form->reads_layers && p.layers != 1)
-    throw section.complaint("Layers [1]", "'" + p.name + "' does not depend on it: " + form->formula, "Leave it out");
+  require_read("Poisson's ratio [1]", form->reads_poisson, p.poisson != 0);
+  require_read("Layers [1]", form->reads_layers, p.layers != 1);
   if (p.name == "edge crack" && p.depth >= p.width)
     throw section.complaint("Depth [m]", "must be less than the width", "Check both");
   Reference found;

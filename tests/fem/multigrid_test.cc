@@ -130,22 +130,30 @@ struct Equation {
       Eigen::Map<Vec3>(z.data() + 3 * i) = S.transpose() * (S * Eigen::Map<const Vec3>(r.data() + 3 * i));
     }
   }
+  /// For conjugate gradients, as long as this stands.
+  dynamics::CgEquation by_multigrid() {
+    return {[this](const auto p, const auto y) { apply(p, y); },
+            [&own = multigrid()](const auto r, const auto y) { own.apply(r, y); },
+            [this](const auto r, const auto y) { apply_inverse_blocks(r, y); }};
+  }
+  /// Accelerations drawn at random, which have every wavelength, times the masses.
+  Points load(Draw& draw) const {
+    Points b(blocks.size());
+    for (std::size_t i = 0; i < b.size(); ++i)
+      b[i] = model.lumped_mass()[i] * draw.vector();
+    project(flat(b));
+    return b;
+  }
 };
 
-/// To 1e-6 of a right-hand side drawn at random, which has every wavelength.
+/// To 1e-6 of a right-hand side drawn at random.
 dynamics::CgReport solve(Equation& equation, const unsigned seed) {
   Draw draw(seed);
-  Points b(equation.blocks.size()), x(b.size(), Vec3::Zero()), z(b.size());
-  for (std::size_t i = 0; i < b.size(); ++i)
-    b[i] = equation.model.lumped_mass()[i] * draw.vector();
-  equation.project(flat(b));
-  const dynamics::Product J = [&](const auto r, const auto y) { equation.apply_inverse_blocks(r, y); };
-  J(flat(b), flat(z));
-  auto& own = equation.multigrid();
-  return dynamics::conjugate_gradients({[&](const auto p, const auto y) { equation.apply(p, y); },
-                                        [&](const auto r, const auto y) { own.apply(r, y); }, J},
-                                       flat(b), {.residual = 1e-6 * std::sqrt(dynamics::dot(flat(b), flat(z)))}, 400,
-                                       flat(x));
+  const Points b = equation.load(draw);
+  Points x(b.size(), Vec3::Zero()), z(b.size());
+  equation.apply_inverse_blocks(flat(b), flat(z));
+  return dynamics::conjugate_gradients(equation.by_multigrid(), flat(b),
+                                       {.residual = 1e-6 * std::sqrt(dynamics::dot(flat(b), flat(z)))}, 400, flat(x));
 }
 
 Points disturbed(const Body& body, const double size, Draw& draw) {
@@ -278,16 +286,10 @@ TEST(Multigrid, TellsWhatErrorIsLeft) {
     cut_at_random(body, 0.05 * n, draw, {0.2, 0.8});
     Hexahedra model(body, {.material = rubber(n == 0 ? 0.45 : 0.3)});
     Equation equation(model, clamped_below(body, 0.3), body.rest(), 36);
-    auto& own = equation.multigrid();
-    Points b(equation.blocks.size());
-    for (std::size_t i = 0; i < b.size(); ++i)
-      b[i] = model.lumped_mass()[i] * draw.vector();
-    equation.project(flat(b));
+    const Points b = equation.load(draw);
+    const dynamics::CgEquation cg = equation.by_multigrid();
     const auto solved = [&](const dynamics::CgStop& stop, const int n_most, dynamics::CgReport& report) {
       Points x(b.size(), Vec3::Zero());
-      const dynamics::CgEquation cg{[&](const auto p, const auto y) { equation.apply(p, y); },
-                                    [&](const auto r, const auto y) { own.apply(r, y); },
-                                    [&](const auto r, const auto y) { equation.apply_inverse_blocks(r, y); }};
       report = dynamics::conjugate_gradients(cg, flat(b), stop, n_most, flat(x));
       return x;
     };
@@ -327,14 +329,8 @@ TEST(Multigrid, CountsTheWayFromWhereItIsTold) {
   Body body = make_block({7, 7, 7}, 0.1, draw, {0.3, 0.7});
   Hexahedra model(body, {.material = rubber(0.3)});
   Equation equation(model, clamped_below(body, 0.3), body.rest(), 36);
-  auto& own = equation.multigrid();
-  Points b(equation.blocks.size());
-  for (std::size_t i = 0; i < b.size(); ++i)
-    b[i] = model.lumped_mass()[i] * draw.vector();
-  equation.project(flat(b));
-  const dynamics::CgEquation cg{[&](const auto p, const auto y) { equation.apply(p, y); },
-                                [&](const auto r, const auto y) { own.apply(r, y); },
-                                [&](const auto r, const auto y) { equation.apply_inverse_blocks(r, y); }};
+  const Points b = equation.load(draw);
+  const dynamics::CgEquation cg = equation.by_multigrid();
   Points exact(b.size(), Vec3::Zero());
   const auto full = dynamics::conjugate_gradients(cg, flat(b), {.residual = 1e-12}, 60, flat(exact));
   Points near = exact; // a hundredth of the way is left
@@ -455,56 +451,6 @@ TEST(Multigrid, FollowsSmallCutsBitByBit) {
       Equation(followed, clamped_below(body, 0.3), x, 36).multigrid().apply(flat(r), flat(by_following));
     Equation(anew, clamped_below(body, 0.3), x, 36).multigrid().apply(flat(r), flat(by_building));
     EXPECT_EQ(n == 1 ? by_building : by_following, by_building) << n;
-  }
-}
-
-/// 8 x 8 x 8 cubes, each with material of its own, of which one changes: one of the 64 coarse elements is summed anew, and all
-/// are what they are without those before.
-TEST(LevelElements, TakeOverWhatHasNotChanged) {
-  constexpr int n = 8;
-  Draw draw(353);
-  const material::Elastic material = rubber(0.3);
-  CellsOfLevel cells;
-  const auto corner = [](const int i, const int j, const int k) {
-    return static_cast<std::uint32_t>(i + (n + 1) * (j + (n + 1) * k));
-  };
-  std::vector<Element> fine;
-  const auto any_element = [&] {
-    Moments moments = full_cube_moments();
-    for (double& m : moments)
-      m *= 1 + 0.1 * draw(-1, 1);
-    return make_element(moments, 0.1, material, {});
-  };
-  for (int k = 0; k < n; ++k)
-    for (int j = 0; j < n; ++j)
-      for (int i = 0; i < n; ++i) {
-        cells.place.push_back({i, j, k});
-        fine.push_back(any_element());
-        for (int v = 0; v < 8; ++v)
-          cells.corners.push_back(corner(i + (v & 1), j + (v >> 1 & 1), k + (v >> 2)));
-      }
-  cells.n_corners = static_cast<std::size_t>(n + 1) * (n + 1) * (n + 1);
-  const Coarsening coarsening = coarsened(cells);
-  ASSERT_EQ(coarsening.coarse.n_copies(), 64u);
-  const Element full = make_element(full_cube_moments(), 0.1, material, {});
-  const FineElements children{[&](const std::uint32_t c) -> const Element& { return fine[c]; },
-                              [](std::uint32_t) { return false; }, full};
-  const LevelElements before = coarse_elements(coarsening, children, 0.1, material, nullptr);
-  std::vector<std::uint32_t> same(fine.size());
-  for (std::uint32_t c = 0; c < same.size(); ++c)
-    same[c] = c;
-  fine[100] = any_element();
-  same[100] = CellsOfLevel::unused;
-  const CoarseBefore known{same, coarsening.parent, before};
-  const LevelElements after = coarse_elements(coarsening, children, 0.1, material, &known),
-                      anew = coarse_elements(coarsening, children, 0.1, material, nullptr);
-  EXPECT_EQ(std::count(after.same_as.begin(), after.same_as.end(), CellsOfLevel::unused), 1);
-  EXPECT_EQ(after.same_as[coarsening.parent[100]], CellsOfLevel::unused);
-  for (std::size_t c = 0; c < 64; ++c) {
-    EXPECT_EQ(after[c].hourglass, anew[c].hourglass) << c;
-    EXPECT_EQ(after[c].gradient, anew[c].gradient) << c;
-    EXPECT_EQ(after[c].bound, anew[c].bound) << c;
-    EXPECT_EQ(after[c].hourglass == before[c].hourglass, c != coarsening.parent[100]) << c;
   }
 }
 

@@ -111,13 +111,19 @@ TEST(Links, NothingIsSeenAcrossGaps) {
   }
 }
 
+/// 64 phyxels, and 64 more beyond the reach of all of them.
+Points two_lumps(Draw& draw) {
+  Points points = grid_points({4, 4, 4}, 0.1, 0.3, draw);
+  for (const Vec3& p : grid_points({4, 4, 4}, 0.1, 0.3, draw))
+    points.push_back(p + Vec3(0.8, 0, 0));
+  return points;
+}
+
 /// Two lumps of phyxels that see nothing of each other, with one link between them: of small moves along it and across
 /// it the model's energy is that of a spring of c E area / length, and more by what strains gradients.
 TEST(Links, AreAsStiffAsTheMaterialAlongThem) {
   Draw draw(8);
-  Points points = grid_points({4, 4, 4}, 0.1, 0.3, draw);
-  for (const Vec3& p : grid_points({4, 4, 4}, 0.1, 0.3, draw))
-    points.push_back(p + Vec3(0.8, 0, 0));
+  const Points points = two_lumps(draw);
   const material::Elastic rubber{.density = 1000, .youngs_modulus = 2e4, .poissons_ratio = 0.3};
   PhyxelModel model(make_phyxels(points, 0.064, 20), rubber, {});
   Points moved = points;
@@ -148,9 +154,7 @@ TEST(Links, AreAsStiffAsTheMaterialAlongThem) {
 /// A link that finds two lumps turned, stretched and apart brings no energy, and holds them from there on.
 TEST(Links, BringNoEnergy) {
   Draw draw(9);
-  Points points = grid_points({4, 4, 4}, 0.1, 0.3, draw);
-  for (const Vec3& p : grid_points({4, 4, 4}, 0.1, 0.3, draw))
-    points.push_back(p + Vec3(0.8, 0, 0));
+  const Points points = two_lumps(draw);
   const material::Elastic rubber{.density = 1000, .youngs_modulus = 2e4, .poissons_ratio = 0.3};
   PhyxelModel model(make_phyxels(points, 0.064, 20), rubber, {});
   const Mat3 F = draw.rotation() * Vec3(1.2, 1, 0.9).asDiagonal();
