@@ -114,7 +114,7 @@ TEST_P(Strokes, LeaveThePiecesOfTheBoolean) {
   EXPECT_EQ(counted.n_fewer, 0);
   EXPECT_LE(counted.n_more, counted.n_strokes / 100);
 }
-INSTANTIATE_TEST_SUITE_P(Short, Strokes, testing::Values(12));
+INSTANTIATE_TEST_SUITE_P(Short, Strokes, testing::Values(8));
 INSTANTIATE_TEST_SUITE_P(Long, Strokes, testing::Values(700));
 
 } // namespace

@@ -157,7 +157,7 @@ TEST_P(Swings, LeaveNoCrumbThatTheStrokeDidNotCutFree) {
   EXPECT_EQ(n_not_free, 0);
   EXPECT_LE(n_other, n_bodies / 50); // a slab far thinner than a cube may stay on one side
 }
-INSTANTIATE_TEST_SUITE_P(Short, Swings, testing::Values(10));
+INSTANTIATE_TEST_SUITE_P(Short, Swings, testing::Values(6));
 INSTANTIATE_TEST_SUITE_P(Long, Swings, testing::Values(100));
 
 } // namespace

@@ -89,20 +89,21 @@ Body with_configuration(const Body& block, const grid::CellId cell, const unsign
 
 Mat3 deformation(Draw& draw) { return Mat3::Identity() + 0.3 * draw.matrix(); }
 
-/// One cell, and the cells of the skin around it: nothing is left out. Each law with either strain, in turn.
-TEST(Patch, EveryConfigurationOfACellUnderEveryLaw) {
+/// One cell, and the cells of the skin around it: nothing is left out. A law and a strain are drawn for each
+/// configuration.
+TEST(Patch, EveryConfigurationOfACellUnderALaw) {
   Draw draw(20);
   const Body block = make_block({2, 2, 2}, 0.3, draw, {0.3, 0.7});
   const auto cell = *block.grid.find_cell({1, 1, 1});
   double worst = 0;
   for (unsigned configuration = 0; configuration < 4096; ++configuration) {
     const Body body = with_configuration(block, cell, configuration, draw);
-    const auto skin = surface::build_surface(body);
-    for (std::size_t law = 0; law < all_laws.size(); ++law) {
-      const auto options = options_of(all_laws[law], all_strains[(configuration + law + configuration / 16) % 2]);
-      worst = std::max(worst, patch_error(body, skin, options, deformation(draw)));
-      ASSERT_LT(worst, 1e-10) << configuration << ' ' << name_of(options);
-    }
+    const auto one_of = [&](const auto& all) {
+      return all[std::min(all.size() - 1, static_cast<std::size_t>(draw(0, static_cast<double>(all.size()))))];
+    };
+    const auto options = options_of(one_of(all_laws), one_of(all_strains));
+    worst = std::max(worst, patch_error(body, surface::build_surface(body), options, deformation(draw)));
+    ASSERT_LT(worst, 1e-10) << configuration << ' ' << name_of(options);
   }
   RecordProperty("worst", std::to_string(worst * 1e14) + "e-14");
 }
