@@ -67,7 +67,11 @@ void curve(dealii::Triangulation<dim>& triangulation, const Mesh& mesh) {
     triangulation.set_manifold(round_id, dealii::PolarManifold<2>());
   if (has(Sides::blended)) {
     dealii::TransfiniteInterpolationManifold<dim> blended;
-    blended.initialize(triangulation);
+    try {
+      blended.initialize(triangulation);
+    } catch (const dealii::ExceptionBase&) {
+      throw ParameterError("cells of the reference problem are too thin to be curved");
+    }
     triangulation.set_manifold(blended_id, blended);
   }
 }

@@ -221,6 +221,8 @@ Reference find_truth(const Section& section, const TruthAsked& asked, const std:
     if (!cache.empty())
       keep(file, found);
     return found;
+  } catch (const ParameterError& error) {
+    throw section.complaint("Cells [1]", error.what(), "Write fewer");
   } catch (const DataError&) {
     throw section.complaint("Point [m]",
                             "this point, the one that is subtracted or one of the study lies outside of the body",

@@ -111,6 +111,9 @@ TEST(Truth, OfAPenny) {
     "  subsection Crack penny\n    set Point [m] = 0, 0, 0\n    set Radius [m] = 1\n  end\n";
   EXPECT_NEAR(find(truth(penny)).value / (8 * 0.91 / M_PI), 1, 0.05);
   EXPECT_THROW(find(truth(penny + "  set Heights [m] = 1, 8\n")), ParameterError);
+  std::string thin = penny;
+  thin.replace(thin.find("Cells [1] = 2"), 13, "Cells [1] = 7");
+  EXPECT_THROW(find(truth(thin)), ParameterError) << "cells that cannot be curved";
 }
 
 TEST(Truth, IsKeptByAHashOfItsSection) {
