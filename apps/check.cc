@@ -13,7 +13,7 @@ int check(const Arguments& arguments) {
       throw ParameterError(
         Complaint{.value = argument, .rule = "check takes no such option", .remedy = "Nothing is run"});
   const SceneArguments parsed = parse_scene_arguments(arguments);
-  const scene::World world = scene::compose(scene::read_scene_text(parsed.scene, parsed.overrides));
+  const scene::World world = scene::compose(read_text(parsed));
   for (const std::string& line : world.composition)
     std::printf("%s\n", line.c_str());
   std::printf("%s is sound: %d steps of %g s.\n", parsed.scene.c_str(), world.n_steps, world.time_step);

@@ -112,7 +112,7 @@ int run(const Arguments& arguments) {
     return run_batch(parsed);
   if (parsed.n_threads > 0)
     set_n_threads(parsed.n_threads);
-  const scene::SceneText text = scene::read_scene_text(parsed.scene, parsed.overrides);
+  const scene::SceneText text = read_text(parsed);
   output::require_claimable(parsed.output, parsed.earlier);
   const auto source = [&] {
     return scene::Source{run_info("run", arguments), scene::standalone_text(text, scene::grammar()),

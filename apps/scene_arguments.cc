@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 
+#include <algorithm>
 #include <charconv>
 
 namespace kerf::apps {
@@ -60,10 +61,10 @@ SceneArguments parse_scene_arguments(const Arguments& arguments, const Scenes sc
     else if (argument == "--force" || argument == "--resume")
       set_earlier(argument, parsed);
     else if (argument.starts_with("-"))
-      throw ParameterError(
-        Complaint{.value = argument,
-                  .rule = "is no option",
-                  .remedy = "The options are --set, --output, --threads, --force, --resume, --jobs of run and study, and --row of study"});
+      throw ParameterError(Complaint{.value = argument,
+                                     .rule = "is no option",
+                                     .remedy = "The options are --set, --output, --threads, --force, --resume, --jobs "
+                                               "of run and study, and --row of study"});
     else
       add_scene(argument, scenes, parsed);
   }
@@ -73,6 +74,26 @@ SceneArguments parse_scene_arguments(const Arguments& arguments, const Scenes sc
   if (parsed.output.empty())
     parsed.output = parsed.scenes.size() == 1 ? default_output(parsed.scene) : "results";
   return parsed;
+}
+
+scene::SceneText read_text(const SceneArguments& arguments, const Scenes scenes) {
+  scene::SceneText text = scene::read_scene_text(arguments.scene, arguments.overrides);
+  const auto& sections = text.root.sections;
+  const auto is_of_a_study = [](const scene::WrittenSection& s) {
+    return s.heading == "Study" || s.heading == "Stability";
+  };
+  const auto is_of_a_scene = [](const scene::WrittenSection& s) { return s.heading.starts_with("Body "); };
+  const auto study = std::ranges::find_if(sections, is_of_a_study),
+             body = std::ranges::find_if(sections, is_of_a_scene);
+  const auto complain = [&](const scene::WrittenSection& section, const std::string& rule, const std::string& command) {
+    throw ParameterError(Complaint{section.origin.file, section.origin.line, section.heading, "", rule,
+                                   "Run it with: kerf " + command + ' ' + arguments.scene});
+  };
+  if (scenes != Scenes::study && study != sections.end())
+    complain(*study, "this is a study, not a scene", "study");
+  if (scenes == Scenes::study && study == sections.end() && body != sections.end())
+    complain(*body, "this is a scene, not a study", "run");
+  return text;
 }
 
 void add_common(const SceneArguments& arguments, std::vector<std::string>& words) {

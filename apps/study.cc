@@ -58,7 +58,7 @@ int study(const Arguments& arguments) {
     throw ParameterError(Complaint{.path = "--row", .rule = "runs one row, --jobs all", .remedy = "Give one of them"});
   if (parsed.n_threads > 0)
     set_n_threads(parsed.n_threads);
-  const scene::SceneText text = scene::read_scene_text(parsed.scene, parsed.overrides);
+  const scene::SceneText text = read_text(parsed, Scenes::study);
   if (study::is_stability_study(text)) {
     if (parsed.n_jobs + parsed.row > 0)
       throw ParameterError(Complaint{

@@ -80,8 +80,7 @@ int texture(const Arguments& arguments) {
   const SceneArguments parsed = parse_scene_arguments(rest);
   if (options.n_threads > 0)
     set_n_threads(options.n_threads);
-  const scene::LookedInto body =
-    scene::compose_inside(scene::read_scene_text(parsed.scene, parsed.overrides), options.body);
+  const scene::LookedInto body = scene::compose_inside(read_text(parsed), options.body);
   for (const std::string& line : body.composition)
     std::printf("%s\n", line.c_str());
   const texture::Interior& inside = body.interior->inside;

@@ -84,19 +84,26 @@ TEST_F(SmallRefusals, SupportsSayWhatTheyHold) {
 /// A half space across an axis like a box; what holds the skin; forceps.
 TEST_F(SmallRefusals, EveryHoldSaysWhatItHolds) {
   const auto with = [&](const std::string& keys) {
-    return replaced(cube_scene(), "  subsection Material", "  subsection Support top\n" + keys + "  end\n  subsection Material");
+    return replaced(cube_scene(), "  subsection Material",
+                    "  subsection Support top\n" + keys + "  end\n  subsection Material");
   };
-  const Result half = run(with("    set Region = half space\n    set Plane point [m] = 0, 0, 0.075\n"
-                               "    set Plane normal [1] = 0, 0, -2\n"));
-  EXPECT_NE(half.out.find("the face z = 0.075 m of support top lies on a layer of nodes"), std::string::npos) << half.out;
-  const Result skin = run(with("    set Lower [m] = -1, -1, 0.0999\n    set Upper [m] = 1, 1, 1\n    set Hold at = skin\n"));
+  const Result half =
+    run(with("    set Region = half space\n    set Plane point [m] = 0, 0, 0.075\n"
+             "    set Plane normal [1] = 0, 0, -2\n"));
+  EXPECT_NE(half.out.find("the face z = 0.075 m of support top lies on a layer of nodes"), std::string::npos)
+    << half.out;
+  const Result skin =
+    run(with("    set Lower [m] = -1, -1, 0.0999\n    set Upper [m] = 1, 1, 1\n    set Hold at = skin\n"));
   EXPECT_NE(skin.out.find(", 1 supports, 0 loads"), std::string::npos) << skin.out;
   EXPECT_TRUE(std::regex_search(
-    skin.out, std::regex(R"(support top holds 0\.0[34]\d* m\^2 of skin from \(-0\.1, -0\.1, 0\.1\) to \(0\.1, 0\.1, 0\.1\) m, in 1 piece)")))
+    skin.out,
+    std::regex(
+      R"(support top holds 0\.0[34]\d* m\^2 of skin from \(-0\.1, -0\.1, 0\.1\) to \(0\.1, 0\.1, 0\.1\) m, in 1 piece)")))
     << skin.out;
-  const Result forceps = run(cube_scene() + "subsection Forceps grip\n  set Region = box\n  set Lower [m] = -1, -1, 0.075\n"
-                                            "  set Upper [m] = 1, 1, 1\n  set Times [s] = 0, 1\n"
-                                            "  set Positions [m] = 0, 0, 0.1; 0, 0, 0.1\nend\n");
+  const Result forceps = run(cube_scene() +
+                             "subsection Forceps grip\n  set Region = box\n  set Lower [m] = -1, -1, 0.075\n"
+                             "  set Upper [m] = 1, 1, 1\n  set Times [s] = 0, 1\n"
+                             "  set Positions [m] = 0, 0, 0.1; 0, 0, 0.1\nend\n");
   EXPECT_NE(forceps.out.find(", from (-0.125, -0.125, "), std::string::npos) << forceps.out << forceps.err;
   EXPECT_NE(forceps.out.find("the face z = 0.075 m of forceps grip lies on a layer of nodes"), std::string::npos)
     << forceps.out;
@@ -105,13 +112,22 @@ TEST_F(SmallRefusals, EveryHoldSaysWhatItHolds) {
 /// A decimal comma, a comma for a semicolon, the time where there is none.
 TEST_F(SmallRefusals, ExpressionsTakeNoLooseCommasAndNoTimeAtTheStart) {
   const auto displaced = [&](const std::string& text) {
-    return run(replaced(cube_scene(), "  subsection Material",
-                        "  subsection Initial state\n    set Displacement [m] = " + text + "\n  end\n  subsection Material"));
+    return run(
+      replaced(cube_scene(), "  subsection Material",
+               "  subsection Initial state\n    set Displacement [m] = " + text + "\n  end\n  subsection Material"));
   };
   for (const std::string text : {"0,5*x; 0; 0", "x,y; 0; 0", "(0,1)*x; 0; 0"})
     expect_error(displaced(text), 1, {"Displacement [m]", "a comma separates arguments of a function only", "0.5"});
   expect_error(displaced("t; 0; 0"), 1, {"Displacement [m]", "three expressions of x, y, z that can be evaluated"});
   EXPECT_EQ(displaced("max(0.001, 0.01*x); 0; 0").exit_code, 0);
+}
+
+TEST_F(SmallRefusals, AStudyIsNoScene) {
+  write("scene.prm", cube_scene());
+  expect_error(kerf({"study", "scene.prm"}), 1, {"scene.prm:", "this is a scene, not a study", "kerf run scene.prm"});
+  write("study.prm", "subsection Study\n  set Title = a\nend\n");
+  for (const std::string command : {"run", "check"})
+    expect_error(kerf({command, "study.prm"}), 1, {"study.prm:1: Study", "not a scene", "kerf study study.prm"});
 }
 
 TEST_F(SmallRefusals, ASlabThinnerThanACubeIsToldTheKey) {
