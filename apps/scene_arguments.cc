@@ -83,15 +83,15 @@ scene::SceneText read_text(const SceneArguments& arguments, const Scenes scenes)
     return s.heading == "Study" || s.heading == "Stability";
   };
   const auto is_of_a_scene = [](const scene::WrittenSection& s) { return s.heading.starts_with("Body "); };
-  const auto study = std::ranges::find_if(sections, is_of_a_study),
+  const auto title = std::ranges::find_if(sections, is_of_a_study),
              body = std::ranges::find_if(sections, is_of_a_scene);
   const auto complain = [&](const scene::WrittenSection& section, const std::string& rule, const std::string& command) {
     throw ParameterError(Complaint{section.origin.file, section.origin.line, section.heading, "", rule,
                                    "Run it with: kerf " + command + ' ' + arguments.scene});
   };
-  if (scenes != Scenes::study && study != sections.end())
-    complain(*study, "this is a study, not a scene", "study");
-  if (scenes == Scenes::study && study == sections.end() && body != sections.end())
+  if (scenes != Scenes::study && title != sections.end())
+    complain(*title, "this is a study, not a scene", "study");
+  if (scenes == Scenes::study && title == sections.end() && body != sections.end())
     complain(*body, "this is a scene, not a study", "run");
   return text;
 }
