@@ -123,9 +123,10 @@ void pass_all(Patient& patient, const std::vector<Blade>& blades, const double s
 enum class Tool { blades, scissors, bent_blade };
 
 /// Bodies of 8 to 14 cubes, blades that advance by .05 to 10 cubes a step, one to three at once. One leaves all pieces
-/// from 1e-3 cubes on, and so do scissors. Several, in planes that cross, may leave a splinter more or less where a cell is
-/// in all of them, since a segment keeps its first cut, and more than one where a wedge is thinner than a cube: they leave
-/// all pieces from half a cube on, and seldom another one; so does a bent one, which may shave off less with a bend.
+/// from 1e-3 cubes on, and so do scissors; a bent one those from a tenth of a cube on, as its bend may pass between two
+/// smaller ones within a cell. Several, in planes that cross, may leave a splinter more or less where a cell is in all of
+/// them, since a segment keeps its first cut, and more than one where a wedge is thinner than a cube: they leave all
+/// pieces from half a cube on, and seldom another one.
 void stroke(const geometry::TriangleMesh& mesh, const std::string& name, const Tool tool, const unsigned seed,
             Counted& counted) {
   Random random(seed);
@@ -146,7 +147,7 @@ void stroke(const geometry::TriangleMesh& mesh, const std::string& name, const T
                             : tool == Tool::scissors ? closing_scissors(planes[0], middle, random)
                                                      : bent_blade(planes[0], middle, random);
   pass_all(patient, stroking.blades, speed);
-  const double cube = h * h * h, least = (planes.size() == 1 && tool != Tool::bent_blade ? 1e-3 : 0.5) * cube;
+  const double cube = h * h * h, least = (planes.size() > 1 ? 0.5 : tool == Tool::bent_blade ? 0.1 : 1e-3) * cube;
   const auto ours = patient.volumes();
   const auto theirs = stroking.leaves(skin);
   if (!theirs) {
@@ -192,7 +193,7 @@ class Strokes : public testing::TestWithParam<Series> {};
 TEST_P(Strokes, LeaveThePiecesOfTheBoolean) {
   const auto& [tool, n] = GetParam();
   const Counted counted = strokes(folder_of_meshes(), tool, n);
-  EXPECT_GT(counted.n_strokes, 0.6 * n);
+  EXPECT_GT(counted.n_strokes, 0.3 * n);
   EXPECT_GT(counted.n_pieces, (tool == Tool::blades ? 2 : 1.5) * counted.n_strokes);
   EXPECT_EQ(counted.n_fewer, 0);
   EXPECT_LE(counted.n_more, counted.n_strokes / 100);
