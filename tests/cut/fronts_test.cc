@@ -45,7 +45,7 @@ TEST(Fronts, ArePassedAsFarAsTheCutHasCome) {
 }
 
 /// A rectangle that ends in cells which the skin passes through: they are passed by as much of their material as it has
-/// come through, with its lag.
+/// come through, with its lag. One that ends outside, in the same cubes, parts the body, and leaves nothing tied.
 TEST(Fronts, ArePassedByTheirMaterial) {
   for (const double thickness : {0.2, 0.5, 0.8}) { // of material in the last layer of cubes
     const Body bar = support::with_copies(
@@ -63,6 +63,13 @@ TEST(Fronts, ArePassedByTheirMaterial) {
         }
       EXPECT_GE(n, 3);
       EXPECT_EQ(grid::n_pieces(cutting.body.complex), 1u);
+    }
+    for (const double beyond : {0.01, 0.3, 0.6}) {
+      Cutting cutting(bar, Fronts::inside_cells);
+      const double end = 5 + thickness + beyond;
+      cutting.cut(Rectangle{Vec3(0.5 * end, 1.5, 1.4), Vec3(end + 0.1, 0, 0), Vec3(0, 20, 0)});
+      EXPECT_EQ(grid::n_pieces(cutting.body.complex), 2u) << thickness << ' ' << beyond;
+      EXPECT_TRUE(grid::ties(cutting.body).empty());
     }
   }
 }
