@@ -1,7 +1,6 @@
 #include "cut/advance.h"
 
 #include "grid/fronts.h"
-#include "grid/material.h"
 #include "grid/parts.h"
 
 #include <Eigen/Geometry>
@@ -54,37 +53,17 @@ struct InPlane {
   Vec3 origin, u, v, w;
 };
 
-/// Where a plane meets a tetrahedron, of coordinates above it and in it: up to four points, around.
-void draw_section(const std::array<Vec3, 4>& tetrahedron, Raster& raster) {
-  std::array<Vec3, 4> points;
-  int n = 0;
-  constexpr std::array<std::array<int, 2>, 6> around = {{{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}};
-  for (const auto& [i, j] : around) {
-    const Vec3 &p = tetrahedron[i], &q = tetrahedron[j];
-    if ((p[2] >= 0) != (q[2] >= 0))
-      points[n++] = p + p[2] / (p[2] - q[2]) * (q - p);
-  }
-  for (int i = 0; i < n; ++i) // all triangles of the points cover what they span
-    for (int j = i + 1; j < n; ++j)
-      for (int k = j + 1; k < n; ++k)
-        raster.draw({points[i], points[j], points[k]}, 1);
+void draw(const Polygon& piece, const InPlane& in_plane, Raster& raster) {
+  for (std::size_t i = 2; i < piece.size(); ++i)
+    raster.draw({in_plane(piece[0]), in_plane(piece[i - 1]), in_plane(piece[i])}, off_plane);
 }
 
-/// Where a plane meets the material of a cell: a little above it, as what is cut already has its vertices in the plane.
-Raster section_of(const Solid& solid, const CellId c, const InPlane& in_plane) {
-  constexpr double little = 1e-3; // cubes
+/// Where the plane of a front meets the material of its cell.
+Raster section_of(const Solid& solid, const Front& front, const InPlane& in_plane) {
+  const CellAtPlane cell(solid, front.cell, {front.point, front.normal}, rest_of(solid, front.cell));
   Raster section;
-  const Vec3 origin = solid.grid.origin(c);
-  grid::Copy whole = solid.complex.copies[solid.complex.first_copy[c]];
-  if (const grid::CellCuts cuts = grid::cuts_of(solid, c); cuts.is_cut_at_skin()) // which its copy may not know yet
-    whole.skin = grid::Part::of(cuts.skeleton().items).skin;
-  grid::for_each_tetrahedron(solid, whole, [&](const grid::Tetrahedron& rest, int) {
-    std::array<Vec3, 4> points;
-    std::ranges::transform(rest, points.begin(), [&](const Vec3& xi) {
-      return Vec3(in_plane(origin + solid.grid.h() * xi) - little * Vec3::UnitZ());
-    });
-    draw_section(points, section);
-  });
+  for (const Polygon& piece : cell.material())
+    draw(piece, in_plane, section);
   return section;
 }
 
@@ -168,11 +147,6 @@ class Sweep {
   NearSweep near_;
 };
 
-void draw(const Polygon& piece, const InPlane& in_plane, Raster& raster) {
-  for (std::size_t i = 2; i < piece.size(); ++i)
-    raster.draw({in_plane(piece[0]), in_plane(piece[i - 1]), in_plane(piece[i])}, off_plane);
-}
-
 bool is_cut_beside(const Solid& solid, const CellId c) {
   for (int face = 0; face < grid::cube::n_faces; ++face)
     if (const CellId next = solid.grid.neighbour(c, face);
@@ -248,7 +222,7 @@ bool Advance::begin(const Solid& solid, Front& front, const FrontsOfCells& begun
   Raster swept;
   for (const Polygon& piece : cell.pieces)
     draw(piece, in_plane, swept);
-  const Raster section = section_of(solid, front.cell, in_plane);
+  const Raster section = section_of(solid, front, in_plane);
   front.passed = passed(front, section, swept);
   if (front.passed < least_passed || !((section & swept).any() || is_cut_beside(solid, front.cell)) ||
       !fits_in(solid, front, begun))

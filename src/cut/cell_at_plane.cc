@@ -1,5 +1,6 @@
 #include "cut/cell_at_plane.h"
 
+#include "grid/material.h"
 #include "grid/shape.h"
 
 #include <Eigen/Eigenvalues>
@@ -17,6 +18,8 @@ namespace cube = grid::cube;
 namespace skeleton = grid::skeleton;
 using grid::Segments;
 
+constexpr double little = 1e-3; // of a cube
+
 /// The points of a convex polygon in their order around it.
 void sort_around(Polygon& points, const Vec3& normal) {
   const Vec3 u = normal.unitOrthogonal(), v = normal.cross(u), middle = mean(points);
@@ -25,6 +28,13 @@ void sort_around(Polygon& points, const Vec3& normal) {
 }
 
 } // namespace
+
+std::array<Vec3, 8> rest_of(const grid::Solid& solid, const grid::CellId c) {
+  std::array<Vec3, 8> corners;
+  std::ranges::transform(solid.grid.nodes(c), corners.begin(),
+                         [&](const grid::NodeId node) { return solid.grid.position(node); });
+  return corners;
+}
 
 double area(const Polygon& polygon) {
   Vec3 sum = Vec3::Zero();
@@ -73,11 +83,15 @@ bool CellAtPlane::is_clear(const double margin) const {
   return true;
 }
 
-CellAtPlane::Section CellAtPlane::section() const {
-  constexpr double little = 1e-3; // in parts of h
+/// The height at which the plane has a section with an area.
+double CellAtPlane::level() const {
   const auto [least, most] = std::minmax_element(height_.begin(), height_.end());
   const double room = std::min(little * solid_.grid.h(), 0.25 * (*most - *least));
-  const double level = std::clamp(0.0, *least + room, *most - room);
+  return std::clamp(0.0, *least + room, *most - room);
+}
+
+CellAtPlane::Section CellAtPlane::section() const {
+  const double level = this->level();
   const auto nodes = solid_.grid.nodes(cell_);
   Section section;
   for (const auto& [v, w] : cube::line_vertices) {
@@ -92,6 +106,32 @@ CellAtPlane::Section CellAtPlane::section() const {
   sort_around(section.there, plane_.normal);
   sort_around(section.rest, normal(section.rest));
   return section;
+}
+
+/// A little above the plane, as what is cut already has its vertices in it.
+std::vector<Polygon> CellAtPlane::material() const {
+  if (grid::material_of(solid_.grid, cell_) == 0xff)
+    return {section().there};
+  const grid::CellCuts cuts = grid::cuts_of(solid_, cell_);
+  grid::Copy whole{.cell = cell_, .nodes = static_cast<std::uint8_t>(cuts.material), .corners = {}, .next = {}};
+  if (grid::cuts_of_copies(solid_, cell_).is_cut_at_skin()) // which its copies may not know yet
+    whole.skin = grid::Part::of(cuts.skeleton().items).skin;
+  const double level = this->level() + little * solid_.grid.h();
+  std::vector<Polygon> pieces;
+  grid::for_each_tetrahedron(solid_, whole, [&](const grid::Tetrahedron& xi, int) {
+    std::array<Vec3, 4> p;
+    std::ranges::transform(xi, p.begin(), [&](const Vec3& at) { return mapped(at); });
+    Polygon piece;
+    for (int i = 0; i < 4; ++i)
+      for (int j = i + 1; j < 4; ++j)
+        if (const double at_i = height(p[i]) - level, at_j = height(p[j]) - level; (at_i >= 0) != (at_j >= 0))
+          piece.push_back(p[i] + at_i / (at_i - at_j) * (p[j] - p[i]));
+    if (piece.empty())
+      return;
+    sort_around(piece, plane_.normal);
+    pieces.push_back(std::move(piece));
+  });
+  return pieces;
 }
 
 grid::Front CellAtPlane::front(const Section& section, const double passed) const {
@@ -134,7 +174,10 @@ std::array<double, skeleton::n_items> CellAtPlane::heights_of_items(const grid::
 }
 
 Vec3 CellAtPlane::position(const int item) const {
-  const Vec3 xi = (grid::item_point(solid_, cell_, item) - solid_.grid.origin(cell_)) / solid_.grid.h();
+  return mapped((grid::item_point(solid_, cell_, item) - solid_.grid.origin(cell_)) / solid_.grid.h());
+}
+
+Vec3 CellAtPlane::mapped(const Vec3& xi) const {
   Vec3 p = Vec3::Zero();
   for (int v = 0; v < cube::n_vertices; ++v)
     p += grid::shape(v, xi) * x_[v];

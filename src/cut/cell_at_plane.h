@@ -13,6 +13,9 @@ Vec3 mean(const Polygon& points);
 /// Of the plane nearest to points, unit; the sign has no meaning.
 Vec3 normal(const Polygon& points);
 
+/// The corners of a cell at rest [m].
+std::array<Vec3, 8> rest_of(const grid::Solid& solid, grid::CellId c);
+
 /// What a front has passed of its cell: below `least` it is not worth a copy, and as much less than all is tied until it
 /// is cut [1].
 constexpr double least_passed = 0.02, most_passed = 0.98;
@@ -35,6 +38,9 @@ class CellAtPlane {
   };
   Section section() const;
 
+  /// What of the cell's material lies in the plane, there, in pieces; they fill it once.
+  std::vector<Polygon> material() const;
+
   /// The front of a cut that has come as far as `passed` of the section says.
   grid::Front front(const Section& section, double passed) const;
 
@@ -43,8 +49,10 @@ class CellAtPlane {
 
  private:
   double height(const Vec3& p) const { return plane_.normal.dot(p - plane_.point); }
+  double level() const;
   std::array<double, grid::skeleton::n_items> heights_of_items(const grid::CellCuts& cuts) const;
   Vec3 position(int item) const;
+  Vec3 mapped(const Vec3& xi) const;
 
   const grid::Solid& solid_;
   grid::CellId cell_;

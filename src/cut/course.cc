@@ -20,13 +20,6 @@ using grid::Solid;
 
 constexpr double in_plane = 1e-6; // cubes; and of a unit vector
 
-std::array<Vec3, 8> rest_of(const Solid& solid, const CellId c) {
-  std::array<Vec3, 8> corners;
-  std::ranges::transform(solid.grid.nodes(c), corners.begin(),
-                         [&](const grid::NodeId node) { return solid.grid.position(node); });
-  return corners;
-}
-
 /// The cell and those that share a node with it, as far as faces lead to them.
 std::vector<CellId> cells_around(const grid::Grid& grid, const CellId c) {
   std::vector<CellId> cells = {c};

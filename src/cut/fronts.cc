@@ -87,11 +87,14 @@ std::array<Vec3, 8> corners_of(const Solid& solid, const CellId c, const Points&
 
 /// How far the shape has come in the cell.
 Front front_in(const CellAtPlane& cell, const Outline& outline) {
-  const CellAtPlane::Section section = cell.section();
-  Polygon inside = section.there;
-  for (const HalfSpace& side : outline.sides)
-    inside = clipped(inside, side);
-  return cell.front(section, area(inside) / area(section.there));
+  double inside = 0, all = 0;
+  for (Polygon piece : cell.material()) {
+    all += area(piece);
+    for (const HalfSpace& side : outline.sides)
+      piece = clipped(piece, side);
+    inside += area(piece);
+  }
+  return cell.front(cell.section(), all > 0 ? inside / all : 0);
 }
 
 bool is_same_plane(const Front& one, const Front& other, const double h) {

@@ -3,7 +3,9 @@
 #include <CGAL/Exact_predicates_exact_constructions_kernel.h>
 #include <CGAL/Polygon_mesh_processing/clip.h>
 #include <CGAL/Polygon_mesh_processing/connected_components.h>
+#include <CGAL/Polygon_mesh_processing/corefinement.h>
 #include <CGAL/Polygon_mesh_processing/measure.h>
+#include <CGAL/Polygon_mesh_processing/orientation.h>
 #include <CGAL/Surface_mesh.h>
 
 #include <algorithm>
@@ -55,7 +57,30 @@ std::vector<double> volumes_between(const Mesh& skin, const std::vector<support:
   return volumes;
 }
 
+Mesh intersection(Mesh solid, Mesh other) {
+  Mesh common;
+  processing::corefine_and_compute_intersection(solid, other, common,
+                                                CGAL::parameters::throw_on_self_intersection(true));
+  return common;
+}
+
 } // namespace
+
+std::optional<std::vector<double>> volumes_beside(const geometry::TriangleMesh& skin,
+                                                  const geometry::TriangleMesh& closed) {
+  try {
+    const Mesh solid = mesh_of(skin);
+    Mesh inside = mesh_of(closed), outside = inside;
+    processing::reverse_face_orientations(outside);
+    std::vector<double> volumes;
+    add_components(intersection(solid, inside), volumes);
+    add_components(intersection(solid, outside), volumes);
+    std::sort(volumes.begin(), volumes.end());
+    return volumes;
+  } catch (const processing::Corefinement::Self_intersection_exception&) {
+    return std::nullopt;
+  }
+}
 
 std::optional<double> volume_below(const geometry::TriangleMesh& skin, const support::Plane& plane) {
   try {

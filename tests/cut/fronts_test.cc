@@ -44,6 +44,36 @@ TEST(Fronts, ArePassedAsFarAsTheCutHasCome) {
   }
 }
 
+/// A rectangle that ends in cells which the skin passes through: they are passed by as much of their material as it has
+/// come through, with its lag. One that ends outside, in the same cubes, parts the body, and leaves nothing tied.
+TEST(Fronts, ArePassedByTheirMaterial) {
+  for (const double thickness : {0.2, 0.5, 0.8}) { // of material in the last layer of cubes
+    const Body bar = support::with_copies(
+      support::embedded(geometry::box_mesh(Vec3::Zero(), Vec3(5 + thickness, 3, 3)), 1, Vec3::Zero()));
+    for (double ligament = 0.05; ligament < thickness; ligament += 0.11) {
+      Cutting cutting(bar, Fronts::inside_cells);
+      const double end = 5 + thickness - ligament;
+      cutting.cut(Rectangle{Vec3(0.5 * end, 1.5, 1.4), Vec3(end, 0, 0), Vec3(0, 20, 0)});
+      int n = 0;
+      for (const grid::Front& front : cutting.body.cuts.fronts())
+        if (cutting.body.grid.origin(front.cell)[0] > 4.5) {
+          EXPECT_NEAR(front.passed, std::min(0.98, 1 - (ligament - grid::front_lag) / thickness), 1e-6)
+            << thickness << ' ' << ligament;
+          ++n;
+        }
+      EXPECT_GE(n, 3);
+      EXPECT_EQ(grid::n_pieces(cutting.body.complex), 1u);
+    }
+    for (const double beyond : {0.01, 0.3, 0.6}) {
+      Cutting cutting(bar, Fronts::inside_cells);
+      const double end = 5 + thickness + beyond;
+      cutting.cut(Rectangle{Vec3(0.5 * end, 1.5, 1.4), Vec3(end + 0.1, 0, 0), Vec3(0, 20, 0)});
+      EXPECT_EQ(grid::n_pieces(cutting.body.complex), 2u) << thickness << ' ' << beyond;
+      EXPECT_TRUE(grid::ties(cutting.body).empty());
+    }
+  }
+}
+
 /// Cuts of any place and size, some of which end near the skin, in bodies with much of it.
 TEST(Fronts, LeaveThePiecesMassAndSurfaceAsTheyWere) {
   support::Random random(31);
