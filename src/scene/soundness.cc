@@ -154,7 +154,7 @@ std::string unsound_volume(const Body& body, const Watch& watch) {
   if (const double part = inverted_part(body); part > most_inverted)
     return in_short(100 * part) + " % of the body are inside out. Worst is " +
            worst_copy(body, [](std::size_t) { return true; }) + remedy;
-  constexpr double most_stretch = 32; // of 308 sound runs of unseen bodies 3 come to more than 12, none to more than 16
+  constexpr double most_stretch = 32; // of 308 sound runs of unseen bodies 4 come to more than 12, none to more than 16
   if (const Stretch stretch = largest_stretch(body); stretch.factor > most_stretch)
     return in_words(body, stretch.copy) + ", is drawn out to " + in_short(stretch.factor) + " times its edge" + remedy;
   return "";
