@@ -22,20 +22,8 @@ constexpr int most_where_not_taken = 30; // Newton iterations
 
 } // namespace
 
-/// What stays the same during a solution.
-struct BalanceSolver::Problem {
-  const Loads& loads;
-  const Constraints& constraints;
-  const Balance& balance;
-  std::span<const double> mass;
-  const MassCoupling* coupling;         ///< null where the mass is lumped
-  double mass_factor, stiffness_factor; ///< of M and K in A
-
-  Vec3 offset(const std::size_t i) const { return balance.offset.empty() ? Vec3(Vec3::Zero()) : balance.offset[i]; }
-};
-
 BalanceSolver::BalanceSolver(ElasticModel& model, const NewtonOptions& options)
-  : model_(model), matrix_(dynamic_cast<const StiffnessMatrix*>(&model)), options_(options) {
+  : model_(model), matrix_(dynamic_cast<const StiffnessMatrix*>(&model)), options_(options), pieces_(options.piece) {
   if (options_.solver == LinearSolver::direct && !matrix_)
     throw ParameterError(Complaint{.rule = "a direct solver needs an assembled stiffness, which this model has not",
                                    .remedy = "Use conjugate gradients"});
@@ -53,6 +41,8 @@ NewtonReport BalanceSolver::solve(const Loads& loads, const Constraints& constra
                         1 + loads.stiffness_damping * omega};
   x = balance.start;
   way_ = 0;
+  if (options_.trust == Trust::tested)
+    flies_ = flying(problem);
   NewtonReport report;
   Mixing mixing(static_cast<std::size_t>(options_.n_mixed));
   LineSearch line_search = options_.line_search;
@@ -86,10 +76,12 @@ NewtonReport BalanceSolver::solve(const Loads& loads, const Constraints& constra
         x = end;
         continue;
       }
-      if (verdict == Verdict::refused)
+      if (verdict == Verdict::refused) {
         linearise_at(problem, x);
+        squared_ways_ = ways_from_free_motion(problem);
+      }
     }
-    const bool is_last = verdict == Verdict::refused && report.n_newton > 1 && is_small(problem);
+    const bool is_last = verdict == Verdict::refused && report.n_newton > 1 && is_small();
     const double length = line_search == LineSearch::none || is_last ? 1 : mixed_search(problem, x, mixing);
     if (length == 0) {
       report.failure = "no step along the correction lowers the energy";
@@ -110,46 +102,6 @@ double BalanceSolver::linearise_at(const Problem& problem, const Points& x) {
   return assemble_residual(problem);
 }
 
-bool BalanceSolver::bears_tests(const Problem& problem, const Points& end) {
-  constexpr double part = 0.25; // of the slope at the start
-  const Points d = unlike_flight(problem, correction_);
-  const double at_start = product(residual_, d);
-  try {
-    move_to(problem, end);
-    assemble_residual(problem);
-  } catch (const NumericalError&) { // no forces there
-    return false;
-  }
-  return std::abs(product(residual_, d)) <= part * std::abs(at_start) && turns_little(problem, end);
-}
-
-BalanceSolver::Verdict BalanceSolver::judge(const Problem& problem, const Points& end) {
-  if (!bears_tests(problem, end))
-    return Verdict::refused;
-  most_work_ = own_loss(problem, end);
-  return works_little(problem, end, assemble_residual(problem)) ? Verdict::taken : Verdict::goes_on;
-}
-
-double BalanceSolver::own_loss(const Problem& problem, const Points& x) const {
-  const Points d = unlike_flight(problem, moved(x, -1, problem.balance.start));
-  Points Kd(x.size(), Vec3::Zero());
-  model_.apply_stiffness(flat(d), flat(Kd));
-  if (!tangent_.empty())
-    tangent_.add_product(flat(d), flat(Kd));
-  const double dt = 1 / problem.balance.velocity_factor;
-  double twice = product(d, Kd);
-  for (std::size_t i = 0; i < x.size(); ++i)
-    twice += problem.mass[i] * (dt * acceleration_[i]).squaredNorm();
-  if (problem.coupling)
-    twice += dt * dt * product(acceleration_, coupled(model_, acceleration_));
-  return 0.5 * twice;
-}
-
-bool BalanceSolver::works_little(const Problem& problem, const Points& x, const double scale) const {
-  const double work = -product(residual_, unlike_flight(problem, moved(x, -1, problem.balance.start)));
-  return work <= most_work_ || scaled_residual() <= std::max(options_.cg_tolerance * scale, scaled_round_off());
-}
-
 double BalanceSolver::scaled_residual() const {
   return std::sqrt(sum_of(residual_.size(), [&](const std::size_t begin, const std::size_t end) {
     double sum = 0;
@@ -157,45 +109,6 @@ double BalanceSolver::scaled_residual() const {
       sum += (scaling_[i] * residual_[i]).squaredNorm();
     return sum;
   }));
-}
-
-Points BalanceSolver::unlike_flight(const Problem& problem, const Points& d) {
-  return flies(problem) ? without_mean(problem.mass, d) : d;
-}
-
-bool BalanceSolver::flies(const Problem& problem) {
-  return problem.constraints.held().empty() && problem.loads.acting.empty();
-}
-
-bool BalanceSolver::turns_little(const Problem& problem, const Points& x) const {
-  const Balance& b = problem.balance;
-  if (!flies(problem) || b.velocity_factor == 0)
-    return true;
-  const double dt = 1 / b.velocity_factor;
-  Points before(x.size());
-  for (std::size_t i = 0; i < x.size(); ++i)
-    before[i] = b.velocity[i] - dt * b.acceleration[i];
-  const Points r = without_mean(problem.mass, x), v = without_mean(problem.mass, velocity_),
-               v_0 = without_mean(problem.mass, before);
-  const Points p_0 = momenta(model_, v_0);
-  Vec3 turned = Vec3::Zero(), spin = Vec3::Zero();
-  double energy = 0, inertia = 0; // twice the kinetic energy
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    turned += dt * (v[i].cross(p_0[i]) - r[i].cross(residual_[i]));
-    spin += r[i].cross(p_0[i]);
-    energy += v_0[i].dot(p_0[i]);
-    inertia += problem.mass[i] * r[i].squaredNorm();
-  }
-  constexpr double own = 1.1, unseen = 1e-4; // of what the method does; of all that the energy could be
-  return turned.norm() * spin.norm() <=
-         own * dt * dt * energy * energy + unseen * std::sqrt(energy * inertia) * spin.norm();
-}
-
-bool BalanceSolver::is_small(const Problem& problem) {
-  constexpr double part = 0.03;
-  const double decrement = product(residual_, correction_); // the square of the way that is left
-  way_ = std::sqrt(way_ * way_ + std::max(0.0, decrement));
-  return decrement >= 0 && decrement <= part * part * way_ * way_ && problem.mass_factor > 0;
 }
 
 void BalanceSolver::move_to(const Problem& problem, const Points& x) {

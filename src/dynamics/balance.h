@@ -21,10 +21,11 @@
 /// (kappa + alpha omega) M |x - x_0|^2 / 2 and so on, and for loads without a potential their work along the
 /// correction, by the trapezoidal rule.
 ///
-/// A correction that is tested (Trust) costs one evaluation of forces more, and is taken where its end bears it. Its
-/// quadratic model has little slope left there: the power of what is out of balance has fallen to a quarter (curvature
-/// condition of Wolfe 1969, Convergence conditions for ascent methods), uniform motion of a free body aside, which
-/// anything follows. And what is out of balance turns a body in free flight by hardly more than what
+/// A correction that is tested (Trust) costs one evaluation of forces more, and is taken where its end bears it, in each
+/// piece of the body by itself: nothing joins them, and what a small one lacks is not to drown in what a large one
+/// does. What conjugate gradients do not see counts for nothing. Its quadratic model has little slope left there: the power of what is out of balance has fallen to a quarter (curvature
+/// condition of Wolfe 1969, Convergence conditions for ascent methods), uniform motion of a free piece aside, which
+/// anything follows. And what is out of balance turns a piece in free flight by hardly more than what
 /// implicit Euler itself does: with x_1 = x_0 + dt v_1, the sum of x x m v changes in a step by dt times the torque at
 /// x_1 and by dt times the sum of m v_1 x v_0, which is no torque of anything, and is dt^2 (2 T)^2 / L in a spin of
 /// energy T and angular momentum L. Tangents that know a stress, but not all of how it turns, fail there.
@@ -38,7 +39,7 @@
 /// none. What is left out of balance gives its work -d.r. Newton's method goes on until that is less than what the method
 /// takes, |v_1 - v_0|_M^2 / 2 + d.K d / 2 with the K that the first correction has met, so that no step gains energy by an
 /// unfinished solution. -d.r is of third order in dt where a solution is smooth, the other of second: shorter steps need
-/// no second correction. Nothing is gone on for that conjugate gradients would not see.
+/// no second correction. Of a piece in free flight d is that against its mean motion.
 ///
 /// Half the way from free motion to x is the error of the step itself: x_1 - x_0 - dt v_0 = dt^2 a_1, and implicit Euler
 /// is wrong by dt^2 a / 2. Conjugate gradients know that way in the energy norm, wherever they start, and need not be much
@@ -49,6 +50,7 @@
 
 #include "dynamics/constraints.h"
 #include "dynamics/mixing.h"
+#include "dynamics/pieces.h"
 #include "dynamics/preconditioner.h"
 #include "dynamics/rigid_modes.h"
 
@@ -89,6 +91,7 @@ struct NewtonOptions {
   Trust trust = Trust::blind;
   Equation equation = Equation::regular;
   int n_mixed = 0; ///< corrections before that are mixed into one, see mixing.h; asks for a line search
+  std::vector<std::uint32_t> piece = {}; ///< of each corner, 0, 1, ...: each is tested by itself; empty: all are one
 };
 
 /// What is to be solved. `start` obeys the supports already; velocity and acceleration are those at `start`.
@@ -120,7 +123,17 @@ class BalanceSolver {
   NewtonReport solve(const Loads& loads, const Constraints& constraints, const Balance& balance, Points& x);
 
  private:
-  struct Problem;
+  /// What stays the same during a solution.
+  struct Problem {
+    const Loads& loads;
+    const Constraints& constraints;
+    const Balance& balance;
+    std::span<const double> mass;
+    const MassCoupling* coupling;         ///< null where the mass is lumped
+    double mass_factor, stiffness_factor; ///< of M and K in A
+
+    Vec3 offset(const std::size_t i) const { return balance.offset.empty() ? Vec3(Vec3::Zero()) : balance.offset[i]; }
+  };
   /// Of a first correction: taken, gone on from with a line search, or thrown away for a start with one.
   enum class Verdict { taken, goes_on, refused };
   /// What a trial does to the incremental potential along the correction.
@@ -149,17 +162,25 @@ class BalanceSolver {
   /// Tests the first correction where it ends, and moves there.
   Verdict judge(const Problem& problem, const Points& end);
   bool bears_tests(const Problem& problem, const Points& end);
-  /// Energy that the integrator itself takes from the step to x, from the stiffness at its start [J].
-  double own_loss(const Problem& problem, const Points& x) const;
-  /// Whether what is out of balance at x does less work than that, or is below what the linear solver sees.
+  /// Work that may be left out of balance at x in each piece: the energy that the integrator itself takes, from the
+  /// stiffness at its start, and what the linear solver does not see [J].
+  std::vector<double> most_work(const Problem& problem, const Points& x);
+  /// Whether what is out of balance at x does less work than that in every piece.
   bool works_little(const Problem& problem, const Points& x, double scale) const;
   double scaled_residual() const;
+  /// 1 for each piece in which more is out of balance than the linear solver is asked for.
+  std::vector<std::uint8_t> seen(double scale) const;
+  /// That it may leave by the step's own error, in the energy norm; 0: unknown.
+  double error_of_cg() const;
   bool turns_little(const Problem& problem, const Points& x) const;
-  static bool flies(const Problem& problem);
-  /// A displacement, without its uniform part where the body flies freely, as anything follows that.
-  static Points unlike_flight(const Problem& problem, const Points& d);
-  /// Whether what is left to correct is small beside the way from free motion.
-  bool is_small(const Problem& problem);
+  /// 1 for each piece that nothing holds and nothing but gravity acts on.
+  std::vector<std::uint8_t> flying(const Problem& problem) const;
+  /// Values a corner, without their mean over pieces that fly, as anything follows that.
+  Points unlike_flight(const Problem& problem, const Points& values) const;
+  /// Squares of the ways from free motion to where the correction leads, in the energy norm.
+  std::vector<double> ways_from_free_motion(const Problem& problem);
+  /// Whether what is left to correct is small beside the way from free motion, in every piece.
+  bool is_small();
   /// Returns the iterations of the linear solver.
   int correct(const Problem& problem, const Points& guess, double scale);
   int correct_by_cg(const Problem& problem, const Points& guess, double scale);
@@ -190,8 +211,11 @@ class BalanceSolver {
   std::vector<Mat3> blocks_;  // A's diagonal
   std::vector<Mat3> scaling_; // L^-1 from the free directions' basis, a row of zeros for each that is held
   std::vector<double> load_product_, mass_product_;
-  double most_work_ = 0; // of what is out of balance, in the step at hand [J]
-  double way_ = 0;       // from free motion to the first iterate, in the energy norm; 0: unknown
+  double way_ = 0; // from free motion to the first iterate, in the energy norm; 0: unknown
+  Pieces pieces_;
+  std::vector<std::uint8_t> flies_;  // each piece
+  std::vector<double> most_work_;    // of what is out of balance in each piece, in the step at hand [J]
+  std::vector<double> squared_ways_; // from free motion, of each piece, in the energy norm
 };
 
 } // namespace kerf::dynamics

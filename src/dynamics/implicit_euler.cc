@@ -25,7 +25,8 @@ ImplicitEuler::ImplicitEuler(ElasticModel& model, const ImplicitEulerOptions& o)
                                  .cg_tolerance = o.cg_tolerance,
                                  .max_cg_iterations = o.max_cg_iterations,
                                  .step_tolerance = o.step_tolerance,
-                                 .trust = o.trust}) {}
+                                 .trust = o.trust,
+                                 .piece = o.piece}) {}
 
 StepReport ImplicitEuler::step(State& state, const Loads& loads, const double dt) {
   const std::size_t n = state.x.size();

@@ -21,9 +21,10 @@ struct ImplicitEulerOptions {
   double newton_tolerance = 0; ///< NewtonOptions::tolerance: a step that misses it is refused
   LineSearch line_search = LineSearch::none;
   LinearSolver solver = LinearSolver::conjugate_gradients;
-  Tangent tangent = Tangent::positive; ///< what the direct solver factorises
-  double step_tolerance = 0;           ///< NewtonOptions::step_tolerance
-  Trust trust = Trust::blind;          ///< NewtonOptions::trust
+  Tangent tangent = Tangent::positive;   ///< what the direct solver factorises
+  double step_tolerance = 0;             ///< NewtonOptions::step_tolerance
+  Trust trust = Trust::blind;            ///< NewtonOptions::trust
+  std::vector<std::uint32_t> piece = {}; ///< NewtonOptions::piece
 };
 ImplicitEulerOptions implicit_euler_options(const NewtonParameters& parameters);
 

@@ -33,21 +33,30 @@ physics::StepperMaker sound(const physics::StepperMaker& make, const dynamics::S
   };
 }
 
+/// Implicit Euler whose corrections are tested piece by piece.
+Stepper implicit_euler(ElasticModel& model, const dynamics::NewtonParameters& parameters,
+                       const PiecesOfParticles& pieces) {
+  auto options = dynamics::implicit_euler_options(parameters);
+  options.piece = pieces();
+  return std::make_unique<dynamics::ImplicitEuler>(model, options);
+}
+
 /// The same for one that takes no energy: what cannot be mended is a step of implicit Euler.
 physics::StepperMaker sound_or_implicit_euler(const physics::StepperMaker& make) {
   return [=](ElasticModel& model, const PiecesOfParticles& pieces) -> Stepper {
-    const auto options = dynamics::implicit_euler_options(dynamics::NewtonParameters());
     auto last_resort = std::make_unique<dynamics::SoundSteps>(
-      model, std::make_unique<dynamics::ImplicitEuler>(model, options), dissipative);
+      model, implicit_euler(model, dynamics::NewtonParameters(), pieces), dissipative);
     return std::make_unique<dynamics::SoundSteps>(model, make(model, pieces), conservative, std::move(last_resort));
   };
 }
 
-/// `make` gets the model, and the integrator's own settings.
+/// `make` gets the model, the integrator's own settings, and the pieces.
 template <class Fields, class Make>
 Implicit implicit(const Section& body, const std::string& section, const int order, const Make& make) {
   const auto parameters = read_if_written<Fields>(body, section);
-  return {{[=](ElasticModel& model, const PiecesOfParticles&) -> Stepper { return make(model, parameters); }}, order};
+  return {
+    {[=](ElasticModel& model, const PiecesOfParticles& pieces) -> Stepper { return make(model, parameters, pieces); }},
+    order};
 }
 
 template <class Explicit>
@@ -86,24 +95,22 @@ Implicit undamped(Implicit implicit) {
 Implicit implicit_integrator(const Section& body, const std::string& name) {
   using dynamics::GeneralisedAlpha;
   if (name == "BDF2")
-    return implicit<ConvergedNewtonParameters>(body, "BDF2", 2,
-                                               [](ElasticModel& model, const ConvergedNewtonParameters& p) {
-                                                 return std::make_unique<dynamics::Bdf2>(model, p.newton.options());
-                                               });
+    return implicit<ConvergedNewtonParameters>(
+      body, "BDF2", 2, [](ElasticModel& model, const ConvergedNewtonParameters& p, const PiecesOfParticles&) {
+        return std::make_unique<dynamics::Bdf2>(model, p.newton.options());
+      });
   if (name == "Newmark")
     return undamped(implicit<dynamics::NewmarkParameters>(
-      body, "Newmark", 2, [](ElasticModel& model, const dynamics::NewmarkParameters& p) {
+      body, "Newmark", 2, [](ElasticModel& model, const dynamics::NewmarkParameters& p, const PiecesOfParticles&) {
         return std::make_unique<GeneralisedAlpha>(model, dynamics::newmark(p.beta, p.gamma), p.newton.options());
       }));
   if (name == "generalised alpha")
     return undamped(implicit<dynamics::GeneralisedAlphaParameters>(
-      body, "Generalised alpha", 2, [](ElasticModel& model, const dynamics::GeneralisedAlphaParameters& p) {
+      body, "Generalised alpha", 2,
+      [](ElasticModel& model, const dynamics::GeneralisedAlphaParameters& p, const PiecesOfParticles&) {
         return std::make_unique<GeneralisedAlpha>(model, dynamics::generalised_alpha(p.rho_inf), p.newton.options());
       }));
-  return implicit<dynamics::NewtonParameters>(
-    body, "Implicit Euler", 1, [](ElasticModel& model, const dynamics::NewtonParameters& p) {
-      return std::make_unique<dynamics::ImplicitEuler>(model, dynamics::implicit_euler_options(p));
-    });
+  return implicit<dynamics::NewtonParameters>(body, "Implicit Euler", 1, implicit_euler);
 }
 
 Integrator with_adaptive_step(const Section& body, const Implicit& implicit) {

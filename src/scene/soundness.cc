@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "dynamics/forces.h"
+#include "fem/hexahedra.h"
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
@@ -122,13 +123,26 @@ bool may_be_anywhere(const Body& body) {
   return inner_energy(*body.physics, body.state) <= little_more * body.initial->energy;
 }
 
+bool is_of_small_strain(const Body& body) {
+  const auto* const elements = dynamic_cast<const fem::Hexahedra*>(&body.physics->model());
+  return elements && elements->material().law == "small strain";
+}
+
 /// What is wrong with the body's volumes; nothing: they are sound.
 std::string unsound_volume(const Body& body, const Watch& watch) {
   constexpr double most = 10, most_inverted = 0.1;
   const std::vector<double> now = piece_volumes(body, watch, body.positions);
+  const bool is_small_strain = is_of_small_strain(body);
+  constexpr double most_turned = 1.25; // small strain takes I + tan(a) x for a turn by a: 1 + tan^2(a) of the volume
   for (std::uint32_t p = 0; p < now.size(); ++p) {
     const double rest = watch.rest_volumes[p], ratio = now[p] / rest;
-    if (rest < std::pow(body.solid.grid.h(), 3) || (ratio > 1 / most && ratio < most))
+    if (rest < std::pow(body.solid.grid.h(), 3))
+      continue;
+    if (is_small_strain && ratio > most_turned)
+      return "piece " + std::to_string(p) + " has " + in_short(100 * ratio) +
+             " % of its volume at rest: small strain takes rotations for strains, and this piece turns. "
+             "Use another law, or smaller loads: all that they do is in proportion";
+    if (ratio > 1 / most && ratio < most)
       continue;
     return "piece " + std::to_string(p) + " is " +
            (ratio > 1   ? "blown up"
@@ -140,7 +154,7 @@ std::string unsound_volume(const Body& body, const Watch& watch) {
   if (const double part = inverted_part(body); part > most_inverted)
     return in_short(100 * part) + " % of the body are inside out. Worst is " +
            worst_copy(body, [](std::size_t) { return true; }) + remedy;
-  constexpr double most_stretch = 32; // of 147 sound runs of unseen bodies none comes to more than 18
+  constexpr double most_stretch = 32; // of 308 sound runs of unseen bodies 4 come to more than 12, none to more than 16
   if (const Stretch stretch = largest_stretch(body); stretch.factor > most_stretch)
     return in_words(body, stretch.copy) + ", is drawn out to " + in_short(stretch.factor) + " times its edge" + remedy;
   return "";

@@ -5,8 +5,8 @@
 /// Four things no elastic body does. A particle without a finite place. A particle that crosses more than a cube in a
 /// step against the mean motion while all kinetic and elastic energy of the body could not move an eighth of a full
 /// cube, which is the least that a corner of whole cubes has, that fast: what moves so is lighter than anything that
-/// the grid resolves. A piece that is inside out, or crushed to a tenth or blown up to ten times its volume, which no
-/// law here is meant for, or a body with a tenth of its copies inside out. And a copy of which an edge is 32 times as
+/// the grid resolves. A piece that is inside out, or crushed to a tenth or blown up to ten times its volume (at small
+/// strain by a quarter), or a body with a tenth of its copies inside out. And a copy of which an edge is 32 times as
 /// long as at rest. The last two are borne where the initial state gave the body an energy with which it may come there,
 /// and it has at most a quarter more.
 
