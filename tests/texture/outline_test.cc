@@ -204,8 +204,7 @@ TEST(Outline, NoStarIsDrawnNearlyTheSameHoweverItIsStored) {
     const Chart before = fitted(exemplar, body);
     double at_right_angles = 0;
     for (const auto& stored : {turned(exemplar), mirrored(exemplar), turned(turned(exemplar))})
-      printf("%g\n", apart(before, fitted(stored, body))),
-        at_right_angles = std::max(at_right_angles, apart(before, fitted(stored, body)));
+      at_right_angles = std::max(at_right_angles, apart(before, fitted(stored, body)));
     const double turned_between = apart(before, fitted(turned_by(exemplar, 0.5), body));
     std::printf("%s in %s: by right angles %.2f, by half a radian %.2f\n", c.picture.c_str(), c.body.c_str(),
                 at_right_angles, turned_between);
