@@ -40,6 +40,13 @@ double square_side(const Corners& corners) {
   return std::max(std::sqrt(twice_area), longest / std::sqrt(2));
 }
 
+/// Calls f(p) for each sample of a triangle with n parts a side, in their order.
+template <class Function>
+void for_each_point(const Corners& corners, const int n, const Function& f) {
+  const Vec3 u = corners[1] - corners[0], v = corners[2] - corners[0];
+  for_each_sample(n, [&](const int i, const int j) { f(Vec3(corners[0] + double(i) / n * u + double(j) / n * v)); });
+}
+
 double parts_for(const double square_side, const double resolution) {
   constexpr double rounding = 1e-9;
   return std::max(1.0, std::ceil(square_side / resolution - rounding));
@@ -47,27 +54,28 @@ double parts_for(const double square_side, const double resolution) {
 
 } // namespace
 
-void Atlas::fill_triangle(const std::size_t t, const SurfaceView& surface, const Paint& paint) {
-  const Corners corners = corners_of(surface, t);
-  const Vec3 u = corners[1] - corners[0], v = corners[2] - corners[0];
-  const int n = parts_[t];
+void Atlas::fill_skin(const std::size_t t, const Skin& skin) {
   std::uint32_t sample = first_[t];
-  const auto point = [&](const int i, const int j) { return Vec3(corners[0] + double(i) / n * u + double(j) / n * v); };
-  if (surface.labels[t] == 0) {
-    for_each_sample(n,
-                    [&](const int i, const int j) { colours_[sample++] = to_bytes(paint.skin->colour(point(i, j))); });
-    return;
-  }
+  for_each_point(filled_[t], parts_[t], [&](const Vec3& p) { colours_[sample++] = to_bytes(skin.colour(p)); });
+}
+
+void Atlas::fill_group(const FlatGroup& group, const Paint& paint) {
+  std::vector<Corners> triangles;
+  for (const std::size_t t : group)
+    triangles.push_back(filled_[t]);
   const InPlane inside(*paint.inside, paint.detail, paint.relief != 0 ? InPlane::Relief::wanted : InPlane::Relief::none,
-                       corners);
+                       triangles);
   const double pixel = paint.inside->pixel();
-  for_each_sample(n, [&](const int i, const int j) {
-    const Vec3 p = point(i, j);
-    colours_[sample] = to_bytes(inside.colour(p));
-    if (paint.relief != 0)
-      slopes_[sample] = {slope(inside, p, u, paint.relief, pixel), slope(inside, p, v, paint.relief, pixel)};
-    ++sample;
-  });
+  for (const std::size_t t : group) {
+    const Vec3 u = filled_[t][1] - filled_[t][0], v = filled_[t][2] - filled_[t][0];
+    std::uint32_t sample = first_[t];
+    for_each_point(filled_[t], parts_[t], [&](const Vec3& p) {
+      colours_[sample] = to_bytes(inside.colour(p));
+      if (paint.relief != 0)
+        slopes_[sample] = {slope(inside, p, u, paint.relief, pixel), slope(inside, p, v, paint.relief, pixel)};
+      ++sample;
+    });
+  }
 }
 
 double n_samples_of(const double area, const double resolution, const double cube_edge) {
@@ -113,6 +121,17 @@ std::vector<std::size_t> Atlas::lay_out(const SurfaceView& surface, const Paint&
   return fresh;
 }
 
+/// Each triangle by itself where none sees its surroundings.
+std::vector<FlatGroup> Atlas::groups_of(const std::vector<std::size_t>& revealed, const Paint& paint) const {
+  if (paint.detail || paint.relief != 0)
+    return flat_groups(revealed, filled_, paint.inside->charts().front().body_axes, paint.inside->origin(),
+                       paint.inside->pixel());
+  std::vector<FlatGroup> groups;
+  for (const std::size_t t : revealed)
+    groups.push_back({t});
+  return groups;
+}
+
 /// What rises along the edges from the first's first corner rises along the twin's as their differences do.
 void Atlas::copy(const Twin& twin) {
   const int n = parts_[twin.number];
@@ -132,7 +151,12 @@ void Atlas::copy(const Twin& twin) {
 std::size_t Atlas::fill(const SurfaceView& surface, const Paint& paint) {
   const std::vector<std::size_t> fresh = lay_out(surface, paint);
   const Sides sides = find_sides(fresh, filled_, labels_);
-  parallel_for(sides.painted.size(), [&](const std::size_t i) { fill_triangle(sides.painted[i], surface, paint); });
+  std::vector<std::size_t> skin, revealed;
+  for (const std::size_t t : sides.painted)
+    (labels_[t] == 0 ? skin : revealed).push_back(t);
+  const std::vector<FlatGroup> groups = groups_of(revealed, paint);
+  parallel_for(skin.size(), [&](const std::size_t i) { fill_skin(skin[i], *paint.skin); });
+  parallel_for(groups.size(), [&](const std::size_t i) { fill_group(groups[i], paint); });
   parallel_for(sides.twins.size(), [&](const std::size_t i) { copy(sides.twins[i]); });
   return fresh.size();
 }

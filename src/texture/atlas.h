@@ -8,9 +8,9 @@
 /// configuration or its label has changed. Both sides of a cut lie on each other at rest: one is copied from the other.
 
 #include "base/archive.h"
+#include "texture/flat.h"
 #include "texture/paint.h"
 #include "texture/skin.h"
-#include "texture/twins.h"
 
 #include <cstdint>
 #include <span>
@@ -57,7 +57,9 @@ class Atlas {
 
  private:
   std::vector<std::size_t> lay_out(const SurfaceView& surface, const Paint& paint);
-  void fill_triangle(std::size_t t, const SurfaceView& surface, const Paint& paint);
+  std::vector<FlatGroup> groups_of(const std::vector<std::size_t>& revealed, const Paint& paint) const;
+  void fill_skin(std::size_t t, const Skin& skin);
+  void fill_group(const FlatGroup& group, const Paint& paint);
   void copy(const Twin& twin);
 
   double resolution_;

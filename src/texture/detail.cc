@@ -9,7 +9,7 @@ namespace kerf::texture {
 
 namespace {
 
-constexpr int window = 2 * window_radius + 1, n_in_window = window * window;
+constexpr int window = 2 * window_radius + 1, n_in_window = window * window, n_steps = n_quantiles - 1;
 constexpr float units = 16384; ///< of the stored numbers: a difference of luminance of 1
 
 } // namespace
@@ -28,24 +28,21 @@ LocalHistograms::LocalHistograms(const Chart& chart)
           sum += *value++;
         }
       std::sort(values.begin(), values.end());
-      const auto quantile = [&](const int k) {
-        const float difference = values[k * (n_in_window - 1) / n_pairs] - sum / n_in_window;
-        return static_cast<std::uint32_t>(std::lround(units * difference)) & 0xffffu;
-      };
-      for (int k = 0; k < n_pairs; ++k)
-        quantiles_(c, r)[k] = quantile(k) | quantile(k + 1) << 16;
+      for (int k = 0; k < n_quantiles; ++k) {
+        const float difference = values[k * (n_in_window - 1) / n_steps] - sum / n_in_window;
+        quantiles_(c, r)[k] = static_cast<std::int16_t>(std::lround(units * difference));
+      }
     }
   });
 }
 
 float LocalHistograms::at(const float x, const float y, const float place) const {
   const image::Footing f = image::footing(quantiles_.width, quantiles_.height, x, y);
-  const float number = place * n_pairs;
-  const int k = std::min(static_cast<int>(number), n_pairs - 1);
+  const float number = place * n_steps;
+  const int k = std::min(static_cast<int>(number), n_steps - 1);
   const float u = number - static_cast<float>(k);
   const auto value = [&](const Quantiles& q) {
-    const auto low = static_cast<std::int16_t>(q[k] & 0xffffu), high = static_cast<std::int16_t>(q[k] >> 16);
-    return (1 - u) * static_cast<float>(low) + u * static_cast<float>(high);
+    return (1 - u) * static_cast<float>(q[k]) + u * static_cast<float>(q[k + 1]);
   };
   const Quantiles* const p = &quantiles_.values[quantiles_.index(f.column, f.row)];
   const Quantiles* const q = p + quantiles_.width;

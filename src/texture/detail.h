@@ -22,7 +22,7 @@ class LocalHistograms {
   void add(PointRow points, const float* places, float* sums) const;
 
  private:
-  using Quantiles = std::array<std::uint32_t, n_pairs>;
+  using Quantiles = std::array<std::int16_t, n_quantiles>;
   image::Raster<Quantiles> quantiles_;
 };
 

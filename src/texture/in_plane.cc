@@ -7,32 +7,30 @@
 
 namespace kerf::texture {
 
-InPlane::InPlane(const Interior& inside, const Detail* const detail, const Relief relief, const Corners& corners)
+InPlane::InPlane(const Interior& inside, const Detail* const detail, const Relief relief,
+                 const std::span<const Corners> triangles)
   : inside_(inside) {
   const bool has_relief = relief == Relief::wanted;
-  const Vec3 area = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+  const auto& [a, b, c] = triangles.front();
+  const Vec3 area = (b - a).cross(c - a);
   if ((!detail && !has_relief) || !(area.norm() > 0))
     return;
   const Vec3 normal = area.normalized();
   x_ = in_plane(inside.charts().front().body_axes, normal);
   y_ = normal.cross(x_);
-  lay_out(corners, has_relief ? 2 : 1);
-  std::vector<Span> rows;
-  for (int r = 0; r < height_in_points_; ++r)
-    rows.push_back(reached(r, detail ? window_radius : 0));
+  const double margin = has_relief ? 2 : 1;
+  mark(lay_out(triangles, margin), margin, detail ? window_radius : 0);
   Windows windows(width_, height_in_points_, 0, 1);
-  find_blends(rows);
+  find_blends();
   for (int r = 0; r < height_in_points_; ++r)
-    find_luminance(r, rows[r], windows);
+    find_luminance(r, windows);
   if (detail)
     change_ = image::Grey(width_, height_in_points_, 0);
   if (has_relief)
     height_ = image::Grey(width_, height_in_points_, 0);
   for (int r = 0; r < height_in_points_; ++r) {
-    if (detail) {
-      windows.find(r, spans_[r]);
+    if (detail)
       find_change(r, *detail, windows);
-    }
     if (has_relief)
       find_height(r, windows);
   }
@@ -53,34 +51,35 @@ float InPlane::rise(const Vec3& p, const Vec3& along) const {
   return image::sample(height_, q[0] + d[0], q[1] + d[1]) - image::sample(height_, q[0] - d[0], q[1] - d[1]);
 }
 
-/// The part of the plane's lattice around a triangle: what lies within `margin` points of it is asked for, for
-/// interpolation and slopes, and windows reach beyond that. Starts at a point that has a blend of its own.
-void InPlane::lay_out(const Corners& corners, const double margin) {
+/// The part of the plane's lattice around triangles, and where they lie in it: what is within `margin` points of them is
+/// asked for, and windows reach beyond that. Starts at a point that has a blend of its own.
+std::vector<InPlane::Flat> InPlane::lay_out(const std::span<const Corners> triangles, const double margin) {
   pixel_ = inside_.pixel();
-  std::array<Vec2, 3> flat;
+  std::vector<Flat> flat(triangles.size());
   Vec2 lower = Vec2::Constant(1e300), upper = -lower;
-  for (int i = 0; i < 3; ++i) {
-    const Vec3 d = corners[i] - inside_.origin();
-    flat[i] = Vec2(x_.dot(d), y_.dot(d)) / pixel_;
-    lower = lower.cwiseMin(flat[i]);
-    upper = upper.cwiseMax(flat[i]);
-  }
+  for (std::size_t t = 0; t < triangles.size(); ++t)
+    for (int i = 0; i < 3; ++i) {
+      const Vec3 d = triangles[t][i] - inside_.origin();
+      flat[t][i] = Vec2(x_.dot(d), y_.dot(d)) / pixel_;
+      lower = lower.cwiseMin(flat[t][i]);
+      upper = upper.cwiseMax(flat[t][i]);
+    }
   const double around = margin + window_radius + 1;
   const Vec2 first = step * ((lower.array() - around) / step).floor().matrix();
   const Vec2 size = step * ((upper - first).array() / step + around / step).ceil().matrix();
   const Vec3 normal = x_.cross(y_);
-  const double height = normal.dot(corners[0] - inside_.origin());
+  const double height = normal.dot(triangles.front()[0] - inside_.origin());
   origin_ = inside_.origin() + height * normal + pixel_ * (first[0] * x_ + first[1] * y_);
   width_ = static_cast<int>(size[0]) + 1;
   height_in_points_ = static_cast<int>(size[1]) + 1;
-  for (Vec2& corner : flat)
-    corner -= first;
-  for (int r = 0; r < height_in_points_; ++r)
-    spans_.push_back(span_of(flat, r, margin));
+  for (Flat& triangle : flat)
+    for (Vec2& corner : triangle)
+      corner -= first;
+  return flat;
 }
 
 /// The columns of a row that are within a margin of a triangle.
-Span InPlane::span_of(const std::array<Vec2, 3>& triangle, const int row, const double margin) const {
+Span InPlane::span_of(const Flat& triangle, const int row, const double margin) const {
   const double below = row - margin, above = row + margin;
   double left = 1e300, right = -1e300;
   for (int i = 0; i < 3; ++i) {
@@ -101,41 +100,63 @@ Span InPlane::span_of(const std::array<Vec2, 3>& triangle, const int row, const 
   return {static_cast<int>(std::ceil(left - margin)), static_cast<int>(std::floor(right + margin))};
 }
 
-/// The columns of a row that what is asked for in the rows around it reaches.
-Span InPlane::reached(const int row, const int radius) const {
-  Span span{1 << 20, -(1 << 20)};
-  for (int r = std::max(0, row - radius); r <= std::min(height_in_points_ - 1, row + radius); ++r)
-    if (spans_[r].last >= spans_[r].first) {
-      span.first = std::min(span.first, spans_[r].first - radius);
-      span.last = std::max(span.last, spans_[r].last + radius);
+/// Marks the points that are within a margin of triangles, and those that windows of that radius around them reach.
+void InPlane::mark(const std::vector<Flat>& triangles, const double margin, const int radius) {
+  asked_ = Marks(width_ / step + 1, height_in_points_, 0);
+  reached_ = asked_;
+  const auto mark_span = [](Marks& marks, const int row, const Span& span) {
+    for (int k = span.first / step; k <= span.last / step && span.first <= span.last; ++k) {
+      const int first = std::max(span.first - k * step, 0), last = std::min(span.last - k * step, step - 1);
+      marks(k, row) |= static_cast<Lanes>((2 << last) - (1 << first));
     }
-  return span;
+  };
+  std::vector<Span> rows(height_in_points_);
+  for (const Flat& triangle : triangles) {
+    const auto [low, high] = std::minmax({triangle[0][1], triangle[1][1], triangle[2][1]});
+    const int first = static_cast<int>(std::ceil(low - margin)), last = static_cast<int>(std::floor(high + margin));
+    for (int r = first; r <= last; ++r) {
+      rows[r] = span_of(triangle, r, margin);
+      mark_span(asked_, r, rows[r]);
+    }
+    for (int r = first - radius; r <= last + radius; ++r) {
+      Span span{1 << 20, -(1 << 20)};
+      for (int k = std::max(first, r - radius); k <= std::min(last, r + radius); ++k)
+        if (rows[k].last >= rows[k].first) {
+          span.first = std::min(span.first, rows[k].first - radius);
+          span.last = std::max(span.last, rows[k].last + radius);
+        }
+      mark_span(reached_, r, span);
+    }
+  }
 }
 
-void InPlane::find_blends(const std::vector<Span>& rows) {
+void InPlane::find_blends() {
   blends_ = image::Raster<Blend>(width_ / step + 1, height_in_points_ / step + 1, Blend());
-  std::vector<Span> needed(blends_.height, Span{1 << 20, -1});
+  image::Raster<char> needed(blends_.width, blends_.height, 0);
   for (int r = 0; r < height_in_points_; ++r)
-    if (rows[r].last >= rows[r].first)
-      for (const int k : {r / step, std::min(r / step + 1, blends_.height - 1)}) {
-        needed[k].first = std::min(needed[k].first, rows[r].first / step);
-        needed[k].last = std::max(needed[k].last, rows[r].last / step + 1);
-      }
+    for (int i = 0; i + 1 < blends_.width; ++i)
+      if (reached_(i, r) != 0)
+        needed(i, r / step) = 1;
+  const auto is_needed = [&](const int i, const int k) { return i >= 0 && k >= 0 && needed(i, k) != 0; };
   for (int k = 0; k < blends_.height; ++k)
-    for (int i = needed[k].first; i <= std::min(needed[k].last, blends_.width - 1); ++i)
-      blends_(i, k) = inside_.blend(point(i * step, k * step), inside_.options().blending);
+    for (int i = 0; i < blends_.width; ++i)
+      if (is_needed(i, k) || is_needed(i - 1, k) || is_needed(i, k - 1) || is_needed(i - 1, k - 1))
+        blends_(i, k) = inside_.blend(point(i * step, k * step), inside_.options().blending);
 }
 
 template <class Block, class Point>
-void InPlane::for_each_block(const int row, const Span& span, const Block& block, const Point& point) {
+void InPlane::for_each_block(const int row, const Marks& marks, const Block& block, const Point& point) {
   const int k = row / step;
-  for (int i = span.first / step; i <= span.last / step && span.first <= span.last; ++i) {
+  for (int i = 0; i + 1 < blends_.width; ++i) {
+    if (marks(i, row) == 0)
+      continue;
     const Around around = nearest(i, k);
     if (std::all_of(around.begin(), around.end(), [&](const Blend* b) { return b->cell == around[0]->cell; }))
       block(i * step, around); // cells are convex: the points lie in the same one
     else
-      for (int c = std::max(span.first, i * step); c <= std::min(span.last, i * step + step - 1); ++c)
-        point(c, mixed(c, row));
+      for (int lane = 0; lane < step; ++lane)
+        if ((marks(i, row) >> lane & 1) != 0)
+          point(i * step + lane, mixed(i * step + lane, row));
   }
 }
 
@@ -173,20 +194,19 @@ Blend InPlane::mixed(const int column, const int row) {
 const Blend* InPlane::corner(const int i, const int k, const int cell) {
   if (blends_(i, k).cell == cell)
     return &blends_(i, k);
-  for (const Other& other : others_)
-    if (other.column == i && other.row == k && other.blend.cell == cell)
-      return &other.blend;
-  others_.push_back({i, k, inside_.blend(point(i * step, k * step), inside_.options().blending, cell)});
-  return &others_.back().blend;
+  const auto [place, is_new] = others_.try_emplace({i, k, cell});
+  if (is_new)
+    place->second = inside_.blend(point(i * step, k * step), inside_.options().blending, cell);
+  return &place->second;
 }
 
-void InPlane::find_luminance(const int row, const Span& span, Windows& windows) {
+void InPlane::find_luminance(const int row, Windows& windows) {
   float* const out = &windows.luminance(0, row);
   const auto grey = [&](const Blend& blend, const int i) -> const image::Grey& {
     return inside_.charts()[blend.exemplars[i]].luminance;
   };
   for_each_block(
-    row, span,
+    row, reached_,
     [&](const int first, const Around& around) {
       std::array<float, n_lanes> sums = {};
       for (int i = 0; i < around[0]->n; ++i) {
@@ -201,26 +221,32 @@ void InPlane::find_luminance(const int row, const Span& span, Windows& windows) 
     });
 }
 
-void InPlane::find_change(const int row, const Detail& detail, const Windows& windows) {
+void InPlane::find_change(const int row, const Detail& detail, Windows& windows) {
   float* const out = &change_(0, row);
+  for (int i = 0; i + 1 < blends_.width; ++i)
+    if (asked_(i, row) != 0)
+      windows.find(row, {i * step, i * step + step - 1});
   for_each_block(
-    row, spans_[row],
+    row, asked_,
     [&](const int first, const Around& around) {
       std::array<float, n_lanes> sums = {};
       for (int i = 0; i < around[0]->n; ++i)
         detail.histograms(around[0]->exemplars[i]).add(points(around, i, row), &windows.place(first, row), sums.data());
-      std::copy_n(sums.begin(), step, out + first);
+      for (int lane = 0; lane < step; ++lane)
+        out[first + lane] = sums[lane] - (windows.luminance(first + lane, row) - windows.mean(first + lane, row));
     },
-    [&](const int column, const Blend& blend) { out[column] = detail.luminance(blend, windows.place(column, row)); });
-  for (int c = spans_[row].first; c <= spans_[row].last; ++c)
-    out[c] -= windows.luminance(c, row) - windows.mean(c, row);
+    [&](const int column, const Blend& blend) {
+      out[column] = detail.luminance(blend, windows.place(column, row)) -
+                    (windows.luminance(column, row) - windows.mean(column, row));
+    });
 }
 
 void InPlane::find_height(const int row, const Windows& windows) {
-  for (int c = spans_[row].first; c <= spans_[row].last; ++c) {
-    const float change = change_.width > 0 ? change_(c, row) : 0;
-    height_(c, row) = std::clamp(windows.luminance(c, row) + change, 0.0f, 1.0f);
-  }
+  const bool changes = change_.width > 0;
+  for (int i = 0; i + 1 < blends_.width; ++i)
+    if (asked_(i, row) != 0)
+      for (int c = i * step; c < i * step + step; ++c)
+        height_(c, row) = std::clamp(windows.luminance(c, row) + (changes ? change_(c, row) : 0), 0.0f, 1.0f);
 }
 
 } // namespace kerf::texture

@@ -1,6 +1,7 @@
 #include "texture/kernels.h"
 
 #include <cmath>
+#include <cstring>
 
 namespace kerf::texture {
 
@@ -82,22 +83,25 @@ __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default"))) vo
 }
 
 __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default"))) void add_quantiles(
-  const std::uint32_t* const picture, const int width, const int height, const PointRow& points,
+  const std::int16_t* const picture, const int width, const int height, const PointRow& points,
   const float* const places, float* const __restrict sums) {
   const Footings f = footings(width, height, points);
   for (int l = 0; l < n_lanes; ++l) {
-    const float number = places[l] * n_pairs;
+    constexpr int n_steps = n_quantiles - 1;
+    const float number = places[l] * n_steps;
     auto k = static_cast<std::int32_t>(number);
-    k = k < n_pairs - 1 ? k : n_pairs - 1;
+    k = k < n_steps - 1 ? k : n_steps - 1;
     const float share = number - static_cast<float>(k);
-    const std::uint32_t* const p = picture + n_pairs * f.index[l] + k;
-    const auto value = [share](const std::uint32_t pair) {
+    const std::int16_t* const p = picture + n_quantiles * f.index[l] + k;
+    const auto value = [share](const std::int16_t* const two) {
+      std::uint32_t pair; // both at once
+      std::memcpy(&pair, two, sizeof pair);
       const auto low = static_cast<float>(static_cast<std::int32_t>(pair << 16) >> 16);
       const auto high = static_cast<float>(static_cast<std::int32_t>(pair) >> 16);
       return low + share * (high - low);
     };
-    const float a = value(p[0]), b = value(p[n_pairs]);
-    const float c = value(p[n_pairs * width]), d = value(p[n_pairs * (width + 1)]);
+    const float a = value(p), b = value(p + n_quantiles);
+    const float c = value(p + n_quantiles * width), d = value(p + n_quantiles * (width + 1));
     const float top = a + f.right[l] * (b - a), bottom = c + f.right[l] * (d - c);
     sums[l] += f.weight[l] * (top + f.down[l] * (bottom - top));
   }

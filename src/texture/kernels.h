@@ -20,11 +20,11 @@ struct PointRow {
 /// Adds the weighted bilinear values of a picture of width x height pixels.
 void add_values(const float* picture, int width, int height, const PointRow& points, float* sums);
 
-/// A pixel's distribution as a row of quantiles: eight pairs, each of a quantile (low 16 bits) and the next one (high).
-constexpr int n_pairs = 8;
+/// A pixel's distribution as a row of quantiles: signed numbers of 16 bits.
+constexpr int n_quantiles = 9;
 
 /// The same for what a distribution has at a place in [0, 1], one a point.
-void add_quantiles(const std::uint32_t* picture, int width, int height, const PointRow& points, const float* places,
+void add_quantiles(const std::int16_t* picture, int width, int height, const PointRow& points, const float* places,
                    float* sums);
 
 /// Of the 7 x 7 points around each, `stride` apart, of rows that are `pitch` numbers long: the mean, and the share of

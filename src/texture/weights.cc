@@ -74,8 +74,10 @@ void shepard(const std::span<const double> distances, const double power, Shares
     largest = std::max(largest, d);
   // A point in a face takes all of it, to eleven digits; relative, so that units do not matter.
   const double least = 1e-12 * largest + 1e-300;
-  for (std::size_t i = 0; i < distances.size(); ++i)
-    shares[i] = power == 1 ? 1 / (distances[i] + least) : std::pow(distances[i] + least, -power);
+  for (std::size_t i = 0; i < distances.size(); ++i) {
+    const double d = distances[i] + least;
+    shares[i] = power == 1 ? 1 / d : power == 2 ? 1 / (d * d) : std::pow(d, -power); // a power takes long
+  }
   normalise(shares, distances.size());
 }
 
