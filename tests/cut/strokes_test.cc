@@ -198,12 +198,19 @@ TEST_P(Strokes, LeaveThePiecesOfTheBoolean) {
   EXPECT_EQ(counted.n_fewer, 0);
   EXPECT_LE(counted.n_more, counted.n_strokes / 100);
 }
+std::string name_of(const testing::TestParamInfo<Series>& series) {
+  constexpr std::array names = {"blades", "scissors", "bent_blade"};
+  return names[static_cast<std::size_t>(series.param.tool)];
+}
+
 INSTANTIATE_TEST_SUITE_P(Short, Strokes,
                          testing::Values(Series{Tool::blades, 8}, Series{Tool::scissors, 4},
-                                         Series{Tool::bent_blade, 4}));
+                                         Series{Tool::bent_blade, 4}),
+                         name_of);
 INSTANTIATE_TEST_SUITE_P(Long, Strokes,
                          testing::Values(Series{Tool::blades, 700}, Series{Tool::scissors, 200},
-                                         Series{Tool::bent_blade, 200}));
+                                         Series{Tool::bent_blade, 200}),
+                         name_of);
 
 } // namespace
 } // namespace kerf::cut
