@@ -27,6 +27,8 @@ class Clusters {
   /// Joins the corners of rows of two.
   Clusters(const PointSprings& points, std::size_t n_corners);
 
+  bool empty() const { return clusters_.empty(); }
+
   /// Adds what bounds springs, |sum w_k u_k|^2 <= sum |w_l| sum over groups g of |sum over g of w_k u_k|^2 / |w|_g: of
   /// clusters to their own blocks, of corners that are in none by `add`.
   void add_bound(const PointSprings& points, const std::function<void(std::uint32_t corner, const Mat3& block)>& add);

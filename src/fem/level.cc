@@ -117,8 +117,8 @@ std::vector<Tie> coarsened(const std::span<const Tie> fine, const Weights& prolo
 }
 
 void Level::resize() {
-  for (auto* const values : {&r, &x, &d, &t})
-    values->assign(batching.n_rows(), {});
+  for (auto* const values : {&r_, &d_, &t_})
+    values->assign(n_rows(), {});
   mass.resize(n_corners());
   lines_of_product_.clear();
   for (const GhostLine& line : lines)
@@ -187,19 +187,19 @@ void Level::invert_diagonal(const std::function<Mat3(std::uint32_t corner, const
     [&](const std::uint32_t corner, const Eigen::Vector3f&) { put_inverse_block(corner, Mat3::Zero()); });
 }
 
-/// t += A d but for the masses.
-void Level::add_products() {
-  add_product(batching, elements, d.data(), t.data());
+/// y += A x but for the masses.
+void Level::add_products(const FloatRow* const x, FloatRow* const y) const {
+  add_product(batching, elements, x, y);
   for (const LineOfProduct& line : lines_of_product_) {
-    const Four f = line.stiffness * (load(d[line.a]) - 2 * load(d[line.b]) + load(d[line.c]));
-    add(t[line.a], f);
-    add(t[line.b], -2 * f);
-    add(t[line.c], f);
+    const Four f = line.stiffness * (load(x[line.a]) - 2 * load(x[line.b]) + load(x[line.c]));
+    add(y[line.a], f);
+    add(y[line.b], -2 * f);
+    add(y[line.c], f);
   }
   for (const Tie& tie : ties) {
-    const Four f = float(tie.stiffness) * (load(d[tie.a]) - load(d[tie.b]));
-    add(t[tie.a], f);
-    add(t[tie.b], -f);
+    const Four f = float(tie.stiffness) * (load(x[tie.a]) - load(x[tie.b]));
+    add(y[tie.a], f);
+    add(y[tie.b], -f);
   }
   for (std::size_t i = 0; i < points.blocks.size(); ++i) {
     Eigen::Vector3f u = Eigen::Vector3f::Zero();
@@ -208,18 +208,18 @@ void Level::add_products() {
         function(points.rows.column[k], points.rows.weight[k]);
     };
     for_each([&](const std::uint32_t corner, const float w) {
-      u += w * Eigen::Vector3f(d[corner].x, d[corner].y, d[corner].z);
+      u += w * Eigen::Vector3f(x[corner].x, x[corner].y, x[corner].z);
     });
     const Eigen::Vector3f f = points.blocks[i] * u;
     for_each([&](const std::uint32_t corner, const float w) {
-      t[corner].x += w * f.x();
-      t[corner].y += w * f.y();
-      t[corner].z += w * f.z();
+      y[corner].x += w * f.x();
+      y[corner].y += w * f.y();
+      y[corner].z += w * f.z();
     });
   }
   for (const Spring& spring : springs) {
-    FloatRow& row = t[spring.corner];
-    const FloatRow& of = d[spring.corner];
+    FloatRow& row = y[spring.corner];
+    const FloatRow& of = x[spring.corner];
     const Eigen::Vector3f f = spring.block.cast<float>() * Eigen::Vector3f(of.x, of.y, of.z);
     row.x += f.x();
     row.y += f.y();
@@ -239,55 +239,70 @@ Four product(const FloatRow* const inverse, const Four& r) {
 } // namespace
 
 /// What a step does at the corners of clusters, by their own blocks.
-void Level::add_of_clusters(const float after) {
-  clusters.for_each([&](const std::uint32_t corner) { return Eigen::Vector3f(r[corner].x, r[corner].y, r[corner].z); },
-                    [&](const std::uint32_t corner, const Eigen::Vector3f& v) {
-                      const Four step = {after * v.x(), after * v.y(), after * v.z(), 0};
-                      add(d[corner], step);
-                      add(x[corner], step);
-                      add(t[corner], mass[corner] * step);
-                    });
+void Level::add_of_clusters(const float after, FloatRow* const x) {
+  clusters.for_each(
+    [&](const std::uint32_t corner) { return Eigen::Vector3f(r_[corner].x, r_[corner].y, r_[corner].z); },
+    [&](const std::uint32_t corner, const Eigen::Vector3f& v) {
+      const Four step = {after * v.x(), after * v.y(), after * v.z(), 0};
+      add(d_[corner], step);
+      add(x[corner], step);
+      add(t_[corner], mass[corner] * step);
+    });
 }
 
-/// r -= t, d = before d + after D^-1 r, x += d, t = M d.
-void Level::step(const ChebyshevStep& step) {
-  for_each_corner([&](const std::size_t i) {
-    const Four left = load(r[i]) - load(t[i]),
-               change = step.before * load(d[i]) + step.after * product(&inverse[2 * i], left);
-    store(r[i], left);
-    store(d[i], change);
-    add(x[i], change);
-    store(t[i], mass[i] * change);
-  });
-  add_of_clusters(step.after);
-}
-
-void Level::smooth_from_zero() {
+/// r = b - t, d = after D^-1 r, x += d, t = M d for the first step, r -= A d, d = before d + after D^-1 r, x += d for each
+/// other one. From zero, x and t are not looked at.
+template <bool from_zero>
+void Level::take_steps(const FloatRow* const b, FloatRow* const x) {
   const auto steps = chebyshev_steps(bound);
   for_each_corner([&](const std::size_t i) {
-    const Four change = steps[0].after * product(&inverse[2 * i], load(r[i]));
-    store(d[i], change);
-    store(x[i], change);
-    store(t[i], mass[i] * change);
+    const Four left = from_zero ? load(b[i]) : load(b[i]) - load(t_[i]),
+               change = steps[0].after * product(&inverse[2 * i], left);
+    store(r_[i], left);
+    store(d_[i], change);
+    store(x[i], from_zero ? change : load(x[i]) + change);
+    store(t_[i], mass[i] * change);
   });
-  add_of_clusters(steps[0].after);
+  add_of_clusters(steps[0].after, x);
   for (std::size_t k = 1; k < steps.size(); ++k) {
-    add_products();
-    step(steps[k]);
+    add_products(d_.data(), t_.data());
+    const bool is_last = k + 1 == steps.size() && clusters.empty();
+    for_each_corner([&](const std::size_t i) {
+      const Four left = load(r_[i]) - load(t_[i]),
+                 change = steps[k].before * load(d_[i]) + steps[k].after * product(&inverse[2 * i], left);
+      add(x[i], change);
+      if (is_last)
+        return;
+      store(r_[i], left);
+      store(d_[i], change);
+      store(t_[i], mass[i] * change);
+    });
+    add_of_clusters(steps[k].after, x);
   }
-  add_products();
-  for_each_corner([&](const std::size_t i) { store(r[i], load(r[i]) - load(t[i])); });
 }
 
-void Level::smooth_after_change() {
-  for_each_corner([&](const std::size_t i) {
-    const Four change = load(d[i]);
-    add(x[i], change);
-    store(t[i], mass[i] * change);
-  });
-  for (const ChebyshevStep& one : chebyshev_steps(bound)) {
-    add_products();
-    step(one);
+void Level::smooth_from_zero(const FloatRow* const b, FloatRow* const x) {
+  std::fill(x + n_corners(), x + n_rows(), FloatRow{});
+  take_steps<true>(b, x);
+}
+
+void Level::smooth(const FloatRow* const b, FloatRow* const x) {
+  multiply(x, t_.data());
+  take_steps<false>(b, x);
+}
+
+void Level::multiply(const FloatRow* const x, FloatRow* const y) {
+  for_each_corner([&](const std::size_t i) { store(y[i], mass[i] * load(x[i])); });
+  std::fill(y + n_corners(), y + n_rows(), FloatRow{});
+  add_products(x, y);
+  project(y);
+}
+
+void Level::project(FloatRow* const rows) const {
+  for (const Spring& one : held) {
+    FloatRow& row = rows[one.corner];
+    const Eigen::Vector3f v = one.block.cast<float>() * Eigen::Vector3f(row.x, row.y, row.z);
+    row = {v.x(), v.y(), v.z()};
   }
 }
 

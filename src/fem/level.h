@@ -57,9 +57,9 @@ struct Level {
   std::vector<Row<float>> inverse;  ///< of all blocks among the free directions, likewise
   std::vector<Spring> held;         ///< projectors onto the free directions of corners that are held
 
-  std::vector<Row<float>> r, x, d, t; ///< residual, solution, its last change, and A times that
-
   std::size_t n_corners() const { return cells.n_corners; }
+  /// Of vectors: a row for each corner, and what batches have for lanes that are not used (kernels.h).
+  std::size_t n_rows() const { return batching.n_rows(); }
 
   /// When cells, batches and lines are there.
   void resize();
@@ -68,25 +68,33 @@ struct Level {
   /// Of all blocks; `inverse_where_held` gives those of corners that are held, among their free directions.
   void invert_diagonal(const std::function<Mat3(std::uint32_t corner, const Mat3& block)>& inverse_where_held);
 
-  /// Smooths x = 0 towards A x = r, and leaves in r what is left.
-  void smooth_from_zero();
-  /// x += d, and goes on smoothing.
-  void smooth_after_change();
+  // Of b and x, what lies along directions that are held is zero, and stays so.
+
+  /// y = A x.
+  void multiply(const Row<float>* x, Row<float>* y);
+  /// x near A^-1 b.
+  void smooth_from_zero(const Row<float>* b, Row<float>* x);
+  /// x nearer to A^-1 b.
+  void smooth(const Row<float>* b, Row<float>* x);
+  /// Takes out of rows what lies along directions that are held.
+  void project(Row<float>* rows) const;
 
  private:
   template <class Function>
   void for_each_corner(const Function& f) const;
   Mat3 inverse_block(std::size_t corner) const;
   void put_inverse_block(std::size_t corner, const Mat3& block);
-  void add_of_clusters(float after);
-  void add_products();
-  void step(const ChebyshevStep& step);
+  void add_of_clusters(float after, Row<float>* x);
+  void add_products(const Row<float>* x, Row<float>* y) const;
+  template <bool from_zero>
+  void take_steps(const Row<float>* b, Row<float>* x);
 
   struct LineOfProduct {
     std::uint32_t a, b, c;
     float stiffness;
   };
   std::vector<LineOfProduct> lines_of_product_;
+  std::vector<Row<float>> r_, d_, t_; // of the smoother: residual, last change of x, and A times that
 };
 
 } // namespace kerf::fem

@@ -3,7 +3,6 @@
 #include "base/parallel.h"
 #include "fem/level.h"
 #include "fem/level_elements.h"
-#include "fem/row_of_floats.h"
 #include "fem/turned.h"
 #include "material/polar.h"
 
@@ -41,18 +40,6 @@ void fill(Level& level, const std::function<const Element&(std::uint32_t)>& elem
   level.resize();
 }
 
-void multiply(const Weights& weights, const std::vector<Row<float>>& from, std::vector<Row<float>>& to) {
-  parallel_for(
-    weights.begin.size() - 1,
-    [&](const std::size_t i) {
-      Four sum = {};
-      for (std::uint32_t k = weights.begin[i]; k < weights.begin[i + 1]; ++k)
-        sum += weights.weight[k] * load(from[weights.column[k]]);
-      store(to[i], sum);
-    },
-    worth);
-}
-
 /// Blocks at coarse corners, of the sum of the fine ones.
 std::vector<Spring> restricted(const std::vector<Spring>& fine, const Weights& prolongation,
                                const std::size_t n_coarse) {
@@ -84,15 +71,6 @@ PointSprings point_springs(const dynamics::LinearEquation& equation) {
   return springs;
 }
 
-/// A projector with values in a row.
-void project(const std::vector<Spring>& held, std::vector<Row<float>>& rows) {
-  for (const Spring& one : held) {
-    Row<float>& row = rows[one.corner];
-    const Eigen::Vector3f v = one.block.cast<float>() * Eigen::Vector3f(row.x, row.y, row.z);
-    row = {v.x(), v.y(), v.z()};
-  }
-}
-
 } // namespace
 
 /// A factorisation of the coarsest level, shifted by what single precision does not see: a free body's motion is singular.
@@ -104,7 +82,7 @@ struct Multigrid::Coarsest {
   Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> sparse;
 
   void factorise(const Multigrid::Level& level, std::span<const Mat3> rotations);
-  void solve(Multigrid::Level& level) const;
+  void solve(Multigrid::Level& level, const Row<float>* b, Row<float>* x) const;
   static bool is_dense(const fem::Level& level) { return level.n_corners() <= 2 * few; }
   /// What does not get coarser, like dust, is smoothed alone.
   static bool is_too_large(const fem::Level& level) { return level.n_corners() > 8 * few; }
@@ -186,17 +164,18 @@ void Multigrid::Coarsest::factorise(const Multigrid::Level& level, const std::sp
   sparse.compute(A);
 }
 
-void Multigrid::Coarsest::solve(Multigrid::Level& level) const {
+void Multigrid::Coarsest::solve(Multigrid::Level& level, const Row<float>* const b, Row<float>* const x) const {
   if (is_too_large(level)) {
-    level.smooth_from_zero();
+    level.smooth_from_zero(b, x);
     return;
   }
-  Eigen::VectorXd b(3 * level.n_corners());
+  Eigen::VectorXd right(3 * level.n_corners());
   for (std::size_t i = 0; i < level.n_corners(); ++i)
-    b.segment<3>(3 * i) << level.r[i].x, level.r[i].y, level.r[i].z;
-  const Eigen::VectorXd y = is_dense(level) ? Eigen::VectorXd(dense.solve(b)) : Eigen::VectorXd(sparse.solve(b));
+    right.segment<3>(3 * i) << b[i].x, b[i].y, b[i].z;
+  const Eigen::VectorXd y =
+    is_dense(level) ? Eigen::VectorXd(dense.solve(right)) : Eigen::VectorXd(sparse.solve(right));
   for (std::size_t i = 0; i < level.n_corners(); ++i)
-    level.x[i] = {float(y[3 * i]), float(y[3 * i + 1]), float(y[3 * i + 2])};
+    x[i] = {float(y[3 * i]), float(y[3 * i + 1]), float(y[3 * i + 2])};
 }
 
 Multigrid::~Multigrid() = default;
@@ -251,6 +230,12 @@ Multigrid::Multigrid(const FinestLevel& finest, const FormerLevels& former) {
     levels_.push_back(std::move(coarse));
   }
   coarsest_ = std::make_unique<Coarsest>(finest.material);
+  std::vector<fem::Level*> levels;
+  for (Level& level : levels_)
+    levels.push_back(&level);
+  cycle_ = std::make_unique<Cycle>(std::move(levels), [this](const Row<float>* const b, Row<float>* const x) {
+    coarsest_->solve(levels_.back(), b, x);
+  });
 }
 
 FormerLevels Multigrid::give_way() {
@@ -361,41 +346,28 @@ void Multigrid::hold(const dynamics::LinearEquation& equation) {
   }
 }
 
-void Multigrid::cycle(const std::size_t l) {
-  Level& level = levels_[l];
-  if (l + 1 == levels_.size()) {
-    coarsest_->solve(level);
-    return;
-  }
-  level.smooth_from_zero();
-  project(level.held, level.r);
-  multiply(level.to_coarse.restriction, level.r, levels_[l + 1].r);
-  cycle(l + 1);
-  multiply(level.to_coarse.prolongation, levels_[l + 1].x, level.d);
-  project(level.held, level.d);
-  level.smooth_after_change();
-}
-
 void Multigrid::apply(const std::span<const double> r, const std::span<double> z) {
-  Level& level = levels_[0];
+  const std::size_t n = levels_[0].n_corners();
   double most = 0;
   for (const double value : r)
     most = std::max(most, std::abs(value));
   const double scale = most > 0 ? most : 1; // single precision has a short range
+  Row<float>* const b = cycle_->right_side();
   parallel_for(
-    level.n_corners(),
+    n,
     [&](const std::size_t i) {
-      level.r[i] = {float(r[3 * i] / scale), float(r[3 * i + 1] / scale), float(r[3 * i + 2] / scale)};
+      b[i] = {float(r[3 * i] / scale), float(r[3 * i + 1] / scale), float(r[3 * i + 2] / scale)};
     },
     worth);
-  cycle(0);
+  levels_[0].project(b);
+  const Row<float>* const x = cycle_->solve();
   const double back = scale / stiffness_factor_;
   parallel_for(
-    level.n_corners(),
+    n,
     [&](const std::size_t i) {
-      z[3 * i] = back * level.x[i].x;
-      z[3 * i + 1] = back * level.x[i].y;
-      z[3 * i + 2] = back * level.x[i].z;
+      z[3 * i] = back * x[i].x;
+      z[3 * i + 1] = back * x[i].y;
+      z[3 * i + 2] = back * x[i].z;
     },
     worth);
 }

@@ -12,8 +12,8 @@
 /// fronts (ties.h) are ties of the coarse corners, and vanish where these are one. Coarse levels do not know supports, but
 /// springs in their place, of the size of the stiffness that they hold.
 ///
-/// A cycle is a V, smoothed before and after by the same Chebyshev polynomial of block Jacobi's matrix (Adams, Brezina, Hu
-/// and Tuminaro 2003, Parallel multigrid smoothing, J. Comput. Phys. 188), so it is symmetric; it is positive as long as
+/// A cycle is deal.II's V (cycle.h), smoothed before and after by the same Chebyshev polynomial of block Jacobi's matrix (Adams,
+/// Brezina, Hu and Tuminaro 2003, Parallel multigrid smoothing, J. Comput. Phys. 188), so it is symmetric; it is positive as long as
 /// the polynomial knows a bound for the largest eigenvalue, which is had element by element (jacobi_bound): elements
 /// whose own bound is above that of a full cube count more in the diagonal blocks. The coarsest level is factorised,
 /// unless it is large as dust is. All is single precision, but that.
@@ -24,6 +24,7 @@
 #include "dynamics/preconditioner.h"
 #include "fem/batches.h"
 #include "fem/coarsening.h"
+#include "fem/cycle.h"
 #include "fem/ghost_penalty.h"
 #include "fem/level_elements.h"
 #include "fem/ties.h"
@@ -80,10 +81,10 @@ class Multigrid : public dynamics::Preconditioner {
   void put_rotations(std::span<const Lanes9<double>> finest);
   void put_masses(const dynamics::LinearEquation& equation);
   void hold(const dynamics::LinearEquation& equation);
-  void cycle(std::size_t level);
 
   std::vector<Level> levels_;
   std::unique_ptr<Coarsest> coarsest_;
+  std::unique_ptr<Cycle> cycle_;
   double stiffness_factor_ = 1;
 };
 
