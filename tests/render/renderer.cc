@@ -7,6 +7,7 @@
 
 #include <array>
 #include <limits>
+#include <random>
 
 using namespace kerf;
 using namespace kerf::render;
@@ -197,6 +198,28 @@ TEST(Renderer, WhatIsBehindTheEyeIsNotSeen) {
     p.x() += 10;
   const Image image = draw(camera_on_x(40, 30), contrasting(), mesh);
   EXPECT_EQ(n_covered(image), 0u);
+}
+
+TEST(Renderer, LeavesNothingOfTheImageBefore) {
+  // Only where triangles are is anything drawn or cleared; some of these reach beyond the image, or behind the eye.
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> place(-1.5, 1.5), size(0.05, 1);
+  const Camera camera = camera_on_x(64, 48);
+  const Renderer renderer(camera, {});
+  const Image empty = renderer.draw({no_surfaces, no_blades, {}});
+  int n_empty = 0;
+  for (int k = 0; k < 12; ++k) {
+    auto mesh = shapes::cube(size(random));
+    const Vec3 at = {k % 5 == 0 ? 4 + place(random) : place(random), place(random), place(random)};
+    for (Vec3& p : mesh.positions)
+      p += at;
+    const std::vector surfaces = {mesh.drawn()};
+    const DrawnScene scene{surfaces, no_blades, {}};
+    const Image image = renderer.draw(scene);
+    EXPECT_EQ(image.rgb, Renderer(camera, {}).draw(scene).rgb) << k;
+    n_empty += image.rgb == empty.rgb ? 1 : 0;
+  }
+  EXPECT_LE(n_empty, 4);
 }
 
 TEST(Renderer, RefusesWhatCannotBeDrawn) {
