@@ -71,6 +71,8 @@ void Context::make_current() const {
     throw DataError({.path = "OpenGL", .value = "OSMesa", .rule = "the context cannot be used", .remedy = remedy});
 }
 
+void Context::release() const { OSMesaMakeCurrent(nullptr, nullptr, GL_UNSIGNED_BYTE, 0, 0); }
+
 void Context::clip(const int n) const {
   make_current();
   for (int i = 0; i < 8; ++i)

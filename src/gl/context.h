@@ -23,6 +23,8 @@ class Context {
 
   /// Directs the GL calls of this thread to this context; throws DataError if Mesa refuses.
   void make_current() const;
+  /// Directs the GL calls of this thread to none, so that another thread may have this context.
+  void release() const;
 
   /// Clips what is drawn from now on where gl_ClipDistance[i] < 0, i < n, n <= 8.
   void clip(int n) const;

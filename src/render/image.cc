@@ -22,8 +22,8 @@ DataError failure(const std::string& path, const std::string& rule) {
 
 /// Says of the file that it is Kerf's: a chunk of text, with its length before and its checksum (CRC-32) behind it.
 /// output/results_folder.cc knows our pictures by it.
-constexpr std::array<unsigned char, 25> mark = {0, 0, 0, 13, 't', 'E', 'X', 't', 'S', 'o', 'f', 't', 'w', 'a', 'r', 'e',
-                                                0, 'K', 'e', 'r', 'f', 0x81, 0x7e, 0xae, 0x65};
+constexpr std::array<unsigned char, 25> mark = {0,   0,   0,   13, 't', 'E', 'X', 't', 'S',  'o',  'f',  't', 'w',
+                                                'a', 'r', 'e', 0,  'K', 'e', 'r', 'f', 0x81, 0x7e, 0xae, 0x65};
 constexpr std::ptrdiff_t after_header = 33; // signature and first chunk of every PNG file
 
 /// The whole file in memory: then a failed write cannot be mistaken for a failed compression.

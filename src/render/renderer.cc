@@ -5,7 +5,6 @@
 #include "gl/mesh.h"
 #include "gl/program.h"
 #include "gl/state.h"
-#include "render/batch.h"
 
 #include <Eigen/Geometry>
 
@@ -196,11 +195,24 @@ Image to_image(const gl::Framebuffer& framebuffer) {
   return image;
 }
 
+/// Makes a context the thread's own for as long as this lives.
+class InUse {
+ public:
+  explicit InUse(const gl::Context& context) : context_(context) { context_.make_current(); }
+  ~InUse() { context_.release(); }
+  InUse(const InUse&) = delete;
+  InUse& operator=(const InUse&) = delete;
+
+ private:
+  const gl::Context& context_;
+};
+
 } // namespace
 
 Renderer::Renderer(const Camera& camera, const Look& look) : camera_(camera), look_(look) {
   check(camera);
   passes_ = std::make_unique<Passes>(camera);
+  passes_->context.release();
 }
 
 Renderer::~Renderer() {
@@ -208,9 +220,8 @@ Renderer::~Renderer() {
   passes_->context.make_current();
 }
 
-Image Renderer::draw(const DrawnScene& scene) const {
-  const Batch batch = collect(camera_, look_, scene);
-  passes_->context.make_current();
+Image Renderer::draw_batch(const Batch& batch) const {
+  const InUse context(passes_->context);
   passes_->clear();
   passes_->draw_background(camera_, look_);
   if (const auto depths = depth_range(batch.bounds)) {

@@ -8,6 +8,7 @@
 /// Limits: opaque surfaces; one light casts shadows; the shadow map spans the whole scene, so a piece far away
 /// makes the shadows of all others coarser.
 
+#include "render/batch.h"
 #include "render/camera.h"
 #include "render/drawn.h"
 #include "render/image.h"
@@ -25,9 +26,11 @@ class Renderer {
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;
 
-  /// Draws the scene as it is now; the same input gives the same bytes. Throws DataError if a triangle names no vertex
-  /// or the labels do not fit, NumericalError if a position is not finite.
-  Image draw(const DrawnScene& scene) const;
+  /// What there is to draw of a scene as it is now. Throws as collect().
+  Batch prepare(const DrawnScene& scene) const { return collect(camera_, look_, scene); }
+  /// Draws it; the same input gives the same bytes. Any thread may, one at a time.
+  Image draw_batch(const Batch& batch) const;
+  Image draw(const DrawnScene& scene) const { return draw_batch(prepare(scene)); }
 
  private:
   struct Passes;

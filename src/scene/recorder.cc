@@ -1,6 +1,7 @@
 #include "scene/recorder.h"
 
 #include "base/error.h"
+#include "base/parallel.h"
 #include "base/parameters.h"
 #include "output/checkpoint_file.h"
 #include "output/reader.h"
@@ -169,8 +170,11 @@ Recorder::Recorder(const std::filesystem::path& folder, const World& world, cons
     bodies_(world.bodies.size()),
     program_(source.info.version + " " + source.info.git_commit),
     inputs_(joined(source.inputs)) {
-  if (world.images)
+  if (world.images) {
     std::filesystem::create_directories(folder / frames_folder);
+    if (n_threads() > 1)
+      image_thread_ = std::make_unique<render::ImageThread>(*world.images->renderer);
+  }
   if (goes_on_) {
     if (const auto steps = run_file_.steps(); !steps.empty())
       ends_ = steps.back();
@@ -261,6 +265,8 @@ void Recorder::keep(World& world, const int step, Timings& seconds) {
 }
 
 void Recorder::keep_now(World& world, const int step) {
+  if (image_thread_)
+    image_thread_->wait(); // a run that goes on from here does not draw them again
   Archive state;
   for (Body& body : world.bodies)
     archive(state, body);
@@ -354,7 +360,16 @@ void Recorder::append_surfaces(const World& world, const int step) {
 }
 
 void Recorder::write_image(const World& world, const int step) {
-  render::write_png(world.images->renderer->draw(drawing(world, step)), image_path(folder(), step).string());
+  const render::Renderer& renderer = *world.images->renderer;
+  const std::string path = image_path(folder(), step).string();
+  render::Batch batch = renderer.prepare(drawing(world, step));
+  if (!image_thread_) {
+    render::write_png(renderer.draw_batch(batch), path);
+    return;
+  }
+  image_thread_->write(std::move(batch), path);
+  if (step == world.n_steps)
+    image_thread_->wait();
 }
 
 } // namespace kerf::scene

@@ -10,6 +10,7 @@
 #include "output/results_folder.h"
 #include "output/run_file.h"
 #include "output/surface_file.h"
+#include "render/image_thread.h"
 #include "scene/world.h"
 
 #include <chrono>
@@ -52,9 +53,9 @@ class Recorder {
   /// Brings a world that has just been composed to its last checkpoint.
   Start resume(World& world);
 
-  /// Records step `step` of the world, with the seconds of its stages. What recording itself takes (images, output)
-  /// stands in `seconds` afterwards, in place of those stages, and so counts with the next step. The last step is
-  /// always recorded in full.
+  /// Records step `step` of the world, with the seconds of its stages. What recording itself takes (output, images: where
+  /// they are drawn in a thread of their own, how long they were waited for) stands in `seconds` afterwards, in place of
+  /// those stages, and so counts with the next step. The last step is always recorded in full.
   void record(const World& world, int step, Timings& seconds);
 
   /// Writes a checkpoint after step `step`, which has been recorded, if one is due; its seconds count as output. By the
@@ -100,6 +101,7 @@ class Recorder {
   Cost earlier_cost_;          ///< up to the checkpoint that this process goes on from
   output::RunFile run_file_;
   std::vector<BodyFiles> bodies_;
+  std::unique_ptr<render::ImageThread> image_thread_; ///< null: there are no images, or one thread alone
   std::string program_, inputs_;
   std::int64_t ends_ = -1;                    ///< the last step that run.h5 held when it was opened
   std::vector<std::vector<double>> recorded_; ///< the series that it held
