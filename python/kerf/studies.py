@@ -74,6 +74,11 @@ def has_times(study):
     return bool((study.columns["stepping_time"].values > 0).any())
 
 
+def half_spreads(study):
+    """Of each row's CPU time over its repetitions [s]; 0 where there were none."""
+    return np.nan_to_num(study.columns["cpu_spread"].values) / 2
+
+
 def comparable(study, norm):
     """(rows, time [s], error [1]): the rows that completed with an error; the error without its sign. Times that do not
     count are NaN."""

@@ -15,7 +15,8 @@ def percent(axis):
 
 
 def draw_error_against_time(axes, study, norm, numbers):
-    """One study in one panel: a line a method, its rows by time; rings mark fronts. numbers: method -> its line's."""
+    """One study in one panel: a line a method, its rows by time, with bars as wide as the times of repetitions are apart;
+    rings mark fronts. numbers: method -> its line's."""
     rows, times, errors = studies.comparable(study, norm)
     for method, members in studies.methods(study).items():
         mine = np.flatnonzero(np.isin(rows, members))
@@ -24,6 +25,10 @@ def draw_error_against_time(axes, study, norm, numbers):
         if not studies.has_families(study):
             style["linestyle"] = "none"  # rows of different problems: a line between them would mean nothing
         axes.plot(times[mine], errors[mine], label=method, **style)
+        half = studies.half_spreads(study)[rows[mine]]
+        if (half > 0).any():
+            ends = np.maximum(times[mine] - half, 0.01 * times[mine]), times[mine] + half
+            axes.hlines(errors[mine], *ends, colors=style["color"], linewidth=4, alpha=0.35)
     for index in studies.fronts(study, norm):
         at = np.flatnonzero(rows == index)[0]
         axes.plot(times[at], errors[at], "o", ms=11, mfc="none", mec="#555555", mew=1.1, label="on the Pareto front")

@@ -161,6 +161,21 @@ class Report(unittest.TestCase):
         rings = [line for line in figure.axes[0].lines if line.get_label() == "on the Pareto front"]
         self.assertEqual(len(rings), len(studies.fronts(study, "error")))
 
+    def test_times_of_repetitions_are_as_wide_as_they_are_apart(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "study.h5"
+            path.write_bytes((FILES / "quick/study.h5").read_bytes())
+            with h5py.File(path, "r+") as file:
+                rows = file["study/rows"]
+                mine = [i for i, name in enumerate(rows["family"]) if name == b"pba"]
+                time, error = rows["cpu_time"][mine[0]], abs(rows["error"][mine[0]])
+                rows["cpu_spread"][mine[0]] = 0.5 * time
+            figure = study_figures.error_against_time([package.open(path)], ["quick"])
+            (bars,) = figure.axes[0].collections
+            np.testing.assert_allclose(
+                [s for s in bars.get_segments() if s[0, 0] < s[1, 0]], [[[0.75 * time, error], [1.25 * time, error]]]
+            )
+
     def test_methods_differ_in_more_than_colour(self):
         figure = study_figures.error_against_time([package.open(FILES / "quick")], ["quick"])
         lines = [line for line in figure.axes[0].lines if line.get_label() != "on the Pareto front"]
