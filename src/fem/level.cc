@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <map>
 #include <tuple>
+#include <utility>
 
 namespace kerf::fem {
 
@@ -133,6 +134,7 @@ void Level::for_each_corner(const Function& f) const {
 void Level::make_diagonal() {
   const auto weight = [&](const double alone) { return std::max(1.0, alone / bound); };
   const double of_line = weight(3), of_tie = weight(2); // eigenvalues of one alone
+  diagonal = std::move(inverse);
   diagonal.assign(2 * batching.n_rows(), {});
   add_diagonal(batching, elements, diagonal.data());
   const auto add = [&](const std::uint32_t corner, const double value) {
@@ -157,9 +159,9 @@ Mat3 Level::inverse_block(const std::size_t corner) const { return block_of(&inv
 void Level::put_inverse_block(const std::size_t corner, const Mat3& block) { put_block(block, &inverse[2 * corner]); }
 
 void Level::invert_diagonal(const std::function<Mat3(std::uint32_t corner, const Mat3& block)>& inverse_where_held) {
-  inverse.resize(2 * n_corners());
+  inverse = std::move(diagonal);
   for_each_corner([&](const std::size_t i) {
-    put_inverse_block(i, block_of(&diagonal[2 * i]) + double(mass[i]) * Mat3::Identity());
+    put_inverse_block(i, inverse_block(i) + double(mass[i]) * Mat3::Identity());
   });
   const auto add = [&](const std::uint32_t corner, const Mat3& block) {
     put_inverse_block(corner, inverse_block(corner) + block);

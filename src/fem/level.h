@@ -53,8 +53,8 @@ struct Level {
   std::vector<Spring> springs;
   PointSprings points;
   Clusters clusters;                ///< whose corners have zeros in `inverse`
-  std::vector<Row<float>> diagonal; ///< of K and the penalties, two rows a corner (kernels.h)
-  std::vector<Row<float>> inverse;  ///< of all blocks among the free directions, likewise
+  std::vector<Row<float>> diagonal; ///< of K and the penalties, two rows a corner (kernels.h), until it is inverted
+  std::vector<Row<float>> inverse;  ///< of all blocks among the free directions, likewise; in the memory of `diagonal`
   std::vector<Spring> held;         ///< projectors onto the free directions of corners that are held
 
   std::size_t n_corners() const { return cells.n_corners; }

@@ -254,12 +254,12 @@ void Multigrid::prepare(const dynamics::LinearEquation& equation, const std::spa
     level.make_diagonal();
   put_masses(equation);
   hold(equation);
+  coarsest_->factorise(levels_.back(), levels_.back().rotations);
   for (Level& level : levels_)
     level.invert_diagonal([&](const std::uint32_t corner, const Mat3& block) { // of the finest one
       const Mat3 S = dynamics::inverse_factor(block, equation.constraints.freedom(corner));
       return Mat3(S.transpose() * S);
     });
-  coarsest_->factorise(levels_.back(), levels_.back().rotations);
 }
 
 void Multigrid::put_rotations(const std::span<const Lanes9<double>> finest) {
