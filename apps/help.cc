@@ -38,7 +38,7 @@ const char* const of_study = R"(usage: kerf study STUDY.prm [options]
 Runs a scene in variants: error against run time, as a table. `kerf params study` lists the keys.
 
   --set "Section/Key=value"  changes a key of the study; as often as wanted       none
-  --jobs N                   rows as processes of their own, N at a time where their times do not count
+  --jobs N                   N rows at a time, where their times do not count      1
   --row K                    the K-th row alone, for an array of jobs; --resume without it gathers them
   --output DIR               folder of the results                                results/STUDY
   --threads N                1 to 1024                                            as many as there are processors

@@ -28,7 +28,7 @@ void run_stability(const scene::SceneText& text, const SceneArguments& parsed, c
   std::printf("\n%s\n\n%s\nresults in %s\n", table.title.c_str(), study::aligned(table).c_str(), parsed.output.c_str());
 }
 
-/// The k-th row alone, told as one line.
+/// The k-th row alone, told as one line. Throws NumericalError if it has failed.
 void run_row(const study::Plan& plan, const SceneArguments& parsed, const output::RunInfo& info) {
   const auto k = static_cast<std::size_t>(parsed.row) - 1;
   if (k >= plan.rows.size())
@@ -38,6 +38,8 @@ void run_row(const study::Plan& plan, const SceneArguments& parsed, const output
                                    .remedy = "Count from 1"});
   const output::StudyRow row = study::run_row(plan, k, parsed.output, info, parsed.earlier);
   std::printf("row %d of %zu: %s: %s\n", parsed.row, plan.rows.size(), row.name.c_str(), row.outcome.c_str());
+  if (row.outcome != "completed")
+    throw NumericalError("the row " + row.name + " has " + row.outcome);
 }
 
 /// The exit code tells the worst of the rows; the table has all of them, with their reasons.
@@ -84,8 +86,7 @@ int study(const Arguments& arguments) {
     std::fflush(stdout);
   };
   const output::RunInfo info = run_info("study", arguments);
-  const output::StudyTable table = parsed.n_jobs > 0 ? run_study_jobs(plan, parsed, info, say)
-                                                     : study::run_study(plan, parsed.output, info, parsed.earlier, say);
+  const output::StudyTable table = run_study_jobs(plan, parsed, info, say);
   std::printf("\n%s\nvalue: %s\n\n%s\nresults in %s\n", table.title.c_str(), table.answer.c_str(),
               study::aligned(table).c_str(), parsed.output.c_str());
   require_completed(table);

@@ -23,7 +23,7 @@ class Rows {
   Rows(const study::Plan& plan, const SceneArguments& arguments, const output::RunInfo& info)
     : plan_(plan),
       arguments_(arguments),
-      n_jobs_(plan.parameters.times == "count" ? 1 : arguments.n_jobs),
+      n_jobs_(plan.parameters.times == "count" ? 1 : std::max(1, arguments.n_jobs)),
       rows_(plan, arguments.output, info, arguments.earlier) {}
 
   output::StudyTable run(const std::function<void(const output::StudyRow&)>& done) {
@@ -111,9 +111,10 @@ class Rows {
       fault_ = code;
       reason_ = said.starts_with("kerf: ") ? said.substr(6) : said;
     } else if (code == 0 || wish_to_end() == 0) {
-      rows_.put(one.k, code == 0 ? rows_.read_row(one.k)
-                                 : study::failed_row(plan_.rows[one.k], "its process ended with exit code " +
-                                                                          std::to_string(code) + ": " + said));
+      const bool has_row = code == 0 || (code == 3 && rows_.is_written(one.k)); // 3: the row has failed
+      rows_.put(one.k, has_row ? rows_.read_row(one.k)
+                               : study::failed_row(plan_.rows[one.k], "its process ended with exit code " +
+                                                                        std::to_string(code) + ": " + said));
       done(rows_.row(one.k));
     }
   }

@@ -62,7 +62,7 @@ def of_study(path):
     for norm in studies.norms(study):
         front = [study.row(i) for i in studies.fronts(study, norm)]
         lines.append(f"on the Pareto front of {norm} and CPU time:")
-        lines += columns([(r["name"], f"{100 * r[norm]:+.2f} %", f"{r['cpu_time']:.3g} s") for r in front])
+        lines += columns([(r["name"], f"{100 * r[norm]:+.2f} %", f"{r['setup_cpu_time'] + r['cpu_time']:.3g} s") for r in front])
     lines.append("columns: " + ", ".join(f"{name} [{c.unit}]" for name, c in study.columns.items()))
     return lines + provenance(study.info)
 

@@ -28,18 +28,23 @@ def escaped(value):
     return html.escape(str(value))
 
 
-def table_cell(value):
+def table_cell(value, classes=""):
     if isinstance(value, Cell):
-        return f'<td class="number" data-value="{value.value!r}">{escaped(value.shown)}</td>'
-    return f"<td>{escaped(value)}</td>"
+        return f'<td class="number{classes}" data-value="{value.value!r}">{escaped(value.shown)}</td>'
+    return f'<td class="{classes.strip()}">{escaped(value)}</td>' if classes else f"<td>{escaped(value)}</td>"
 
 
-def table(name, header, rows, marked=()):
-    """header: [(title, unit)]; rows: lists of texts and Cells; those of the numbers `marked` are on the front."""
-    head = "".join(f"<th>{escaped(t)}{f' <small>[{escaped(u)}]</small>' if u else ''}</th>" for t, u in header)
+def table(name, header, rows, marked=(), unprinted=()):
+    """header: [(title, unit)]; rows: lists of texts and Cells; those of the numbers `marked` are on the front; columns of
+    the numbers `unprinted` are shown on the screen alone."""
+    classes = [" on-screen" if k in unprinted else "" for k in range(len(header))]
+    head = "".join(
+        f"<th{f' class={c.strip()}' if c else ''}>{escaped(t)}{f' <small>[{escaped(u)}]</small>' if u else ''}</th>"
+        for (t, u), c in zip(header, classes)
+    )
     lines = [f'<div class="scroll"><table id="{escaped(name)}"><thead><tr>{head}</tr></thead><tbody>']
     for i, row in enumerate(rows):
-        lines.append(f"<tr{' class=front' if i in marked else ''}>{''.join(map(table_cell, row))}</tr>")
+        lines.append(f"<tr{' class=front' if i in marked else ''}>{''.join(map(table_cell, row, classes))}</tr>")
     return "\n".join([*lines, "</tbody></table></div>"])
 
 

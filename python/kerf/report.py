@@ -51,7 +51,7 @@ def together(items, figures):
     if len(several) > 1:
         labels, all_studies = zip(*several)
         figure = study_figures.error_against_time(all_studies, labels)
-        caption = "Error against CPU time of all steps, a panel a study. Rings: the Pareto front."
+        caption = "Error against CPU time of set-up and all steps, a panel a study. Rings: the Pareto front."
         pieces.append(figures.add("studies_error_time", figure, caption))
     if len(runs_) > 1:
         labels, all_runs = zip(*runs_)

@@ -61,11 +61,27 @@ def has_families(study):
     return len(set(families)) < len(families)
 
 
+def without_grids(study):
+    """Of each row its name without the axes along which the grid changes and nothing else does."""
+    names = [tuple(name.split(", ")) for name in study.columns["name"].values]
+    h = dict(zip(names, study.columns["h"].values))
+    kept = []
+    for axis in range(max(map(len, names))):
+        parts = {}
+        for name in names:
+            parts.setdefault(name[:axis] + name[axis + 1 :], []).append(h[name])
+        if axis == 0 or not all(len(set(values)) == len(values) > 1 for values in parts.values()):
+            kept.append(axis)
+    return [", ".join(name[axis] for axis in kept if axis < len(name)) for name in names]
+
+
 def methods(study):
-    """Method -> numbers of its rows, in the table's order: a method is a family, or a variant where there are none."""
+    """Method -> numbers of its rows, in the table's order: a method is a family; where there are none, what rows of one
+    problem differ in beside their grid, or a variant where rows are of several."""
     families = study.columns["family"].values
     if not has_families(study):
-        families = [name.split(", ")[0] for name in study.columns["name"].values]
+        variants = [name.split(", ")[0] for name in study.columns["name"].values]
+        families = without_grids(study) if len(problems(study)) == 1 else variants
     return {method: [i for i, f in enumerate(families) if f == method] for method in dict.fromkeys(families)}
 
 
@@ -74,15 +90,20 @@ def has_times(study):
     return bool((study.columns["stepping_time"].values > 0).any())
 
 
+def cpu_times(study):
+    """Of set-up and steps of each row [s]."""
+    return study.columns["setup_cpu_time"].values + study.columns["cpu_time"].values
+
+
 def half_spreads(study):
-    """Of each row's CPU time over its repetitions [s]; 0 where there were none."""
+    """Of the CPU time of each row's steps over its repetitions [s]; 0 where there were none."""
     return np.nan_to_num(study.columns["cpu_spread"].values) / 2
 
 
 def comparable(study, norm):
-    """(rows, time [s], error [1]): the rows that completed with an error; the error without its sign. Times that do not
-    count are NaN."""
-    times, errors = study.columns["cpu_time"].values, np.abs(study.columns[norm].values)
+    """(rows, CPU time of set-up and steps [s], error [1]): the rows that completed with an error; the error without its
+    sign. Times that do not count are NaN."""
+    times, errors = cpu_times(study), np.abs(study.columns[norm].values)
     good = [i for i in range(study.n_rows) if study.columns["outcome"].values[i] == "completed"]
     rows = np.array([i for i in good if np.isfinite(errors[i]) and errors[i] > 0 and not times[i] <= 0], int)
     return rows, times[rows], errors[rows]
@@ -92,8 +113,8 @@ def problems(study):
     """Groups of rows that may be compared with each other: those with one reference; where orders are told, all."""
     if has_families(study):
         return {"": list(range(study.n_rows))}
-    cases = [", ".join(name.split(", ")[1:]) for name in study.columns["name"].values]
-    return {case: [i for i, c in enumerate(cases) if c == case] for case in dict.fromkeys(cases)}
+    references = [str(value) for value in study.columns["reference"].values]
+    return {one: [i for i, r in enumerate(references) if r == one] for one in dict.fromkeys(references)}
 
 
 def front(times, errors):

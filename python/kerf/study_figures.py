@@ -22,7 +22,7 @@ def draw_error_against_time(axes, study, norm, numbers):
         mine = np.flatnonzero(np.isin(rows, members))
         mine = mine[np.argsort(times[mine], kind="stable")]
         style = drawing.look(numbers[method])
-        if not studies.has_families(study):
+        if len(studies.problems(study)) > 1:
             style["linestyle"] = "none"  # rows of different problems: a line between them would mean nothing
         axes.plot(times[mine], errors[mine], label=method, **style)
         half = studies.half_spreads(study)[rows[mine]]
@@ -35,7 +35,7 @@ def draw_error_against_time(axes, study, norm, numbers):
     axes.set_xscale("log")
     axes.set_yscale("log")
     percent(axes.yaxis)
-    axes.set_xlabel("CPU time of all steps [s]")
+    axes.set_xlabel("CPU time of set-up and all steps [s]")
     axes.set_ylabel(f"{norm.replace('_', ' ')} [%]")
 
 

@@ -9,7 +9,8 @@ SHOWN = {
     "name": ("row", "", 1, ""),
     "error": ("error", "%", 100, "+.2f"),
     "order": ("order", "1", 1, ".2f"),
-    "cpu_time": ("CPU", "s", 1, ".2f"),
+    "setup_cpu_time": ("set-up CPU", "s", 1, ".3f"),
+    "cpu_time": ("steps CPU", "s", 1, ".3g"),
     "setup_time": ("set-up", "s", 1, ".3f"),
     "stepping_time": ("stepping", "s", 1, ".2f"),
     "peak_memory": ("memory", "MB", 1e-6, ".0f"),
@@ -25,6 +26,8 @@ SHOWN = {
     "outcome": ("outcome", "", 1, ""),
 }
 ASIDE = ("family", "changes", "reference_source")
+# Besides all errors; more would not fit on a page.
+PRINTED = ("name", "error", "order", "setup_cpu_time", "cpu_time", "peak_memory", "h", "dof", "value", "iterations")
 
 
 def table_of(study, name, marked):
@@ -35,7 +38,13 @@ def table_of(study, name, marked):
     formats = {n: SHOWN.get(n, (n.replace("_", " "), None, 1, ".4g")) for n in names}
     units = {n: study.columns[n].unit if formats[n][1] is None else formats[n][1] for n in names}
     rows = [[shown(study.columns[n].values[i], *formats[n][2:]) for n in names] for i in range(study.n_rows)]
-    return page.table(name, [(formats[n][0], units[n]) for n in names], rows, marked)
+    unprinted = [k for k, n in enumerate(names) if n not in PRINTED and not n.startswith("error")]
+    return page.table(name, [(formats[n][0], units[n]) for n in names], rows, marked, unprinted)
+
+
+def cpu_time_of(row):
+    """Of set-up and steps [s]."""
+    return row["setup_cpu_time"] + row["cpu_time"]
 
 
 def shown(value, factor, form):
@@ -71,8 +80,8 @@ def front_in_words(study, norm):
     members = studies.fronts(study, norm)
     rows = [study.row(i) for i in members]
     if studies.has_families(study):
-        rows.sort(key=lambda row: row["cpu_time"])
-    texts = [f"{r['name']} ({r['cpu_time']:.3g} s, {100 * abs(r[norm]):.3g} %)" for r in rows]
+        rows.sort(key=cpu_time_of)
+    texts = [f"{r['name']} ({cpu_time_of(r):.3g} s, {100 * abs(r[norm]):.3g} %)" for r in rows]
     return "On the Pareto front, where no other row is both faster and closer: " + "; ".join(texts) + "."
 
 
@@ -85,14 +94,14 @@ def orders_table(study, norm, name):
 def norm_parts(study, norm, name, figures):
     """Figures of one norm."""
     title = norm.replace("_", " ")
-    together = "" if studies.has_families(study) else " Rows are of different problems, so there is a front for each."
+    together = "" if len(studies.problems(study)) == 1 else " Rows are of different problems, so there is a front for each."
     by_time = []
     if studies.has_times(study):
         by_time = [
             figures.add(
                 f"{name}_{norm}_time",
                 study_figures.error_against_time([study], [name], norm),
-                f"{study.title}: {title} against CPU time of all steps. Rings: the Pareto front.{together}",
+                f"{study.title}: {title} against CPU time of set-up and all steps. Rings: the Pareto front.{together}",
             ),
             page.paragraph(front_in_words(study, norm)),
         ]

@@ -60,12 +60,14 @@ void for_each_column(const StudyTable& table, const Action& action) {
   columns.count("repetitions", &StudyRow::n_repetitions, "runs of the row, which differ in their times alone");
   columns.number("setup_time", &StudyRow::setup_seconds, "s", "wall-clock time of composing, the repetitions' median");
   columns.number("setup_spread", &StudyRow::setup_spread, "s", "largest less smallest of the repetitions");
+  columns.number("setup_cpu_time", &StudyRow::setup_cpu_seconds, "s",
+                 "of all threads while composing, the repetitions' median");
   columns.number("stepping_time", &StudyRow::stepping_seconds, "s",
                  "wall-clock time of all steps, without writing files, the repetitions' median");
   columns.number("stepping_spread", &StudyRow::stepping_spread, "s", "largest less smallest of the repetitions");
   columns.number("cpu_time", &StudyRow::cpu_seconds, "s",
-                 "of all threads in all steps, writing the series included, the repetitions' median: hardly depends on "
-                 "what else the machine does");
+                 "of all threads in all steps, without writing files, the repetitions' median: hardly depends on what else the "
+                 "machine does");
   columns.number("cpu_spread", &StudyRow::cpu_spread, "s", "largest less smallest of the repetitions");
   columns.number("peak_memory", &StudyRow::peak_memory, "byte",
                  "most memory in RAM during the row, beyond what the process had before it");

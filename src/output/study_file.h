@@ -36,7 +36,8 @@ struct StudyRow {
   double value = 0, reference = 0; ///< in the study's unit
   double error = 0, order = 0;     ///< [1]
   std::int64_t n_repetitions = 1;
-  double setup_seconds = 0, stepping_seconds = 0, cpu_seconds = 0; ///< medians
+  double setup_seconds = 0, stepping_seconds = 0;                  ///< wall-clock, medians
+  double setup_cpu_seconds = 0, cpu_seconds = 0;                   ///< of set-up and of all steps, medians
   double setup_spread = 0, stepping_spread = 0, cpu_spread = 0;    ///< largest less smallest
   double peak_memory = 0;                                          ///< beyond what the process had before [byte]
   std::string reference_source, changes, outcome;

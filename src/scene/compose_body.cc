@@ -103,6 +103,16 @@ cut::Embedding embed_mesh(const Section& section, const BodyParameters& paramete
   }
 }
 
+/// "left out: Element, Law"
+std::string left_out(const BodyParameters& parameters) {
+  std::string text;
+  for (const std::string& key : keys_left_out(parameters)) {
+    const std::string name = key.substr(key.find('/') + 1); // all of it where there is none
+    text += (text.empty() ? "left out: " : ", ") + name.substr(0, name.find(" ["));
+  }
+  return text;
+}
+
 std::string describe_physics(const Section& section, const BodyParameters& parameters, const Body& body) {
   const auto material = read_if_written<material::Elastic>(section, "Material");
   if (parameters.backend == "pba") {
@@ -111,14 +121,12 @@ std::string describe_physics(const Section& section, const BodyParameters& param
       visibility.choice.criterion == "extended visibility" ? ", masks by " + visibility.choice.masks_by : "";
     const std::string sight = body.cutter ? visibility.choice.criterion + masks : "no visibility: nothing cuts";
     return line("point-based animation, ", body.physics->rest().size(), " phyxels, ", sight, ", ",
-                parameters.integrator, "; left out: Element, Integration, Law");
+                parameters.integrator, "; ", left_out(parameters));
   }
   if (parameters.backend == "lattice")
-    return "lattice shape matching, its own integrator; left out: Element, Integration, Integrator, Law, Poisson's "
-           "ratio (it is 0)";
+    return line("lattice shape matching, its own integrator; ", left_out(parameters), " (it is 0)");
   if (parameters.backend == "mass-spring")
-    return line("masses and springs, ", parameters.integrator,
-                "; left out: Element, Integration, Law, Poisson's ratio (it is 1/4)");
+    return line("masses and springs, ", parameters.integrator, "; ", left_out(parameters), " (it is 1/4)");
   const std::string mass = parameters.mass == "consistent" ? "consistent mass, " : "";
   return line(material.law, " ", parameters.element, " hexahedra, integration over ", parameters.integration, ", ",
               mass, parameters.integrator);

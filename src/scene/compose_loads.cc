@@ -297,8 +297,8 @@ std::vector<std::string> describe_skin_supports(const Section& section, const Bo
   for (const Section* support : section.all("Support"))
     if (holds_skin(*support)) {
       const Region region = read_region(*support, support->read<SupportParameters>().region);
-      lines.push_back(line("body ", body.name, ": support ", support->name(), " holds ",
-                           describe(patch_of(body, "skin", region))));
+      lines.push_back(
+        line("body ", body.name, ": support ", support->name(), " holds ", describe(patch_of(body, "skin", region))));
     }
   return lines;
 }

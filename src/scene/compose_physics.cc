@@ -117,6 +117,16 @@ PhysicsMaker make_lattice(const Section& section, const BodyParameters& paramete
 
 } // namespace
 
+std::vector<std::string> keys_left_out(const BodyParameters& parameters) {
+  if (parameters.backend == "pba")
+    return {"Element", "Integration", "Material/Law"};
+  if (parameters.backend == "lattice")
+    return {"Element", "Integration", "Integrator", "Material/Law", "Material/Poisson's ratio [1]"};
+  if (parameters.backend == "mass-spring")
+    return {"Element", "Integration", "Material/Law", "Material/Poisson's ratio [1]"};
+  return {};
+}
+
 PhysicsMaker physics_maker(const Section& section, const BodyParameters& parameters, const double time_step) {
   if (parameters.mass != "lumped" && parameters.backend != "fem")
     throw section.complaint("Mass", "the backend '" + parameters.backend + "' has a mass for each particle",

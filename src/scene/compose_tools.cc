@@ -172,9 +172,8 @@ void compose_forceps(const Section& section, World& world) {
     throw section.complaint("the region holds no corner or phyxel of a body",
                             "Move or enlarge it: it is meant in the rest configuration, in metres");
   complete_shape(forceps, world, parameters.grip_time);
-  world.composition.push_back(
-    line("forceps ", forceps.name, ": hold ", held.size(), " corners or phyxels from step ", forceps.grip_step, ", ",
-         extent(held)));
+  world.composition.push_back(line("forceps ", forceps.name, ": hold ", held.size(), " corners or phyxels from step ",
+                                   forceps.grip_step, ", ", extent(held)));
   for (const Body& body : world.bodies)
     for (const std::string& warning : warn_of_layers(body, "forceps " + forceps.name, forceps.region))
       world.composition.push_back(warning);

@@ -204,7 +204,8 @@ void Recorder::open_surface_files(const World& world) {
 
 Cost Recorder::total_cost() const {
   const Cost now = cost_ ? cost_() : Cost();
-  return {earlier_cost_.cpu_seconds + now.cpu_seconds, std::max(now.peak_memory, earlier_cost_.peak_memory)};
+  return {earlier_cost_.cpu_seconds + now.cpu_seconds - recording_cpu_,
+          std::max(now.peak_memory, earlier_cost_.peak_memory)};
 }
 
 Start Recorder::resume(World& world) {
@@ -294,6 +295,12 @@ void Recorder::compare(const int step, const std::span<const double> values) con
 }
 
 void Recorder::record(const World& world, const int step, Timings& seconds) {
+  const double before = cost_ ? cost_().cpu_seconds : 0;
+  record_all(world, step, seconds);
+  recording_cpu_ += cost_ ? cost_().cpu_seconds - before : 0;
+}
+
+void Recorder::record_all(const World& world, const int step, Timings& seconds) {
   const Timings stepping = std::exchange(seconds, {});
   if (world.images && is_due(step, world.images->every, world)) {
     const ScopedTimer timer(seconds, "images");

@@ -45,7 +45,7 @@ class Recorder {
   /// output::ResultsFolder, and ParameterError where they are of another scene or other inputs.
   Recorder(const std::filesystem::path& folder, const World& world, const Source& source, output::Earlier earlier);
 
-  /// How the cost of this process until now is measured; checkpoints carry it on.
+  /// How the cost of this process until now is measured; checkpoints carry it on. What recording costs itself does not count.
   void measure(std::function<Cost()> cost) { cost_ = std::move(cost); }
   /// Of all processes that the run has taken until now.
   Cost total_cost() const;
@@ -88,6 +88,7 @@ class Recorder {
   void open_surface_files(const World& world);
   std::vector<std::string> warn_of_lost_images(const World& world, int step) const;
   void compare(int step, std::span<const double> values) const;
+  void record_all(const World& world, int step, Timings& seconds);
 
   void append_step(const World& world, int step, const Timings& seconds, bool with_frames);
   void append_surfaces(const World& world, int step);
@@ -99,6 +100,7 @@ class Recorder {
   bool has_noted_checkpoint_ = false;
   std::function<Cost()> cost_; ///< empty: nobody asks
   Cost earlier_cost_;          ///< up to the checkpoint that this process goes on from
+  double recording_cpu_ = 0;   ///< of this process [s]
   output::RunFile run_file_;
   std::vector<BodyFiles> bodies_;
   std::unique_ptr<render::ImageThread> image_thread_; ///< null: there are no images, or one thread alone

@@ -3,6 +3,7 @@
 #include "base/interrupt.h"
 #include "output/reader.h"
 #include "scene/compose.h"
+#include "scene/compose_physics.h"
 #include "scene/inputs.h"
 #include "scene/run.h"
 #include "study/memory.h"
@@ -138,6 +139,8 @@ std::string in_one_line(std::string text) {
   return text;
 }
 
+double cpu_seconds_since(const std::clock_t start) { return double(std::clock() - start) / CLOCKS_PER_SEC; }
+
 /// Runs it, or what is left of it. However it ends, the row tells what all of its processes have cost.
 void run_world(scene::World& world, const std::filesystem::path& folder, const output::RunInfo& info,
                const PlannedRow& planned, const output::Earlier earlier, const PeakMemory& memory,
@@ -147,7 +150,7 @@ void run_world(scene::World& world, const std::filesystem::path& folder, const o
                              scene::hashes_of_inputs(planned.scene, scene::grammar())};
   const std::clock_t start = std::clock();
   scene::Recorder recorder(folder, world, source, earlier);
-  recorder.measure([&] { return scene::Cost{double(std::clock() - start) / CLOCKS_PER_SEC, memory.beyond_start()}; });
+  recorder.measure([&] { return scene::Cost{cpu_seconds_since(start), memory.beyond_start()}; });
   scene::Progress progress(world.n_steps, world.n_steps * world.time_step, scene::ProgressStyle::silent, stdout);
   const auto tell_cost = [&] {
     const scene::Cost cost = recorder.total_cost();
@@ -166,9 +169,11 @@ void run_world(scene::World& world, const std::filesystem::path& folder, const o
 /// Composes; what is wrong with the scene becomes the row's outcome, and then there is no world.
 std::optional<scene::World> compose(const PlannedRow& planned, output::StudyRow& row) {
   const auto start = std::chrono::steady_clock::now();
+  const std::clock_t cpu_start = std::clock();
   try {
     scene::World world = scene::compose(planned.scene);
     row.setup_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    row.setup_cpu_seconds = cpu_seconds_since(cpu_start);
     return world;
   } catch (const Interrupted&) {
     throw;
@@ -222,11 +227,11 @@ output::StudyRow measure_once(const Plan& plan, const PlannedRow& planned, const
   row.n_dof = count_dof(*world);
   read_run(folder / "run.h5", plan, body.name, row);
   if (plan.parameters.times == "do not count")
-    row.setup_seconds = row.stepping_seconds = row.cpu_seconds = unknown;
+    row.setup_seconds = row.setup_cpu_seconds = row.stepping_seconds = row.cpu_seconds = unknown;
   return row;
 }
 
-/// Median into the one, largest less smallest into the other.
+/// Median into the one, largest less smallest into the other, if there is one.
 void gather(const std::vector<output::StudyRow>& runs, double output::StudyRow::*median,
             double output::StudyRow::*spread, output::StudyRow& row) {
   std::vector<double> all;
@@ -235,7 +240,8 @@ void gather(const std::vector<output::StudyRow>& runs, double output::StudyRow::
   std::sort(all.begin(), all.end());
   const std::size_t n = all.size();
   row.*median = (all[(n - 1) / 2] + all[n / 2]) / 2;
-  row.*spread = all.back() - all.front();
+  if (spread)
+    row.*spread = all.back() - all.front();
 }
 
 std::vector<double> numbers_of(const output::StudyRow& row) {
@@ -267,10 +273,22 @@ void compare_displacements(output::StudyRow& row) {
   row.error_max = largest_difference / largest;
 }
 
+/// Whether the backend of the body that a key belongs to does not look at it.
+bool is_left_out(const PlannedRow& row, const std::string& path) {
+  const scene::Section root = scene::parse_scene(row.scene, scene::grammar());
+  for (const scene::Section* const body : root.all("Body"))
+    for (const std::string& key : scene::keys_left_out(body->read<scene::BodyParameters>()))
+      if (path == "Body " + body->name() + "/" + key)
+        return true;
+  return false;
+}
+
 /// Whether a key that the case sets is read in the row's scene; told so too where the scene has another fault, which the row tells.
 bool reads(const PlannedRow& row, const PlannedCase& one) {
   try {
     scene::compose(row.scene);
+    return std::any_of(one.paths.begin(), one.paths.end(),
+                       [&](const std::string& path) { return !is_left_out(row, path); });
   } catch (const ParameterError& error) {
     const Complaint& complaint = error.complaint();
     const auto is_it = [&](const std::string& key) {
@@ -323,6 +341,7 @@ output::StudyRow together(const std::vector<output::StudyRow>& runs) {
   row.n_repetitions = std::ssize(runs);
   gather(runs, &output::StudyRow::setup_seconds, &output::StudyRow::setup_spread, row);
   gather(runs, &output::StudyRow::stepping_seconds, &output::StudyRow::stepping_spread, row);
+  gather(runs, &output::StudyRow::setup_cpu_seconds, nullptr, row);
   gather(runs, &output::StudyRow::cpu_seconds, &output::StudyRow::cpu_spread, row);
   for (std::size_t i = 1; i < runs.size(); ++i) {
     row.peak_memory = std::max(row.peak_memory, runs[i].peak_memory);

@@ -110,7 +110,7 @@ StudyRows::StudyRows(const Plan& plan, const std::filesystem::path& folder, cons
     for (const output::StudyRow& row : known)
       if (row.name == plan.rows[k].name)
         rows_[k] = row;
-    if (!has(k) && std::filesystem::exists(folder / row_folder(plan, k) / row_name))
+    if (!has(k) && is_written(k))
       rows_[k] = read_row(k);
   }
 }
@@ -118,6 +118,10 @@ StudyRows::StudyRows(const Plan& plan, const std::filesystem::path& folder, cons
 void StudyRows::put(const std::size_t k, output::StudyRow row) {
   rows_[k] = std::move(row);
   write(table(output::Outcome::running));
+}
+
+bool StudyRows::is_written(const std::size_t k) const {
+  return std::filesystem::exists(folder_ / row_folder(plan_, k) / row_name);
 }
 
 output::StudyRow StudyRows::read_row(const std::size_t k) const {

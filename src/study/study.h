@@ -24,7 +24,9 @@ class StudyRows {
   bool has(std::size_t k) const { return rows_[k].has_value(); }
   const output::StudyRow& row(std::size_t k) const { return *rows_[k]; }
   void put(std::size_t k, output::StudyRow row);
-  /// What a process of its own has left in row.h5.
+  /// Whether a process of its own has left a row.h5.
+  bool is_written(std::size_t k) const;
+  /// What it holds.
   output::StudyRow read_row(std::size_t k) const;
   void interrupt() { write(table(output::Outcome::interrupted)); }
   /// The whole table, written as completed. Throws NumericalError when all rows have failed.

@@ -47,7 +47,7 @@ std::vector<TextColumn> spread_columns(const output::StudyTable& table) {
   return {{"runs", "1", [](const StudyRow& r) { return std::to_string(r.n_repetitions); }},
           {"set-up +-", "s", [](const StudyRow& r) { return number(r.setup_spread / 2, "%.3f"); }},
           {"stepping +-", "s", [](const StudyRow& r) { return number(r.stepping_spread / 2, "%.2f"); }},
-          {"CPU +-", "s", [](const StudyRow& r) { return number(r.cpu_spread / 2, "%.2f"); }}};
+          {"CPU +-", "s", [](const StudyRow& r) { return number(r.cpu_spread / 2, "%.2g"); }}};
 }
 
 std::vector<TextColumn> columns(const std::string& unit) {
@@ -66,7 +66,7 @@ std::vector<TextColumn> columns(const std::string& unit) {
     {"order", "1", [](const StudyRow& r) { return number(r.order, "%.2f"); }},
     {"set-up", "s", [](const StudyRow& r) { return number(r.setup_seconds, "%.3f"); }},
     {"stepping", "s", [](const StudyRow& r) { return number(r.stepping_seconds, "%.2f"); }},
-    {"CPU", "s", [](const StudyRow& r) { return number(r.cpu_seconds, "%.2f"); }},
+    {"CPU", "s", [](const StudyRow& r) { return number(r.setup_cpu_seconds + r.cpu_seconds, "%.3g"); }},
     {"steps", "1", [=](const StudyRow& r) { return count(r.n_steps); }},
     {"steps/s", "1/s", [=](const StudyRow& r) { return number(steps_per_second(r), "%.1f"); }},
     {"memory", "MB", [](const StudyRow& r) { return number(r.peak_memory / 1e6, "%.0f"); }},

@@ -76,7 +76,8 @@ class Report(unittest.TestCase):
             "value": "value",
             "error": "error",
             "h": "h",
-            "cpu_time": "CPU",
+            "setup_cpu_time": "set-up CPU",
+            "cpu_time": "steps CPU",
             "dof": "dof",
             "iterations": "iterations",
         }
@@ -156,7 +157,8 @@ class Report(unittest.TestCase):
         with h5py.File(FILES / "quick/study.h5") as file:
             rows = file["study/rows"]
             mine = [i for i, name in enumerate(rows["family"]) if name == b"pba"]
-            wanted = np.column_stack([rows["cpu_time"][()][mine], np.abs(rows["error"][()][mine])])
+            times = rows["setup_cpu_time"][()] + rows["cpu_time"][()]
+            wanted = np.column_stack([times[mine], np.abs(rows["error"][()][mine])])
         np.testing.assert_array_equal(lines["pba"], wanted[np.argsort(wanted[:, 0])])
         rings = [line for line in figure.axes[0].lines if line.get_label() == "on the Pareto front"]
         self.assertEqual(len(rings), len(studies.fronts(study, "error")))
@@ -168,12 +170,28 @@ class Report(unittest.TestCase):
             with h5py.File(path, "r+") as file:
                 rows = file["study/rows"]
                 mine = [i for i, name in enumerate(rows["family"]) if name == b"pba"]
-                time, error = rows["cpu_time"][mine[0]], abs(rows["error"][mine[0]])
+                time = rows["setup_cpu_time"][mine[0]] + rows["cpu_time"][mine[0]]
+                error = abs(rows["error"][mine[0]])
                 rows["cpu_spread"][mine[0]] = 0.5 * time
             figure = study_figures.error_against_time([package.open(path)], ["quick"])
             (bars,) = figure.axes[0].collections
             np.testing.assert_allclose(
                 [s for s in bars.get_segments() if s[0, 0] < s[1, 0]], [[[0.75 * time, error], [1.25 * time, error]]]
+            )
+
+    def test_rows_with_one_reference_share_a_front(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "study.h5"
+            path.write_bytes((FILES / "quick/study.h5").read_bytes())
+            with h5py.File(path, "r+") as file:
+                rows = file["study/rows"]
+                rows["family"][:] = rows["name"][:]  # as where no axis is named for orders
+                rows["reference"][:] = 1
+            study = package.open(path)
+            self.assertEqual(len(studies.problems(study)), 1)
+            self.assertEqual(studies.fronts(study, "error"), studies.fronts(package.open(FILES / "quick"), "error"))
+            self.assertEqual(
+                list(studies.methods(study).values()), list(studies.methods(package.open(FILES / "quick")).values())
             )
 
     def test_methods_differ_in_more_than_colour(self):
@@ -188,7 +206,7 @@ class Report(unittest.TestCase):
             path.parent.mkdir()
             path.write_bytes((FILES / "quick/study.h5").read_bytes())
             with h5py.File(path, "r+") as file:
-                for name in ("setup_time", "stepping_time", "cpu_time"):
+                for name in ("setup_time", "stepping_time", "setup_cpu_time", "cpu_time"):
                     file["study/rows"][name][:] = np.nan
             done = kerf("report", path.parent, FILES / "quick", "--output", f"{folder}/out")
             self.assertEqual(done.returncode, 0, done.stderr)

@@ -3,6 +3,7 @@
 
 #include "tests/reference/problems.h"
 #include "tests/verification/beams.h"
+#include "tests/verification/calculix.h"
 #include "tests/verification/plates.h"
 
 #include <gtest/gtest.h>
@@ -31,6 +32,35 @@ TEST(KnownAnswers, ComeSoonerWithAdaptation) {
 TEST(KnownAnswers, OfAHeavyCantilever) {
   const auto found = solve(heavy_cantilever(3), {3});
   EXPECT_NEAR(found->displacement(Vec3(1, 0, 0))[2], -0.37667, 4e-5);
+}
+
+/// An independent program with the same elements on the same mesh, and with others.
+TEST(KnownAnswers, AreThoseOfCalculix) {
+  using verification::calculix::Element;
+  if (!verification::calculix::is_installed())
+    GTEST_SKIP() << "CalculiX (ccx) is not installed";
+  const auto ours = [](const int n, const int degree) {
+    Problem p = heavy_cantilever(1);
+    p.mesh = extruded(rectangles(equal(0, 1, 5 * n), equal(-0.1, 0.1, n)), equal(-0.1, 0.1, n));
+    p.supports = {{at(0, 0)}};
+    return solve(p, {degree})->displacement(Vec3(1, 0, 0))[2];
+  };
+  const auto theirs = [](const int n, const Element element) {
+    const double h = 0.2 / n;
+    return verification::calculix::run({.element = element,
+                                        .n = {5 * n, n, n},
+                                        .place = [h](const Vec3& i) { return Vec3(h * i - Vec3(0, 0.1, 0.1)); },
+                                        .youngs_modulus = 1e6,
+                                        .poissons_ratio = 0.3,
+                                        .gravity = Vec3(0, 0, -9.81)},
+                                       {{.node = {5 * n, n / 2, n / 2}}})[0][2];
+  };
+  for (const int n : {2, 4})
+    EXPECT_NEAR(ours(n, 1) / theirs(n, Element::C3D8), 1, 2e-6) << n;
+  const double change =
+    std::abs(ours(4, 2) - ours(2, 2)) + std::abs(theirs(4, Element::C3D20R) - theirs(2, Element::C3D20R));
+  EXPECT_LT(std::abs(ours(4, 2) - theirs(4, Element::C3D20R)), change);
+  EXPECT_LT(change, 0.02 * 0.3767); // else this shows nothing
 }
 
 /// Elements of the program come nearer with each grid.

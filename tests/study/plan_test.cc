@@ -174,6 +174,12 @@ TEST(Plan, RefusesChangesThatNoRowReads) {
   EXPECT_NO_THROW(require_changes_read(
     study.plan(CubeStudy::head() + fem + CubeStudy::variant("pba", "Body cube/Backend=pba") + spacing)))
     << "one row reads it; the other fails with its reason";
+  const std::string element = change("  set Key = Body cube/Element\n  set Values = trilinear | enhanced\n");
+  const auto with = [&](const std::string& backend) {
+    return study.plan(CubeStudy::head() + CubeStudy::variant(backend, "Body cube/Backend=" + backend) + element);
+  };
+  EXPECT_THROW(require_changes_read(with("pba")), ParameterError);
+  EXPECT_NO_THROW(require_changes_read(with("fem")));
   EXPECT_NO_THROW(
     require_changes_read(study.plan(CubeStudy::head() + fem +
                                     change("  set Key = Body cube/Mesh\n  subsection Case lost\n"
