@@ -221,11 +221,11 @@ TEST_P(SmallAngle, LeavesFourPiecesAndFewSplinters) {
 TEST(AtSkin, WhatASmallAngleJoinsIsAsBuilt) {
   Random random(112);
   std::size_t n_joined = 0;
-  for (int i = 0; i < 6; ++i) {
+  for (int i = 0; i < 4; ++i) {
     const double angle = (i % 3 + 1) * 10 * std::numbers::pi / 180;
     const Body body =
       support::with_copies(i % 2 ? box_body(random) : support::ball(0.4, h, support::random_offset(random)));
-    Cutting cutting(body, i < 3 ? Fronts::at_faces : Fronts::inside_cells);
+    Cutting cutting(body, i < 2 ? Fronts::at_faces : Fronts::inside_cells);
     const Vec3 through =
       0.5 * (body.grid.position(grid::NodeId(0u)) + body.grid.position(grid::NodeId(body.grid.n_nodes() - 1)));
     const Vec3 n = random_direction(random), along = n.unitOrthogonal();
@@ -241,7 +241,7 @@ TEST(AtSkin, WhatASmallAngleJoinsIsAsBuilt) {
     for (const auto c : ids<grid::CellId>(body.grid.n_cells()))
       n_joined += cutting.body.cuts.joined(c) != nullptr;
   }
-  EXPECT_GT(n_joined, 20u);
+  EXPECT_GT(n_joined, 10u);
 }
 
 INSTANTIATE_TEST_SUITE_P(Short, SmallAngle, testing::Values(8));
