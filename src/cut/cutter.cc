@@ -3,9 +3,11 @@
 #include "cut/course.h"
 #include "cut/fronts.h"
 #include "cut/shreds.h"
+#include "cut/sides.h"
 #include "grid/touched.h"
 
 #include <algorithm>
+#include <iterator>
 
 namespace kerf::cut {
 
@@ -19,6 +21,8 @@ namespace {
 void append(SweepCuts& all, const SweepCuts& more) {
   all.cuts.insert(all.cuts.end(), more.cuts.begin(), more.cuts.end());
   all.of_skin.insert(all.of_skin.end(), more.of_skin.begin(), more.of_skin.end());
+  all.later.insert(all.later.end(), more.later.begin(), more.later.end());
+  all.later_of_skin.insert(all.later_of_skin.end(), more.later_of_skin.begin(), more.later_of_skin.end());
   all.n_double_crossings += more.n_double_crossings;
 }
 
@@ -64,7 +68,7 @@ CutChange Cutter::take(Solid& solid, const std::span<const Stroke> strokes, cons
   if (strokes.empty() || boxes_->moves())
     x_before_ = x; // not after the cut: where corners jump then, the blade meets them on their way
   const Added added = add(solid, cuts);
-  return part(solid, added, advance_.take(solid, pending_));
+  return part(solid, added, advance_.take(solid, pending_), x);
 }
 
 CutChange Cutter::at_once(Solid& solid, const CutSurface& surface, const Points& x) {
@@ -72,24 +76,39 @@ CutChange Cutter::at_once(Solid& solid, const CutSurface& surface, const Points&
   const SweepCuts found = cut_edges(surface, solid, x, &*boxes_);
   counts_.n_double_crossings += found.n_double_crossings;
   const Added added = add(solid, found);
-  return part(solid, added, fronts_ != Fronts::at_faces ? find_fronts(surface, solid, x) : std::vector<grid::Front>());
+  return part(solid, added, fronts_ != Fronts::at_faces ? find_fronts(surface, solid, x) : std::vector<grid::Front>(),
+              x);
 }
 
-CutChange Cutter::cut(Solid& solid, const SweepCuts& cuts) { return part(solid, add(solid, cuts), {}); }
+CutChange Cutter::cut(Solid& solid, const SweepCuts& cuts) { return part(solid, add(solid, cuts), {}, x_before_); }
 
 Cutter::Added Cutter::add(Solid& solid, const SweepCuts& cuts) {
   Added added;
-  auto& [edges, segments] = added;
+  auto& [edges, segments, edges_met, segments_met] = added;
+  const auto meet = [&](const auto& cut, const auto& segment, auto& met) {
+    if (const auto* const first = solid.cuts.find(segment); first && first->label == cut.label)
+      return;
+    solid.cuts.add(segment, grid::LaterCut{cut.normal, cut.label});
+    met.push_back(segment);
+  };
+  for (const EdgeCut& cut : cuts.later)
+    meet(cut, cut.edge, edges_met);
+  for (const grid::SkinCut& cut : cuts.later_of_skin)
+    meet(cut, cut.segment, segments_met);
   for (const EdgeCut& cut : cuts.cuts) {
-    if (!solid.cuts.can_be_cut(solid.grid, cut.edge))
-      continue; // by another of the same step
+    if (!solid.cuts.can_be_cut(solid.grid, cut.edge)) { // by another of the same step
+      meet(cut, cut.edge, edges_met);
+      continue;
+    }
     solid.cuts.add(solid.grid, cut);
     edges.push_back(cut.edge);
     passed_[cut.label - 1].remove(solid.grid.cells(cut.edge));
   }
   for (const grid::SkinCut& cut : cuts.of_skin) {
-    if (solid.cuts.is_cut(cut.segment))
+    if (solid.cuts.is_cut(cut.segment)) {
+      meet(cut, cut.segment, segments_met);
       continue;
+    }
     solid.cuts.add(cut);
     segments.push_back(cut.segment);
     passed_[cut.label - 1].remove(cells_of(solid.grid, cut.segment));
@@ -102,9 +121,7 @@ Cutter::Added Cutter::add(Solid& solid, const SweepCuts& cuts) {
   return added;
 }
 
-CutChange Cutter::part(Solid& solid, const Added& added, const std::span<const grid::Front> fronts) {
-  if (added.edges.empty() && added.segments.empty() && fronts.empty())
-    return {};
+CutChange Cutter::part(Solid& solid, const Added& added, const std::span<const grid::Front> fronts, const Points& x) {
   std::vector<grid::CellId> cells;
   for (const grid::Front& front : fronts) {
     solid.cuts.set(front);
@@ -115,9 +132,40 @@ CutChange Cutter::part(Solid& solid, const Added& added, const std::span<const g
       solid.cuts.take_back_front(c);
       cells.push_back(c);
     }
+  join(solid, added, x, cells);
+  if (added.edges.empty() && added.segments.empty() && cells.empty())
+    return {};
   CutChange change = grid::update_complex(solid, added.edges, added.segments, cells);
   grid::inherit(change, x_before_);
   return change;
+}
+
+/// Joins what lies on the same sides of all cuts. Adds to `anew` the cells whose copies join, or are parted by nothing
+/// that is cut now.
+void Cutter::join(Solid& solid, const Added& added, const Points& x, std::vector<grid::CellId>& anew) const {
+  const auto cut = grid::touched_cells(solid.grid, added.edges, added.segments);
+  const auto met = grid::touched_cells(solid.grid, added.edges_met, added.segments_met);
+  std::vector<grid::CellId> cells;
+  std::ranges::set_union(cut, met, std::back_inserter(cells));
+  for (const grid::CellId c : cells) {
+    std::vector<grid::Items> groups;
+    if (solid.cuts.front(c) == nullptr)
+      groups = near_each_other(solid, c, on_same_sides(solid, c), x);
+    const std::vector<grid::Items>* const earlier = solid.cuts.joined(c);
+    if (earlier ? groups == *earlier : groups.empty())
+      continue;
+    const bool joins = std::ranges::any_of(groups, [&](const grid::Items group) {
+      const auto holds = [&](const grid::CopyId copy) { return (solid.complex.copies[copy].items() & group) != 0; };
+      const auto copies = solid.complex.copies_of(c);
+      std::size_t n = 0;
+      for (const grid::CopyId copy : copies)
+        n += holds(copy);
+      return n > 1;
+    });
+    solid.cuts.set_joined(c, std::move(groups));
+    if (joins || !std::ranges::binary_search(cut, c))
+      anew.push_back(c);
+  }
 }
 
 std::size_t Cutter::n_passed_cells() const {
@@ -144,7 +192,8 @@ SweepCuts Cutter::queue(const Solid& solid, const std::span<const Stroke> stroke
     passed_[label - 1].pass(swept, found, solid, x, *boxes_, label);
   }
   if (release_ == Release::queued)
-    pending_.push(met.cuts);
+    for (const EdgeCut& cut : pending_.push(met.cuts))
+      met.later.push_back(cut);
   return met;
 }
 

@@ -88,9 +88,12 @@ class Cutter {
   struct Added {
     std::vector<grid::EdgeId> edges;
     std::vector<grid::SkinSegment> segments;
+    std::vector<grid::EdgeId> edges_met; // that were cut before
+    std::vector<grid::SkinSegment> segments_met;
   };
   Added add(grid::Solid& solid, const SweepCuts& cuts);
-  grid::CutChange part(grid::Solid& solid, const Added& added, std::span<const grid::Front> fronts);
+  grid::CutChange part(grid::Solid& solid, const Added& added, std::span<const grid::Front> fronts, const Points& x);
+  void join(grid::Solid& solid, const Added& added, const Points& x, std::vector<grid::CellId>& anew) const;
   SweepCuts queue(const grid::Solid& solid, std::span<const Stroke> strokes, const Points& x);
 
   Release release_;

@@ -27,10 +27,14 @@ class CutCounts {
 
 } // namespace
 
-void PendingCuts::push(const std::span<const grid::EdgeCut> cuts) {
+std::vector<grid::EdgeCut> PendingCuts::push(const std::span<const grid::EdgeCut> cuts) {
+  std::vector<grid::EdgeCut> later;
   for (const grid::EdgeCut& cut : cuts)
-    if (waiting_.insert(cut.edge).second)
+    if (const auto [first, is_new] = waiting_.try_emplace(cut.edge, cut.label); is_new)
       queue_.push_back(cut);
+    else if (first->second != cut.label)
+      later.push_back(cut);
+  return later;
 }
 
 std::vector<grid::EdgeCut> PendingCuts::release(const grid::Solid& solid) {

@@ -7,8 +7,9 @@
 #include "grid/solid.h"
 
 #include <deque>
-#include <set>
+#include <map>
 #include <span>
+#include <vector>
 
 namespace kerf::cut {
 
@@ -16,8 +17,9 @@ class PendingCuts {
  public:
   static constexpr int max_per_cell = 2; ///< edges of a cell that one release may cut
 
-  /// Puts cuts at the end of the queue, in their order; an edge that waits already keeps its first cut.
-  void push(std::span<const grid::EdgeCut> cuts);
+  /// Puts cuts at the end of the queue, in their order; an edge that waits already keeps its first cut. Returns those of
+  /// other labels that it does not keep.
+  std::vector<grid::EdgeCut> push(std::span<const grid::EdgeCut> cuts);
 
   /// Takes out the cuts of this step, oldest first: each one that leaves no cell around its edge with more than two.
   /// Edges cut meanwhile are dropped. `cuts` is not changed.
@@ -29,7 +31,7 @@ class PendingCuts {
 
  private:
   std::deque<grid::EdgeCut> queue_;
-  std::set<grid::EdgeId> waiting_;
+  std::map<grid::EdgeId, grid::CutLabel> waiting_;
 };
 
 } // namespace kerf::cut

@@ -26,9 +26,11 @@
 namespace kerf::cut {
 
 struct SweepCuts {
-  std::vector<grid::EdgeCut> cuts;    ///< ordered by edge
-  std::vector<grid::SkinCut> of_skin; ///< ordered by segment
-  std::size_t n_double_crossings = 0; ///< edges and segments crossed 2, 4, ... times: left uncut
+  std::vector<grid::EdgeCut> cuts;               ///< ordered by edge
+  std::vector<grid::SkinCut> of_skin;            ///< ordered by segment
+  std::size_t n_double_crossings = 0;            ///< edges and segments crossed 2, 4, ... times: left uncut
+  std::vector<grid::EdgeCut> later = {};         ///< of edges that another label has cut before, ordered by edge
+  std::vector<grid::SkinCut> later_of_skin = {}; ///< ordered by segment
 };
 
 /// The edges that `sweep` (triangles [m], world frame) cuts, when the corners are at `x` [m, world frame, one a

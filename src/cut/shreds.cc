@@ -201,12 +201,18 @@ std::size_t take_back(grid::Cuts& cuts, std::vector<Key>& from, std::vector<Key>
   return back.size();
 }
 
+grid::CellCuts by_segments(const grid::Solid& solid, const CellId c) {
+  grid::CellCuts cuts = grid::cuts_of(solid, c);
+  cuts.joined = nullptr;
+  return cuts;
+}
+
 /// Of all shreds at the new cuts.
 TakenBack cuts_to_leave(const grid::Solid& solid, const NewCuts& new_cuts) {
   TakenBack back;
   ItemsOfCells seen, large; // of shreds, and of what is more
   for (const CellId c : grid::touched_cells(solid.grid, new_cuts.edges, new_cuts.segments))
-    for (const grid::Part& part : whole_parts_of(grid::cuts_of(solid, c))) {
+    for (const grid::Part& part : whole_parts_of(by_segments(solid, c))) {
       if (holds(seen, c, part.items()) || holds(large, c, part.items()))
         continue;
       if (const auto shred = shred_at(solid, c, std::countr_zero(part.items()), large,

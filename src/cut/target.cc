@@ -33,12 +33,14 @@ SweepCuts joined(const std::size_t n, const Fill& fill) {
   for (const SweepCuts& part : parts) {
     result.cuts.insert(result.cuts.end(), part.cuts.begin(), part.cuts.end());
     result.of_skin.insert(result.of_skin.end(), part.of_skin.begin(), part.of_skin.end());
+    result.later.insert(result.later.end(), part.later.begin(), part.later.end());
+    result.later_of_skin.insert(result.later_of_skin.end(), part.later_of_skin.begin(), part.later_of_skin.end());
     result.n_double_crossings += part.n_double_crossings;
   }
-  std::sort(result.cuts.begin(), result.cuts.end(),
-            [](const grid::EdgeCut& a, const grid::EdgeCut& b) { return a.edge < b.edge; });
-  std::sort(result.of_skin.begin(), result.of_skin.end(),
-            [](const grid::SkinCut& a, const grid::SkinCut& b) { return a.segment < b.segment; });
+  std::ranges::sort(result.cuts, {}, &grid::EdgeCut::edge);
+  std::ranges::sort(result.of_skin, {}, &grid::SkinCut::segment);
+  std::ranges::sort(result.later, {}, &grid::EdgeCut::edge);
+  std::ranges::sort(result.later_of_skin, {}, &grid::SkinCut::segment);
   return result;
 }
 
@@ -73,7 +75,7 @@ SweepCuts Target::cut_anywhere(const grid::CutLabel label, const Judge& judge) c
   const std::size_t n = std::max(solid_.grid.n_edges(), solid_.grid.n_cells());
   return joined((n + edges_per_chunk - 1) / edges_per_chunk, [&](const std::size_t k, SweepCuts& part) {
     for (std::size_t i = k * edges_per_chunk; i < (k + 1) * edges_per_chunk; ++i) {
-      if (i < solid_.grid.n_edges() && solid_.cuts.can_be_cut(solid_.grid, grid::EdgeId(i)))
+      if (i < solid_.grid.n_edges() && is_asked(grid::EdgeId(i), label))
         this->judge(grid::EdgeId(i), label, judge, part);
       if (i < solid_.grid.n_cells() && grid::material_of(solid_.grid, grid::CellId(i)) != 0xff)
         judge_skin(grid::CellId(i), nullptr, label, judge, part);
@@ -103,7 +105,7 @@ void Target::judge_edges(const std::uint32_t block, const Nearness& near, const 
     if (!geometry::overlap(room(before, now), near.reach))
       return;
     const grid::EdgeId edge = solid_.grid.edge(solid_.complex.node[lower], axis);
-    if (solid_.cuts.can_be_cut(solid_.grid, edge))
+    if (is_asked(edge, label))
       this->judge(edge, label, judge, result);
   });
 }
@@ -116,7 +118,7 @@ void Target::judge_skin_edges(const std::uint32_t block, const Nearness& near, c
            ((before.cwiseMin(now) - near.reach.upper).array() <= room_around).all();
   };
   boxes_->for_each_skin_edge(block, [&](const grid::EdgeId edge, const grid::CornerId corner) {
-    if (!is_near(x_before_[corner.value], x_[corner.value]) || !solid_.cuts.can_be_cut(solid_.grid, edge))
+    if (!is_near(x_before_[corner.value], x_[corner.value]) || !is_asked(edge, label))
       return;
     const EdgeEnds ends = ends_of(solid_, edge);
     if (geometry::overlap(room(ends.segment(x_before_), ends.segment(x_)), near.reach))
@@ -124,7 +126,39 @@ void Target::judge_skin_edges(const std::uint32_t block, const Nearness& near, c
   });
 }
 
+/// Can it be cut, or has another one cut it?
+bool Target::is_asked(const grid::EdgeId edge, const grid::CutLabel label) const {
+  if (solid_.cuts.can_be_cut(solid_.grid, edge))
+    return true;
+  const grid::EdgeCut* const cut = solid_.cuts.find(edge);
+  return cut && cut->label != label;
+}
+
+/// An edge that is cut already, from its one end to its other, wherever these are now.
+void Target::judge_later(const grid::EdgeId edge, const grid::CutLabel label, const Judge& judge,
+                         SweepCuts& result) const {
+  const double t = solid_.cuts.find(edge)->t;
+  Verdict verdict;
+  if (solid_.cuts.is_cut_twice(edge)) {
+    const auto around = solid_.grid.cells(edge);
+    const grid::CellId c = *std::ranges::find_if(around, [](const grid::CellId cell) { return cell.valid(); });
+    const auto edges = solid_.grid.edges(c);
+    const int line = static_cast<int>(std::ranges::find(edges, edge) - edges.begin());
+    const SkinNow skin(solid_, c);
+    verdict = judge(skin.segment(line, x_before_), skin.segment(line, x_));
+  } else {
+    const EdgeEnds ends = ends_of(solid_, edge);
+    verdict = judge(ends.segment(x_before_), ends.segment(x_));
+  }
+  if (verdict.n_crossings % 2 == 1)
+    result.later.push_back({edge, t, pulled_back(solid_, x_, edge, t, verdict.normal), label});
+}
+
 void Target::judge(const grid::EdgeId edge, const grid::CutLabel label, const Judge& judge, SweepCuts& result) const {
+  if (!solid_.cuts.can_be_cut(solid_.grid, edge)) {
+    judge_later(edge, label, judge, result);
+    return;
+  }
   const EdgeEnds ends = ends_of(solid_, edge);
   const Verdict verdict = judge(ends.segment(x_before_), ends.segment(x_));
   if (verdict.n_crossings % 2 == 1) {
@@ -143,15 +177,19 @@ void Target::judge_skin(const grid::CellId cell, const Nearness* const near, con
       return;
   }
   const SkinNow skin(solid_, cell);
-  skin.for_each_uncut([&](const int segment) {
+  skin.for_each_segment([&](const int segment) {
+    const grid::SkinSegment of_skin = grid::skin_segment(solid_.grid, cell, segment);
+    const grid::SkinCut* const earlier = solid_.cuts.find(of_skin);
+    if (earlier && earlier->label == label)
+      return;
     const Segment before = skin.segment(segment, x_before_), now = skin.segment(segment, x_);
     if (near && !geometry::overlap(room(before, now), near->reach))
       return;
     const Verdict verdict = judge(before, now);
     if (verdict.n_crossings % 2 == 1)
-      result.of_skin.push_back({grid::skin_segment(solid_.grid, cell, segment), verdict.t,
-                                skin.pulled_back(segment, verdict.t, x_, verdict.normal), label});
-    else if (verdict.n_crossings > 0)
+      (earlier ? result.later_of_skin : result.of_skin)
+        .push_back({of_skin, verdict.t, skin.pulled_back(segment, verdict.t, x_, verdict.normal), label});
+    else if (verdict.n_crossings > 0 && !earlier)
       ++result.n_double_crossings;
   });
 }
@@ -235,6 +273,8 @@ Segment SkinNow::segment(const int segment, const Points& x) const {
 Vec3 SkinNow::place(const int item, const Points& x) const {
   const grid::Copy& copy = copy_with(item);
   const auto corner = [&](const int v) -> const Vec3& { return x[copy.corners[v].value]; };
+  if (item < grid::skeleton::first_on_line)
+    return corner(item);
   if (item < grid::skeleton::first_on_arc) {
     const int line = item - grid::skeleton::first_on_line;
     const Vec3 &lower = corner(cube::line_vertices[line][0]), &upper = corner(cube::line_vertices[line][1]);

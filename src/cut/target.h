@@ -72,15 +72,15 @@ class SkinNow {
   /// The solid must outlive it.
   SkinNow(const grid::Solid& solid, grid::CellId cell);
 
-  /// Calls f(segment) for each segment of the skin that is not cut: spokes, and halves in those faces that have no cell
-  /// below, or below which this one lies.
+  /// Calls f(segment) for each segment of the skin: spokes, and halves in those faces that have no cell below, or below
+  /// which this one lies.
   template <class Function>
-  void for_each_uncut(const Function& f) const {
-    for (grid::Segments left = skeleton_.segments & ~grid::skeleton::lines & ~cuts_.blades; left != 0; left &= left - 1)
+  void for_each_segment(const Function& f) const {
+    for (grid::Segments left = skeleton_.segments & ~grid::skeleton::lines; left != 0; left &= left - 1)
       if (const int segment = std::countr_zero(left); is_own(segment))
         f(segment);
   }
-  /// Between its two items when the corners are at `x` [m].
+  /// Between its two items when the corners are at `x` [m]; also of an edge of the skin.
   Segment segment(int segment, const Points& x) const;
   /// The unit normal at rest of a surface that cuts it at t with a current normal.
   Vec3 pulled_back(int segment, double t, const Points& x, const Vec3& normal) const;
@@ -120,7 +120,9 @@ class Target {
                         SweepCuts& result) const;
   void judge_skin(grid::CellId cell, const Nearness* near, grid::CutLabel label, const Judge& judge,
                   SweepCuts& result) const;
+  bool is_asked(grid::EdgeId edge, grid::CutLabel label) const;
   void judge(grid::EdgeId edge, grid::CutLabel label, const Judge& judge, SweepCuts& result) const;
+  void judge_later(grid::EdgeId edge, grid::CutLabel label, const Judge& judge, SweepCuts& result) const;
   Box box_around_copies(grid::CellId cell) const; // before and now
   double longest() const { return std::max(boxes_->longest(), solid_.grid.h()); }
 

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <bit>
 #include <iterator>
+#include <optional>
 #include <stdexcept>
 
 namespace kerf::grid {
@@ -216,14 +217,16 @@ class Update {
       slots_.push_back({nodes[v], v, cell});
   }
 
-  /// Where a front is taken back: parts may join what its copies were. A part goes on as the copy that had its lowest
+  /// Where a front is taken back, or others hang together: parts may join what the cell's copies were. A part goes on as the copy that had its lowest
   /// item, if that does not go on as a lower one.
   void divide_anew(const CellId cell) {
     std::vector<CopyId> before, now;
     std::vector<Copy> were;
+    std::vector<std::uint32_t> crumb_of;
     for (const CopyId c : solid_.complex.copies_of(cell)) {
       before.push_back(c);
       were.push_back(solid_.complex.copies[c]);
+      crumb_of.push_back(solid_.crumbs.of(c));
     }
     for (const Part& part : parts_of(cuts_of(solid_, cell))) {
       const Items lowest = part.items() & -part.items();
@@ -233,6 +236,11 @@ class Update {
       now.push_back(is_taken ? solid_.complex.copies.push_back(*from) : old);
       if (is_taken || part != from->part())
         set_part(now.back(), part);
+      std::optional<std::uint32_t> crumb; // that all of the part comes from
+      for (std::size_t i = 0; i < were.size(); ++i)
+        if ((were[i].items() & part.items()) != 0)
+          crumb = !crumb || *crumb == crumb_of[i] ? crumb_of[i] : Crumbs::none;
+      solid_.crumbs.set(now.back(), *crumb);
     }
     for (std::size_t i = 0; i < now.size(); ++i)
       solid_.complex.copies[now[i]].next = i + 1 < now.size() ? now[i + 1] : CopyId();
@@ -293,6 +301,7 @@ class Update {
     copy.next = solid_.complex.copies[from].next;
     const CopyId added = solid_.complex.copies.push_back(copy);
     solid_.complex.copies[from].next = added;
+    solid_.crumbs.set(added, solid_.crumbs.of(from));
     set_part(added, part);
   }
 
@@ -367,8 +376,7 @@ class Update {
       copy.corners.fill(solid_.complex.real_corner[solid_.grid.nodes(copy.cell)[lowest]]);
       copy.next = CopyId();
       set_part(c, {});
-      solid_.crumbs.of_copy.resize(solid_.complex.n_copies(), 0);
-      solid_.crumbs.of_copy[c.value] = 1;
+      solid_.crumbs.set(c, Crumbs::lapsed);
     }
     for (const Lapse& now : change_.lapsed)
       for (Lapse& earlier : solid_.complex.lapsed)

@@ -10,7 +10,8 @@
 /// name: a copy the part (parts.h) with its lowest item, a corner the class with the node's own material,
 /// else the first one; what is new comes last. Names depend on the sequence of cuts, the complex up to names does not.
 ///
-/// Where a front is taken back (fronts.h), copies are joined again, and corners with them. Those whose names are not
+/// Where a front is taken back (fronts.h), or parts turn out to lie on the same side of all cuts (Cuts::joined), copies are
+/// joined again, and corners with them. Those whose names are not
 /// needed any more *lapse*: they stand in the tables, but a lapsed copy holds nothing and belongs to no cell's copies, and
 /// no copy has a lapsed corner.
 
@@ -105,7 +106,7 @@ struct CutChange {
 };
 
 /// Brings the complex up to date with edges and segments of the skin that are cut, but were not when it was built or updated
-/// last, and with cells whose fronts are others since, or are taken back. What it costs depends on these alone. Lapsed copies
+/// last, and with cells whose fronts or joined items are others since, or are taken back. What it costs depends on these alone. Lapsed copies
 /// are marked like those of crumbs: no physics knows them.
 CutChange update_complex(Solid& solid, std::vector<EdgeId> new_edges, std::vector<SkinSegment> new_segments = {},
                          std::span<const CellId> with_other_fronts = {});

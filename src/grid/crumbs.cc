@@ -108,17 +108,18 @@ class Search {
     std::vector<CopyId> copies;
     if (known_[start] != Known::nothing)
       return copies;
-    bool is_crumb = true, is_loose = true;
+    bool is_crumb = true, is_loose = true, is_of_one = solid_.crumbs.holds(start);
     Extent extent;
     Spread spread;
     copies.push_back(start);
     known_[start] = Known::seen;
     for (std::size_t i = 0; i < copies.size() && is_crumb; ++i) {
       is_loose = is_loose && this->is_loose(copies[i]);
+      is_of_one = is_of_one && solid_.crumbs.of(copies[i]) == solid_.crumbs.of(start);
       extent.add(solid_, copies[i]);
       if (samples_)
         samples_->for_each(copies[i], [&](const Vec3& p) { spread.add(p); });
-      is_crumb = is_loose || (rule_.may_be_small && extent.is_of_one_cube()) ||
+      is_crumb = is_of_one || is_loose || (rule_.may_be_small && extent.is_of_one_cube()) ||
                  (samples_ && !spread.spans_volume(solid_.grid.h()));
       for (int face = 0; face < 6 && is_crumb; ++face)
         is_crumb = add_neighbours(copies[i], face, copies);
@@ -132,13 +133,14 @@ class Search {
       known_[c] = Known::attached;
     return {};
   }
+  bool is_attached(const CopyId c) const { return known_[c] == Known::attached; }
 
  private:
   enum class Known : std::uint8_t { nothing, seen, attached };
 
   bool is_loose(const CopyId c) const {
     const Copy& copy = solid_.complex.copies[c];
-    return std::popcount(copy.nodes) <= 1 || solid_.crumbs.holds(copy.corners[0]) || fill(solid_, copy) < well_filled;
+    return std::popcount(copy.nodes) <= 1 || fill(solid_, copy) < well_filled;
   }
 
   /// False where one of them is known to be in no crumb.
@@ -180,31 +182,26 @@ class Search {
   Table<CopyId, Known> known_;
 };
 
-void mark(Solid& solid, const Crumb& crumb) {
-  for (const CopyId c : crumb.copies) {
-    solid.crumbs.of_copy[c.value] = 1;
-    for (const CornerId corner : solid.complex.copies[c].corners)
-      solid.crumbs.of_corner[corner.value] = 1;
-  }
-}
-
 /// The crumbs that hold some of these copies.
-std::vector<Crumb> crumbs_at(const Solid& solid, const Rule& rule, const std::span<const CopyId> copies) {
+std::vector<Crumb> crumbs_at(Search& search, std::uint32_t name, const std::span<const CopyId> copies) {
   std::vector<Crumb> found;
-  Search search(solid, rule);
-  std::uint32_t name = solid.crumbs.n_named;
   for (const CopyId c : copies)
     if (auto of_crumb = search.crumb_at(c); !of_crumb.empty())
-      found.push_back({name++, std::move(of_crumb)});
+      found.push_back({++name, std::move(of_crumb)});
   return found;
 }
 
+void mark(Solid& solid, const CopyId c, const std::uint32_t crumb) {
+  solid.crumbs.set(c, crumb);
+  for (const CornerId corner : solid.complex.copies[c].corners)
+    solid.crumbs.of_corner[corner.value] = crumb != Crumbs::none;
+}
+
 void add(Solid& solid, std::vector<Crumb> found) {
-  solid.crumbs.of_copy.resize(solid.complex.n_copies(), 0);
-  solid.crumbs.of_corner.resize(solid.complex.n_corners(), 0);
   solid.crumbs.n_named += static_cast<std::uint32_t>(found.size());
   for (Crumb& crumb : found) {
-    mark(solid, crumb);
+    for (const CopyId c : crumb.copies)
+      mark(solid, c, crumb.name);
     solid.crumbs.all.push_back(std::move(crumb));
   }
 }
@@ -217,33 +214,44 @@ void find_crumbs(Solid& solid) {
   for (const auto c : ids<CopyId>(solid.complex.n_copies()))
     if (solid.complex.copies[c].nodes != 0xff)
       all.push_back(c);
-  if (auto found = crumbs_at(solid, {}, all); !found.empty())
+  Search search(solid, {});
+  if (auto found = crumbs_at(search, 0, all); !found.empty()) {
+    solid.crumbs.of_corner.resize(solid.complex.n_corners(), 0);
     add(solid, std::move(found));
+  }
 }
 
 namespace {
 
 void update_crumbs_by(const Rule& rule, Solid& solid, CutChange& change) {
   Crumbs& crumbs = solid.crumbs;
-  if (!crumbs.of_corner.empty()) { // what a cut leaves of a crumb stays one
-    crumbs.of_corner.resize(change.n_corners_before, 0);
-    inherit(change, crumbs.of_corner);
-  }
   std::vector<CopyId> in_use = change.reshaped;
   std::erase_if(in_use, [&](const CopyId c) { return solid.complex.copies[c].is_lapsed(); });
-  std::vector<Crumb> found = crumbs_at(solid, rule, in_use);
-  if (found.empty())
+  Search search(solid, rule);
+  std::vector<Crumb> found = crumbs_at(search, crumbs.n_named, in_use);
+  if (found.empty() && crumbs.all.empty())
     return;
-  std::vector<CopyId> fresh;
+  std::vector<CopyId> now;
   for (const Crumb& crumb : found)
-    fresh.insert(fresh.end(), crumb.copies.begin(), crumb.copies.end());
-  sort_unique(fresh);
+    now.insert(now.end(), crumb.copies.begin(), crumb.copies.end());
+  sort_unique(now);
+  const auto is_found = [&](const CopyId c) { return std::ranges::binary_search(now, c); };
+
+  std::vector<CopyId> freed = std::move(in_use);
   std::erase_if(crumbs.all, [&](const Crumb& before) {
-    return std::any_of(before.copies.begin(), before.copies.end(),
-                       [&](const CopyId c) { return std::binary_search(fresh.begin(), fresh.end(), c); });
+    const bool is_met = std::ranges::any_of(before.copies, [&](const CopyId c) {
+      return crumbs.of(c) != before.name || search.is_attached(c) || is_found(c);
+    });
+    if (is_met)
+      freed.insert(freed.end(), before.copies.begin(), before.copies.end());
+    return is_met;
   });
-  std::erase_if(fresh, [&](const CopyId c) { return crumbs.holds(c); });
-  change.reshaped.insert(change.reshaped.end(), fresh.begin(), fresh.end());
+  std::erase_if(freed, [&](const CopyId c) { return solid.complex.copies[c].is_lapsed() || is_found(c); });
+  crumbs.of_corner.resize(solid.complex.n_corners(), 0);
+  for (const CopyId c : freed)
+    mark(solid, c, Crumbs::none);
+  change.reshaped.insert(change.reshaped.end(), freed.begin(), freed.end());
+  change.reshaped.insert(change.reshaped.end(), now.begin(), now.end());
   sort_unique(change.reshaped);
   add(solid, std::move(found));
 }

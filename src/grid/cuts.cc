@@ -38,6 +38,18 @@ void Cuts::add(const Grid& grid, EdgeCut cut) {
   cuts_.push_back(cut);
 }
 
+void Cuts::add_to(std::vector<LaterCut>& all, const LaterCut& later) {
+  if (std::ranges::find(all, later.label, &LaterCut::label) == all.end())
+    all.push_back(later);
+}
+
+void Cuts::set_joined(const CellId c, std::vector<Items> groups) {
+  if (groups.empty())
+    joined_.erase(c);
+  else
+    joined_[c] = std::move(groups);
+}
+
 void Cuts::set(const Front& front) {
   std::uint32_t& index = front_of_cell_.at(front.cell);
   if (index == none) {

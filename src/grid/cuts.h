@@ -12,7 +12,7 @@
 #include "grid/skeleton.h"
 #include "grid/sparse_index.h"
 
-#include <optional>
+#include <map>
 #include <span>
 #include <vector>
 
@@ -57,6 +57,14 @@ struct SkinCut {
   CutLabel label = 1;
 
   void archive(Archive& a) { a(segment, t, normal, label); }
+};
+
+/// Who meets a segment that another one has cut: it parts nothing there, but tells on which side of it the ends lie.
+struct LaterCut {
+  Vec3 normal = Vec3::UnitX(); ///< as in EdgeCut
+  CutLabel label = 1;
+
+  void archive(Archive& a) { a(normal, label); }
 };
 
 /// A cell in which a cut ends, or would by fronts.h: the copies are parted as if it went on through the cell in a plane,
@@ -120,6 +128,21 @@ class Cuts {
   void take_back(std::span<const EdgeId> edges);
   void take_back(std::span<const SkinSegment> segments);
 
+  /// Each label once.
+  void add(EdgeId e, const LaterCut& later) { add_to(later_of_edges_[e], later); }
+  void add(const SkinSegment& segment, const LaterCut& later) { add_to(later_of_skin_[segment], later); }
+  std::span<const LaterCut> later_cuts(const EdgeId e) const { return found_in(later_of_edges_, e); }
+  std::span<const LaterCut> later_cuts(const SkinSegment& segment) const { return found_in(later_of_skin_, segment); }
+
+  /// Items of a cell that hang together though cuts part all segments between them (cut/sides.h), in groups; null where
+  /// there are none.
+  const std::vector<Items>* joined(const CellId c) const {
+    const auto found = joined_.empty() ? joined_.end() : joined_.find(c);
+    return found == joined_.end() ? nullptr : &found->second;
+  }
+  /// In place of the cell's earlier ones.
+  void set_joined(CellId c, std::vector<Items> groups);
+
   /// Null in cells where no cut ends.
   const Front* front(const CellId c) const {
     const std::uint32_t i = front_of_cell_[c];
@@ -166,7 +189,7 @@ class Cuts {
   void archive(Archive& a) {
     a(edge_cut_, outer_cut_, face_point_, cell_point_, skin_of_face_, skin_of_cell_, faces_, cells_);
     a(cuts_, skin_cuts_, n_cut_twice_, n_settled_, n_settled_of_skin_, points_);
-    a(front_of_cell_, fronts_);
+    a(front_of_cell_, fronts_, later_of_edges_, later_of_skin_, joined_);
   }
 
  private:
@@ -181,6 +204,13 @@ class Cuts {
   };
   using FaceEntries = std::array<std::uint32_t, SkinOfFace::n>;
   using CellEntries = std::array<std::uint32_t, SkinOfCell::n>;
+
+  static void add_to(std::vector<LaterCut>& all, const LaterCut& later);
+  template <class Key>
+  static std::span<const LaterCut> found_in(const std::map<Key, std::vector<LaterCut>>& all, const Key& key) {
+    const auto found = all.empty() ? all.end() : all.find(key);
+    return found == all.end() ? std::span<const LaterCut>() : found->second;
+  }
 
   const Vec3* point_at(const std::uint32_t i) const { return i == none ? nullptr : &points_[i]; }
   const Vec3* inner_point_of(CellId c, int entry) const;
@@ -198,6 +228,9 @@ class Cuts {
   std::vector<FaceEntries> faces_;
   std::vector<CellEntries> cells_;
   std::vector<Front> fronts_;
+  std::map<EdgeId, std::vector<LaterCut>> later_of_edges_;
+  std::map<SkinSegment, std::vector<LaterCut>> later_of_skin_;
+  std::map<CellId, std::vector<Items>> joined_;
   std::vector<EdgeCut> cuts_;
   std::vector<SkinCut> skin_cuts_;
   std::size_t n_cut_twice_ = 0, n_settled_ = 0, n_settled_of_skin_ = 0;

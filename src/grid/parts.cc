@@ -2,7 +2,9 @@
 
 #include "grid/solid.h"
 
+#include <algorithm>
 #include <bit>
+#include <utility>
 
 namespace kerf::grid {
 
@@ -22,6 +24,27 @@ Parts parts_of_nodes(const unsigned material, const unsigned cut) {
   Parts result;
   for (unsigned left = material; left != 0; left &= ~unsigned(result.items[result.n++].nodes))
     result.items[result.n] = {cube::reachable(std::countr_zero(left), cut), 0};
+  return result;
+}
+
+/// Parts that hold items of one group are one: the first of them.
+Parts joined(const Parts& parts, const std::vector<Items>* const groups) {
+  if (!groups)
+    return parts;
+  std::array<Items, skeleton::n_items> items;
+  std::ranges::transform(parts, items.begin(), &Part::items);
+  for (const Items group : *groups)
+    for (int i = 0, first = -1; i < parts.n; ++i)
+      if ((items[i] & group) != 0) {
+        if (first < 0)
+          first = i;
+        else
+          items[first] |= std::exchange(items[i], 0);
+      }
+  Parts result;
+  for (int i = 0; i < parts.n; ++i)
+    if (items[i] != 0)
+      result.items[result.n++] = Part::of(items[i]);
   return result;
 }
 
@@ -70,6 +93,7 @@ CellCuts cuts_of(const Solid& solid, const CellId c) {
 CellCuts with(CellCuts cell, const Segments ahead) {
   cell.cut |= static_cast<unsigned>(ahead & skeleton::lines & ~Segments(skin_lines[cell.material]));
   cell.blades |= ahead;
+  cell.joined = nullptr;
   return cell;
 }
 
@@ -91,14 +115,14 @@ Segments cut_by(const Solid& solid, const CellId c, const CutLabel label) {
 }
 
 CellCuts cuts_of(const Solid& solid, const CellId c, const unsigned cut_lines) {
-  CellCuts result{material_of(solid.grid, c), cut_lines, cut_lines};
+  CellCuts result{material_of(solid.grid, c), cut_lines, cut_lines, solid.cuts.joined(c)};
   if (result.has_skin())
     result.blades = cut_by_blades(solid, c, cut_lines, result.skeleton());
   return result;
 }
 
 Parts parts_of(const CellCuts& cell) {
-  return cell.is_cut_at_skin() ? whole_parts_of(cell) : parts_of_nodes(cell.material, cell.cut);
+  return cell.is_cut_at_skin() ? whole_parts_of(cell) : joined(parts_of_nodes(cell.material, cell.cut), cell.joined);
 }
 
 Parts whole_parts_of(const CellCuts& cell) {
@@ -106,7 +130,7 @@ Parts whole_parts_of(const CellCuts& cell) {
   Parts result;
   for (Items left = skeleton.items; left != 0; left &= ~result.items[result.n++].items())
     result.items[result.n] = Part::of(skeleton.reachable(left & -left, cell.blades));
-  return result;
+  return joined(result, cell.joined);
 }
 
 } // namespace kerf::grid

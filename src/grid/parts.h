@@ -1,7 +1,8 @@
 #pragma once
 
 /// The parts that cuts leave of a cell: what of its skeleton holds together. Nodes, and where blades have cut the points
-/// of the skin too, are joined by segments that are not cut.
+/// of the skin too, are joined by segments that are not cut; and where blades cross, by lying on the same side of all
+/// (cut/sides.h).
 
 #include "grid/cuts.h"
 #include "grid/skeleton.h"
@@ -10,9 +11,10 @@ namespace kerf::grid {
 
 /// What cuts have done to a cell.
 struct CellCuts {
-  unsigned material = 0; ///< vertices (bits)
-  unsigned cut = 0;      ///< lines that are cut, by the skin or by blades (bits)
-  Segments blades = 0;   ///< segments that blades have cut
+  unsigned material = 0;                      ///< vertices (bits)
+  unsigned cut = 0;                           ///< lines that are cut, by the skin or by blades (bits)
+  Segments blades = 0;                        ///< segments that blades have cut
+  const std::vector<Items>* joined = nullptr; ///< Cuts::joined()
 
   const Skeleton& skeleton() const { return skeleton_of(material); }
   bool has_skin() const { return material != 0xff; }

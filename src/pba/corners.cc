@@ -87,6 +87,8 @@ void fill_sources(const grid::Solid& solid, const NodePairs& pairs, CornerMap& m
   for (const auto& [c, node] : grid::followed_nodes(solid))
     for (const grid::CornerId corner : solid.complex.copies[c].corners)
       sources[corner.value].offer(far, rows[node]);
+  for (const auto& [corner, heir] : solid.complex.lapsed)
+    sources[corner.value] = sources[heir.value];
   map.source_start.push_back(0);
   for (Sources& s : sources) {
     std::sort(s.rows.begin(), s.rows.end());

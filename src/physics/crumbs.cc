@@ -158,4 +158,23 @@ Vec3 Crumbs::angular_momentum(const dynamics::State& state, const Vec3& about) c
   return sum;
 }
 
+Vec3 momentum(const std::span<const double> mass, const Crumbs& crumbs, const dynamics::State& state) {
+  Vec3 sum = crumbs.momentum(state);
+  for (std::size_t i = 0; i < mass.size(); ++i)
+    sum += mass[i] * state.v[i];
+  return sum;
+}
+
+void restore_momentum(const Vec3& had, const std::span<const std::uint32_t> particles,
+                      const std::span<const double> mass, const Crumbs& crumbs, dynamics::State& state) {
+  double all = 0;
+  for (const auto i : particles)
+    all += mass[i];
+  if (!(all > 0))
+    return;
+  const Vec3 more = (had - momentum(mass, crumbs, state)) / all;
+  for (const auto i : particles)
+    state.v[i] += more;
+}
+
 } // namespace kerf::physics

@@ -11,7 +11,9 @@
 /// takes is the least in kinetic energy. In statics a crumb that nothing holds stays where it is.
 ///
 /// A piece that becomes a crumb keeps its momentum and the mean rotation and angular velocity of its material; what it
-/// was deformed by is gone at once, and its angular momentum is that of the material, no longer of masses at corners.
+/// was deformed by is gone at once, and its angular momentum is that of the material, no longer of masses at corners. One that
+/// becomes material again leaves its particles where they are and as they move, and so gives back what becoming one took;
+/// what momentum changes by as masses are weighed otherwise, they get as one velocity.
 
 #include "dynamics/quantities.h"
 #include "dynamics/stepper.h"
@@ -126,5 +128,12 @@ class Crumbs {
   std::vector<dynamics::Reaction> reactions_;
   double work_of_supports_ = 0;
 };
+
+/// Of all of the body: what its model moves, and its crumbs [kg m/s].
+Vec3 momentum(std::span<const double> mass, const Crumbs& crumbs, const dynamics::State& state);
+
+/// Gives these particles one velocity more, so that the body's momentum is what it was.
+void restore_momentum(const Vec3& had, std::span<const std::uint32_t> particles, std::span<const double> mass,
+                      const Crumbs& crumbs, dynamics::State& state);
 
 } // namespace kerf::physics

@@ -1,7 +1,11 @@
 #include "physics/on_corners.h"
 
+#include <Eigen/Geometry>
+#include <Eigen/QR>
+
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace kerf::physics {
 
@@ -42,6 +46,44 @@ void damp_riders(const fem::Hexahedra& model, const lattice::Riders& riders, con
                alpha = std::min(1.0, across * dt * across * dt);
   if (riders.n_riders() > 0)
     riders.damp(state.x, model.lumped_mass(), alpha, state.v);
+}
+
+void join_lapsed(const std::span<const grid::Lapse> lapsed, const std::function<double(std::uint32_t)>& mass,
+                 dynamics::State& state) {
+  std::map<std::uint32_t, double> mass_of_heir;
+  Vec3 L = Vec3::Zero(); // that they had more than the heirs have in the end
+  const auto turning = [&](const std::uint32_t corner) -> Vec3 { return state.x[corner].cross(state.v[corner]); };
+  for (const auto& [corner, heir] : lapsed) {
+    const auto [of_heir, is_new] = mass_of_heir.try_emplace(heir.value, mass(heir.value));
+    const double more = mass(corner.value), all = of_heir->second + more;
+    if (is_new)
+      L += of_heir->second * turning(heir.value);
+    L += more * turning(corner.value);
+    if (more > 0)
+      for (Points* of_corners : {&state.x, &state.v}) {
+        Vec3& value = (*of_corners)[heir.value];
+        value += more / all * ((*of_corners)[corner.value] - value);
+      }
+    of_heir->second = all;
+  }
+  double all = 0;
+  Vec3 centre = Vec3::Zero();
+  for (const auto& [heir, m] : mass_of_heir) {
+    L -= m * turning(heir);
+    all += m;
+    centre += m * state.x[heir];
+  }
+  if (!(all > 0))
+    return;
+  centre /= all;
+  Mat3 inertia = Mat3::Zero();
+  for (const auto& [heir, m] : mass_of_heir) {
+    const Vec3 r = state.x[heir] - centre;
+    inertia += m * (r.squaredNorm() * Mat3::Identity() - r * r.transpose());
+  }
+  const Vec3 omega = inertia.completeOrthogonalDecomposition().solve(L);
+  for (const auto& [heir, m] : mass_of_heir)
+    state.v[heir] += omega.cross(state.x[heir] - centre);
 }
 
 } // namespace kerf::physics

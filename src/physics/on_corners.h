@@ -9,7 +9,8 @@
 #include "physics/physics.h"
 #include "spring/mass_spring.h"
 
-#include <map>
+#include <functional>
+#include <span>
 
 namespace kerf::physics {
 
@@ -20,6 +21,10 @@ inline lattice::Riders riders_of(const dynamics::ForceModel&, const CutBody&) { 
 lattice::Riders riders_of(const fem::Hexahedra& model, const CutBody& body);
 inline void damp_riders(const dynamics::ForceModel&, const lattice::Riders&, double, dynamics::State&) {}
 void damp_riders(const fem::Hexahedra& model, const lattice::Riders& riders, double dt, dynamics::State& state);
+
+/// Corners that lapse bring their heirs what they had of momentum, angular momentum and place, by mass as it was [kg].
+void join_lapsed(std::span<const grid::Lapse> lapsed, const std::function<double(std::uint32_t)>& mass,
+                 dynamics::State& state);
 
 /// One model on the corners, with an integrator of it.
 template <class Model>
@@ -58,15 +63,26 @@ class OnCorners : public Physics {
   }
 
   void follow_cut(const CutBody& body, const grid::CutChange& change, dynamics::State& state) override {
+    const Vec3 had = momentum(model_->lumped_mass(), crumbs_, state);
+    const std::vector<std::uint8_t> carried = crumbs_.carried();
     for (Points* of_corners : {&rest_, &state.x, &state.v})
       grid::inherit(change, *of_corners);
-    join_lapsed(change, state);
+    join_lapsed(
+      change.lapsed,
+      [&](const std::uint32_t corner) { // in the model, or in a crumb that may be material again
+        return corner < change.n_corners_before
+                 ? model_->lumped_mass()[corner] + (crumbs_.carries(corner) ? crumbs_.carried_mass()[corner] : 0)
+                 : 0;
+      },
+      state);
     for (auto& [name, values] : state.history)
       if (values.size() == change.n_corners_before)
         grid::inherit(change, values);
     dynamics::forget_forces(state);
     follow_cut_with_model(body, change);
     follow_crumbs(body, state);
+    if (const auto freed = freed_corners(change, carried); !freed.empty())
+      restore_momentum(had, freed, model_->lumped_mass(), crumbs_, state);
     make_stepper(body);
     follow_heirs(state);
   }
@@ -88,22 +104,16 @@ class OnCorners : public Physics {
   const dynamics::Stepper& stepper() const { return *stepper_; }
 
  private:
-  /// Corners that lapse bring their heirs what they had of the momentum, and of the place: by mass as it was.
-  void join_lapsed(const grid::CutChange& change, dynamics::State& state) const {
-    std::map<std::uint32_t, double> mass_of_heir;
-    const auto mass_of = [&](const std::uint32_t corner) {
-      return corner < change.n_corners_before ? model_->lumped_mass()[corner] : 0;
-    };
-    for (const auto& [corner, heir] : change.lapsed) {
-      double& mass = mass_of_heir.try_emplace(heir.value, mass_of(heir.value)).first->second;
-      const double more = mass_of(corner.value), all = mass + more;
-      if (more > 0)
-        for (Points* of_corners : {&state.x, &state.v}) {
-          Vec3& value = (*of_corners)[heir.value];
-          value += more / all * ((*of_corners)[corner.value] - value);
-        }
-      mass = all;
-    }
+  /// That crumbs carried before a cut, and none does now; or their heirs. Ascending.
+  std::vector<std::uint32_t> freed_corners(const grid::CutChange& change, std::vector<std::uint8_t> carried) const {
+    carried.resize(rest_.size(), 0);
+    for (const auto& [corner, heir] : change.lapsed)
+      carried[heir.value] |= carried[corner.value];
+    std::vector<std::uint32_t> freed;
+    for (std::uint32_t i = 0; i < carried.size(); ++i)
+      if (carried[i] != 0 && !crumbs_.carries(i))
+        freed.push_back(i);
+    return freed;
   }
   void follow_heirs(dynamics::State& state) const {
     for (const auto& [corner, heir] : lapsed_) {

@@ -210,6 +210,8 @@ void Phyxels::follow_cut(const CutBody& body, const grid::CutChange& change, dyn
     begin_to_look(body.surface);
   add_faces(faces_of(body.surface, Part::cuts));
   find_pieces(body);
+  const Vec3 had = momentum(model_.lumped_mass(), crumbs_, state);
+  const std::vector<std::uint8_t> carried = crumbs_.carried();
   follow_crumbs(
     body,
     [&] { // by the map from before the cut
@@ -222,6 +224,12 @@ void Phyxels::follow_cut(const CutBody& body, const grid::CutChange& change, dyn
       return now;
     },
     state);
+  std::vector<std::uint32_t> freed;
+  for (std::uint32_t i = 0; i < carried.size(); ++i)
+    if (carried[i] != 0 && !crumbs_.carries(i))
+      freed.push_back(i);
+  if (!freed.empty())
+    restore_momentum(had, freed, model_.lumped_mass(), crumbs_, state);
   is_stale_ = true;
   if (options_.visibility.budget == 0)
     catch_up(body);

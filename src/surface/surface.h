@@ -50,11 +50,14 @@ struct SurfaceIndex {
   std::vector<std::uint32_t> skin_centres;
   /// In triangles of the skin that are cut: by cell, triangle and the first of its items; and the pieces after the first.
   std::unordered_map<std::uint64_t, std::uint32_t> in_skin, pieces_of_skin;
+  std::unordered_map<std::uint64_t, std::uint32_t>
+    centres_of_joined; ///< by cell and lowest item of a part (Cuts::joined)
 
   std::size_t n_bytes() const;
   void archive(Archive& a) {
     a(first_face_vertex, face_vertices, first_inner_vertex, edge_vertices, first_triangle, centres);
-    a(segment_vertices, first_triangle_of_segment, first_skin_centre, skin_centres, in_skin, pieces_of_skin);
+    a(segment_vertices, first_triangle_of_segment, first_skin_centre, skin_centres, in_skin, pieces_of_skin,
+      centres_of_joined);
   }
 };
 

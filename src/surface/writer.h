@@ -360,10 +360,19 @@ class Writer {
     return id;
   }
 
+  /// Of the part of a copy with this lowest item: a copy may be of several (Cuts::joined).
+  std::uint32_t& centre_of(const CopyId copy, const int lowest) {
+    if (std::countr_zero(solid_.complex.copies[copy].items()) == lowest)
+      return index_.centres[copy];
+    const std::uint64_t key = std::uint64_t(cell_.value) * skeleton::n_items + static_cast<unsigned>(lowest);
+    return index_.centres_of_joined.try_emplace(key, unset).first->second;
+  }
+
   /// Of the cuts at the skin.
   std::uint32_t centre(const int item) {
-    const CopyId copy = copy_of_[std::countr_zero(skeleton_->reachable(grid::Items(1) << item, blades_))];
-    std::uint32_t& id = index_.centres[copy];
+    const int lowest = std::countr_zero(skeleton_->reachable(grid::Items(1) << item, blades_));
+    const CopyId copy = copy_of_[lowest];
+    std::uint32_t& id = centre_of(copy, lowest);
     if (id == unset || known_ == Known::renewed)
       set_centre(id, *solid_.cuts.inner_point(cell_), copy);
     return id;
@@ -417,21 +426,16 @@ class Writer {
       return in_cell_[place];
     const std::uint32_t first = block(index_.first_face_vertex.at(faces_[v.index]), 4);
     std::uint32_t& id = index_.face_vertices[first + place_in_face(v.index, v.side)];
-    if (is_wanted(id, place)) {
-      const Vec3 p = grid::face_point(solid_, faces_[v.index]);
-      set(id, p, (p - node_position(cube::face_vertices[v.index][0])) / solid_.grid.h(), copy_at_[v.side],
-          cube::face_mask(v.index));
-    }
+    if (is_wanted(id, place))
+      set_in_face(id, v.index, grid::face_point(solid_, faces_[v.index]), copy_at_[v.side]);
     return in_cell_[place] = id;
   }
 
   std::uint32_t centre(const TableVertex& v) {
     const CopyId copy = copy_at_[v.side];
-    std::uint32_t& id = index_.centres[copy];
-    if (is_wanted(id, 72 + v.side)) {
-      const Vec3 p = grid::cell_point(solid_, cell_);
-      set(id, p, (p - node_position(0)) / solid_.grid.h(), copy, 0xff);
-    }
+    std::uint32_t& id = centre_of(copy, v.side);
+    if (is_wanted(id, 72 + v.side))
+      set_centre(id, grid::cell_point(solid_, cell_), copy);
     return id;
   }
 

@@ -311,7 +311,8 @@ TEST(Recut, ThereAndBackIsCountedAndCutsNothing) {
   const auto cuts = block.cut(strip);
   EXPECT_TRUE(cuts.cuts.empty());
   EXPECT_TRUE(cuts.of_skin.empty());
-  EXPECT_EQ(cuts.n_double_crossings, 25u + 20 * (1 + 3)) << "edges; in a ring of 20 cells a half of an arc and three spokes each";
+  EXPECT_EQ(cuts.n_double_crossings, 25u + 20 * (1 + 3))
+    << "edges; in a ring of 20 cells a half of an arc and three spokes each";
   EXPECT_TRUE(block.cut({}).cuts.empty());
 }
 
@@ -341,9 +342,9 @@ TEST(Recut, OneAndTwoThreadsGiveTheSameBits) {
 
 TEST(PendingCuts, ReleaseTwoEdgesACellInOrder) {
   Block block;
-  const auto [cuts, of_skin, n_double] =
-    block.cut(plane_sweep(Vec3(-9, -9, 2.3), Vec3(20, 0, 0), Vec3(0, 20, 0), 1));
-  block.take({{}, of_skin, 0});
+  const SweepCuts met = block.cut(plane_sweep(Vec3(-9, -9, 2.3), Vec3(20, 0, 0), Vec3(0, 20, 0), 1));
+  block.take({{}, met.of_skin, 0});
+  const auto& cuts = met.cuts;
   PendingCuts pending;
   pending.push(cuts);
   pending.push(cuts);

@@ -166,7 +166,7 @@ support::Body shallow_block(const unsigned axes, const double depth) {
 void cut_by_plane(support::Body& body, const Vec3& direction, const Vec3& node, const double distance,
                   const grid::CutLabel label) {
   const Vec3 normal = direction.normalized();
-  const auto [edges, of_skin, n_double] =
+  const auto [edges, of_skin, n_double, later, later_of_skin] =
     support::cuts_of_plane(body, {normal, normal.dot(node) + distance}, label);
   for (const auto& cut : edges)
     body.cuts.add(body.grid, cut);
@@ -208,7 +208,7 @@ const std::vector<Family> families = {
    [](const double t) { // under the skin a plane leaves a flap of rinds alone, 0.4 t thick, that hangs at one side
      auto body = support::block({4, 3, 3});
      const Vec3 normal = Vec3(0.02, 0.01, 1) / std::sqrt(1.0005);
-     const auto [edges, of_skin, n_double] =
+     const auto [edges, of_skin, n_double, later, later_of_skin] =
        support::cuts_of_plane(body, {normal, normal.dot(Vec3(2, 2, 3.5)) - 0.4 * t - 1e-3});
      for (const auto& cut : edges)
        if (body.grid.position(body.grid.ends(cut.edge)[0])[0] < 2.5)

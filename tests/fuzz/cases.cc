@@ -259,6 +259,15 @@ class Run {
     for (const auto& step : grid::histories::dealt(random_, plan, 1 + draw(random_, 6)))
       if (!step.empty())
         cut(other, step, tally_);
+    std::vector<grid::CellId> cells; // of later cuts at segments that were cut before the plan says nothing
+    for (const auto c : ids<grid::CellId>(subject_.grid().n_cells())) {
+      const auto *const is = subject_.solid.cuts.joined(c), *const was = other.solid.cuts.joined(c);
+      if (!is && !was)
+        continue;
+      other.solid.cuts.set_joined(c, is ? *is : std::vector<grid::Items>());
+      cells.push_back(c);
+    }
+    grid::update_complex(other.solid, {}, {}, cells);
     require_same(subject_.solid.complex, other.solid.complex);
   }
 

@@ -1,12 +1,14 @@
 #include "tests/fuzz/invariants.h"
 
 #include "grid/cube.h"
+#include "grid/in_use.h"
 #include "tests/support/placed.h"
 #include "tests/support/same.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <set>
 #include <sstream>
 
 namespace kerf::fuzz {
@@ -153,7 +155,7 @@ void require_sound_copies(const Items& items, const grid::Solid& solid, const He
     n_copies += require_same_sets(flooded(held[c].size(), links), copies,
                                   "the copies of cell " + std::to_string(c.value) + " are not its parts");
   }
-  if (n_copies != solid.complex.n_copies())
+  if (n_copies != grid::n_copies_in_use(solid.complex))
     complain("there are copies of nothing");
 }
 
@@ -161,7 +163,7 @@ void require_sound_copies(const Items& items, const grid::Solid& solid, const He
 void require_real_corners(const grid::Solid& solid) {
   Table<NodeId, std::uint8_t> is_held(solid.grid.n_nodes(), 0);
   for (const Copy& copy : solid.complex.copies)
-    for (int v = 0; v < 8; ++v) {
+    for (int v = 0; v < 8 && !copy.is_lapsed(); ++v) {
       const NodeId node = solid.grid.nodes(copy.cell)[v];
       const bool is_real = (copy.nodes >> v & 1) != 0;
       if (solid.complex.node[copy.corners[v]] != node ||
@@ -209,11 +211,14 @@ Links glued_slots(const grid::Solid& solid, const HeldByCell& held) {
 
 void require_gluing(const grid::Solid& solid, const HeldByCell& held) {
   const Labels glued = flooded(8 * solid.complex.n_copies(), glued_slots(solid, held));
-  Labels corners;
-  for (const Copy& copy : solid.complex.copies)
-    for (const CornerId corner : copy.corners)
-      corners.push_back(corner.value);
-  if (require_same_sets(glued, corners, "corners are not what gluing joins") != solid.complex.n_corners())
+  Labels slots, corners;
+  for (const CopyId c : ids<CopyId>(solid.complex.n_copies()))
+    for (int v = 0; v < 8 && !solid.complex.copies[c].is_lapsed(); ++v) {
+      slots.push_back(glued[8 * c.value + v]);
+      corners.push_back(solid.complex.copies[c].corners[v].value);
+    }
+  if (require_same_sets(slots, corners, "corners are not what gluing joins") + solid.complex.lapsed.size() !=
+      solid.complex.n_corners())
     complain("the number of corners is wrong");
 }
 
@@ -259,21 +264,39 @@ void require_sound_complex(const grid::Solid& solid, const Items& items) {
   require_gluing(solid, held);
 }
 
-void require_sound_parents(const CellComplex& before, const CellComplex& after,
-                           const Table<CornerId, CornerId>& parents) {
+UnionFind require_sound_parents(const CellComplex& before, const CellComplex& after,
+                                const Table<CornerId, CornerId>& parents) {
+  UnionFind together(before.n_corners());
+  struct Past {
+    std::set<CornerId> corners;
+    bool is_joined = false; ///< a copy that holds it comes from several
+  };
+  std::vector<Past> pasts(after.n_corners());
   for (const Copy& copy : after.copies) {
     const auto origins = origins_of(before, copy);
-    for (int v = 0; v < cube::n_vertices; ++v) {
+    for (int v = 0; v < cube::n_vertices && !copy.is_lapsed(); ++v) {
+      Past& past = pasts[copy.corners[v].value];
+      for (const CopyId origin : origins) {
+        if (!origin.valid())
+          complain("a copy of cell " + std::to_string(copy.cell.value) + " comes from nowhere");
+        past.corners.insert(before.copies[origin].corners[v]);
+        past.is_joined |= origin != origins.front();
+      }
       const CornerId parent = parents[copy.corners[v]];
-      for (const CopyId origin : origins)
-        if (!origin.valid() || before.copies[origin].corners[v] != parent)
-          complain("a corner of cell " + std::to_string(copy.cell.value) + " has several parents");
       if (before.node[parent] != after.node[copy.corners[v]])
         complain("a corner and its parent are instances of different nodes");
       if ((copy.nodes >> v & 1) && before.real_corner[before.node[parent]] != parent)
         complain("a real corner has a virtual parent");
     }
   }
+  for (const CornerId c : ids<CornerId>(after.n_corners()))
+    if (const auto& [corners, is_joined] = pasts[c.value];
+        !corners.empty() && (!corners.contains(parents[c]) || (corners.size() > 1 && !is_joined)))
+      complain("corner " + std::to_string(c.value) + " has several parents");
+  for (const auto& [corners, is_joined] : pasts)
+    for (const CornerId corner : corners)
+      together.unite(corners.begin()->value, corner.value);
+  return together;
 }
 
 void require_sound_change(const CellComplex& before, const CellComplex& after, const grid::CutChange& change) {

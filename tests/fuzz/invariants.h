@@ -7,6 +7,7 @@
 /// Volumes are compared as parts of the whole body's: no piece's volume can be known better than the round-off of
 /// positions, which is relative to the body.
 
+#include "base/union_find.h"
 #include "tests/fuzz/subject.h"
 
 #include <stdexcept>
@@ -23,10 +24,11 @@ class Violation : public std::runtime_error {
 /// corners are the slots that gluing joins, no more and no fewer.
 void require_sound_complex(const grid::Solid& solid, const Items& items);
 
-/// Every corner has one parent, whatever copy is asked, an instance of the same node; real corners have real ones. A
-/// copy comes from that which had its items, or the nodes under points of the skin that are new.
-void require_sound_parents(const grid::CellComplex& before, const grid::CellComplex& after,
-                           const Table<grid::CornerId, grid::CornerId>& parents);
+/// Every corner has one parent, whatever copy is asked, an instance of the same node, or several where copies are joined;
+/// real corners have real ones. A copy comes from that which had its items, or the nodes under points of the skin that
+/// are new. Returns which corners before went on together.
+UnionFind require_sound_parents(const grid::CellComplex& before, const grid::CellComplex& after,
+                                const Table<grid::CornerId, grid::CornerId>& parents);
 
 /// What an update does not name as changed is as it was.
 void require_sound_change(const grid::CellComplex& before, const grid::CellComplex& after,

@@ -101,11 +101,26 @@ bool is_cut_at_skin(const grid::Solid& solid, const Items& items, const CellId c
          std::ranges::any_of(items.of_cell[cell], [&](const auto s) { return is_cut(solid, items.all[s]); });
 }
 
+namespace {
+
+/// That lie on the same sides of all cuts.
+void add_joined(const grid::Solid& solid, const Items& items, const CellId cell, ItemLinks& links) {
+  if (const std::vector<grid::Items>* const groups = solid.cuts.joined(cell))
+    for (const grid::Items group : *groups)
+      for (int i = 0; i < grid::skeleton::n_items; ++i)
+        if (group >> i & 1)
+          links.push_back({items.name[cell][std::countr_zero(group)], items.name[cell][i]});
+}
+
+} // namespace
+
 ItemLinks links(const grid::Solid& solid, const Items& items) {
   ItemLinks result;
   for (const ItemSegment& segment : items.all)
     if (!is_cut(solid, segment))
       result.push_back(segment.ends);
+  for (const auto cell : ids<CellId>(solid.grid.n_cells()))
+    add_joined(solid, items, cell, result);
   return result;
 }
 
@@ -114,6 +129,7 @@ ItemLinks links(const grid::Solid& solid, const Items& items, const CellId cell)
   for (const auto s : items.of_cell[cell])
     if (!is_cut(solid, items.all[s]))
       result.push_back(items.all[s].ends);
+  add_joined(solid, items, cell, result);
   return result;
 }
 

@@ -33,12 +33,14 @@ void require_kept_cells(const Subject& subject, const std::vector<CellId>& cells
 }
 
 void require_inherited(const Table<CornerId, double>& before, const Table<CornerId, double>& after,
-                       const Table<CornerId, CornerId>& parents, Tally& tally) {
-  Table<CornerId, double> inherited(before.size(), 0.0);
+                       const Table<CornerId, CornerId>& parents, UnionFind together, Tally& tally) {
+  Table<CornerId, double> missing(before.size(), 0.0);
+  for (const auto corner : ids<CornerId>(before.size()))
+    missing[CornerId(together.root(corner.value))] += before[corner];
   for (const auto corner : ids<CornerId>(after.size()))
-    inherited[parents[corner]] += after[corner];
+    missing[CornerId(together.root(parents[corner].value))] -= after[corner];
   for (const auto corner : ids<CornerId>(before.size())) {
-    const double difference = std::abs(inherited[corner] - before[corner]);
+    const double difference = std::abs(missing[corner]);
     tally.n_masses += before[corner] > 0;
     tally.worst_mass = std::max(tally.worst_mass, difference);
     if (!(difference < 1e-12))
@@ -78,7 +80,7 @@ void follow_cut(Subject& subject, const grid::Solid& before, const grid::CutChan
   const auto placed = surface::place(solid, change, {});
   const auto parents = all_parents(change);
   require_sound_change(before.complex, solid.complex, change);
-  require_sound_parents(before.complex, solid.complex, parents);
+  const UnionFind together = require_sound_parents(before.complex, solid.complex, parents);
   surface::update_surface(solid, change, subject.surface, subject.index);
   require_as_built(subject);
   grid::inherit(change, subject.x);
@@ -87,7 +89,7 @@ void follow_cut(Subject& subject, const grid::Solid& before, const grid::CutChan
     subject.volumes[c] = require_sound_volumes(solid, c, tally);
   require_kept_cells(subject, change.cells, tally);
   require_sound(subject, tally);
-  require_inherited(corner_masses(before, keeping), corner_masses(solid, keeping), parents, tally);
+  require_inherited(corner_masses(before, keeping), corner_masses(solid, keeping), parents, together, tally);
 
   ++tally.n_releases;
   tally.n_placed += placed.n_placed;

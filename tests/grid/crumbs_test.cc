@@ -6,10 +6,12 @@
 #include "grid/sampled_crumbs.h"
 #include "tests/grid/histories.h"
 #include "tests/support/placed.h"
+#include "tests/support/same.h"
 
 #include <gtest/gtest.h>
 
 #include <bit>
+#include <map>
 #include <set>
 
 namespace kerf::grid {
@@ -56,6 +58,11 @@ void expect_crumbs_are_those_pieces(const Body& body, const std::vector<bool>& e
     }
   }
   for (const auto c : ids<CopyId>(body.complex.n_copies())) {
+    if (body.complex.copies[c].is_lapsed()) {
+      EXPECT_FALSE(seen.contains(c));
+      EXPECT_TRUE(body.crumbs.holds(c));
+      continue;
+    }
     EXPECT_EQ(seen.contains(c), expected[pieces.piece[c]]) << c.value;
     EXPECT_EQ(body.crumbs.holds(c), seen.contains(c));
     for (const CornerId corner : body.complex.copies[c].corners)
@@ -180,6 +187,84 @@ TEST(Crumbs, KeepTheirNamesUntilTheyAreCut) {
         names.insert(crumb.name);
     }
   EXPECT_EQ(names.size(), n_pieces(body.complex)) << "all is dust in the end";
+}
+
+/// All items of a cell that are of two copies hang together from now on.
+CutChange join(Body& body, const CopyId a, const CopyId b) {
+  const CellId cell = body.complex.copies[a].cell;
+  const Items group = body.complex.copies[a].items() | body.complex.copies[b].items();
+  std::vector<Items> groups = {group};
+  if (const auto* const earlier = body.cuts.joined(cell))
+    for (const Items other : *earlier) {
+      if ((other & group) == 0)
+        groups.push_back(other);
+      else
+        groups[0] |= other;
+    }
+  body.cuts.set_joined(cell, groups);
+  return update_complex(body, {}, {}, std::array{cell});
+}
+
+/// Cuts make crumbs, and joins take them back: what comes from one crumb alone stays one, all else is what the definition
+/// names. Who follows hears of each copy that was in a crumb, or is now.
+TEST(Crumbs, BecomeMaterialAgainWhereTheyAreJoined) {
+  std::size_t n_ended = 0, n_of_two = 0, n_stay = 0;
+  for (unsigned seed = 1; seed <= 3; ++seed) {
+    support::Random random(200 + seed);
+    Body body = support::with_copies(support::with_placed_skin(
+      seed % 2 == 0 ? support::block({5, 4, 4}, 0.1) : support::ball(0.3, 0.1, support::random_offset(random))));
+    find_crumbs(body);
+    cut::Cutter cutter{9};
+    cutter.begin(body, rest_positions(body));
+    for (int batch = 0; batch < 5; ++batch) {
+      const histories::Plan plan = histories::random_plan(random, body, 0.4, 0.2, 0.2);
+      CutChange change = cutter.cut(body, {plan.cuts, plan.of_skin, 0});
+      surface::place(body, change, {});
+      update_crumbs(body, change);
+    }
+    for (int k = 0; k < 150; ++k) {
+      const CopyId a(support::uniform(random, 0, 1) * double(body.complex.n_copies()));
+      const CopyId b = body.complex.copies[a].next;
+      if (!b.valid())
+        continue;
+      std::map<std::pair<CellId, int>, std::uint32_t> crumb_of; // of items
+      std::set<CopyId> held;
+      const auto for_each_item = [&](const CopyId c, const auto& f) {
+        for (Items left = body.complex.copies[c].items(); left != 0; left &= left - 1)
+          f(std::pair(body.complex.copies[c].cell, std::countr_zero(left)));
+      };
+      for (const auto c : ids<CopyId>(body.complex.n_copies())) {
+        for_each_item(c, [&](const auto& item) { crumb_of[item] = body.crumbs.of(c); });
+        if (body.crumbs.holds(c))
+          held.insert(c);
+      }
+      CutChange change = join(body, a, b);
+      surface::place(body, change, {});
+      update_crumbs(body, change);
+      EXPECT_TRUE(std::is_sorted(change.reshaped.begin(), change.reshaped.end()));
+      if (k % 15 == 0) {
+        EXPECT_TRUE(support::renaming(body.complex, build_complex(body)).has_value());
+      }
+      const Pieces pieces = grid::pieces(body.complex);
+      std::vector<std::set<std::uint32_t>> from(pieces.n_pieces);
+      for (const auto c : ids<CopyId>(body.complex.n_copies())) {
+        for_each_item(c, [&](const auto& item) { from[pieces.piece[c]].insert(crumb_of.at(item)); });
+        EXPECT_TRUE(body.crumbs.holds(c) == held.contains(c) || std::ranges::binary_search(change.reshaped, c));
+      }
+      auto expected = are_crumbs(body, true);
+      for (std::size_t p = 0; p < from.size(); ++p) {
+        const bool is_of_one = from[p].size() == 1 && !from[p].contains(Crumbs::none);
+        expected[p] = expected[p] || is_of_one;
+        n_stay += is_of_one;
+        n_ended += from[p].size() > 1 && !expected[p];
+        n_of_two += from[p].size() > 1 && !from[p].contains(Crumbs::none);
+      }
+      expect_crumbs_are_those_pieces(body, expected);
+    }
+  }
+  EXPECT_GT(n_ended, 20u);
+  EXPECT_GT(n_of_two, 5u);
+  EXPECT_GT(n_stay, 50u);
 }
 
 /// A plane halves a block; what is known of the upper half by samples decides whether it is one.

@@ -46,10 +46,10 @@ inline cut::SweepCuts with_skin(Body body, const std::span<const grid::EdgeCut> 
 
 /// The same in one step.
 inline surface::PlacementCounts cut(Body& body, const std::span<const grid::EdgeCut> cuts) {
-  const auto [edges, of_skin, n] = with_skin(body, cuts);
-  for (const auto& cut : edges)
+  const cut::SweepCuts all = with_skin(body, cuts);
+  for (const auto& cut : all.cuts)
     body.cuts.add(body.grid, cut);
-  for (const auto& cut : of_skin)
+  for (const auto& cut : all.of_skin)
     body.cuts.add(cut);
   return surface::place(body, {});
 }

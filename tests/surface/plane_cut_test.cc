@@ -116,8 +116,8 @@ TEST(PlaneCut, OfAnyBodyGivesWhatLiesBelow) {
   int n_exact = 0;
   constexpr int n = 60;
   for (int i = 0; i < n; ++i) {
-    Body body = i % 2 ? liver
-                      : support::embedded(geometry::sphere_mesh(0.4, Vec3::Zero(), 3), 0.1, random_offset(random));
+    Body body =
+      i % 2 ? liver : support::embedded(geometry::sphere_mesh(0.4, Vec3::Zero(), 3), 0.1, random_offset(random));
     const Vec3 normal = support::random_direction(random);
     const Vec3 through = body.grid.position(grid::NodeId(random() % body.grid.n_nodes()));
     const Plane plane{normal, normal.dot(through) + 0.1 * body.grid.h()};
@@ -139,7 +139,7 @@ TEST(PlaneCut, IsAsExactInManySteps) {
   for (int i = 0; i < 20; ++i) {
     Body body = support::embedded(geometry::box_mesh(box.lower, box.upper), 0.1, random_offset(random));
     const Plane plane{Vec3::Unit(i % 3), uniform(random, 0.15, 0.4)};
-    auto [cuts, of_skin, n_double] = support::cuts_of_plane(body, plane);
+    auto [cuts, of_skin, n_double, later, later_of_skin] = support::cuts_of_plane(body, plane);
     std::shuffle(cuts.begin(), cuts.end(), random);
     cut::PendingCuts pending;
     pending.push(cuts);
