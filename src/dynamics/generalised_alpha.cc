@@ -93,6 +93,13 @@ Balance GeneralisedAlpha::balance(const State& state, const Points& a, const Con
     b.velocity[i] = state.v[i] + (1 - alpha_f) * dt * ((1 - gamma) * a[i] + gamma * a_1);
     b.guess[i] = (1 - alpha_f) * (dt * state.v[i] + 0.5 * dt * dt * a[i]);
   }
+  for (const Follower& follower : model_.followers()) {
+    const auto i = follower.corner;
+    b.acceleration[i].setZero();
+    b.guess[i] = (1 - alpha_f) * dt * state.v[i];
+    b.velocity[i] = state.v[i] - b.velocity_factor * b.guess[i];
+    b.guess[i] += 0.5 * (1 - alpha_f) * dt * dt * follower.led(a);
+  }
   Points end = state.x;
   constraints.place(state.time + dt, end);
   for (const auto& held : constraints.held())
@@ -106,6 +113,7 @@ StepReport GeneralisedAlpha::step(State& state, const Loads& loads, const double
   const Points* const known = remembered(state, "acceleration");
   Points a = known ? *known : first_acceleration(state, loads, dt), x;
   const StepReport report = accepted(solver_.solve(loads, constraints, balance(state, a, constraints, dt), x));
+  const Points start = state.x;
   const auto [alpha_m, alpha_f, beta, gamma] = c_;
   for (std::size_t i = 0; i < x.size(); ++i) {
     const Vec3 moved = (x[i] - state.x[i]) / (1 - alpha_f);
@@ -113,6 +121,12 @@ StepReport GeneralisedAlpha::step(State& state, const Loads& loads, const double
     state.x[i] += moved;
     state.v[i] += dt * ((1 - gamma) * a[i] + gamma * a_1);
     a[i] = a_1;
+  }
+  for (const Follower& follower : model_.followers()) {
+    const auto i = follower.corner;
+    state.x[i] = x[i] + alpha_f / (1 - alpha_f) * (follower.led(x) - follower.led(start));
+    state.v[i] = follower.led(state.v);
+    a[i].setZero();
   }
   state.time += dt;
   constraints.place(state.time, state.x);

@@ -6,6 +6,8 @@
 
 #include <Eigen/SparseCore>
 
+#include <array>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -22,6 +24,22 @@ class MassCoupling {
   virtual void add_entries(double factor, std::vector<Eigen::Triplet<double>>& entries) const = 0;
 };
 
+/// A corner without mass: its place follows from the balance of forces, its velocity is the affine combination of those of
+/// its leaders, which have a mass.
+struct Follower {
+  std::uint32_t corner;
+  std::uint32_t n_leaders;
+  std::array<std::uint32_t, 8> leaders;
+  std::array<double, 8> weights; ///< sum to 1
+
+  Vec3 led(const Points& values) const {
+    Vec3 sum = Vec3::Zero();
+    for (std::uint32_t k = 0; k < n_leaders; ++k)
+      sum += weights[k] * values[leaders[k]];
+    return sum;
+  }
+};
+
 /// Enough for explicit integrators.
 class ForceModel {
  public:
@@ -31,6 +49,8 @@ class ForceModel {
   virtual std::span<const double> lumped_mass() const = 0;
   /// Null where the mass is lumped. Explicit integrators do not ask.
   virtual const MassCoupling* mass_coupling() const { return nullptr; }
+  /// None where every corner has a mass, or nothing moves it.
+  virtual std::span<const Follower> followers() const { return {}; }
   /// Elastic energy [J] at current positions x [m].
   virtual double energy(const Points& x) const = 0;
   /// The same, where forces are wanted next: a model may find them on the way, and keep them for force().

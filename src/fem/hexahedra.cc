@@ -3,6 +3,7 @@
 #include "base/parallel.h"
 #include "dynamics/state.h"
 #include "fem/assembly.h"
+#include "grid/carriers.h"
 #include "material/polar.h"
 
 #include <algorithm>
@@ -101,6 +102,9 @@ void Hexahedra::follow(const grid::Solid& solid, const std::span<const grid::Cop
   sum_mass(corners);
   ghost_penalty_.update( // to which a crumb's copies are as good as full
     solid, changed, [this](const std::size_t copy) { return incidence_.is_used(copy) ? fill(copy) : 1; }, mass_);
+  if (inertia_ == Inertia::gathered)
+    gathered_ = grid::is_cut(solid.cuts) ? gathered_mass(solid, mass_, material_.density * h_ * h_ * h_)
+                                         : GatheredMass{ghost_penalty_.extended_mass(), {}};
   ties_.update(solid, material_);
   if (consistent_mass_)
     consistent_mass_->update(solid, changed, mass_, lumped_mass());

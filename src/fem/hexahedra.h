@@ -26,6 +26,7 @@
 #include "fem/batches.h"
 #include "fem/consistent_mass.h"
 #include "fem/element_table.h"
+#include "fem/gathered_mass.h"
 #include "fem/ghost_penalty.h"
 #include "fem/incidence.h"
 #include "fem/known_forces.h"
@@ -39,9 +40,10 @@ namespace kerf::fem {
 
 /// What integrators get as the mass of a corner.
 enum class Inertia {
-  lumped,  ///< density times the integral of its shape function
-  extended ///< of that, a part goes to corners that only near-empty copies know (ghost_penalty.h): what explicit
-           ///< integrators need
+  lumped,   ///< density times the integral of its shape function
+  extended, ///< of that, a part goes to corners that only near-empty copies know (ghost_penalty.h): what explicit
+            ///< integrators need
+  gathered  ///< extended; once cut, light corners have none (gathered_mass.h): for integrators that take no energy
 };
 
 /// The mass matrix that integrators get.
@@ -68,9 +70,12 @@ class Hexahedra : public dynamics::ElasticModel, public dynamics::StiffnessMatri
   void update(const grid::Solid& solid, std::span<const grid::CopyId> changed);
 
   std::span<const double> lumped_mass() const override {
-    return inertia_ == Inertia::lumped ? mass_ : ghost_penalty_.extended_mass();
+    return inertia_ == Inertia::lumped     ? mass_
+           : inertia_ == Inertia::gathered ? gathered_.mass
+                                           : ghost_penalty_.extended_mass();
   }
   const dynamics::MassCoupling* mass_coupling() const override { return consistent_mass_.get(); }
+  std::span<const dynamics::Follower> followers() const override { return gathered_.followers; }
   double energy(const Points& x) const override;
   double energy_ahead(const Points& x) const override;
   void force(const Points& x, Points& forces) const override;
@@ -139,6 +144,7 @@ class Hexahedra : public dynamics::ElasticModel, public dynamics::StiffnessMatri
   GhostPenalty ghost_penalty_;
   Ties ties_;
   std::vector<double> mass_;
+  GatheredMass gathered_;                           // where it is wanted
   std::unique_ptr<ConsistentMass> consistent_mass_; // none where mass is lumped
   std::vector<Index3> places_;                      // of the copies' cells
   std::unique_ptr<Multigrid> multigrid_;            // none until it is asked for

@@ -1,5 +1,7 @@
 #include "lattice/riders.h"
 
+#include "grid/carriers.h"
+
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
@@ -11,35 +13,6 @@ namespace kerf::lattice {
 namespace {
 
 using grid::CopyId;
-
-constexpr std::uint32_t none = CopyId::no_value;
-
-/// For each copy its carrier, itself where it can carry; `none` where the piece has no such copy.
-std::vector<std::uint32_t> nearest_carriers(const grid::CellComplex& complex,
-                                            const std::vector<std::uint8_t>& is_heavy) {
-  constexpr int enough = 4; // corners of a cube that are not in a row
-  std::vector<std::uint32_t> carrier(complex.n_copies(), none), front;
-  for (const auto c : ids<CopyId>(complex.n_copies()))
-    if (std::ranges::count_if(complex.copies[c].corners, [&](const auto a) { return is_heavy[a.value] != 0; }) >=
-        enough) {
-      carrier[c.value] = c.value;
-      front.push_back(c.value);
-    }
-  std::vector<std::vector<std::uint32_t>> around(is_heavy.size()); // copies without a carrier yet, by corner
-  for (const auto c : ids<CopyId>(complex.n_copies()))
-    if (carrier[c.value] == none)
-      for (const auto corner : complex.copies[c].corners)
-        around[corner.value].push_back(c.value);
-  for (std::vector<std::uint32_t> next; !front.empty(); front.swap(next), next.clear())
-    for (const auto c : front)
-      for (const auto corner : complex.copies[CopyId(c)].corners)
-        for (const auto other : around[corner.value])
-          if (carrier[other] == none) {
-            carrier[other] = carrier[c];
-            next.push_back(other);
-          }
-  return carrier;
-}
 
 /// A rigid body of some corners.
 struct Rigid {
@@ -84,16 +57,10 @@ Riders::Riders(const grid::CellComplex& complex, const std::span<const double> m
   const double heavy = light / 8;
   std::vector<std::uint8_t> is_heavy(mass.size());
   std::ranges::transform(mass, is_heavy.begin(), [&](const double m) { return m >= heavy * mass_of_cube ? 1 : 0; });
-  const auto carrier_of_copy = nearest_carriers(complex, is_heavy);
-  std::vector<std::uint32_t> carrier(mass.size(), none); // of each rider; its own copy, if that carries
-  for (const auto c : ids<CopyId>(complex.n_copies()))
-    for (const auto corner : complex.copies[c].corners)
-      if (const auto k = carrier_of_copy[c.value]; k != none && mass[corner.value] < light * mass_of_cube)
-        if (auto& known = carrier[corner.value]; known == none || (k == c.value && known != k))
-          known = k;
+  const auto carrier = grid::nearest_carriers(complex, is_heavy);
   std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs; // carrier, corner
   for (std::uint32_t i = 0; i < mass.size(); ++i)
-    if (carrier[i] != none)
+    if (carrier[i] != grid::no_carrier && mass[i] < light * mass_of_cube)
       pairs.emplace_back(carrier[i], i);
   std::ranges::sort(pairs);
   for (const auto& [copy, corner] : pairs) {

@@ -1,5 +1,7 @@
 #include "physics/on_corners.h"
 
+#include "grid/carriers.h"
+
 #include <Eigen/Geometry>
 #include <Eigen/QR>
 
@@ -24,17 +26,12 @@ bool has_extended_mass(const fem::Hexahedra& model) {
   return model.lumped_mass().data() == model.ghost_penalty().extended_mass().data();
 }
 
-/// Whether more has cut it than its skin: without a cut nothing sets light corners ringing.
-bool is_cut(const grid::Cuts& cuts) {
-  return !cuts.skin_cuts().empty() || (!cuts.all().empty() && cuts.all().back().label != grid::skin_label);
-}
-
 } // namespace
 
 lattice::Riders riders_of(const fem::Hexahedra& model, const CutBody& body) {
   constexpr double light =
     1.0 / 32; // of a cube: what holds corners of less fades with their mass (fem/ghost_penalty.h)
-  if (!has_extended_mass(model) || !is_cut(body.solid.cuts))
+  if (!has_extended_mass(model) || !grid::is_cut(body.solid.cuts))
     return {};
   const double h = body.solid.grid.h();
   return {body.solid.complex, material_mass(model), body.density * h * h * h, light};

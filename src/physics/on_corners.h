@@ -14,7 +14,7 @@
 
 namespace kerf::physics {
 
-/// Elements whose integrator takes no energy: corners of hardly any mass ring for ever once a cut has moved them, take up
+/// Elements with explicit integrators: corners of hardly any mass ring for ever once a cut has moved them, take up
 /// what the body's vibrations have, and turn their copies inside out. They are damped against what carries them, as those
 /// of a lattice are (lattice/riders.h), critically for the frequency of a cube. Of the others none.
 inline lattice::Riders riders_of(const dynamics::ForceModel&, const CutBody&) { return {}; }

@@ -22,7 +22,9 @@ struct Implicit {
 
 /// A fifth of the 1 % to which an energy book may stay open.
 constexpr dynamics::SoundOptions dissipative{.wanted_gain = 2e-3};
-constexpr dynamics::SoundOptions conservative{.wanted_gain = 1e-2};
+/// Of 20 steps of a soft body that bends far, and that 16 substeps did not mend, 32 or 64 mended 7, at three times the cost
+/// of all tries before.
+constexpr dynamics::SoundOptions conservative{.most_substeps = 16, .wanted_gain = 1e-2};
 constexpr dynamics::SoundOptions as_they_are{.most_substeps = 1};
 constexpr dynamics::SoundOptions explicit_ones{.most_substeps = 1, .most_gain = 0.75};
 
@@ -86,9 +88,9 @@ Integrator modal(const Section& body) {
   }};
 }
 
-/// Nothing damps what rings: corners of hardly any mass get some of their neighbours', as with explicit integrators.
+/// Nothing damps what rings: corners of hardly any mass have none, and follow the others.
 Implicit undamped(Implicit implicit) {
-  implicit.integrator.inertia = fem::Inertia::extended;
+  implicit.integrator.inertia = fem::Inertia::gathered;
   return implicit;
 }
 

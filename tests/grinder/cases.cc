@@ -111,6 +111,8 @@ const std::vector<Kind>& kinds() {
     {"fem-trilinear-neo-Hookean", {"Law = neo-Hookean"}},
     {"fem-enhanced-corotational", {"Element = enhanced"}},
     {"fem-enhanced-neo-Hookean", {"Element = enhanced", "Law = neo-Hookean"}},
+    {"fem-trilinear-Newmark", {"Integrator = Newmark"}},
+    {"fem-enhanced-generalised-alpha", {"Element = enhanced", "Integrator = generalised alpha"}},
     {"pba", {"Backend = pba"}},
     {"lattice", {"Backend = lattice", section("Lattice", {"Half width [cells] = 2"})}, 2},
     {"mass-spring", {"Backend = mass-spring"}},

@@ -42,11 +42,12 @@ class Watch {
   std::optional<Failure> watch_energy(const Look& look, int step, double dt);
   std::optional<Failure> watch_pieces(const scene::Body& body, const Look& look, int step);
 
-  bool is_explicit_;         ///< shape matching is symplectic Euler, of which no step is as the one before
-  double gravity_ = 0;       ///< [m/s^2]
-  double recoil_ = 0;        ///< [m/s]
-  double mass_ = 0;          ///< [kg]
-  double start_gravity_ = 0; ///< [J]
+  double most_energy_gained_;                             ///< of what has been turned over [1]
+  bool keeps_energy_;                                     ///< in the mean: no step is as the one before
+  double gravity_ = 0;                                    ///< [m/s^2]
+  double recoil_ = 0;                                     ///< [m/s]
+  double mass_ = 0;                                       ///< [kg]
+  double start_gravity_ = 0;                              ///< [J]
   double gained_ = 0, gained_by_cuts_ = 0, turnover_ = 0; ///< [J]
   double missing_ = 0, work_of_cut_ = 0;                  ///< a step ago [J]
   std::size_t n_pieces_ = 0;
