@@ -13,19 +13,24 @@ namespace kerf::texture {
 
 namespace {
 
-/// By how much the relief rises along a whole edge, seen at p.
-float slope(const InPlane& inside, const Vec3& p, const Vec3& edge, const double relief, const double pixel) {
-  const double length = edge.norm();
-  return length > 0 ? static_cast<float>(relief * inside.rise(p, edge / length) * length / (2 * pixel)) : 0;
-}
+/// By how much the relief rises along whole edges.
+class Slope {
+ public:
+  Slope(const InPlane& inside, const Vec3& edge, const double relief, const double pixel)
+    : inside_(inside),
+      along_(inside.along(edge.stableNormalized())),
+      scale_(static_cast<float>(relief * edge.norm() / (2 * pixel))) {}
+  /// Seen at p.
+  float at(const Vec3& p) const { return scale_ * inside_.rise(p, along_); }
+
+ private:
+  const InPlane& inside_;
+  Eigen::Vector2f along_;
+  float scale_;
+};
 
 std::array<std::uint8_t, 3> to_bytes(const Eigen::Array4f& colour) {
   return {image::to_byte(colour[0]), image::to_byte(colour[1]), image::to_byte(colour[2])};
-}
-
-Corners corners_of(const SurfaceView& surface, const std::size_t t) {
-  const Triangle& v = surface.triangles[t];
-  return {surface.rest[v[0]], surface.rest[v[1]], surface.rest[v[2]]};
 }
 
 /// The side of the squares that a triangle is halves of, area for area; of slivers, those that are as long across. Parts
@@ -59,22 +64,35 @@ void Atlas::fill_skin(const std::size_t t, const Skin& skin) {
   for_each_point(filled_[t], parts_[t], [&](const Vec3& p) { colours_[sample++] = to_bytes(skin.colour(p)); });
 }
 
-void Atlas::fill_group(const FlatGroup& group, const Paint& paint) {
+void Atlas::fill_group(const FlatGroup& group, const Paint& paint, InPlane& inside) {
   std::vector<Corners> triangles;
   for (const std::size_t t : group)
     triangles.push_back(filled_[t]);
-  const InPlane inside(*paint.inside, paint.detail, paint.relief != 0 ? InPlane::Relief::wanted : InPlane::Relief::none,
-                       triangles);
+  inside.lay(triangles);
   const double pixel = paint.inside->pixel();
   for (const std::size_t t : group) {
-    const Vec3 u = filled_[t][1] - filled_[t][0], v = filled_[t][2] - filled_[t][0];
+    const Slope first(inside, filled_[t][1] - filled_[t][0], paint.relief, pixel);
+    const Slope second(inside, filled_[t][2] - filled_[t][0], paint.relief, pixel);
     std::uint32_t sample = first_[t];
+    std::array<Vec3, n_lanes> points;
+    std::size_t n = 0;
+    const auto paint_points = [&] {
+      std::array<Eigen::Array4f, n_lanes> colours;
+      inside.colours(std::span(points).first(n), colours);
+      for (std::size_t l = 0; l < n; ++l, ++sample) {
+        colours_[sample] = to_bytes(colours[l]);
+        if (paint.relief != 0)
+          slopes_[sample] = {first.at(points[l]), second.at(points[l])};
+      }
+      n = 0;
+    };
     for_each_point(filled_[t], parts_[t], [&](const Vec3& p) {
-      colours_[sample] = to_bytes(inside.colour(p));
-      if (paint.relief != 0)
-        slopes_[sample] = {slope(inside, p, u, paint.relief, pixel), slope(inside, p, v, paint.relief, pixel)};
-      ++sample;
+      points[n++] = p;
+      if (n == n_lanes)
+        paint_points();
     });
+    if (n > 0)
+      paint_points();
   }
 }
 
@@ -105,9 +123,12 @@ std::vector<std::size_t> Atlas::lay_out(const SurfaceView& surface, const Paint&
       parts_[t] = 0;
       continue;
     }
-    const Corners corners = corners_of(surface, t);
-    if (first_[t] != none && filled_[t] == corners && labels_[t] == surface.labels[t])
+    const Triangle& v = surface.triangles[t];
+    const Corners& before = filled_[t];
+    if (first_[t] != none && labels_[t] == surface.labels[t] && before[0] == surface.rest[v[0]] &&
+        before[1] == surface.rest[v[1]] && before[2] == surface.rest[v[2]])
       continue;
+    const Corners corners = {surface.rest[v[0]], surface.rest[v[1]], surface.rest[v[2]]};
     first_[t] = static_cast<std::uint32_t>(end);
     parts_[t] = static_cast<std::uint16_t>(std::min(parts_for(square_side(corners), resolution_), double(max_parts)));
     filled_[t] = corners;
@@ -156,7 +177,11 @@ std::size_t Atlas::fill(const SurfaceView& surface, const Paint& paint) {
     (labels_[t] == 0 ? skin : revealed).push_back(t);
   const std::vector<FlatGroup> groups = groups_of(revealed, paint);
   parallel_for(skin.size(), [&](const std::size_t i) { fill_skin(skin[i], *paint.skin); });
-  parallel_for(groups.size(), [&](const std::size_t i) { fill_group(groups[i], paint); });
+  parallel_ranges(groups.size(), 2, [&](const std::size_t begin, const std::size_t end) {
+    InPlane inside(*paint.inside, paint.detail, paint.relief != 0 ? InPlane::Relief::wanted : InPlane::Relief::none);
+    for (std::size_t i = begin; i < end; ++i)
+      fill_group(groups[i], paint, inside);
+  });
   parallel_for(sides.twins.size(), [&](const std::size_t i) { copy(sides.twins[i]); });
   return fresh.size();
 }

@@ -17,6 +17,8 @@
 
 namespace kerf::texture {
 
+class InPlane;
+
 /// A surface in the rest configuration.
 struct SurfaceView {
   std::span<const Vec3> rest; ///< vertices [m]
@@ -59,7 +61,7 @@ class Atlas {
   std::vector<std::size_t> lay_out(const SurfaceView& surface, const Paint& paint);
   std::vector<FlatGroup> groups_of(const std::vector<std::size_t>& revealed, const Paint& paint) const;
   void fill_skin(std::size_t t, const Skin& skin);
-  void fill_group(const FlatGroup& group, const Paint& paint);
+  void fill_group(const FlatGroup& group, const Paint& paint, InPlane& inside);
   void copy(const Twin& twin);
 
   double resolution_;

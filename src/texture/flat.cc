@@ -9,9 +9,10 @@ namespace kerf::texture {
 
 namespace {
 
-constexpr double cube = 64;                      ///< [pixels]
-constexpr double most_height = 0.25;             ///< of a corner above the plane [pixels]
-constexpr double least_cosine = 0.9998476951564; ///< of a degree
+constexpr double cube = 64;          ///< [pixels]
+constexpr double most_height = 0.25; ///< of a corner above the plane [pixels]
+/// A window reaches 3 sqrt(2) pixels away, and there rises by the same: sine 0.25 / 3 sqrt(2), of 3.4 degrees.
+constexpr double least_cosine = 0.99826239;
 
 struct Plane {
   Vec3 point, normal;

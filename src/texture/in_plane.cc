@@ -3,51 +3,71 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace kerf::texture {
 
-InPlane::InPlane(const Interior& inside, const Detail* const detail, const Relief relief,
-                 const std::span<const Corners> triangles)
-  : inside_(inside) {
-  const bool has_relief = relief == Relief::wanted;
+namespace {
+
+/// Keeps its memory.
+template <class Value>
+void reset(image::Raster<Value>& raster, const int width, const int height) {
+  raster.width = width;
+  raster.height = height;
+  raster.values.assign(static_cast<std::size_t>(width) * height, Value());
+}
+
+} // namespace
+
+void InPlane::lay(const std::span<const Corners> triangles) {
+  const bool has_relief = relief_ == Relief::wanted;
+  change_.width = height_.width = 0;
+  others_.clear();
   const auto& [a, b, c] = triangles.front();
   const Vec3 area = (b - a).cross(c - a);
-  if ((!detail && !has_relief) || !(area.norm() > 0))
+  if ((!detail_ && !has_relief) || !(area.norm() > 0))
     return;
   const Vec3 normal = area.normalized();
-  x_ = in_plane(inside.charts().front().body_axes, normal);
+  x_ = in_plane(inside_.charts().front().body_axes, normal);
   y_ = normal.cross(x_);
   const double margin = has_relief ? 2 : 1;
-  mark(lay_out(triangles, margin), margin, detail ? window_radius : 0);
-  Windows windows(width_, height_in_points_, 0, 1);
+  mark(lay_out(triangles, margin), margin, detail_ ? window_radius : 0);
+  windows_.reset(width_, height_in_points_);
   find_blends();
   for (int r = 0; r < height_in_points_; ++r)
-    find_luminance(r, windows);
-  if (detail)
-    change_ = image::Grey(width_, height_in_points_, 0);
+    find_luminance(r);
+  if (detail_)
+    reset(change_, width_, height_in_points_);
   if (has_relief)
-    height_ = image::Grey(width_, height_in_points_, 0);
+    reset(height_, width_, height_in_points_);
   for (int r = 0; r < height_in_points_; ++r) {
-    if (detail)
-      find_change(r, *detail, windows);
+    if (detail_)
+      find_change(r);
     if (has_relief)
-      find_height(r, windows);
+      find_height(r);
   }
 }
 
-Eigen::Array4f InPlane::colour(const Vec3& p) const {
-  const Eigen::Array4f colour = inside_.colour(p);
-  if (change_.width == 0)
-    return colour;
-  const Eigen::Vector2f q = on_lattice(p).cast<float>();
-  return (colour + image::sample(change_, q[0], q[1])).max(0.0f).min(1.0f);
+void InPlane::colours(const std::span<const Vec3> points, const std::span<Eigen::Array4f> colours) const {
+  std::array<Blend, n_lanes> blends;
+  std::array<Blend*, n_lanes> places;
+  for (int l = 0; l < n_lanes; ++l)
+    places[l] = &blends[l];
+  inside_.blend(points, inside_.options().blending, places);
+  for (std::size_t l = 0; l < points.size(); ++l) {
+    colours[l] = inside_.colour(blends[l]);
+    if (change_.width == 0)
+      continue;
+    const Eigen::Vector2f q = on_lattice(points[l]).cast<float>();
+    colours[l] = (colours[l] + image::sample(change_, q[0], q[1])).max(0.0f).min(1.0f);
+  }
 }
 
-float InPlane::rise(const Vec3& p, const Vec3& along) const {
+float InPlane::rise(const Vec3& p, const Eigen::Vector2f& d) const {
   if (height_.width == 0)
     return 0;
-  const Eigen::Vector2f q = on_lattice(p).cast<float>(), d = Vec2(x_.dot(along), y_.dot(along)).cast<float>();
+  const Eigen::Vector2f q = on_lattice(p).cast<float>();
   return image::sample(height_, q[0] + d[0], q[1] + d[1]) - image::sample(height_, q[0] - d[0], q[1] - d[1]);
 }
 
@@ -102,8 +122,8 @@ Span InPlane::span_of(const Flat& triangle, const int row, const double margin) 
 
 /// Marks the points that are within a margin of triangles, and those that windows of that radius around them reach.
 void InPlane::mark(const std::vector<Flat>& triangles, const double margin, const int radius) {
-  asked_ = Marks(width_ / step + 1, height_in_points_, 0);
-  reached_ = asked_;
+  reset(asked_, width_ / step + 1, height_in_points_);
+  reset(reached_, asked_.width, asked_.height);
   const auto mark_span = [](Marks& marks, const int row, const Span& span) {
     for (int k = span.first / step; k <= span.last / step && span.first <= span.last; ++k) {
       const int first = std::max(span.first - k * step, 0), last = std::min(span.last - k * step, step - 1);
@@ -131,17 +151,32 @@ void InPlane::mark(const std::vector<Flat>& triangles, const double margin, cons
 }
 
 void InPlane::find_blends() {
-  blends_ = image::Raster<Blend>(width_ / step + 1, height_in_points_ / step + 1, Blend());
+  blends_.width = width_ / step + 1;
+  blends_.height = height_in_points_ / step + 1;
+  blends_.values.resize(static_cast<std::size_t>(blends_.width) * blends_.height);
   image::Raster<char> needed(blends_.width, blends_.height, 0);
   for (int r = 0; r < height_in_points_; ++r)
     for (int i = 0; i + 1 < blends_.width; ++i)
       if (reached_(i, r) != 0)
         needed(i, r / step) = 1;
   const auto is_needed = [&](const int i, const int k) { return i >= 0 && k >= 0 && needed(i, k) != 0; };
+  std::array<Vec3, n_lanes> points;
+  std::array<Blend*, n_lanes> places;
+  std::size_t n = 0;
+  const auto find = [&] {
+    inside_.blend(std::span(points).first(n), inside_.options().blending, places);
+    n = 0;
+  };
   for (int k = 0; k < blends_.height; ++k)
     for (int i = 0; i < blends_.width; ++i)
-      if (is_needed(i, k) || is_needed(i - 1, k) || is_needed(i, k - 1) || is_needed(i - 1, k - 1))
-        blends_(i, k) = inside_.blend(point(i * step, k * step), inside_.options().blending);
+      if (is_needed(i, k) || is_needed(i - 1, k) || is_needed(i, k - 1) || is_needed(i - 1, k - 1)) {
+        points[n] = point(i * step, k * step);
+        places[n++] = &blends_(i, k);
+        if (n == n_lanes)
+          find();
+      }
+  if (n > 0)
+    find();
 }
 
 template <class Block, class Point>
@@ -200,8 +235,8 @@ const Blend* InPlane::corner(const int i, const int k, const int cell) {
   return &place->second;
 }
 
-void InPlane::find_luminance(const int row, Windows& windows) {
-  float* const out = &windows.luminance(0, row);
+void InPlane::find_luminance(const int row) {
+  float* const out = &windows_.luminance(0, row);
   const auto grey = [&](const Blend& blend, const int i) -> const image::Grey& {
     return inside_.charts()[blend.exemplars[i]].luminance;
   };
@@ -221,32 +256,33 @@ void InPlane::find_luminance(const int row, Windows& windows) {
     });
 }
 
-void InPlane::find_change(const int row, const Detail& detail, Windows& windows) {
+void InPlane::find_change(const int row) {
   float* const out = &change_(0, row);
   for (int i = 0; i + 1 < blends_.width; ++i)
     if (asked_(i, row) != 0)
-      windows.find(row, {i * step, i * step + step - 1});
+      windows_.find(row, {i * step, i * step + step - 1});
   for_each_block(
     row, asked_,
     [&](const int first, const Around& around) {
       std::array<float, n_lanes> sums = {};
       for (int i = 0; i < around[0]->n; ++i)
-        detail.histograms(around[0]->exemplars[i]).add(points(around, i, row), &windows.place(first, row), sums.data());
+        detail_->histograms(around[0]->exemplars[i])
+          .add(points(around, i, row), &windows_.place(first, row), sums.data());
       for (int lane = 0; lane < step; ++lane)
-        out[first + lane] = sums[lane] - (windows.luminance(first + lane, row) - windows.mean(first + lane, row));
+        out[first + lane] = sums[lane] - (windows_.luminance(first + lane, row) - windows_.mean(first + lane, row));
     },
     [&](const int column, const Blend& blend) {
-      out[column] = detail.luminance(blend, windows.place(column, row)) -
-                    (windows.luminance(column, row) - windows.mean(column, row));
+      out[column] = detail_->luminance(blend, windows_.place(column, row)) -
+                    (windows_.luminance(column, row) - windows_.mean(column, row));
     });
 }
 
-void InPlane::find_height(const int row, const Windows& windows) {
+void InPlane::find_height(const int row) {
   const bool changes = change_.width > 0;
   for (int i = 0; i + 1 < blends_.width; ++i)
     if (asked_(i, row) != 0)
       for (int c = i * step; c < i * step + step; ++c)
-        height_(c, row) = std::clamp(windows.luminance(c, row) + (changes ? change_(c, row) : 0), 0.0f, 1.0f);
+        height_(c, row) = std::clamp(windows_.luminance(c, row) + (changes ? change_(c, row) : 0), 0.0f, 1.0f);
 }
 
 } // namespace kerf::texture

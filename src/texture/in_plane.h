@@ -18,15 +18,21 @@ class InPlane {
  public:
   enum class Relief { none, wanted };
 
-  /// `detail` may be null: without small features. The plane is that of the first triangle: without an area it has none,
-  /// and colours are those of the inside. Others lie next to the plane.
-  InPlane(const Interior& inside, const Detail* detail, Relief relief, std::span<const Corners> triangles);
+  /// `detail` may be null: without small features.
+  InPlane(const Interior& inside, const Detail* detail, Relief relief)
+    : inside_(inside), detail_(detail), relief_(relief), windows_(0, 0, 0, 1) {}
 
-  /// Of a point of a triangle [m].
-  Eigen::Array4f colour(const Vec3& p) const;
-  /// By how much the luminance, with small features, rises over two pixels along a unit vector in the plane, midway at a
-  /// point of a triangle [m]. Where relief is wanted.
-  float rise(const Vec3& p, const Vec3& along) const;
+  /// The triangles that are asked about next, and whose plane is that of the first: without an area it has none, and
+  /// colours are those of the inside. Others lie next to the plane. Memory is kept for the next ones.
+  void lay(std::span<const Corners> triangles);
+
+  /// Of up to eight points of triangles [m].
+  void colours(std::span<const Vec3> points, std::span<Eigen::Array4f> colours) const;
+  /// A unit vector in the plane, in points of the lattice.
+  Eigen::Vector2f along(const Vec3& unit) const { return Vec2(x_.dot(unit), y_.dot(unit)).cast<float>(); }
+  /// By how much the luminance, with small features, rises over two pixels along a vector of along(), midway at a point
+  /// of a triangle [m]. Where relief is wanted.
+  float rise(const Vec3& p, const Eigen::Vector2f& along) const;
 
  private:
   /// Eight points of a row, from a multiple of eight on: a bit for each.
@@ -38,9 +44,9 @@ class InPlane {
   Span span_of(const Flat& triangle, int row, double margin) const;
   void mark(const std::vector<Flat>& triangles, double margin, int radius);
   void find_blends();
-  void find_luminance(int row, Windows& windows);
-  void find_change(int row, const Detail& detail, Windows& windows);
-  void find_height(int row, const Windows& windows);
+  void find_luminance(int row);
+  void find_change(int row);
+  void find_height(int row);
   /// Four blends around a point of the lattice: of its own cell.
   using Around = std::array<const Blend*, 4>;
   Around nearest(const int i, const int k) const {
@@ -59,6 +65,9 @@ class InPlane {
   static constexpr int step = n_lanes; ///< points of the lattice from blend to blend
 
   const Interior& inside_;
+  const Detail* detail_;
+  Relief relief_;
+  Windows windows_;
   Vec3 origin_ = Vec3::Zero(), x_ = Vec3::Zero(), y_ = Vec3::Zero();
   double pixel_ = 1;
   int width_ = 0, height_in_points_ = 0;
@@ -66,7 +75,7 @@ class InPlane {
   Marks reached_;                              ///< those that windows around them reach
   image::Raster<Blend> blends_;                ///< of every step-th point
   std::map<std::array<int, 3>, Blend> others_; ///< the same for other cells than their own: by column, row, cell
-  image::Grey change_, height_;                ///< of the lattice's points; without pixels where not wanted
+  image::Grey change_, height_;                ///< of the lattice's points; of no width where not wanted
 };
 
 } // namespace kerf::texture

@@ -7,6 +7,7 @@
 #include <Eigen/LU>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace kerf::texture {
@@ -146,6 +147,31 @@ void Interior::find_sources(const CellData& cell, const Vec3& p, const Blending&
     enclose(cell, p, found);
 }
 
+void Interior::find_sources(const CellData& cell, const Lanes* const points, const double power,
+                            const std::span<Found> found) const {
+  const int n = static_cast<int>(cell.sources.size());
+  alignas(64) Lanes distances[max_sources], shares[max_sources], x, y;
+  for (int i = 0; i < n; ++i) {
+    cell.sources[i].find(points, x, y, distances[i]);
+    const SectionPlane& plane = charts_[cell.sources[i].exemplar()].plane;
+    for (int l = 0; l < n_lanes; ++l)
+      found[l].pixels[i] = plane.to_pixels(Vec2(x[l], y[l]));
+  }
+  if (power == 1 || power == 2) {
+    find_shares(n, static_cast<int>(power), distances, shares);
+    for (int l = 0; l < n_lanes; ++l)
+      for (int i = 0; i < n; ++i)
+        found[l].shares[i] = shares[i][l];
+    return;
+  }
+  std::array<double, max_sources> own;
+  for (int l = 0; l < n_lanes; ++l) {
+    for (int i = 0; i < n; ++i)
+      own[i] = distances[i][l];
+    shepard(std::span(own).first(n), power, found[l].shares);
+  }
+}
+
 /// Shepard's shares become mean value coordinates where source points enclose the point.
 void Interior::enclose(const CellData& cell, const Vec3& p, Found& found) const {
   std::array<Vec3, max_sources> points;
@@ -211,10 +237,44 @@ Vec2 Interior::solve_inverse(const CellData& cell, const Found& found, const int
 
 Blend Interior::blend(const Vec3& p, const Blending& how, const int number) const {
   Blend blend;
-  blend.cell = number;
-  const CellData& cell = cells_[blend.cell];
   Found found;
-  find_sources(cell, p, how, found);
+  find_sources(cells_[number], p, how, found);
+  mix(number, found, how, blend);
+  return blend;
+}
+
+void Interior::blend(const std::span<const Vec3> points, const Blending& how,
+                     const std::span<Blend* const> blends) const {
+  std::array<Found, n_lanes> found;
+  std::array<int, n_lanes> cells;
+  alignas(64) Lanes coordinates[3];
+  for (std::size_t l = 0; l < n_lanes; ++l) {
+    const Vec3& p = points[std::min(l, points.size() - 1)];
+    for (int k = 0; k < 3; ++k)
+      coordinates[k][l] = p[k];
+    if (l < points.size())
+      cells[l] = partition_->find(p);
+  }
+  // Whatever lies in another cell than the first one's that is left waits for its own turn.
+  std::uint32_t left = (1u << points.size()) - 1;
+  while (left != 0) {
+    const int cell = cells[std::countr_zero(left)];
+    if (how.weights == Weights::shepard)
+      find_sources(cells_[cell], coordinates, how.power, found);
+    for (std::size_t l = 0; l < points.size(); ++l) {
+      if (cells[l] != cell)
+        continue;
+      if (how.weights != Weights::shepard)
+        find_sources(cells_[cell], points[l], how, found[l]);
+      mix(cell, found[l], how, *blends[l]);
+      left &= ~(1u << l);
+    }
+  }
+}
+
+void Interior::mix(const int number, const Found& found, const Blending& how, Blend& blend) const {
+  const CellData& cell = cells_[number];
+  blend.cell = number;
   blend.n = static_cast<int>(cell.sources.size());
   std::array<Vec2, max_sources> q;
   std::copy_n(found.pixels.begin(), blend.n, q.begin());
@@ -231,7 +291,6 @@ Blend Interior::blend(const Vec3& p, const Blending& how, const int number) cons
     blend.x[i] = static_cast<float>(q[i][0]);
     blend.y[i] = static_cast<float>(q[i][1]);
   }
-  return blend;
 }
 
 Eigen::Array4f Interior::colour(const Blend& blend) const {

@@ -16,6 +16,7 @@
 #include "texture/weights.h"
 
 #include <optional>
+#include <span>
 
 namespace kerf::texture {
 
@@ -47,8 +48,9 @@ struct Maps {
   std::vector<std::vector<BothWays>> warps;          ///< by cell, pairs (i, j) of faces, i < j, in order
 };
 
-/// What makes up the colour of a point.
+/// What makes up the colour of a point: of the arrays the first n.
 struct Blend {
+  Blend() {} // takes no time for the arrays
   int n = 0, cell = 0;
   std::array<std::uint8_t, max_sources> exemplars;
   std::array<float, max_sources> weights;
@@ -66,6 +68,8 @@ class Interior {
   Blend blend(const Vec3& p, const Blending& how) const { return blend(p, how, partition_->find(p)); }
   /// As if the point lay in that cell, which need not be its own: it may lie a little beside it.
   Blend blend(const Vec3& p, const Blending& how, int cell) const;
+  /// Of up to eight points, the same to round-off in less time: what one gets does not depend on the others.
+  void blend(std::span<const Vec3> points, const Blending& how, std::span<Blend* const> blends) const;
   /// Red, green, blue and luminance of a point of the rest frame [m].
   Eigen::Array4f colour(const Vec3& p) const { return colour(blend(p, options_.blending)); }
   Eigen::Array4f colour(const Vec3& p, const Blending& how) const { return colour(blend(p, how)); }
@@ -108,6 +112,9 @@ class Interior {
   void build_cell(int cell, const std::vector<Exemplar>& exemplars, const geometry::TriangleMesh& body,
                   const Maps* known);
   void find_sources(const CellData& cell, const Vec3& p, const Blending& how, Found& found) const;
+  /// Of eight points: their coordinates.
+  void find_sources(const CellData& cell, const Lanes* points, double power, std::span<Found> found) const;
+  void mix(int cell, const Found& found, const Blending& how, Blend& blend) const;
   void enclose(const CellData& cell, const Vec3& p, Found& found) const;
   void morph(const CellData& cell, const Found& found, std::array<Vec2, max_sources>& q) const;
   Vec2 in_picture(int exemplar, const Vec2& pixel) const;

@@ -71,13 +71,100 @@ constexpr float n_in_window = window * window;
 
 } // namespace
 
+__attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default"))) void find_source_points(
+  const StraightSweep& sweep, const Lanes* const points, Lanes& __restrict x, Lanes& __restrict y,
+  Lanes& __restrict distances) {
+  alignas(64) double forward[n_lanes], across[n_lanes], down[n_lanes], steps[n_lanes], part[n_lanes];
+  alignas(64) std::int32_t row[n_lanes], column[n_lanes];
+  const double last = sweep.n_steps - 1 - 1e-9;
+  for (int l = 0; l < n_lanes; ++l) {
+    const double a = points[0][l] - sweep.origin[0], b = points[1][l] - sweep.origin[1],
+                 c = points[2][l] - sweep.origin[2];
+    forward[l] = sweep.forward[0] * a + sweep.forward[1] * b + sweep.forward[2] * c;
+    across[l] = sweep.x[0] * a + sweep.x[1] * b + sweep.x[2] * c;
+    down[l] = sweep.y[0] * a + sweep.y[1] * b + sweep.y[2] * c;
+    double step = forward[l] * sweep.steps_by_t;
+    step = step > 0 ? step : 0;
+    steps[l] = step < last ? step : last;
+    row[l] = static_cast<std::int32_t>(steps[l]);
+  }
+  alignas(64) double middles[n_lanes][4]; // of the rows before and behind
+  for (int l = 0; l < n_lanes; ++l)
+    std::memcpy(middles[l], sweep.middles + 2 * row[l], sizeof middles[l]);
+  alignas(64) double arm_x[n_lanes], arm_y[n_lanes];
+  for (int l = 0; l < n_lanes; ++l) {
+    const double s = steps[l] - row[l];
+    arm_x[l] = across[l] - ((1 - s) * middles[l][0] + s * middles[l][2]);
+    arm_y[l] = down[l] - ((1 - s) * middles[l][1] + s * middles[l][3]);
+    // direction_number()
+    const double sum = std::abs(arm_x[l]) + std::abs(arm_y[l]);
+    const double sine = arm_y[l] / (sum > 1e-300 ? sum : 1e-300);
+    const double right = sine >= 0 ? sine : 4 + sine;
+    double number = (arm_x[l] >= 0 ? right : 2 - sine) * (0.25 * sweep.n_directions);
+    number = number < sweep.n_directions ? number : 0;
+    column[l] = static_cast<std::int32_t>(number);
+    part[l] = number - column[l];
+  }
+  alignas(64) float own[2 * n_lanes], before[2 * n_lanes], behind[2 * n_lanes];
+  for (int l = 0; l < n_lanes; ++l) {
+    const float* const radii = sweep.squared_radii + column[l];
+    const float* const at = radii + static_cast<std::ptrdiff_t>(row[l]) * (sweep.n_directions + 1);
+    std::memcpy(own + 2 * l, radii, 2 * sizeof(float));
+    std::memcpy(before + 2 * l, at, 2 * sizeof(float));
+    std::memcpy(behind + 2 * l, at + sweep.n_directions + 1, 2 * sizeof(float));
+  }
+  alignas(64) double squared_ratio[n_lanes];
+  for (int l = 0; l < n_lanes; ++l) {
+    const auto squared = [&](const float* const pairs) {
+      return (1 - part[l]) * pairs[2 * l] + part[l] * pairs[2 * l + 1];
+    };
+    const double s = steps[l] - row[l];
+    const double here = squared(own), there = (1 - s) * squared(before) + s * squared(behind);
+    const double reach = (steps[l] + sweep.far) * (steps[l] + sweep.far) * there;
+    const double length = (arm_x[l] * arm_x[l] + arm_y[l] * arm_y[l]) * steps[l] * steps[l];
+    squared_ratio[l] = here / there * (reach / (length > reach ? length : reach));
+  }
+  const double middle_x = sweep.middles[0], middle_y = sweep.middles[1];
+  for (int l = 0; l < n_lanes; ++l) {
+    const double ratio = std::sqrt(squared_ratio[l]);
+    x[l] = middle_x + ratio * arm_x[l];
+    y[l] = middle_y + ratio * arm_y[l];
+    const double a = x[l] - across[l], b = y[l] - down[l];
+    distances[l] = std::sqrt(forward[l] * forward[l] + (a * a + b * b));
+  }
+}
+
+__attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default"))) void find_shares(
+  const int n, const int power, const Lanes* const distances, Lanes* const __restrict shares) {
+  alignas(64) double largest[n_lanes] = {}, sums[n_lanes] = {};
+  for (int i = 0; i < n; ++i)
+    for (int l = 0; l < n_lanes; ++l)
+      largest[l] = distances[i][l] > largest[l] ? distances[i][l] : largest[l];
+  for (int i = 0; i < n; ++i) {
+    alignas(64) double share[n_lanes];
+    for (int l = 0; l < n_lanes; ++l) {
+      const double d = distances[i][l] + (1e-12 * largest[l] + 1e-300), product = power == 1 ? d : d * d;
+      share[l] = 1 / product;
+      sums[l] += share[l];
+    }
+    std::memcpy(shares[i], share, sizeof share);
+  }
+  for (int i = 0; i < n; ++i)
+    for (int l = 0; l < n_lanes; ++l)
+      shares[i][l] /= sums[l];
+}
+
 __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default"))) void add_values(
   const float* const picture, const int width, const int height, const PointRow& points, float* const __restrict sums) {
   const Footings f = footings(width, height, points);
+  alignas(64) float upper[2 * n_lanes], lower[2 * n_lanes];
   for (int l = 0; l < n_lanes; ++l) {
-    const float* const p = picture + f.index[l];
-    const float top = p[0] + f.right[l] * (p[1] - p[0]);
-    const float bottom = p[width] + f.right[l] * (p[width + 1] - p[width]);
+    std::memcpy(upper + 2 * l, picture + f.index[l], 2 * sizeof(float));
+    std::memcpy(lower + 2 * l, picture + f.index[l] + width, 2 * sizeof(float));
+  }
+  for (int l = 0; l < n_lanes; ++l) {
+    const float top = upper[2 * l] + f.right[l] * (upper[2 * l + 1] - upper[2 * l]);
+    const float bottom = lower[2 * l] + f.right[l] * (lower[2 * l + 1] - lower[2 * l]);
     sums[l] += f.weight[l] * (top + f.down[l] * (bottom - top));
   }
 }
@@ -86,23 +173,34 @@ __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default"))) vo
   const std::int16_t* const picture, const int width, const int height, const PointRow& points,
   const float* const places, float* const __restrict sums) {
   const Footings f = footings(width, height, points);
+  constexpr int n_steps = n_quantiles - 1;
+  alignas(64) std::int32_t first[n_lanes]; // the lower quantile of the upper left pixel
+  alignas(64) float share[n_lanes];
   for (int l = 0; l < n_lanes; ++l) {
-    constexpr int n_steps = n_quantiles - 1;
     const float number = places[l] * n_steps;
     auto k = static_cast<std::int32_t>(number);
     k = k < n_steps - 1 ? k : n_steps - 1;
-    const float share = number - static_cast<float>(k);
-    const std::int16_t* const p = picture + n_quantiles * f.index[l] + k;
-    const auto value = [share](const std::int16_t* const two) {
-      std::uint32_t pair; // both at once
-      std::memcpy(&pair, two, sizeof pair);
-      const auto low = static_cast<float>(static_cast<std::int32_t>(pair << 16) >> 16);
-      const auto high = static_cast<float>(static_cast<std::int32_t>(pair) >> 16);
-      return low + share * (high - low);
-    };
-    const float a = value(p), b = value(p + n_quantiles);
-    const float c = value(p + n_quantiles * width), d = value(p + n_quantiles * (width + 1));
-    const float top = a + f.right[l] * (b - a), bottom = c + f.right[l] * (d - c);
+    share[l] = number - static_cast<float>(k);
+    first[l] = n_quantiles * f.index[l] + k;
+  }
+  // Two quantiles at once, of the four pixels around each point.
+  alignas(64) std::int32_t a[n_lanes], b[n_lanes], c[n_lanes], d[n_lanes];
+  for (int l = 0; l < n_lanes; ++l) {
+    const std::int16_t* const p = picture + first[l];
+    const std::int16_t* const q = p + static_cast<std::ptrdiff_t>(n_quantiles) * width;
+    std::memcpy(a + l, p, sizeof *a);
+    std::memcpy(b + l, p + n_quantiles, sizeof *b);
+    std::memcpy(c + l, q, sizeof *c);
+    std::memcpy(d + l, q + n_quantiles, sizeof *d);
+  }
+  const auto value = [&share](const std::int32_t* const pairs, const int l) {
+    const auto low = static_cast<float>(static_cast<std::int32_t>(static_cast<std::uint32_t>(pairs[l]) << 16) >> 16);
+    const auto high = static_cast<float>(pairs[l] >> 16);
+    return low + share[l] * (high - low);
+  };
+  for (int l = 0; l < n_lanes; ++l) {
+    const float upper = value(a, l), lower = value(c, l);
+    const float top = upper + f.right[l] * (value(b, l) - upper), bottom = lower + f.right[l] * (value(d, l) - lower);
     sums[l] += f.weight[l] * (top + f.down[l] * (bottom - top));
   }
 }

@@ -35,6 +35,24 @@ void complete(std::vector<double>& radii, const std::vector<double>& before, con
     radii[k] = std::max(radii[k] > 0 || before.empty() ? radii[k] : before[k], least);
 }
 
+/// Radii of a border that no ray meets at less than 27 degrees: where it does, and where it jumps from an arm to a bay, a
+/// spiral takes the place of the bay, r ~ exp(-2 angle). So the ratio of two radii changes with the angle by at most its
+/// fourfold, and what is next to each other is drawn apart by at most sqrt(1 + 4^2) times that ratio, also where arms of
+/// two sections do not lie in the same directions. Other borders stay: an ellipse up to 4.2 times as long as wide.
+std::vector<double> without_jumps(std::vector<double> radii) {
+  constexpr double slope = 2;
+  const int n = static_cast<int>(radii.size());
+  const auto spread = [&](const int from, const int to) {
+    const double cosine = direction(from, n).dot(direction(to, n));
+    radii[to] = std::max(radii[to], radii[from] * std::exp(-slope * std::acos(std::min(1.0, cosine))));
+  };
+  for (int k = 0; k < 2 * n; ++k) // twice around: it has no beginning
+    spread(k % n, (k + 1) % n);
+  for (int k = 2 * n; k > 0; --k)
+    spread(k % n, (k - 1) % n);
+  return radii;
+}
+
 } // namespace
 
 Source::Source(const Face& face, const Cell& cell, const Exemplar& exemplar, const Chart& chart,
@@ -200,8 +218,9 @@ void Source::tabulate(const Cell& cell, const Exemplar& exemplar, const geometry
     if (!guess.empty())
       guess = row;
     middles_[i] = middle;
+    const std::vector<double> smooth = reach_.empty() ? without_jumps(row) : row;
     for (int k = 0; k <= n_directions; ++k)
-      squared_radii_.push_back(static_cast<float>(row[k % n_directions] * row[k % n_directions]));
+      squared_radii_.push_back(static_cast<float>(smooth[k % n_directions] * smooth[k % n_directions]));
   }
 }
 
@@ -228,9 +247,24 @@ Vec2 Source::find(const Swept& swept) const {
   // Far beyond the boundary, outside of the body, the source point stays there. How far is far falls from infinity in
   // the face itself, where interpolated radii may cut a corner off and the source point must still be the point itself:
   // there (step + far) / step.
-  constexpr double far = 0.02 * (n_steps - 1);
   const double squared_length = arm.squaredNorm() * step * step, farthest = there * (step + far) * (step + far);
   return middles_[0] + (squared_length > farthest ? ratio * std::sqrt(farthest / squared_length) : ratio) * arm;
+}
+
+void Source::find(const Lanes* const points, Lanes& x, Lanes& y, Lanes& distances) const {
+  if (!turns_ && reach_.empty()) {
+    const auto numbers = [](const Vec3& v) { return std::array<double, 3>{v[0], v[1], v[2]}; };
+    find_source_points({numbers(plane_.origin), numbers(plane_.x), numbers(plane_.y), numbers(side_ * normal_),
+                        steps_by_t_, n_steps, n_directions, far, squared_radii_.data(), middles_.front().data()},
+                       points, x, y, distances);
+    return;
+  }
+  for (int l = 0; l < n_lanes; ++l) {
+    const Point point = find(Vec3(points[0][l], points[1][l], points[2][l]));
+    x[l] = point.local[0];
+    y[l] = point.local[1];
+    distances[l] = point.distance;
+  }
 }
 
 } // namespace kerf::texture

@@ -2,14 +2,18 @@
 
 namespace kerf::texture {
 
-// Eight points at a time go beyond the last row's end.
 Windows::Windows(const int width, const int height, const int gutter, const int stride)
-  : width_(width),
-    gutter_(gutter),
-    stride_(stride),
-    luminance_(static_cast<std::size_t>(width + 2 * gutter) * (height + 2 * gutter) + n_lanes),
-    mean_(static_cast<std::size_t>(width) * height + n_lanes),
-    place_(mean_.size()) {}
+  : gutter_(gutter), stride_(stride) {
+  reset(width, height);
+}
+
+void Windows::reset(const int width, const int height) {
+  width_ = width;
+  // Eight points at a time go beyond the last row's end.
+  luminance_.assign(static_cast<std::size_t>(width + 2 * gutter_) * (height + 2 * gutter_) + n_lanes, 0);
+  mean_.assign(static_cast<std::size_t>(width) * height + n_lanes, 0);
+  place_.assign(mean_.size(), 0);
+}
 
 void Windows::find(const int row, const Span& span) {
   for (int c = span.first; c <= span.last; c += n_lanes)

@@ -18,6 +18,8 @@ class Windows {
  public:
   /// Points of windows are `stride` points apart; what windows reach beyond the lattice lies in a `gutter` around it.
   Windows(int width, int height, int gutter, int stride);
+  /// The same for a lattice of another size. Keeps its memory.
+  void reset(int width, int height);
 
   float& luminance(const int column, const int row) { return luminance_[index(column, row)]; }
   float luminance(const int column, const int row) const { return luminance_[index(column, row)]; }
@@ -33,7 +35,7 @@ class Windows {
   }
   std::size_t inner(const int column, const int row) const { return static_cast<std::size_t>(row) * width_ + column; }
 
-  int width_, gutter_, stride_;
+  int width_ = 0, gutter_, stride_;
   std::vector<float> luminance_, mean_, place_;
 };
 

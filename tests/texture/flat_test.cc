@@ -32,7 +32,14 @@ TEST(FlatGroups, JoinWhatLiesInNearlyOnePlane) {
   EXPECT_EQ(groups_of(strip(5, [](double) { return 0.0; })).size(), 1u);
   EXPECT_EQ(groups_of(strip(5, [](const double x) { return x; })).size(), 1u);
   EXPECT_EQ(groups_of(strip(5, [](const double x) { return 0.2 * std::sin(0.05 * x); })).size(), 1u);
-  EXPECT_EQ(groups_of(strip(2, [](const double x) { return x > 5 ? 0.05 * (x - 5) : 0; })).size(), 2u); // 2.9 degrees
+  EXPECT_EQ(groups_of(strip(2, [](const double x) { return x > 5 ? 0.049 * (x - 5) : 0; })).size(), 1u); // 2.8 degrees
+  EXPECT_EQ(groups_of(strip(2, [](const double x) { return x > 5 ? 0.051 * (x - 5) : 0; })).size(), 2u); // too high
+  const auto lean = [](const double slope) { // short triangles, whose corners stay near the plane
+    return std::vector<Corners>{{Vec3(0, 0, 0), Vec3(pixel, 0, 0), Vec3(0, pixel, 0)},
+                                {Vec3(0, 0, 0), Vec3(0, -pixel, 0), Vec3(pixel, 0, pixel * slope)}};
+  };
+  EXPECT_EQ(groups_of(lean(0.041)).size(), 1u); // 3.3 degrees about x and y
+  EXPECT_EQ(groups_of(lean(0.06)).size(), 2u);
   EXPECT_EQ(groups_of(strip(2, [](const double x) { return x < 7 ? 0 : 5; })).size(), 2u);
   EXPECT_GT(groups_of(strip(60, [](double) { return 0.0; })).size(), 2u); // 300 pixels
 }

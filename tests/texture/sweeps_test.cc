@@ -8,6 +8,8 @@
 
 #include <gtest/gtest.h>
 
+#include <numeric>
+
 namespace kerf::texture {
 namespace {
 
@@ -103,6 +105,54 @@ TEST_P(Ways, GiveTheSameBitsInAnyOrderAndWithAnyNumberOfThreads) {
     ASSERT_TRUE((found[0][i] == found[1][i]).all()) << i;
 }
 
+/// What points get when up to eight are asked for at once, in the order of `numbers`.
+std::vector<Blend> together(const Interior& inside, const Points& points, const Blending& how,
+                            const std::vector<int>& numbers) {
+  std::vector<Blend> blends(points.size());
+  for (std::size_t first = 0; first < numbers.size(); first += 8) {
+    Points some;
+    std::vector<Blend*> places;
+    for (std::size_t i = first; i < std::min(first + 8, numbers.size()); ++i) {
+      some.push_back(points[numbers[i]]);
+      places.push_back(&blends[numbers[i]]);
+    }
+    inside.blend(some, how, places);
+  }
+  return blends;
+}
+
+/// How far two blends are from each other, in pixels and in weights.
+double gap(const Blend& a, const Blend& b) {
+  double most = a.n == b.n && a.cell == b.cell ? 0 : 1e300;
+  for (int i = 0; i < a.n && most < 1; ++i)
+    most = std::max<double>({most, std::abs(a.weights[i] - b.weights[i]), std::abs(a.x[i] - b.x[i]),
+                             std::abs(a.y[i] - b.y[i]), a.exemplars[i] == b.exemplars[i] ? 0.0 : 1e300});
+  return most;
+}
+
+TEST_P(Ways, GiveEightPointsAtOnceWhatTheyGiveEach) {
+  Input input = GetParam().input();
+  input.options.warps.pixels = 16; // any warps will do
+  input.options.warps.match.n_levels = 1;
+  input.options.warps.match.n_iterations = 2;
+  const Interior inside(input.exemplars, input.body, input.options);
+  Points points = points_inside(203, 6, 0.06); // some outside, where source points stay at the border
+  for (int i = 0; i < 50; ++i)
+    points[i] -= inside.charts()[0].plane.height(points[i]) * inside.charts()[0].plane.normal(); // of weight 1
+  std::vector<int> forward(points.size()), mixed;
+  std::iota(forward.begin(), forward.end(), 0);
+  mixed = forward;
+  std::shuffle(mixed.begin(), mixed.end(), std::mt19937(3));
+  for (const Blending& how : {Blending{Morph::first_order, Weights::shepard, 1}, Blending{Morph::blend, {}, 2},
+                              Blending{Morph::blend, {}, 2.5}, Blending{Morph::blend, Weights::mean_value, 1}}) {
+    const auto a = together(inside, points, how, forward), b = together(inside, points, how, mixed);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      EXPECT_EQ(gap(a[i], b[i]), 0) << i; // whatever the others are
+      EXPECT_LT(gap(a[i], inside.blend(points[i], how)), 1e-3) << i;
+    }
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(
   All, Ways,
   testing::Values(Way{"normal", [] { return swept({}); }}, Way{"middles", [] { return swept({Sweep::Path::middles}); }},
@@ -154,6 +204,27 @@ TEST(Sweeps, ThatCannotTurnAreRefused) {
   expect_refused(exemplars, "Centre [m]", "barycentre of a face lies at the centre");
   exemplars[0].sweep = {Sweep::Path::arc, middle + 0.02 * x};
   expect_refused(exemplars, "Centre [m]", "crosses a face");
+}
+
+/// An arch along its plane: rays from its middle leave it, and those to its ends meet it again. Where the swept section's
+/// arms end in other directions, neighbours must stay neighbours.
+TEST(Sweeps, ThroughArmsAndBaysDrawNeighboursApartNoFurtherThanSpiralsDo) {
+  const auto body = arch();
+  const Interior inside({exemplar_of("along", onion, Vec3(0, 1e-5, 0), Vec3::UnitZ(), Vec3::UnitX(), 200)}, body, {});
+  const geometry::Inside within(body);
+  const double pixel = inside.pixel(), step = 1e-3 * pixel;
+  double furthest = 0;
+  for (const double height : {0.004, 0.008, 0.011})
+    for (double x = -0.044; x < 0.044; x += 0.5 * pixel)
+      for (double z = -0.04; z < 0.03; z += 0.5 * pixel) {
+        const Vec3 p(x, height, z), q = p + step * Vec3(1, 0, 1).normalized();
+        if (!within.contains(p) || !within.contains(q))
+          continue;
+        const Blend a = inside.blend(p, {Morph::blend}), b = inside.blend(q, {Morph::blend});
+        furthest = std::max(furthest, std::hypot(a.x[0] - b.x[0], a.y[0] - b.y[0]) / (step / pixel));
+      }
+  std::printf("neighbours are drawn apart %.1f times at most\n", furthest);
+  EXPECT_LT(furthest, 4.13 * 1.62); // so much thicker is the arch than at these heights
 }
 
 TEST(Components, SeveralAreRefusedUntilOneMoreExemplarPartsThem) {
