@@ -185,7 +185,10 @@ class Report(unittest.TestCase):
             path.write_bytes((FILES / "quick/study.h5").read_bytes())
             with h5py.File(path, "r+") as file:
                 rows = file["study/rows"]
-                rows["family"][:] = rows["name"][:]  # as where no axis is named for orders
+                attributes = dict(rows["family"].attrs)
+                del rows["family"]
+                rows["family"] = rows["name"][()]  # as where no axis is named for orders
+                rows["family"].attrs.update(attributes)
                 rows["reference"][:] = 1
             study = package.open(path)
             self.assertEqual(len(studies.problems(study)), 1)
