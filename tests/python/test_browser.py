@@ -1,10 +1,12 @@
 """The report in a headless browser without a network: its scripts run, the surfaces are drawn, it prints."""
 
 import pathlib
+import re
 import shutil
 import subprocess
 import tempfile
 import unittest
+import zlib
 
 from support import FILES, kerf, skip
 
@@ -59,6 +61,21 @@ class Browser(unittest.TestCase):
         content = (self.at / "page.pdf").read_bytes()
         self.assertEqual(content[:5], b"%PDF-")
         self.assertGreater(content.count(b"/Type /Page"), 4)
+        # Points a pixel of the page: 3/4, and less where a table is too wide and the browser makes all smaller.
+        self.assertAlmostEqual(scale_of_print(content), 0.75, delta=0.03)
+
+
+def scale_of_print(pdf):
+    """The product of the scales that a page of text begins with."""
+    for stream in re.finditer(rb"stream\r?\n(.*?)endstream", pdf, re.S):
+        try:
+            text = zlib.decompress(stream.group(1).strip(b"\r\n"))
+        except zlib.error:
+            continue
+        scales = re.findall(rb"([\d.]+) 0 0 -?[\d.]+ [\d.]+ [\d.]+ cm", text)
+        if b" Tf" in text and len(scales) >= 2:
+            return float(scales[0]) * float(scales[1])
+    raise AssertionError("no page of text")
 
 
 if __name__ == "__main__":
