@@ -38,7 +38,9 @@ std::vector<cut::Segment> skin_that_holds(const Body& body) {
     const grid::Skeleton& skeleton = cuts.skeleton();
     if (!cuts.has_skin())
       continue;
-    cut::SkinNow(body.solid, c).for_each_uncut([&](const int segment) {
+    cut::SkinNow(body.solid, c).for_each_segment([&](const int segment) {
+      if ((cuts.blades >> segment & 1) != 0)
+        return;
       const auto& ends = skeleton.segment[segment].ends;
       if (skeleton.vertex[ends[0]] != skeleton.vertex[ends[1]])
         segments.push_back(cut::SkinNow(body.solid, c).segment(segment, corners(body)));
