@@ -24,7 +24,8 @@ def draw_error_against_time(axes, study, norm, numbers):
         style = drawing.look(numbers[method])
         if len(studies.problems(study)) > 1:
             style["linestyle"] = "none"  # rows of different problems: a line between them would mean nothing
-        axes.plot(times[mine], errors[mine], label=method, **style)
+        label = method if mine.size else f"{method}: no row has an error"
+        axes.plot(times[mine], errors[mine], label=label, **style)
         half = studies.half_spreads(study)[rows[mine]]
         if (half > 0).any():
             ends = np.maximum(times[mine] - half, 0.01 * times[mine]), times[mine] + half

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <fstream>
 #include <map>
 
 namespace kerf::study {
@@ -182,6 +183,8 @@ Plan make_plan(const scene::SceneText& text) {
     require_change(study, parameters, axes);
 
   Plan plan{parameters, study, scene::standalone_text(text, grammar()), scene::resolved(parameters.scene, study), {}};
+  if (!std::ifstream(plan.scene))
+    throw study.complaint("Scene", "the scene cannot be read", "Name a file that you may read, from this one's folder");
   plan.norms = read_norms(root);
   if (const Section* points = root.find("Points")) {
     plan.points = read_points(*points);

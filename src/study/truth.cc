@@ -23,7 +23,7 @@ namespace {
 using scene::Section;
 
 /// Changes where the same section would give another number, so that old files of the cache do not count.
-constexpr char version[] = "2\n";
+constexpr char version[] = "3\n";
 
 std::string text_of(const char* format, const double value) {
   std::array<char, 64> text{};
@@ -36,6 +36,7 @@ struct Task {
   TruthParameters body;
   TruthAnswerParameters answer;
   reference::Problem problem;
+  std::optional<reference::Problem> coarser; ///< with a layer less, where the body has layers
   Points points;             ///< Point, Minus point, then those of the study, in the section's frame [m]
   bool has_minus, frequency; ///< whether they are asked for
 };
@@ -68,10 +69,12 @@ double asked(const Task& task, const Points& u) {
   return task.has_minus ? u[0][axis] - u[1][axis] : u[0][axis];
 }
 
-/// What is known of a problem's points: how the answer moves, and where they are at the end [m].
+/// What a solution says of a task's problem.
 struct Answer {
-  double value = 0;
-  Points displacements;
+  double value = 0;                                         ///< [m]
+  Points displacements = {};                                ///< of the task's points, at the end [m]
+  double energy = std::numeric_limits<double>::quiet_NaN(); ///< in equilibrium [J]
+  std::size_t n_unknowns = 0;                               ///< in equilibrium
 };
 
 Answer end_of(const Task& task, const std::vector<Points>& u) {
@@ -83,58 +86,82 @@ Answer end_of(const Task& task, const std::vector<Points>& u) {
   return {take(series, how, task.body.time_step), u.back()};
 }
 
-std::unique_ptr<reference::Solution> in_equilibrium(const Task& task, const int degree) {
-  return reference::solve(task.problem, {degree, 0, task.answer.n_adaptations, 0.1});
-}
-
-Answer answer_of(const Task& task, const reference::Solution& solution) {
+Answer in_equilibrium(const Task& task, const reference::Problem& problem, const int degree) {
+  const auto solution = reference::solve(problem, {degree, 0, task.answer.n_adaptations, 0.1});
   Points u;
   for (const Vec3& X : task.points)
-    u.push_back(solution.displacement(X));
-  return end_of(task, {u});
+    u.push_back(solution->displacement(X));
+  Answer answer = end_of(task, {u});
+  answer.energy = solution->energy() * task.answer.energy_factor;
+  answer.n_unknowns = solution->n_unknowns();
+  return answer;
 }
 
-Answer in_motion(const Task& task, const Fineness& fineness) {
+Answer in_motion(const Task& task, const reference::Problem& problem, const Fineness& fineness) {
   const int n_steps = static_cast<int>(std::lround(task.body.end_time / fineness.time_step));
-  return end_of(task, reference::motion(task.problem, {fineness.degree, 0, task.answer.n_adaptations, 0.1},
+  return end_of(task, reference::motion(problem, {fineness.degree, 0, task.answer.n_adaptations, 0.1},
                                         {task.body.end_time / n_steps, n_steps, task.body.mass_damping}, task.points));
 }
 
-void require_agreement(const double difference, const Task& task, const std::string& told) {
-  if (!(difference <= task.answer.tolerance))
-    throw NumericalError("the section Truth has no answer within its tolerance: " + told +
-                         ". Use more adaptations or cells, or a smaller time step");
+/// Of a body whose error is in proportion to its innermost layer, from the answers with n layers and with n - 1: Richardson's.
+Answer extrapolated(const Answer& fine, const Answer& coarse) {
+  constexpr double factor = layer_ratio / (1 - layer_ratio);
+  Answer answer = fine;
+  answer.value += factor * (fine.value - coarse.value);
+  answer.energy += factor * (fine.energy - coarse.energy);
+  for (std::size_t i = 0; i < answer.displacements.size(); ++i)
+    answer.displacements[i] += factor * (fine.displacements[i] - coarse.displacements[i]);
+  return answer;
 }
 
-Reference told(const Task& task, const Answer& best, const double other, const std::string& how) {
-  const double difference = std::abs(other / best.value - 1);
-  const std::string differs = "degree " + std::to_string(task.answer.degree - 1) +
-                              (task.body.end_time > 0 ? " and twice the time step differ by " : " differs by ") +
-                              text_of("%.1e", difference);
-  require_agreement(difference, task, differs);
+Answer answer_of(const Task& task, const Fineness& fineness) {
+  const auto of = [&](const reference::Problem& problem) {
+    return task.body.end_time > 0 ? in_motion(task, problem, fineness) : in_equilibrium(task, problem, fineness.degree);
+  };
+  const Answer fine = of(task.problem);
+  return task.coarser ? extrapolated(fine, of(*task.coarser)) : fine;
+}
+
+/// By how much the same found less finely differs. Throws NumericalError where that is more than the tolerance.
+std::string agreement(const Task& task, const std::string& what, const double best, const double other,
+                      const std::string& how) {
+  const std::string told = "degree " + std::to_string(task.answer.degree - 1) + how + text_of("%.1e", other / best - 1);
+  if (!(std::abs(other / best - 1) <= task.answer.tolerance))
+    throw NumericalError("the section Truth has no " + what + " within its tolerance: " + told +
+                         ". Use more adaptations or cells, or a smaller time step");
+  return told;
+}
+
+/// The lowest of the body, on cells that are refined once.
+double frequency(const Task& task, const int degree) {
+  return reference::lowest_frequencies(task.problem, {degree, 1, 0}, 1).front();
+}
+
+Reference solve(const Task& task, const Section& section) {
+  const bool moves = task.body.end_time > 0;
+  const int degree = task.answer.degree;
+  const double dt = task.body.time_step;
+  const Answer best = answer_of(task, {degree, dt}), other = answer_of(task, {degree - 1, 2 * dt});
+  double largest = 0; // of the points, round-off of which the answer may be
+  for (const Vec3& u : best.displacements)
+    largest = std::max(largest, u.norm());
+  if (!(std::abs(best.value) > 1e-10 * largest))
+    throw section.complaint("Axis", "the displacement that is asked for is 0, which nothing can be measured by",
+                            "Ask for another component or point");
   Reference found;
   found.value = best.value;
-  found.source = "deal.II, degree " + std::to_string(task.answer.degree) + ", " + how + "; " + differs;
+  found.energy = best.energy;
+  found.source =
+    "deal.II, degree " + std::to_string(degree) + ", " +
+    (moves ? "time step " + text_of("%.3g", dt) + " s" : std::to_string(best.n_unknowns) + " unknowns") +
+    (task.coarser ? ", extrapolated from layers" : "") + "; " +
+    agreement(task, "answer", best.value, other.value, moves ? " and twice the time step differ by " : " differs by ");
   for (std::size_t i = task.has_minus ? 2 : 1; i < task.points.size(); ++i)
     found.displacements.push_back(to_scene(task.answer, best.displacements[i]));
-  return found;
-}
-
-Reference solve(const Task& task) {
-  const int degree = task.answer.degree;
-  Reference found;
-  if (task.body.end_time > 0) {
-    const double dt = task.body.time_step;
-    found = told(task, in_motion(task, {degree, dt}), in_motion(task, {degree - 1, 2 * dt}).value,
-                 "time step " + text_of("%.3g", dt) + " s");
-  } else {
-    const auto best = in_equilibrium(task, degree);
-    found = told(task, answer_of(task, *best), answer_of(task, *in_equilibrium(task, degree - 1)).value,
-                 std::to_string(best->n_unknowns()) + " unknowns");
-    found.energy = best->energy() * task.answer.energy_factor;
+  if (task.frequency) {
+    found.frequency = frequency(task, degree);
+    agreement(task, "lowest frequency", found.frequency, frequency(task, degree - 1), " differs by ");
   }
-  if (task.frequency)
-    found.frequency = reference::lowest_frequencies(task.problem, {degree, 1, 0}, 1).front();
   return found;
 }
 
@@ -174,8 +201,10 @@ void keep(const std::filesystem::path& file, const Reference& found) {
 }
 
 Task task_of(const Section& section, const TruthAsked& asked) {
-  Task task{section.read<TruthParameters>(), section.read<TruthAnswerParameters>(), {}, {}, false, asked.frequency};
+  Task task{section.read<TruthParameters>(), section.read<TruthAnswerParameters>(), {}, {}, {}, false, asked.frequency};
   task.problem = problem_of(task.body, section);
+  if (has_layers(task.body))
+    task.coarser = problem_of(task.body, section, 1);
   task.has_minus = section.writes("Minus point [m]");
   task.points = {task.answer.point};
   if (task.has_minus)
@@ -217,11 +246,13 @@ Reference find_truth(const Section& section, const TruthAsked& asked, const std:
   if (const auto found = cache.empty() ? std::nullopt : kept(file))
     return *found;
   try {
-    const Reference found = solve(task);
+    const Reference found = solve(task, section);
     if (!cache.empty())
       keep(file, found);
     return found;
   } catch (const ParameterError& error) {
+    if (!error.complaint().file.empty())
+      throw;
     throw section.complaint("Cells [1]", error.what(), "Write fewer");
   } catch (const DataError&) {
     throw section.complaint("Point [m]",

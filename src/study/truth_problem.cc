@@ -46,6 +46,10 @@ Vec3 bilinear(const Points& corner, const Vec3& s) {
   return Vec3((1 - s[1]) * low + s[1] * high) + Vec3(0, 0, s[2]);
 }
 
+const char* const quadrilateral_shape = "quadrilateral";
+const char* const disc_shape = "disc";
+const char* const disc_in_square_shape = "disc in a square";
+
 bool is_convex(const Points& corner) {
   for (std::size_t i = 0; i < 4; ++i) {
     const Vec3 a = corner[(i + 1) % 4] - corner[i], b = corner[(i + 2) % 4] - corner[(i + 1) % 4];
@@ -62,21 +66,44 @@ void require_quadrilateral(const TruthParameters& p, const Section& section) {
 }
 
 void require_disc(const TruthParameters& p, const Section& section) {
+  if (!(p.radius > 0))
+    throw section.complaint("Radius [m]", "a disc has a radius", "Write one > 0");
+}
+
+void require_disc_in_square(const TruthParameters& p, const Section& section) {
   if (!(p.radius > 0 && p.radius < 0.8 * p.half_width))
     throw section.complaint("Radius [m]", "the disc must lie well within the square",
                             "Write a radius > 0 and below .8 of the key 'Half width [m]'");
   if (p.heights.empty() || !(p.heights[0] < 0 && p.heights[1] > 0))
     throw section.complaint("Heights [m]", "a body with a disc reaches below and above z = 0", "Write -1, 1");
+  if (p.cells.empty() || p.cells[0] < 2)
+    throw section.complaint("Cells [1]", "a disc in a square has two layers at its rim or more", "Write 3 or 4");
+}
+
+/// How many numbers say the cells of a shape.
+std::size_t n_counts(const TruthParameters& p) {
+  if (has_layers(p))
+    return 1;
+  return (p.shape == disc_shape ? 1u : 2u) + (p.heights.empty() ? 0u : 1u);
 }
 
 void require_shape(const TruthParameters& p, const Section& section) {
   if (!p.heights.empty() && (p.heights.size() != 2 || !(p.heights[0] < p.heights[1])))
     throw section.complaint("Heights [m]", "must be two, the lower one first, or none",
                             "Write 0, 1; none: plane strain");
-  p.shape == "quadrilateral" ? require_quadrilateral(p, section) : require_disc(p, section);
-  const std::size_t n = p.heights.empty() ? 2 : 3;
+  if (p.shape == quadrilateral_shape)
+    require_quadrilateral(p, section);
+  else if (p.shape == disc_shape)
+    require_disc(p, section);
+  else
+    require_disc_in_square(p, section);
+  const std::size_t n = n_counts(p);
   if (p.cells.size() < n || std::any_of(p.cells.begin(), p.cells.end(), [](double c) { return c != std::floor(c); }))
-    throw section.complaint("Cells [1]", "must be whole numbers, one a direction", "Write 4, 4 or 4, 4, 2");
+    throw section.complaint("Cells [1]",
+                            "must be whole numbers, " + std::to_string(n) + " of them for this shape and its heights",
+                            n == 1   ? "Write 4"
+                            : n == 2 ? "Write 4, 4"
+                                     : "Write 4, 4, 2");
   if ((p.end_time > 0) != (p.time_step > 0) || p.time_step > p.end_time)
     throw section.complaint("Time step [s]", "a motion has a time step and an end, at least a step later",
                             "Write both, or leave both out");
@@ -93,6 +120,16 @@ reference::Mesh quadrilateral(const TruthParameters& p) {
   return mesh;
 }
 
+reference::Mesh disc(const TruthParameters& p) {
+  const int n_rings = count(p, 0);
+  std::vector<double> radii; // the core, then rings as wide as half of it
+  for (int i = 0; i <= n_rings; ++i)
+    radii.push_back(p.radius * (2 + i) / (2 + n_rings));
+  const reference::Mesh plane = reference::disc(radii);
+  return p.heights.empty() ? plane
+                           : reference::extruded(plane, reference::equal(p.heights[0], p.heights[1], count(p, 1)));
+}
+
 /// From `end` on outwards to `to` [m], each interval `ratio` times the one before.
 void extend(std::vector<double>& at, const double to, const double ratio) {
   for (double step = ratio * (at.back() - at[at.size() - 2]); at.back() + 1.5 * step < to; step *= ratio)
@@ -100,10 +137,10 @@ void extend(std::vector<double>& at, const double to, const double ratio) {
   at.push_back(to);
 }
 
-/// Layers on both sides of the rim of the disc, and above and below it, shrink by .15 towards it.
-reference::Mesh disc_in_block(const TruthParameters& p) {
-  constexpr double ratio = 0.15, outwards = 2;
-  const std::vector<double> near = reference::graded(0, 0.6 * p.radius, count(p, 0), ratio);
+/// Layers on both sides of the rim of the disc, and above and below it, shrink towards it.
+reference::Mesh disc_in_block(const TruthParameters& p, const int n_layers) {
+  constexpr double outwards = 2;
+  const std::vector<double> near = reference::graded(0, 0.6 * p.radius, n_layers, layer_ratio);
   std::vector<double> radii;
   for (std::size_t i = near.size(); i-- > 0;)
     radii.push_back(p.radius - near[i]);
@@ -148,10 +185,14 @@ std::array<bool, 3> held_along(const std::string& axes) {
 
 } // namespace
 
-reference::Problem problem_of(const TruthParameters& p, const Section& section) {
+bool has_layers(const TruthParameters& p) { return p.shape == disc_in_square_shape; }
+
+reference::Problem problem_of(const TruthParameters& p, const Section& section, const int fewer_layers) {
   require_shape(p, section);
   reference::Problem problem;
-  problem.mesh = p.shape == "quadrilateral" ? quadrilateral(p) : disc_in_block(p);
+  problem.mesh = p.shape == quadrilateral_shape ? quadrilateral(p)
+                 : p.shape == disc_shape        ? disc(p)
+                                                : disc_in_block(p, count(p, 0) - fewer_layers);
   for (const Section* one : section.all("Crack"))
     crack(problem.mesh, *one);
   problem.youngs_modulus = p.youngs_modulus;
@@ -173,22 +214,25 @@ reference::Problem problem_of(const TruthParameters& p, const Section& section) 
   }
   if (p.force.norm() > 0)
     problem.body_force = [f = p.force](const Vec3&) { return f; };
+  else if (problem.tractions.empty())
+    throw section.complaint("nothing pulls at the body, so that it stays as it is",
+                            "Write 'set Force [N/m^3] = x, y, z' or a section 'Pulled NAME'");
   return problem;
 }
 
 void TruthParameters::describe(Parameters& p) {
-  p.choice("Shape", shape, {"quadrilateral", "disc in a square"},
-           "The body in the plane z = 0. The second has cells that are fitted to a disc around the origin, whose rim a "
-           "crack may "
-           "have as its front.");
+  p.choice(
+    "Shape", shape, {quadrilateral_shape, disc_shape, disc_in_square_shape},
+    "The body in the plane z = 0. A disc lies around the origin; with heights it is a cylinder. In the square cells "
+    "are fitted to a disc whose rim a crack may have as its front.");
   p.points("Corners [m]", corners, "Of the quadrilateral: four, counter-clockwise.");
   p.number("Half width [m]", half_width, non_negative, "Of the square around the origin.");
   p.number("Radius [m]", radius, non_negative, "Of the disc.");
   p.numbers("Heights [m]", heights, any_number, "It reaches from the first to the second. None: plane strain.");
-  p.numbers(
-    "Cells [1]", cells, positive,
-    "Cells along the first side, the second, and the height, before adaptation; of the disc the first counts: layers "
-    "inside and outside of its rim, which shrink towards it.");
+  p.numbers("Cells [1]", cells, positive,
+            "Cells along the first side, the second, and the height, before adaptation. Of a disc: rings around its "
+            "core, and the height. Of a disc in a square: layers inside and outside of its rim, which shrink towards "
+            "it; the answer is extrapolated from that many and one less.");
   p.number("Young's modulus [Pa]", youngs_modulus, positive, "Of the material.");
   p.require_last();
   p.number("Poisson's ratio [1]", poissons_ratio, {.min = -1, .max = 0.5, .min_excluded = true, .max_excluded = true},

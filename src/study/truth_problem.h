@@ -12,7 +12,7 @@ struct TruthParameters {
   std::string shape = "quadrilateral";
   Points corners;              ///< [m] four, counter-clockwise, z = 0
   double half_width = 0;       ///< of a square around the origin [m]
-  double radius = 0;           ///< of a disc in it that cells are fitted to [m]
+  double radius = 0;           ///< of a disc around the origin that cells are fitted to [m]
   std::vector<double> heights; ///< [m] two, or none: plane strain
   std::vector<double> cells = {4, 4, 2};
   double youngs_modulus = 0, poissons_ratio = 0;
@@ -37,7 +37,13 @@ struct TruthAnswerParameters {
 /// The sections below Truth.
 std::vector<scene::SectionKind> truth_parts();
 
-/// Throws ParameterError for a section that cannot be.
-reference::Problem problem_of(const TruthParameters& p, const scene::Section& section);
+/// The layers of cells at a disc's rim: each is as wide as the one before times this, towards the rim. The square root that
+/// displacements have at the front of a crack leaves an error in proportion to the innermost layer, whatever the degree.
+constexpr double layer_ratio = 0.3;
+/// Whether a body has such layers.
+bool has_layers(const TruthParameters& p);
+
+/// With so many layers fewer than it says. Throws ParameterError for a section that cannot be.
+reference::Problem problem_of(const TruthParameters& p, const scene::Section& section, int fewer_layers = 0);
 
 } // namespace kerf::study

@@ -63,6 +63,7 @@ TEST(Truth, KnowsPointsEnergyAndFrequency) {
     "  set Corners [m] = 0, 0, 0; 1, 0, 0; 1, 2, 0; 0, 2, 0\n  set Heights [m] = 0, 3\n"
     "  set Cells [1] = 1, 2, 3\n  set Young's modulus [Pa] = 100\n  set Density [kg/m^3] = 4\n"
     "  set Poisson's ratio [1] = 0.25\n  set Point [m] = 1, 1, 3\n  set Adaptations [1] = 0\n"
+    "  set Degree [1] = 2\n  set Tolerance [1] = 0.05\n"
     "  set Axes of the scene = yxz\n  set Energy factor [1] = 10\n"
     "  subsection Held x\n    set Upper [m] = 0.01, 9, 9\n    set Hold = x\n  end\n"
     "  subsection Held y\n    set Upper [m] = 9, 0.01, 9\n    set Hold = y\n  end\n"
@@ -112,8 +113,26 @@ TEST(Truth, OfAPenny) {
   EXPECT_NEAR(find(truth(penny)).value / (8 * 0.91 / M_PI), 1, 0.05);
   EXPECT_THROW(find(truth(penny + "  set Heights [m] = 1, 8\n")), ParameterError);
   std::string thin = penny;
-  thin.replace(thin.find("Cells [1] = 2"), 13, "Cells [1] = 7");
+  thin.replace(thin.find("Cells [1] = 2"), 13, "Cells [1] = 29");
   EXPECT_THROW(find(truth(thin)), ParameterError) << "cells that cannot be curved";
+}
+
+/// A bar with a round section under tension; its volume, that of a cylinder, comes in by its weight.
+TEST(Truth, OfACylinder) {
+  const std::string bar =
+    "  set Shape = disc\n  set Radius [m] = 0.5\n  set Heights [m] = 0, 2\n  set Cells [1] = 1, 1\n"
+    "  set Young's modulus [Pa] = 100\n  set Degree [1] = 3\n  set Adaptations [1] = 0\n  set Tolerance [1] = 1e-6\n"
+    "  subsection Held base\n    set Upper [m] = 9, 9, 0.01\n    set Hold = z\n  end\n"
+    "  subsection Pinned a\n    set Point [m] = 0, 0, 0\n    set Hold = xy\n  end\n"
+    "  subsection Pinned b\n    set Point [m] = 0.25, 0, 0\n    set Hold = y\n  end\n"
+    "  set Point [m] = 0, 0, 2\n";
+  const Reference pulled = find(truth(bar + "  subsection Pulled top\n    set Lower [m] = -9, -9, 1.99\n"
+                                            "    set Traction [N/m^2] = 0, 0, 5\n  end\n"));
+  EXPECT_NEAR(pulled.value, 2 * 5.0 / 100, 1e-12);
+  EXPECT_NEAR(pulled.energy, 0.5 * 25.0 / 100 * 2 * M_PI / 4, 1e-5) << "arcs of degree 3";
+  EXPECT_NEAR(find(truth(bar + "  set Force [N/m^3] = 0, 0, 3\n")).value, 3 * 4.0 / 200, 1e-12);
+  EXPECT_THROW(find(truth(bar)), ParameterError) << "nothing pulls";
+  EXPECT_THROW(find(truth(bar + "  set Force [N/m^3] = 0, 0, 3\n  set Axis = x\n")), ParameterError) << "0";
 }
 
 TEST(Truth, IsKeptByAHashOfItsSection) {
