@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <bit>
 #include <cstdio>
+#include <list>
 #include <system_error>
 #include <utility>
 
@@ -132,6 +133,26 @@ bool can_go_on(const std::filesystem::path& folder, const World& world, const So
   return true;
 }
 
+/// What a step's record refers to, as it was then.
+struct BodyEntry {
+  Points positions, velocities;
+  std::vector<output::Field> fields;
+  output::Complex complex;
+  output::Surface surface;
+  output::Colours colours;
+};
+struct StepEntry {
+  std::vector<double> values;
+  std::list<BodyEntry> bodies; // they stay where they are
+  output::StepRecord record;
+};
+struct SurfaceEntry {
+  Points positions, rest;
+  std::vector<Triangle> triangles;
+  std::vector<std::uint16_t> labels;
+  std::vector<output::Field> fields;
+};
+
 bool is_due(const int step, const int every, const World& world) { return step % every == 0 || step == world.n_steps; }
 
 } // namespace
@@ -173,8 +194,10 @@ Recorder::Recorder(const std::filesystem::path& folder, const World& world, cons
   if (world.images) {
     std::filesystem::create_directories(folder / frames_folder);
     if (n_threads() > 1)
-      image_thread_ = std::make_unique<render::ImageThread>(*world.images->renderer);
+      image_thread_ = std::make_unique<WorkThread>();
   }
+  if (n_threads() > 1)
+    file_thread_ = std::make_unique<WorkThread>();
   if (goes_on_) {
     if (const auto steps = run_file_.steps(); !steps.empty())
       ends_ = steps.back();
@@ -204,7 +227,10 @@ void Recorder::open_surface_files(const World& world) {
 
 Cost Recorder::total_cost() const {
   const Cost now = cost_ ? cost_() : Cost();
-  return {earlier_cost_.cpu_seconds + now.cpu_seconds - recording_cpu_,
+  double beside = 0; // of recording too
+  for (const auto* thread : {&image_thread_, &file_thread_})
+    beside += *thread ? (*thread)->cpu_seconds() : 0;
+  return {earlier_cost_.cpu_seconds + now.cpu_seconds - recording_cpu_ - beside,
           std::max(now.peak_memory, earlier_cost_.peak_memory)};
 }
 
@@ -266,8 +292,7 @@ void Recorder::keep(World& world, const int step, Timings& seconds) {
 }
 
 void Recorder::keep_now(World& world, const int step) {
-  if (image_thread_)
-    image_thread_->wait(); // a run that goes on from here does not draw them again
+  wait(); // a run that goes on from here does not make them again
   Archive state;
   for (Body& body : world.bodies)
     archive(state, body);
@@ -278,7 +303,34 @@ void Recorder::keep_now(World& world, const int step) {
     run_file_.note_checkpoint();
 }
 
+void Recorder::fail(const std::string& text, const int step, const double time) {
+  try {
+    wait();
+  } catch (const std::exception&) { // one reason is enough
+  }
+  run_file_.fail({text, step, time});
+}
+
+void Recorder::interrupt(const std::string& text, const int step, const double time) {
+  wait();
+  run_file_.interrupt({text, step, time});
+}
+
+void Recorder::wait() {
+  for (const auto* thread : {&image_thread_, &file_thread_})
+    if (*thread)
+      (*thread)->wait();
+}
+
+void Recorder::write(const std::unique_ptr<WorkThread>& thread, std::function<void()> work) {
+  if (thread)
+    thread->give(std::move(work));
+  else
+    work();
+}
+
 void Recorder::complete() {
+  wait();
   run_file_.complete();
   std::error_code ignored; // one that stays is refused or replaced by whoever comes next
   std::filesystem::remove(checkpoint_file(folder()), ignored);
@@ -309,74 +361,80 @@ void Recorder::record_all(const World& world, const int step, Timings& seconds) 
   const ScopedTimer timer(seconds, "output");
   const bool with_frames = is_due(step, world.output.frames_every, world);
   const bool with_surfaces = world.surface_file && is_due(step, world.surface_file->every, world);
-  for (std::size_t b = 0; b < bodies_.size(); ++b)
+  Fields fields;
+  for (const Body& body : world.bodies)
     if (with_frames || with_surfaces)
-      bodies_[b].fields = fields_at_corners(world.bodies[b], world.fields);
-  append_step(world, step, stepping, with_frames);
+      fields.push_back(fields_at_corners(body, world.fields));
+  append_step(world, step, stepping, with_frames ? &fields : nullptr);
   if (with_surfaces)
-    append_surfaces(world, step);
+    append_surfaces(world, step, fields);
+  if (step == world.n_steps)
+    wait();
 }
 
-void Recorder::append_step(const World& world, const int step, const Timings& seconds, const bool with_frames) {
-  std::vector<double> values;
+void Recorder::append_step(const World& world, const int step, const Timings& seconds, const Fields* const fields) {
+  const auto entry = std::make_shared<StepEntry>();
   for (const Body& body : world.bodies)
     for (const Observable& o : body.observables)
-      values.push_back(o.value(body));
-  output::StepRecord record{step * world.time_step, step, seconds, values, {}};
-  std::vector<output::Complex> complexes(world.bodies.size());
-  std::vector<output::Surface> surfaces(world.bodies.size());
-  std::vector<output::Colours> colours(world.bodies.size());
-  if (with_frames)
-    for (std::size_t b = 0; b < world.bodies.size(); ++b) {
-      const Body& body = world.bodies[b];
-      output::BodyStep body_step{body.name, corners(body), velocities(body), bodies_[b].fields};
-      if (bodies_[b].complex_written != body.n_recuts) {
-        complexes[b] = to_record(body);
-        surfaces[b] = to_record(body.surface);
-        body_step.complex = &complexes[b];
-        body_step.surface = &surfaces[b];
-        if (body.interior) {
-          colours[b] = to_record(body.interior->atlas, bodies_[b].n_samples_written);
-          body_step.colours = &colours[b];
-          bodies_[b].n_samples_written = body.interior->atlas.colours().size();
-        }
-        bodies_[b].complex_written = body.n_recuts;
+      entry->values.push_back(o.value(body));
+  entry->record = {step * world.time_step, step, seconds, entry->values, {}};
+  for (std::size_t b = 0; b < world.bodies.size() && fields; ++b) {
+    const Body& body = world.bodies[b];
+    BodyEntry& of_body = entry->bodies.emplace_back();
+    of_body.positions = corners(body);
+    of_body.velocities.assign(velocities(body).begin(), velocities(body).end());
+    of_body.fields = (*fields)[b];
+    output::BodyStep body_step{body.name, of_body.positions, of_body.velocities, of_body.fields};
+    if (bodies_[b].complex_written != body.n_recuts) {
+      of_body.complex = to_record(body);
+      of_body.surface = to_record(body.surface);
+      body_step.complex = &of_body.complex;
+      body_step.surface = &of_body.surface;
+      if (body.interior) {
+        of_body.colours = to_record(body.interior->atlas, bodies_[b].n_samples_written);
+        body_step.colours = &of_body.colours;
+        bodies_[b].n_samples_written = body.interior->atlas.colours().size();
       }
-      record.bodies.push_back(body_step);
+      bodies_[b].complex_written = body.n_recuts;
     }
+    entry->record.bodies.push_back(body_step);
+  }
   if (step > ends_)
-    run_file_.append(record);
+    write(file_thread_, [this, entry] { run_file_.append(entry->record); });
   else
-    compare(step, values);
+    compare(step, entry->values);
 }
 
-void Recorder::append_surfaces(const World& world, const int step) {
+void Recorder::append_surfaces(const World& world, const int step, const Fields& of_corners) {
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     const Body& body = world.bodies[b];
-    const bool changed = bodies_[b].surface_written != body.n_recuts;
-    auto fields = at_vertices(body.surface, bodies_[b].fields);
-    if (body.interior)
-      fields.push_back({"colour", "1", 3, vertex_colours(body.interior->atlas, body.surface, render::Look().skin)});
-    const double time = step * world.time_step;
-    if (!bodies_[b].surface_ends || time > *bodies_[b].surface_ends)
-      bodies_[b].surface_file->append({time, body.positions, body.surface.rest, body.surface.triangles,
-                                       body.surface.labels,
-                                       changed ? output::Topology::changed : output::Topology::unchanged, fields});
+    const auto topology =
+      bodies_[b].surface_written != body.n_recuts ? output::Topology::changed : output::Topology::unchanged;
     bodies_[b].surface_written = body.n_recuts;
+    const double time = step * world.time_step;
+    if (bodies_[b].surface_ends && time <= *bodies_[b].surface_ends)
+      continue;
+    SurfaceEntry entry{body.positions, {}, {}, {}, at_vertices(body.surface, of_corners[b])};
+    if (topology == output::Topology::changed) {
+      entry.rest = body.surface.rest;
+      entry.triangles = body.surface.triangles;
+      entry.labels = body.surface.labels;
+    }
+    if (body.interior)
+      entry.fields.push_back(
+        {"colour", "1", 3, vertex_colours(body.interior->atlas, body.surface, render::Look().skin)});
+    write(file_thread_, [&file = *bodies_[b].surface_file, time, topology, entry = std::move(entry)] {
+      file.append({time, entry.positions, entry.rest, entry.triangles, entry.labels, topology, entry.fields});
+    });
   }
 }
 
 void Recorder::write_image(const World& world, const int step) {
   const render::Renderer& renderer = *world.images->renderer;
-  const std::string path = image_path(folder(), step).string();
-  render::Batch batch = renderer.prepare(drawing(world, step));
-  if (!image_thread_) {
-    render::write_png(renderer.draw_batch(batch), path);
-    return;
-  }
-  image_thread_->write(std::move(batch), path);
-  if (step == world.n_steps)
-    image_thread_->wait();
+  write(image_thread_,
+        [&renderer, path = image_path(folder(), step).string(), batch = renderer.prepare(drawing(world, step))] {
+          render::write_png(renderer.draw_batch(batch), path);
+        });
 }
 
 } // namespace kerf::scene

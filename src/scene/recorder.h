@@ -5,12 +5,15 @@
 /// A resumed run starts from its last checkpoint, whose steps all files hold already; they may hold more. Until the run
 /// comes to what they do not hold, it writes nothing into them, but compares: so what they hold is what an undisturbed
 /// run would have written, bit by bit, or the run ends with an error.
+///
+/// Where there are two threads, files are written beside the steps: what a step's record needs is copied, at most two records are
+/// kept, and checkpoints wait for them. What fails is told with one of the next records, at last with the run's last one.
 
 #include "base/archive.h"
+#include "base/work_thread.h"
 #include "output/results_folder.h"
 #include "output/run_file.h"
 #include "output/surface_file.h"
-#include "render/image_thread.h"
 #include "scene/world.h"
 
 #include <chrono>
@@ -54,7 +57,7 @@ class Recorder {
   Start resume(World& world);
 
   /// Records step `step` of the world, with the seconds of its stages. What recording itself takes (output, images: where
-  /// they are drawn in a thread of their own, how long they were waited for) stands in `seconds` afterwards, in place of
+  /// they are made in threads of their own, how long they were waited for) stands in `seconds` afterwards, in place of
   /// those stages, and so counts with the next step. The last step is always recorded in full.
   void record(const World& world, int step, Timings& seconds);
 
@@ -66,8 +69,8 @@ class Recorder {
 
   /// Then there is nothing to resume any more.
   void complete();
-  void fail(const std::string& text, int step, double time) { run_file_.fail({text, step, time}); }
-  void interrupt(const std::string& text, int step, double time) { run_file_.interrupt({text, step, time}); }
+  void fail(const std::string& text, int step, double time);
+  void interrupt(const std::string& text, int step, double time);
 
   /// The last step that the files held when they were opened; -1: none.
   int last_earlier_step() const { return static_cast<int>(ends_); }
@@ -78,7 +81,6 @@ class Recorder {
     int complex_written = -1, surface_written = -1; ///< Body::n_recuts of what the files hold last
     std::size_t n_samples_written = 0;              ///< of the atlas of what is inside
     std::optional<output::SurfaceFile> surface_file;
-    std::vector<output::Field> fields;  ///< of the corners, at the step that is recorded
     std::optional<double> surface_ends; ///< what the surface file held when it was opened [s]
 
     void archive(Archive& a) { a(complex_written, surface_written, n_samples_written); }
@@ -90,9 +92,15 @@ class Recorder {
   void compare(int step, std::span<const double> values) const;
   void record_all(const World& world, int step, Timings& seconds);
 
-  void append_step(const World& world, int step, const Timings& seconds, bool with_frames);
-  void append_surfaces(const World& world, int step);
+  using Fields = std::vector<std::vector<output::Field>>; ///< of the corners, each body
+
+  void append_step(const World& world, int step, const Timings& seconds, const Fields* fields);
+  void append_surfaces(const World& world, int step, const Fields& fields);
   void write_image(const World& world, int step);
+  /// Beside the steps, where there is a thread for it.
+  static void write(const std::unique_ptr<WorkThread>& thread, std::function<void()> work);
+  /// Until all that was recorded stands in its files, or has failed.
+  void wait();
 
   output::ResultsFolder folder_;
   output::Earlier earlier_;
@@ -103,11 +111,12 @@ class Recorder {
   double recording_cpu_ = 0;   ///< of this process [s]
   output::RunFile run_file_;
   std::vector<BodyFiles> bodies_;
-  std::unique_ptr<render::ImageThread> image_thread_; ///< null: there are no images, or one thread alone
   std::string program_, inputs_;
   std::int64_t ends_ = -1;                    ///< the last step that run.h5 held when it was opened
   std::vector<std::vector<double>> recorded_; ///< the series that it held
   Clock::time_point next_checkpoint_;
+  /// For images, and for run.h5 and the surface files, which one library writes; null: one thread does all. Last: they use the others.
+  std::unique_ptr<WorkThread> image_thread_, file_thread_;
 };
 
 /// The file of checkpoints in a run's folder.

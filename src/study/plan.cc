@@ -1,5 +1,6 @@
 #include "study/plan.h"
 
+#include "base/error.h"
 #include "scene/composing.h"
 #include "scene/grammar.h"
 #include "scene/inputs.h"
@@ -184,7 +185,9 @@ Plan make_plan(const scene::SceneText& text) {
 
   Plan plan{parameters, study, scene::standalone_text(text, grammar()), scene::resolved(parameters.scene, study), {}};
   if (!std::ifstream(plan.scene))
-    throw study.complaint("Scene", "the scene cannot be read", "Name a file that you may read, from this one's folder");
+    throw DataError(
+      study.complaint("Scene", "the scene cannot be read", "Name a file that you may read, from this one's folder")
+        .complaint());
   plan.norms = read_norms(root);
   if (const Section* points = root.find("Points")) {
     plan.points = read_points(*points);

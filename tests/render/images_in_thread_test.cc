@@ -1,6 +1,6 @@
-#include "render/image_thread.h"
-
-#include "base/error.h"
+#include "base/work_thread.h"
+#include "render/image.h"
+#include "render/renderer.h"
 #include "tests/output/samples.h"
 #include "tests/render/shapes.h"
 
@@ -31,35 +31,21 @@ std::string bytes_of(const std::filesystem::path& path) {
 
 } // namespace
 
-TEST(ImageThread, WritesWhatIsWrittenWithoutIt) {
+TEST(Renderer, DrawsTheSameInAThreadOfItsOwn) {
   const output::TemporaryFolder folder;
   const Renderer renderer({.eye = {4, 0, 0}, .width = 80, .height = 60}, {});
   const auto path = [&](const std::string& name, const int i) {
     return (folder / (name + std::to_string(i) + ".png")).string();
   };
   constexpr int n = 8;
-  {
-    ImageThread thread(renderer);
-    for (int i = 0; i < n; ++i)
-      thread.write(sphere_at(renderer, 0.2 * i - 0.8), path("beside", i));
-    thread.wait();
-    EXPECT_TRUE(std::filesystem::exists(path("beside", n - 1)));
-    thread.write(sphere_at(renderer, 0), path("last", 0));
-  }
-  EXPECT_TRUE(std::filesystem::exists(path("last", 0))); // nothing that was handed over is lost
+  WorkThread thread;
+  for (int i = 0; i < n; ++i)
+    thread.give([&renderer, batch = sphere_at(renderer, 0.2 * i - 0.8), file = path("beside", i)] {
+      write_png(renderer.draw_batch(batch), file);
+    });
+  thread.wait();
   for (int i = 0; i < n; ++i) {
     write_png(renderer.draw_batch(sphere_at(renderer, 0.2 * i - 0.8)), path("alone", i));
     EXPECT_EQ(bytes_of(path("beside", i)), bytes_of(path("alone", i))) << i;
   }
-}
-
-TEST(ImageThread, TellsOnceThatAFileCannotBeWritten) {
-  const output::TemporaryFolder folder;
-  const Renderer renderer({.eye = {4, 0, 0}, .width = 8, .height = 6}, {});
-  ImageThread thread(renderer);
-  thread.write(sphere_at(renderer, 0), (folder / "no folder" / "image.png").string());
-  EXPECT_THROW(thread.wait(), DataError);
-  thread.write(sphere_at(renderer, 0), (folder / "image.png").string());
-  EXPECT_NO_THROW(thread.wait());
-  EXPECT_TRUE(std::filesystem::exists(folder / "image.png"));
 }
