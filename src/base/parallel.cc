@@ -21,7 +21,7 @@ int n_threads() {
 }
 
 void parallel_ranges(const std::size_t n, const std::size_t worth,
-                     const std::function<void(std::size_t, std::size_t)>& f) {
+                     const FunctionRef<void(std::size_t, std::size_t)> f) {
   if (n < worth || n_threads() == 1) {
     f(0, n);
     return;

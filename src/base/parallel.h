@@ -2,8 +2,9 @@
 
 /// Loops over independent items. Each item writes only its own results, so any number of threads gives the same bits.
 
+#include "base/function_ref.h"
+
 #include <cstddef>
-#include <functional>
 
 namespace kerf {
 
@@ -12,7 +13,7 @@ void set_n_threads(int n);
 int n_threads();
 
 /// Calls f(begin, end) for ranges that cover 0 .. n - 1, on several threads when there are at least `worth` items.
-void parallel_ranges(std::size_t n, std::size_t worth, const std::function<void(std::size_t, std::size_t)>& f);
+void parallel_ranges(std::size_t n, std::size_t worth, FunctionRef<void(std::size_t, std::size_t)> f);
 
 /// Calls f(i) for each i < n. Fewer than `worth` items are not worth a second thread.
 template <class Function>

@@ -42,13 +42,14 @@ NewtonReport BalanceSolver::solve(const Loads& loads, const Constraints& constra
   x = balance.start;
   way_ = 0;
   if (options_.trust == Trust::tested)
-    flies_ = flying(problem);
+    flies_ = *flying(problem);
   NewtonReport report;
   Mixing mixing(static_cast<std::size_t>(options_.n_mixed));
   LineSearch line_search = options_.line_search;
   int most = options_.max_iterations;
   double first = 0;
   Verdict verdict = Verdict::taken;
+  const Points none;
   for (;;) {
     double scale = linearise_at(problem, x);
     if (options_.tolerance > 0) {
@@ -63,22 +64,22 @@ NewtonReport BalanceSolver::solve(const Loads& loads, const Constraints& constra
     const bool is_enough = verdict == Verdict::goes_on && report.n_newton >= options_.max_iterations;
     if (report.n_newton == most || (is_enough && works_little(problem, x, scale)))
       break;
-    report.n_linear += correct(problem, report.n_newton == 0 ? balance.guess : Points(), scale);
+    report.n_linear += correct(problem, report.n_newton == 0 ? *balance.guess : none, scale);
     ++report.n_newton;
     if (report.n_newton == 1 && options_.trust == Trust::tested && line_search == LineSearch::none) {
-      const Points end = moved(x, 1, correction_);
+      const Loan<Vec3> end = moved(x, 1, correction_);
       verdict = judge(problem, end);
       if (verdict != Verdict::taken) {
         line_search = LineSearch::backtracking;
         most = std::max(most, most_where_not_taken);
       }
       if (verdict == Verdict::goes_on) {
-        x = end;
+        x = *end;
         continue;
       }
       if (verdict == Verdict::refused) {
         linearise_at(problem, x);
-        squared_ways_ = ways_from_free_motion(problem);
+        squared_ways_ = *ways_from_free_motion(problem);
       }
     }
     const bool is_last = verdict == Verdict::refused && report.n_newton > 1 && is_small();
@@ -87,7 +88,7 @@ NewtonReport BalanceSolver::solve(const Loads& loads, const Constraints& constra
       report.failure = "no step along the correction lowers the energy";
       break;
     }
-    x = moved(x, length, correction_);
+    x = *moved(x, length, correction_);
     if (is_last || (options_.tolerance == 0 && report.n_newton == most))
       return report;
   }
@@ -150,15 +151,15 @@ Vec3 BalanceSolver::damping(const Problem& problem, const std::size_t i) const {
   return damping_.empty() ? Vec3(Vec3::Zero()) : Vec3(problem.loads.stiffness_damping * damping_[i]);
 }
 
-Points BalanceSolver::resisted(const Problem& problem) const {
-  return problem.coupling ? moved(acceleration_, problem.loads.mass_damping, velocity_) : Points();
+Loan<Vec3> BalanceSolver::resisted(const Problem& problem) const {
+  return problem.coupling ? moved(acceleration_, problem.loads.mass_damping, velocity_) : Loan<Vec3>();
 }
 
 double BalanceSolver::assemble_residual(const Problem& problem) {
   const auto& [loads, constraints, balance, mass, coupling, mass_factor, stiffness_factor] = problem;
   const std::size_t n = force_.size();
   residual_.resize(n);
-  const Points more = coupled(model_, resisted(problem));
+  const Loan<Vec3> more = coupled(model_, resisted(problem));
   const double square_of_scale = sum_of(n, [&](const std::size_t begin, const std::size_t end) {
     double sum = 0;
     for (std::size_t i = begin; i < end; ++i) {
@@ -300,10 +301,10 @@ int BalanceSolver::correct_by_cg(const Problem& problem, const Points& guess, co
 
 double BalanceSolver::potential_of_free_motion(const Problem& problem) {
   const Balance& b = problem.balance;
-  Points d(force_.size()), Ad(force_.size());
+  Loan<Vec3> d(force_.size()), Ad(force_.size());
   for (std::size_t i = 0; i < d.size(); ++i)
     d[i] = problem.constraints.freedom(i).project * (-1 / b.mass_factor * b.acceleration[i]);
-  apply(problem, flat(d), flat(Ad));
+  apply(problem, flat(*d), flat(*Ad));
   return product(d, Ad) - 2 * product(residual_, d);
 }
 
@@ -344,9 +345,9 @@ double BalanceSolver::search(const Problem& problem, const Points& x) {
   const double slope = -product(residual_, correction_);
   if (slope == 0)
     return 1;
-  Points damped(x.size(), Vec3::Zero()), trial(x.size());
+  Loan<Vec3> damped(x.size(), Vec3::Zero()), trial(x.size());
   if (problem.loads.stiffness_damping > 0 && problem.balance.velocity_factor > 0)
-    model_.apply_stiffness(flat(correction_), flat(damped));
+    model_.apply_stiffness(flat(correction_), flat(*damped));
   constexpr int most_halvings = 40;
   constexpr double part = 1e-4, drowned = 1e-9; // of the slope; of the energies whose difference counts
   double length = 1;
@@ -366,7 +367,7 @@ BalanceSolver::Change BalanceSolver::change(const Problem& problem, const Points
                                             const double length, const Points& damped) const {
   const Loads& loads = problem.loads;
   const Balance& b = problem.balance;
-  Points force;
+  Loan<Vec3> force;
   model_.force(trial, force);
   double linear = 0, quadratic = 0; // in the length, of all that is no energy of its own
   for (std::size_t i = 0; i < x.size(); ++i) {
@@ -377,7 +378,7 @@ BalanceSolver::Change BalanceSolver::change(const Problem& problem, const Points
                  0.5 * loads.stiffness_damping * b.velocity_factor * d.dot(damped[i]);
   }
   if (problem.coupling) {
-    const Points more = coupled(model_, correction_);
+    const Loan<Vec3> more = coupled(model_, correction_);
     linear += product(resisted(problem), more);
     quadratic += 0.5 * problem.mass_factor * product(correction_, more);
   }
@@ -394,9 +395,9 @@ BalanceSolver::Change BalanceSolver::change(const Problem& problem, const Points
 std::array<double, 2> BalanceSolver::without_potential(const Problem& problem, const Points& x, const Points& trial,
                                                        const double length) const {
   const Balance& b = problem.balance;
-  Points v = velocity_;
+  Loan<Vec3> v(velocity_);
   const auto times_correction = [&](const Points& where) {
-    Points forces(x.size(), Vec3::Zero());
+    Loan<Vec3> forces(x.size(), Vec3::Zero());
     for (const auto& load : problem.loads.acting)
       if (load->nature() != Nature::conservative)
         load->add_force({b.time, where, v}, forces);

@@ -99,10 +99,10 @@ struct Balance {
   double time = 0;            ///< at which loads act [s]
   double mass_factor = 0;     ///< kappa [1/s^2]
   double velocity_factor = 0; ///< omega [1/s]
-  Points start, velocity, acceleration;
-  Points guess = {};     ///< first guess of x - start [m]; empty: zero
-  Points offset = {};    ///< a force on each corner [N]; empty: none
-  FreeMotions free = {}; ///< that A does not resist
+  Loan<Vec3> start, velocity, acceleration;
+  Loan<Vec3> guess = {};  ///< first guess of x - start [m]; empty: zero
+  Loan<Vec3> offset = {}; ///< a force on each corner [N]; empty: none
+  FreeMotions free = {};  ///< that A does not resist
 };
 
 struct NewtonReport {
@@ -150,7 +150,7 @@ class BalanceSolver {
   /// beta K v of a corner [N].
   Vec3 damping(const Problem& problem, std::size_t i) const;
   /// a + alpha v, which M resists; nothing where the mass is lumped.
-  Points resisted(const Problem& problem) const;
+  Loan<Vec3> resisted(const Problem& problem) const;
   /// Returns the scale of what balances, in the scaled norm.
   double assemble_residual(const Problem& problem);
   double balanced_forces(const Problem& problem) const;
@@ -164,21 +164,21 @@ class BalanceSolver {
   bool bears_tests(const Problem& problem, const Points& end);
   /// Work that may be left out of balance at x in each piece: the energy that the integrator itself takes, from the
   /// stiffness at its start, and what the linear solver does not see [J].
-  std::vector<double> most_work(const Problem& problem, const Points& x);
+  Loan<double> most_work(const Problem& problem, const Points& x);
   /// Whether what is out of balance at x does less work than that in every piece.
   bool works_little(const Problem& problem, const Points& x, double scale) const;
   double scaled_residual() const;
   /// 1 for each piece in which more is out of balance than the linear solver is asked for.
-  std::vector<std::uint8_t> seen(double scale) const;
+  Loan<std::uint8_t> seen(double scale) const;
   /// That it may leave by the step's own error, in the energy norm; 0: unknown.
   double error_of_cg() const;
   bool turns_little(const Problem& problem, const Points& x) const;
   /// 1 for each piece that nothing holds and nothing but gravity acts on.
-  std::vector<std::uint8_t> flying(const Problem& problem) const;
+  Loan<std::uint8_t> flying(const Problem& problem) const;
   /// Values a corner, without their mean over pieces that fly, as anything follows that.
-  Points unlike_flight(const Problem& problem, const Points& values) const;
+  Loan<Vec3> unlike_flight(const Problem& problem, const Points& values) const;
   /// Squares of the ways from free motion to where the correction leads, in the energy norm.
-  std::vector<double> ways_from_free_motion(const Problem& problem);
+  Loan<double> ways_from_free_motion(const Problem& problem);
   /// Whether what is left to correct is small beside the way from free motion, in every piece.
   bool is_small();
   /// Returns the iterations of the linear solver.

@@ -12,34 +12,35 @@
 
 namespace kerf::dynamics {
 
-std::vector<std::uint8_t> BalanceSolver::flying(const Problem& problem) const {
-  std::vector<std::uint8_t> flies(pieces_.n(), problem.loads.acting.empty() ? 1 : 0);
+Loan<std::uint8_t> BalanceSolver::flying(const Problem& problem) const {
+  Loan<std::uint8_t> flies(pieces_.n(), problem.loads.acting.empty() ? 1 : 0);
   for (std::size_t i = 0; i < problem.mass.size(); ++i)
     if (!problem.constraints.is_free(i))
       flies[pieces_.of(i)] = 0;
   return flies;
 }
 
-Points BalanceSolver::unlike_flight(const Problem& problem, const Points& values) const {
+Loan<Vec3> BalanceSolver::unlike_flight(const Problem& problem, const Points& values) const {
   return pieces_.without_mean(problem.mass, values, flies_);
 }
 
 double BalanceSolver::error_of_cg() const { return 0.5 * options_.step_tolerance * way_; }
 
-std::vector<std::uint8_t> BalanceSolver::seen(const double scale) const {
-  std::vector<double> squares(pieces_.n(), 0);
+Loan<std::uint8_t> BalanceSolver::seen(const double scale) const {
+  Loan<double> squares(pieces_.n(), 0);
   for (std::size_t i = 0; i < residual_.size(); ++i)
     squares[pieces_.of(i)] += (scaling_[i] * residual_[i]).squaredNorm();
   const double least = std::max(options_.cg_tolerance * scale, scaled_round_off());
-  std::vector<std::uint8_t> is_seen(squares.size());
-  std::ranges::transform(squares, is_seen.begin(), [&](const double square) { return square > least * least ? 1 : 0; });
+  Loan<std::uint8_t> is_seen(squares.size());
+  std::ranges::transform(*squares, is_seen->begin(),
+                         [&](const double square) { return square > least * least ? 1 : 0; });
   return is_seen;
 }
 
 bool BalanceSolver::bears_tests(const Problem& problem, const Points& end) {
   constexpr double part = 0.25; // of the slope at the start
-  const Points d = unlike_flight(problem, correction_);
-  const std::vector<double> at_start = pieces_.products(residual_, d);
+  const Loan<Vec3> d = unlike_flight(problem, correction_);
+  const Loan<double> at_start = pieces_.products(residual_, d);
   double scale = 0;
   try {
     move_to(problem, end);
@@ -47,7 +48,7 @@ bool BalanceSolver::bears_tests(const Problem& problem, const Points& end) {
   } catch (const NumericalError&) { // no forces there
     return false;
   }
-  const std::vector<double> at_end = pieces_.products(residual_, d);
+  const Loan<double> at_end = pieces_.products(residual_, d);
   const auto is_seen = seen(scale);
   for (std::size_t p = 0; p < pieces_.n(); ++p) {
     const double slope = std::abs(at_start[p]);
@@ -60,20 +61,21 @@ bool BalanceSolver::bears_tests(const Problem& problem, const Points& end) {
 BalanceSolver::Verdict BalanceSolver::judge(const Problem& problem, const Points& end) {
   if (!bears_tests(problem, end))
     return Verdict::refused;
-  most_work_ = most_work(problem, end);
+  most_work_ = *most_work(problem, end);
   return works_little(problem, end, assemble_residual(problem)) ? Verdict::taken : Verdict::goes_on;
 }
 
-std::vector<double> BalanceSolver::most_work(const Problem& problem, const Points& x) {
-  const Points d = unlike_flight(problem, moved(x, -1, problem.balance.start)), a = acceleration_;
-  Points Kd(x.size(), Vec3::Zero());
-  model_.apply_stiffness(flat(d), flat(Kd));
+Loan<double> BalanceSolver::most_work(const Problem& problem, const Points& x) {
+  const Loan<Vec3> d = unlike_flight(problem, moved(x, -1, problem.balance.start));
+  const Points& a = acceleration_;
+  Loan<Vec3> Kd(x.size(), Vec3::Zero());
+  model_.apply_stiffness(flat(d), flat(*Kd));
   if (!tangent_.empty())
-    tangent_.add_product(flat(d), flat(Kd));
+    tangent_.add_product(flat(d), flat(*Kd));
   const double dt = 1 / problem.balance.velocity_factor;
-  const std::vector<double> elastic = pieces_.products(d, Kd), of_change = pieces_.products(a, momenta(model_, a)),
-                            of_way = pieces_.products(d, momenta(model_, d));
-  std::vector<double> most(pieces_.n());
+  const Loan<double> elastic = pieces_.products(d, Kd), of_change = pieces_.products(a, momenta(model_, a)),
+                     of_way = pieces_.products(d, momenta(model_, d));
+  Loan<double> most(pieces_.n());
   for (std::size_t p = 0; p < most.size(); ++p)
     most[p] = 0.5 * (dt * dt * of_change[p] + elastic[p]) +
               error_of_cg() * std::sqrt(std::max(0.0, elastic[p] + problem.mass_factor * of_way[p]));
@@ -81,8 +83,7 @@ std::vector<double> BalanceSolver::most_work(const Problem& problem, const Point
 }
 
 bool BalanceSolver::works_little(const Problem& problem, const Points& x, const double scale) const {
-  const std::vector<double> work =
-    pieces_.products(residual_, unlike_flight(problem, moved(x, -1, problem.balance.start)));
+  const Loan<double> work = pieces_.products(residual_, unlike_flight(problem, moved(x, -1, problem.balance.start)));
   const auto is_seen = seen(scale);
   for (std::size_t p = 0; p < work.size(); ++p)
     if (is_seen[p] && -work[p] > most_work_[p])
@@ -99,9 +100,9 @@ bool BalanceSolver::turns_little(const Problem& problem, const Points& x) const 
   if (b.velocity_factor == 0)
     return true;
   const double dt = 1 / b.velocity_factor;
-  const Points r = unlike_flight(problem, x), v = unlike_flight(problem, velocity_),
-               v_0 = unlike_flight(problem, moved(b.velocity, -dt, b.acceleration)), p_0 = momenta(model_, v_0);
-  std::vector<Turning> all(pieces_.n());
+  const Loan<Vec3> r = unlike_flight(problem, x), v = unlike_flight(problem, velocity_),
+                   v_0 = unlike_flight(problem, moved(b.velocity, -dt, b.acceleration)), p_0 = momenta(model_, v_0);
+  Loan<Turning> all(pieces_.n());
   for (std::size_t i = 0; i < x.size(); ++i) {
     Turning& piece = all[pieces_.of(i)];
     piece.turned += dt * (v[i].cross(p_0[i]) - r[i].cross(residual_[i]));
@@ -119,18 +120,18 @@ bool BalanceSolver::turns_little(const Problem& problem, const Points& x) const 
   return true;
 }
 
-std::vector<double> BalanceSolver::ways_from_free_motion(const Problem& problem) {
-  Points way(correction_.size()), A_way(correction_.size());
+Loan<double> BalanceSolver::ways_from_free_motion(const Problem& problem) {
+  Loan<Vec3> way(correction_.size()), A_way(correction_.size());
   for (std::size_t i = 0; i < way.size(); ++i)
     way[i] = correction_[i] +
              problem.constraints.freedom(i).project * (1 / problem.mass_factor * problem.balance.acceleration[i]);
-  apply(problem, flat(way), flat(A_way));
+  apply(problem, flat(*way), flat(*A_way));
   return pieces_.products(way, A_way);
 }
 
 bool BalanceSolver::is_small() {
   constexpr double part = 0.03;
-  const std::vector<double> decrement = pieces_.products(residual_, correction_); // squares of the ways that are left
+  const Loan<double> decrement = pieces_.products(residual_, correction_); // squares of the ways that are left
   const double unseen = error_of_cg() * error_of_cg();
   bool all = true;
   for (std::size_t p = 0; p < decrement.size(); ++p) {

@@ -35,10 +35,10 @@ StepReport Bdf2::step(State& state, const Loads& loads, const double dt) {
   Balance balance{.time = state.time + dt,
                   .mass_factor = omega * omega,
                   .velocity_factor = omega,
-                  .start = state.x,
-                  .velocity = Points(n),
-                  .acceleration = Points(n),
-                  .guess = Points(n)};
+                  .start = Loan<Vec3>(state.x),
+                  .velocity = Loan<Vec3>(n),
+                  .acceleration = Loan<Vec3>(n),
+                  .guess = Loan<Vec3>(n)};
   constraints.place(balance.time, balance.start);
   const auto velocity = [&](const std::size_t i, const Vec3& x) -> Vec3 {
     return (past.c_1 * x + past.c_0 * state.x[i] + past.c_m * past.x_before[i]) / dt;
@@ -51,14 +51,16 @@ StepReport Bdf2::step(State& state, const Loads& loads, const double dt) {
       (past.c_1 * balance.velocity[i] + past.c_0 * state.v[i] + past.c_m * past.v_before[i]) / dt;
     balance.guess[i] = dt * state.v[i];
   }
-  Points x;
+  Loan<Vec3> x;
   const StepReport report = accepted(solver_.solve(loads, constraints, balance, x));
-  Points v(n);
+  Loan<Vec3> v(n);
   for (std::size_t i = 0; i < n; ++i)
     v[i] = velocity(i, x[i]);
   constraints.place_velocity(balance.time, part_of_step * dt, v);
-  state.history["position before"] = std::exchange(state.x, std::move(x));
-  state.history["velocity before"] = std::exchange(state.v, std::move(v));
+  state.x.swap(x);
+  state.v.swap(v);
+  state.history["position before"].swap(x);
+  state.history["velocity before"].swap(v);
   state.numbers["step before [s]"] = dt;
   state.time += dt;
   return report;

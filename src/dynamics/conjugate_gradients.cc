@@ -1,5 +1,6 @@
 #include "dynamics/conjugate_gradients.h"
 
+#include "base/loan.h"
 #include "base/parallel.h"
 
 #include <algorithm>
@@ -17,8 +18,8 @@ constexpr std::size_t worth_blocks = 3; // from which on a second thread pays
 /// Of the error, by what iterations take off its square.
 class Estimate {
  public:
-  /// `delay`: how many of the last iterations an error is told by.
-  Estimate(const CgStop& stop, const std::size_t delay) : stop_(stop), last_(delay) {}
+  /// `delay`: how many of the last iterations an error is told by, 8 at most.
+  Estimate(const CgStop& stop, const std::size_t delay) : stop_(stop), delay_(delay) {}
 
   /// y.Ay - 2 b.y of the x that was given.
   void start_at(const double given) { farther_ = stop_.from.value_or(given) - given; }
@@ -26,14 +27,14 @@ class Estimate {
   void start_nearer(const double excess) { all_ += excess; }
   void take_off(const double alpha, const double rz) {
     all_ += alpha * rz;
-    last_[n_++ % last_.size()] = alpha * rz;
+    last_[n_++ % delay_] = alpha * rz;
     largest_alpha_ = std::max(largest_alpha_, alpha);
   }
   double way() const { return std::sqrt(square_of_way()); }
   /// By what the last iterations took: those left before them.
   bool says_enough() const {
     constexpr double bound_is_low = 10; // squared: what these iterations left may be more than what they took
-    return n_ >= last_.size() && bound_is_low * std::accumulate(last_.begin(), last_.end(), 0.0) <= most();
+    return n_ >= delay_ && bound_is_low * std::accumulate(last_.begin(), last_.begin() + delay_, 0.0) <= most();
   }
   /// By r.Br of the iterate at hand, to be called once for each, where B is more than J.
   bool says_enough(const double rz) {
@@ -48,7 +49,8 @@ class Estimate {
   double most() const { return std::max(stop_.error * stop_.error, stop_.of_way * stop_.of_way * square_of_way()); }
 
   CgStop stop_;
-  std::vector<double> last_;
+  std::size_t delay_;
+  std::array<double, 8> last_ = {};
   std::array<double, 2> rz_ = {0, 0}; // of the last two iterates
   std::size_t n_ = 0;
   double all_ = 0, farther_ = 0, largest_alpha_ = 0;
@@ -56,13 +58,13 @@ class Estimate {
 
 } // namespace
 
-double sum_of(const std::size_t n, const std::function<double(std::size_t, std::size_t)>& of_range) {
-  std::vector<double> parts((n + block - 1) / block);
+double sum_of(const std::size_t n, const FunctionRef<double(std::size_t, std::size_t)> of_range) {
+  Loan<double> parts((n + block - 1) / block);
   parallel_for(
     parts.size(), [&](const std::size_t b) { parts[b] = of_range(b * block, std::min(n, (b + 1) * block)); },
     worth_blocks);
   double sum = 0;
-  for (const double part : parts)
+  for (const double part : *parts)
     sum += part;
   return sum;
 }
@@ -83,7 +85,8 @@ double dot(const std::span<const double> a, const std::span<const double> b) {
 CgReport conjugate_gradients(const CgEquation& equation, const std::span<const double> b, const CgStop& stop,
                              const int max_iterations, const std::span<double> x) {
   const std::size_t n = b.size();
-  std::vector<double> r(n), z(n), p(n), Ap(n);
+  Loan<double> lent_r(n), lent_z(n), lent_p(n), lent_Ap(n);
+  std::vector<double>&r = lent_r, &z = lent_z, &p = lent_p, &Ap = lent_Ap;
   Estimate estimate(stop, equation.J ? 3 : 8); // one iteration with more than block Jacobi is worth many
   const auto is_zero = [](const double value) { return value == 0; };
   double excess = 0; // of the error's square over that of zero

@@ -5,6 +5,8 @@
 /// that what comes back is a descent direction of 1/2 x.Ax - b.x. Sums are taken in blocks of fixed size, so any
 /// number of threads gives the same bits.
 
+#include "base/function_ref.h"
+
 #include <cstddef>
 #include <functional>
 #include <optional>
@@ -14,7 +16,7 @@
 namespace kerf::dynamics {
 
 /// Sum of term(i) for i < n, the same for any number of threads.
-double sum_of(std::size_t n, const std::function<double(std::size_t begin, std::size_t end)>& of_range);
+double sum_of(std::size_t n, FunctionRef<double(std::size_t begin, std::size_t end)> of_range);
 double dot(std::span<const double> a, std::span<const double> b);
 
 /// Where to stop: at whichever comes first. Errors are in the energy norm |e|_A = sqrt(e.Ae).

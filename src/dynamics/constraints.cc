@@ -4,6 +4,7 @@
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
+#include <tuple>
 
 namespace kerf::dynamics {
 
@@ -42,18 +43,24 @@ std::span<const Constraints::Hold> those_that_count(const Loads& loads,
 
 Constraints::Constraints(const Loads& loads, const std::size_t n_corners)
   : loads_(loads), freedoms_(1), kind_(n_corners, 0) {
-  std::vector<std::pair<std::uint32_t, Hold>> all; // of which corner
-  for (std::uint32_t s = 0; s < loads.supports.size(); ++s)
+  Loan<std::pair<std::uint32_t, Hold>> all; // of which corner
+  std::size_t n = 0;
+  for (std::uint32_t s = 0; s < loads.supports.size(); n += loads.supports[s++].corners.size()) {
+    first_->push_back(n);
     for (std::uint32_t i = 0; i < loads.supports[s].corners.size(); ++i)
       if (const auto corner = loads.supports[s].corners[i]; !is_carried(loads, corner))
-        all.push_back({corner, {s, i}});
-  std::stable_sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-  std::vector<Hold> of_corner;
+        all->push_back({corner, {s, i}});
+  }
+  std::sort(all->begin(), all->end(), [](const auto& a, const auto& b) {
+    return std::tuple(a.first, a.second.support, a.second.index) <
+           std::tuple(b.first, b.second.support, b.second.index);
+  });
+  Loan<Hold> of_corner;
   for (std::size_t i = 0; i < all.size(); ++i) {
-    of_corner.push_back(all[i].second);
+    of_corner->push_back(all[i].second);
     if (i + 1 == all.size() || all[i + 1].first != all[i].first) {
-      add(all[i].first, those_that_count(loads, of_corner));
-      of_corner.clear();
+      add(all[i].first, those_that_count(loads, *of_corner));
+      of_corner->clear();
     }
   }
   add_carried();
@@ -76,48 +83,48 @@ void Constraints::add(const std::uint32_t corner, const std::span<const Hold> ho
     sum += loads_.supports[hold.support].held;
   kind_[corner] = kind_of(sum);
   const auto begin = static_cast<std::uint32_t>(holds_.size());
-  holds_.insert(holds_.end(), holds.begin(), holds.end());
-  held_.push_back({corner, begin, static_cast<std::uint32_t>(holds_.size())});
+  holds_->insert(holds_->end(), holds.begin(), holds.end());
+  held_->push_back({corner, begin, static_cast<std::uint32_t>(holds_.size())});
 }
 
 std::uint32_t Constraints::kind_of(const Mat3& sum) {
   for (std::uint32_t k = 0; k < freedoms_.size(); ++k)
     if ((freedoms_[k].sum - sum).cwiseAbs().maxCoeff() < round_off)
       return k;
-  freedoms_.push_back(freedom_beside(sum));
+  freedoms_->push_back(freedom_beside(sum));
   return static_cast<std::uint32_t>(freedoms_.size() - 1);
 }
 
 std::size_t Constraints::n_free() const {
   std::size_t n = 3 * (kind_.size() - n_carried_);
-  for (const Held& held : held_)
+  for (const Held& held : *held_)
     n -= static_cast<std::size_t>(3 - freedom(held.corner).n_free);
   return n;
 }
 
-void Constraints::impose(const std::vector<Points>& wanted, Points& values) const {
-  for (const Held& held : held_) {
+void Constraints::impose(const Points& wanted, Points& values) const {
+  const auto of = [&](const Hold& hold) -> const Vec3& { return wanted[first_[hold.support] + hold.index]; };
+  for (const Held& held : *held_) {
     Vec3& value = values[held.corner];
     const Freedom& freedom = this->freedom(held.corner);
     const auto holds = this->holds(held);
     if (holds.size() == 1 && freedom.n_free == 0) { // to the last bit
-      value = wanted[holds[0].support][holds[0].index];
+      value = of(holds[0]);
       continue;
     }
     Vec3 missing = -freedom.sum * value;
     for (const Hold& hold : holds)
-      missing += loads_.supports[hold.support].held * wanted[hold.support][hold.index];
+      missing += loads_.supports[hold.support].held * of(hold);
     value += freedom.inverse * missing;
   }
 }
 
-std::vector<Points> Constraints::places(const double time) const {
-  std::vector<Points> all;
+Loan<Vec3> Constraints::places(const double time) const {
+  Loan<Vec3> all;
   for (const Support& support : loads_.supports) {
-    const auto place = support.places(time);
-    Points& places = all.emplace_back();
+    const Support::Places place = support.places(time);
     for (const Vec3& rest : support.rest)
-      places.push_back(place(rest));
+      all->push_back(place(rest));
   }
   return all;
 }
@@ -130,16 +137,15 @@ void Constraints::place(const double time, Points& x) const {
 void Constraints::place_velocity(const double time, const double delta, Points& v) const {
   if (held_.empty())
     return;
-  std::vector<Points> velocities = places(time + delta);
-  const std::vector<Points> before = places(time - delta);
-  for (std::size_t s = 0; s < velocities.size(); ++s)
-    for (std::size_t i = 0; i < velocities[s].size(); ++i)
-      velocities[s][i] = (velocities[s][i] - before[s][i]) / (2 * delta);
+  Loan<Vec3> velocities = places(time + delta);
+  const Loan<Vec3> before = places(time - delta);
+  for (std::size_t i = 0; i < velocities.size(); ++i)
+    velocities[i] = (velocities[i] - before[i]) / (2 * delta);
   impose(velocities, v);
 }
 
 void Constraints::project(Points& values) const {
-  for (const Held& held : held_)
+  for (const Held& held : *held_)
     values[held.corner] = freedom(held.corner).project * values[held.corner];
   if (n_carried_ > 0)
     for (std::size_t i = 0; i < values.size(); ++i)

@@ -8,6 +8,7 @@
 ///
 /// Corners that a rigid body carries (Loads::carried) have no freedom and no place: they stay.
 
+#include "base/loan.h"
 #include "dynamics/loads.h"
 
 #include <span>
@@ -49,26 +50,28 @@ class Constraints {
   struct Held {
     std::uint32_t corner, begin, end;
   };
-  const std::vector<Held>& held() const { return held_; }
+  const std::vector<Held>& held() const { return *held_; }
   /// The supports that a held corner obeys.
   std::span<const Hold> holds(const Held& held) const {
-    return std::span<const Hold>(holds_).subspan(held.begin, held.end - held.begin);
+    return std::span<const Hold>(*holds_).subspan(held.begin, held.end - held.begin);
   }
 
  private:
   void add(std::uint32_t corner, std::span<const Hold> holds);
   void add_carried();
   std::uint32_t kind_of(const Mat3& sum);
-  /// Moves held components of values to what `wanted` has for them, a value for each corner of each support.
-  void impose(const std::vector<Points>& wanted, Points& values) const;
-  std::vector<Points> places(double time) const;
+  /// Moves held components of values to what `wanted` has for them, a value for each corner of each support, in a row.
+  void impose(const Points& wanted, Points& values) const;
+  /// Of the corners of all supports, in a row.
+  Loan<Vec3> places(double time) const;
 
   const Loads& loads_;
-  std::vector<Freedom> freedoms_;
-  std::vector<std::uint32_t> kind_; // of each corner, in freedoms_
-  std::vector<Held> held_;          // by ascending corner
+  Loan<Freedom> freedoms_;
+  Loan<std::uint32_t> kind_; // of each corner, in freedoms_
+  Loan<Held> held_;          // by ascending corner
   std::size_t n_carried_ = 0;
-  std::vector<Hold> holds_;
+  Loan<Hold> holds_;
+  Loan<std::size_t> first_; // of each support, among the corners of all
 };
 
 } // namespace kerf::dynamics

@@ -1,6 +1,7 @@
 #include "dynamics/explicit_steppers.h"
 
 #include "base/error.h"
+#include "base/loan.h"
 #include "dynamics/constraints.h"
 #include "dynamics/forces.h"
 
@@ -71,7 +72,7 @@ StepReport ExplicitEuler::step(State& state, const Loads& loads, const double dt
   const Constraints constraints(loads, state.x.size());
   const auto mass = model_.lumped_mass();
   total_force(model_, loads, {state.time, state.x, state.v}, MassDamping::included, force_);
-  Points x = state.x, v = state.v;
+  Loan<Vec3> x(state.x), v(state.v);
   for (std::size_t i = 0; i < x.size(); ++i) {
     x[i] += dt * state.v[i];
     v[i] += per_mass(dt, mass[i]) * force_[i];
@@ -87,7 +88,7 @@ StepReport MidpointRungeKutta::step(State& state, const Loads& loads, const doub
   const auto mass = model_.lumped_mass();
   const double half = 0.5 * dt;
   total_force(model_, loads, {state.time, state.x, state.v}, MassDamping::included, force_);
-  Points x = state.x, v = state.v;
+  Loan<Vec3> x(state.x), v(state.v);
   for (std::size_t i = 0; i < x.size(); ++i) {
     x[i] += half * state.v[i];
     v[i] += per_mass(half, mass[i]) * force_[i];
@@ -109,7 +110,7 @@ StepReport VelocityVerlet::step(State& state, const Loads& loads, const double d
   const auto mass = model_.lumped_mass();
   const double half = 0.5 * dt, alpha = loads.mass_damping;
   total_force(model_, loads, {state.time, state.x, state.v}, MassDamping::left_out, force_);
-  Points x = state.x, v = state.v, predicted(x.size());
+  Loan<Vec3> x(state.x), v(state.v), predicted(x.size());
   for (std::size_t i = 0; i < x.size(); ++i) {
     const Vec3 a = per_mass(force_[i], mass[i]) - alpha * state.v[i];
     v[i] += half * a;

@@ -14,8 +14,8 @@ void add_stiffness_damping(ForceModel& model, const double beta, const Moment& m
   if (!elastic)
     return;
   elastic->linearise(moment.x);
-  Points product(moment.v.size());
-  elastic->apply_stiffness(flat(moment.v), flat(product));
+  Loan<Vec3> product(moment.v.size());
+  elastic->apply_stiffness(flat(moment.v), flat(*product));
   for (std::size_t i = 0; i < forces.size(); ++i)
     forces[i] -= beta * product[i];
 }
@@ -51,25 +51,25 @@ void total_force(ForceModel& model, const Loads& loads, const Moment& moment, co
   parallel_for(
     forces.size(), [&](const std::size_t i) { forces[i] += mass[i] * (loads.gravity - alpha * moment.v[i]); }, worth);
   if (alpha > 0) {
-    const Points more = coupled(model, moment.v);
+    const Loan<Vec3> more = coupled(model, moment.v);
     for (std::size_t i = 0; i < more.size(); ++i)
       forces[i] -= alpha * more[i];
   }
   add_load_forces(loads, moment, forces);
 }
 
-Points coupled(const ForceModel& model, const Points& v) {
+Loan<Vec3> coupled(const ForceModel& model, const Points& v) {
   const MassCoupling* const coupling = model.mass_coupling();
-  Points product(coupling ? v.size() : 0, Vec3::Zero());
+  Loan<Vec3> product(coupling ? v.size() : 0, Vec3::Zero());
   if (coupling)
-    coupling->add_product(flat(v), flat(product));
+    coupling->add_product(flat(v), flat(*product));
   return product;
 }
 
-Points momenta(const ForceModel& model, const Points& v) {
+Loan<Vec3> momenta(const ForceModel& model, const Points& v) {
   const auto mass = model.lumped_mass();
-  Points sum = coupled(model, v);
-  sum.resize(v.size(), Vec3::Zero());
+  Loan<Vec3> sum = coupled(model, v);
+  sum->resize(v.size(), Vec3::Zero());
   for (std::size_t i = 0; i < v.size(); ++i)
     sum[i] += mass[i] * v[i];
   return sum;
@@ -80,7 +80,7 @@ double kinetic_energy(const ForceModel& model, const Points& v) {
   double sum = 0;
   for (std::size_t i = 0; i < v.size(); ++i)
     sum += 0.5 * mass[i] * v[i].squaredNorm();
-  const Points more = coupled(model, v);
+  const Loan<Vec3> more = coupled(model, v);
   for (std::size_t i = 0; i < more.size(); ++i)
     sum += 0.5 * v[i].dot(more[i]);
   return sum;

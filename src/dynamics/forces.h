@@ -27,9 +27,9 @@ inline Vec3 per_mass(const Vec3& value, const double mass) {
 }
 
 /// (M - diag m) v; nothing where the mass is lumped.
-Points coupled(const ForceModel& model, const Points& v);
+Loan<Vec3> coupled(const ForceModel& model, const Points& v);
 /// M v, by corner [kg m/s]; of accelerations, the forces of inertia [N].
-Points momenta(const ForceModel& model, const Points& v);
+Loan<Vec3> momenta(const ForceModel& model, const Points& v);
 /// Kinetic energy [J].
 double kinetic_energy(const ForceModel& model, const Points& v);
 /// -sum of m g.x [J].

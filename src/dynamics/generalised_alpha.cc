@@ -83,10 +83,10 @@ Balance GeneralisedAlpha::balance(const State& state, const Points& a, const Con
   Balance b{.time = state.time + (1 - alpha_f) * dt,
             .mass_factor = (1 - alpha_m) / ((1 - alpha_f) * beta * dt * dt),
             .velocity_factor = gamma / (beta * dt),
-            .start = state.x,
-            .velocity = Points(n),
-            .acceleration = Points(n),
-            .guess = Points(n)};
+            .start = Loan<Vec3>(state.x),
+            .velocity = Loan<Vec3>(n),
+            .acceleration = Loan<Vec3>(n),
+            .guess = Loan<Vec3>(n)};
   for (std::size_t i = 0; i < n; ++i) { // what x_1 = x_0 makes of them
     const Vec3 a_1 = -state.v[i] / (beta * dt) - (0.5 / beta - 1) * a[i];
     b.acceleration[i] = (1 - alpha_m) * a_1 + alpha_m * a[i];
@@ -100,7 +100,7 @@ Balance GeneralisedAlpha::balance(const State& state, const Points& a, const Con
     b.velocity[i] = state.v[i] - b.velocity_factor * b.guess[i];
     b.guess[i] += 0.5 * (1 - alpha_f) * dt * dt * follower.led(a);
   }
-  Points end = state.x;
+  Loan<Vec3> end(state.x);
   constraints.place(state.time + dt, end);
   for (const auto& held : constraints.held())
     b.start[held.corner] += (1 - alpha_f) * (end[held.corner] - state.x[held.corner]);
@@ -111,9 +111,9 @@ Balance GeneralisedAlpha::balance(const State& state, const Points& a, const Con
 StepReport GeneralisedAlpha::step(State& state, const Loads& loads, const double dt) {
   const Constraints constraints(loads, state.x.size());
   const Points* const known = remembered(state, "acceleration");
-  Points a = known ? *known : first_acceleration(state, loads, dt), x;
+  Loan<Vec3> a(known ? *known : first_acceleration(state, loads, dt)), x;
   const StepReport report = accepted(solver_.solve(loads, constraints, balance(state, a, constraints, dt), x));
-  const Points start = state.x;
+  const Loan<Vec3> start(state.x);
   const auto [alpha_m, alpha_f, beta, gamma] = c_;
   for (std::size_t i = 0; i < x.size(); ++i) {
     const Vec3 moved = (x[i] - state.x[i]) / (1 - alpha_f);
@@ -132,7 +132,7 @@ StepReport GeneralisedAlpha::step(State& state, const Loads& loads, const double
   constraints.place(state.time, state.x);
   constraints.place_velocity(state.time, part_of_step * dt, state.v);
   constraints.project(a);
-  state.history["acceleration"] = std::move(a);
+  state.history["acceleration"].swap(a);
   return report;
 }
 

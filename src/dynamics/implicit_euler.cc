@@ -34,27 +34,27 @@ StepReport ImplicitEuler::step(State& state, const Loads& loads, const double dt
   Balance balance{.time = state.time + dt,
                   .mass_factor = 1 / (dt * dt),
                   .velocity_factor = 1 / dt,
-                  .start = state.x,
-                  .velocity = Points(n),
-                  .acceleration = Points(n),
-                  .guess = Points(n)};
+                  .start = Loan<Vec3>(state.x),
+                  .velocity = Loan<Vec3>(n),
+                  .acceleration = Loan<Vec3>(n),
+                  .guess = Loan<Vec3>(n)};
   constraints.place(balance.time, balance.start);
-  const Points* const change = remembered(state, "change of velocity");
+  const Points* const change = remembered(state, change_of_velocity);
   for (std::size_t i = 0; i < n; ++i) {
     balance.velocity[i] = (balance.start[i] - state.x[i]) / dt; // zero but where supports move
     balance.acceleration[i] = (balance.velocity[i] - state.v[i]) / dt;
     balance.guess[i] = dt * (state.v[i] + (change ? (*change)[i] : Vec3(Vec3::Zero())));
   }
-  Points x;
+  Loan<Vec3> x;
   const StepReport report = accepted(solver_.solve(loads, constraints, balance, x));
-  Points& changed = state.history["change of velocity"];
+  Points& changed = state.history[change_of_velocity];
   changed.resize(n);
   for (std::size_t i = 0; i < n; ++i) {
     const Vec3 v = (x[i] - state.x[i]) / dt;
     changed[i] = v - state.v[i];
     state.v[i] = v;
   }
-  state.x = std::move(x);
+  state.x.swap(x);
   state.time += dt;
   return report;
 }

@@ -24,9 +24,8 @@ double disagreement(const Support& a, const Vec3& place_a, const Support& b, con
 
 } // namespace
 
-std::function<Vec3(const Vec3& rest)> Support::places(const double time) const {
-  const Mat3 R = rotation ? rotation(time) : Mat3(Mat3::Identity());
-  return [R, d = displacement(time)](const Vec3& X) { return Vec3(R * X + d); };
+Support::Places Support::places(const double time) const {
+  return {rotation ? rotation(time) : Mat3(Mat3::Identity()), displacement(time)};
 }
 
 Mat3 held_along(const Vec3& direction) {
@@ -52,8 +51,8 @@ Mat3 held_axes(const std::string& word) {
   return axes.asDiagonal();
 }
 
-std::vector<std::uint8_t> held_corners(const Loads& loads, const std::size_t n_corners) {
-  std::vector<std::uint8_t> held(n_corners, 0);
+Loan<std::uint8_t> held_corners(const Loads& loads, const std::size_t n_corners) {
+  Loan<std::uint8_t> held(n_corners, 0);
   const Constraints constraints(loads, n_corners);
   for (const auto& one : constraints.held())
     held[one.corner] = constraints.freedom(one.corner).n_free == 0;
@@ -64,7 +63,7 @@ std::vector<std::uint8_t> held_corners(const Loads& loads, const std::size_t n_c
 
 void move_held(const Loads& loads, const double time, const double dt, Points& x, Points& v) {
   const Constraints constraints(loads, x.size());
-  Points moved = x;
+  Loan<Vec3> moved(x);
   constraints.place(time, moved);
   for (const auto& held : constraints.held()) {
     const auto c = held.corner;

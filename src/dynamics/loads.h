@@ -2,6 +2,7 @@
 
 /// What acts on a body from outside.
 
+#include "base/loan.h"
 #include "base/vec.h"
 #include "dynamics/load.h"
 
@@ -23,8 +24,13 @@ struct Support {
   /// Projector onto the directions that are held, world frame [1]: the corners slide along the others. See held_along.
   Mat3 held = Mat3::Identity();
 
-  /// Where its corners are at a time [s]: a function of their `rest`.
-  std::function<Vec3(const Vec3& rest)> places(double time) const;
+  /// Where its corners are at one time: a function of their `rest`.
+  struct Places {
+    Mat3 rotation;
+    Vec3 displacement; ///< [m]
+    Vec3 operator()(const Vec3& rest) const { return rotation * rest + displacement; }
+  };
+  Places places(double time) const; ///< time in s
 };
 
 /// Support::held for one direction of any length; throws ParameterError when it is zero.
@@ -49,7 +55,7 @@ inline bool is_carried(const Loads& loads, const std::size_t corner) {
 }
 
 /// 1 for each corner that supports hold in all directions, or that a body carries.
-std::vector<std::uint8_t> held_corners(const Loads& loads, std::size_t n_corners);
+Loan<std::uint8_t> held_corners(const Loads& loads, std::size_t n_corners);
 
 /// Puts held corners where they belong at `time`; their velocities are the mean ones over the step dt that led there.
 void move_held(const Loads& loads, double time, double dt, Points& x, Points& v);

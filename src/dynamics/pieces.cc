@@ -9,24 +9,24 @@ Pieces::Pieces(std::vector<std::uint32_t> piece_of_corner) : piece_(std::move(pi
     n_ = 1 + *std::max_element(piece_.begin(), piece_.end());
 }
 
-std::vector<double> Pieces::products(const Points& a, const Points& b) const {
-  std::vector<double> sum(n_, 0);
+Loan<double> Pieces::products(const Points& a, const Points& b) const {
+  Loan<double> sum(n_, 0);
   for (std::size_t i = 0; i < a.size(); ++i)
     sum[of(i)] += a[i].dot(b[i]);
   return sum;
 }
 
-Points Pieces::without_mean(const std::span<const double> mass, const Points& values,
-                            const std::span<const std::uint8_t> which) const {
-  std::vector<double> all(n_, 0);
-  Points mean(n_, Vec3::Zero());
+Loan<Vec3> Pieces::without_mean(const std::span<const double> mass, const Points& values,
+                                const std::span<const std::uint8_t> which) const {
+  Loan<double> all(n_, 0);
+  Loan<Vec3> mean(n_, Vec3::Zero());
   for (std::size_t i = 0; i < values.size(); ++i) {
     all[of(i)] += mass[i];
     mean[of(i)] += mass[i] * values[i];
   }
   for (std::size_t p = 0; p < n_; ++p)
     mean[p] = which[p] && all[p] > 0 ? Vec3(mean[p] / all[p]) : Vec3(Vec3::Zero());
-  Points rest(values.size());
+  Loan<Vec3> rest(values.size());
   for (std::size_t i = 0; i < values.size(); ++i)
     rest[i] = values[i] - mean[of(i)];
   return rest;

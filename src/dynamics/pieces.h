@@ -2,6 +2,7 @@
 
 /// Sums over the pieces of a body, which nothing joins: what one of them does tells nothing about another.
 
+#include "base/loan.h"
 #include "base/vec.h"
 
 #include <cstdint>
@@ -19,9 +20,10 @@ class Pieces {
   std::uint32_t of(const std::size_t corner) const { return piece_.empty() ? 0 : piece_[corner]; }
 
   /// Of a.b over the corners of each piece.
-  std::vector<double> products(const Points& a, const Points& b) const;
+  Loan<double> products(const Points& a, const Points& b) const;
   /// Values a corner, less their mean by mass over its piece; as they are where `which` is 0.
-  Points without_mean(std::span<const double> mass, const Points& values, std::span<const std::uint8_t> which) const;
+  Loan<Vec3> without_mean(std::span<const double> mass, const Points& values,
+                          std::span<const std::uint8_t> which) const;
 
  private:
   std::vector<std::uint32_t> piece_;

@@ -2,6 +2,7 @@
 
 /// What integrators do with a value at each corner.
 
+#include "base/loan.h"
 #include "dynamics/conjugate_gradients.h"
 #include "dynamics/state.h"
 
@@ -21,8 +22,8 @@ inline double norm(const Points& values) { return std::sqrt(dot(flat(values), fl
 
 inline double product(const Points& a, const Points& b) { return dot(flat(a), flat(b)); }
 
-inline Points moved(const Points& x, const double length, const Points& d) {
-  Points end(x.size());
+inline Loan<Vec3> moved(const Points& x, const double length, const Points& d) {
+  Loan<Vec3> end(x.size());
   for (std::size_t i = 0; i < x.size(); ++i)
     end[i] = x[i] + length * d[i];
   return end;

@@ -16,10 +16,10 @@ Balance on_the_way(const double s, const double time, const Points& start, const
                    const Points& out_of_balance, const Constraints& constraints, const FreeMotions& free) {
   const std::size_t n = x.size();
   Balance balance{.time = time,
-                  .start = x,
-                  .velocity = Points(n, Vec3::Zero()),
-                  .acceleration = Points(n, Vec3::Zero()),
-                  .offset = Points(n),
+                  .start = Loan<Vec3>(x),
+                  .velocity = Loan<Vec3>(n, Vec3::Zero()),
+                  .acceleration = Loan<Vec3>(n, Vec3::Zero()),
+                  .offset = Loan<Vec3>(n),
                   .free = free};
   for (const auto& held : constraints.held()) {
     const auto c = held.corner;

@@ -42,7 +42,7 @@ bool drives(const Loads& loads) {
 
 /// Work that driving loads would do along the step with their forces at a state.
 double work_of_driving_loads(const Loads& loads, const State& at, const State& before, const State& after) {
-  Points forces(at.x.size(), Vec3::Zero());
+  Loan<Vec3> forces(at.x.size(), Vec3::Zero());
   for (const auto& load : loads.acting)
     if (load->nature() == Nature::driving)
       load->add_force({at.time, at.x, at.v}, forces);
@@ -55,12 +55,12 @@ double work_of_driving_loads(const Loads& loads, const State& at, const State& b
 /// Work of supports along the step with what the balance of forces lacks at a state.
 double work_of_supports(const ForceModel& model, const Loads& loads, const Constraints& constraints, const State& at,
                         const State& before, const State& after) {
-  Points forces;
+  Loan<Vec3> forces;
   model.force(at.x, forces);
   add_load_forces(loads, {at.time, at.x, at.v}, forces);
   const auto mass = model.lumped_mass();
   const double dt = after.time - before.time;
-  Points change(after.v.size());
+  Loan<Vec3> change(after.v.size());
   for (std::size_t i = 0; i < change.size(); ++i)
     change[i] = after.v[i] - before.v[i];
   change = momenta(model, change);
@@ -121,8 +121,8 @@ double unseen(const ForceModel& model, const State& state, const double dt) {
 
 /// Of the elastic energy, by what it costs to grow by a thousandth [J].
 double round_off(const ForceModel& model, const Points& x) {
-  Points grown = x;
-  for (Vec3& p : grown)
+  Loan<Vec3> grown(x);
+  for (Vec3& p : *grown)
     p *= 1.001;
   return 1e-8 * std::abs(model.energy(grown) - model.energy(x));
 }
@@ -176,7 +176,7 @@ double ElasticEnergies::at(const Points& x) {
     return known_[0].energy;
   std::swap(known_[0], known_[1]);
   if (known_[0].x != x)
-    known_[0] = {x, model_.energy_ahead(x)};
+    known_[0].energy = model_.energy_ahead(known_[0].x = x);
   return known_[0].energy;
 }
 
@@ -199,10 +199,23 @@ EnergyChange energy_change(const ForceModel& model, ElasticEnergies& energies, c
     .inner = kinetic_1 + std::abs(elastic_1)};
 }
 
+SoundSteps::LentState SoundSteps::lend(const State& like) {
+  LentState lent(nullptr, {this});
+  if (idle_.empty()) {
+    lent.reset(new State);
+  } else {
+    lent.reset(idle_.back().release());
+    idle_.pop_back();
+  }
+  assign(*lent, like);
+  return lent;
+}
+
 void SoundSteps::add_checked(Tried& tried, const Loads& loads, const double dt) {
   constexpr double most_in_sum = 0.5;
-  State& state = tried.state;
-  State after = state;
+  State& state = *tried.state;
+  const LentState lent = lend(state);
+  State& after = *lent;
   const StepReport report = stepper_->step(after, loads, dt);
   keep_carried(loads, state, after);
   require_finite(after);
@@ -212,7 +225,7 @@ void SoundSteps::add_checked(Tried& tried, const Loads& loads, const double dt) 
     throw StepError("the step gained " + in_short(change.gained) + " J that no load and no support gave, " +
                       per_cent(change.gained / change.dealt) + " of the energy that it dealt with",
                     most_thrown(state, after));
-  double& sum = after.numbers["energy gained [J]"];
+  double& sum = after.numbers[energy_gained];
   sum = std::max(0.0, sum + change.gained);
   if (change.gained > 0 && !(sum <= most_in_sum * change.inner + shift) && sum > many * round_off(model_, after.x))
     throw StepError("the integrator has gained " + per_cent(sum / change.inner) +
@@ -221,14 +234,14 @@ void SoundSteps::add_checked(Tried& tried, const Loads& loads, const double dt) 
   tried.is_as_wanted = tried.is_as_wanted && change.gained <= options_.wanted_gain * change.dealt + change.unseen;
   tried.gained += std::max(0.0, change.gained);
   add(tried.report, report);
-  state = std::move(after);
+  std::swap(state, after);
 }
 
 SoundSteps::Tried SoundSteps::divided(const State& state, const Loads& loads, const double dt, const int n) {
-  Tried tried{{}, state};
+  Tried tried{{}, lend(state)};
   for (int k = 1; k <= n; ++k)
-    add_checked(tried, loads, (state.time + k * dt / n) - tried.state.time);
-  tried.state.time = state.time + dt;
+    add_checked(tried, loads, (state.time + k * dt / n) - tried.state->time);
+  tried.state->time = state.time + dt;
   if (n > 1)
     tried.report.n_substeps = n;
   return tried;
@@ -239,7 +252,7 @@ StepReport SoundSteps::by_last_resort(State& state, const Loads& loads, const do
   forget_past(after);
   StepReport report = last_resort_->step(after, loads, dt);
   forget_past(after);
-  after.numbers["energy gained [J]"] = 0;
+  after.numbers[energy_gained] = 0;
   state = std::move(after);
   return report;
 }
@@ -268,7 +281,7 @@ StepReport SoundSteps::step(State& state, const Loads& loads, const double dt) {
     }
   }
   if (bearable) {
-    state = std::move(bearable->state);
+    std::swap(state, *bearable->state);
     return bearable->report;
   }
   if (last_resort_) {

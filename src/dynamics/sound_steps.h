@@ -90,13 +90,21 @@ class SoundSteps : public Stepper {
   const Stepper& watched() const { return *stepper_; }
 
  private:
+  /// A state in memory that is used again.
+  struct GiveBack {
+    SoundSteps* owner;
+    void operator()(State* const state) const { owner->idle_.emplace_back(state); }
+  };
+  using LentState = std::unique_ptr<State, GiveBack>;
+
   struct Tried {
     StepReport report;
-    State state;
+    LentState state;
     bool is_as_wanted = true;
     double gained = 0; ///< in substeps that gained [J]
   };
 
+  LentState lend(const State& like);
   /// From a state, all in `n` substeps.
   Tried divided(const State& state, const Loads& loads, double dt, int n);
   void add_checked(Tried& tried, const Loads& loads, double dt);
@@ -106,6 +114,7 @@ class SoundSteps : public Stepper {
   std::unique_ptr<Stepper> stepper_, last_resort_;
   SoundOptions options_;
   ElasticEnergies energies_;
+  std::vector<std::unique_ptr<State>> idle_;
 };
 
 /// What a step did to the energy.

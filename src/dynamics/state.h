@@ -29,6 +29,24 @@ struct State {
   }
 };
 
+/// Names that are looked for in every step: longer than what a string holds in itself.
+inline const std::string change_of_velocity = "change of velocity", energy_gained = "energy gained [J]",
+                         settled_corners = "settled corners [1]";
+
+/// Makes one state the other, in the memory that it has.
+inline void assign(State& to, const State& from) {
+  to.x = from.x;
+  to.v = from.v;
+  to.time = from.time;
+  to.crumbs = from.crumbs;
+  std::erase_if(to.history, [&](const auto& known) { return from.history.count(known.first) == 0; });
+  for (const auto& [name, values] : from.history)
+    to.history[name] = values;
+  std::erase_if(to.numbers, [&](const auto& known) { return from.numbers.count(known.first) == 0; });
+  for (const auto& [name, value] : from.numbers)
+    to.numbers[name] = value;
+}
+
 /// The 3 n numbers of n points.
 inline std::span<double> flat(Points& p) { return {p.empty() ? nullptr : p[0].data(), 3 * p.size()}; }
 inline std::span<const double> flat(const Points& p) { return {p.empty() ? nullptr : p[0].data(), 3 * p.size()}; }
@@ -41,9 +59,9 @@ inline const Points* remembered(const State& state, const std::string& name) {
 
 /// To be called when forces have changed at once, by a cut for one: what was remembered of them is no longer true.
 inline void forget_forces(State& state) {
-  for (const char* const name : {"acceleration", "change of velocity"})
-    state.history.erase(name);
-  state.numbers.erase("settled corners [1]");
+  state.history.erase("acceleration");
+  state.history.erase(change_of_velocity);
+  state.numbers.erase(settled_corners);
 }
 
 /// Of what integrators remember beside x and v, nothing: the next step starts anew.

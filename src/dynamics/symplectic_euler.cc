@@ -1,5 +1,6 @@
 #include "dynamics/symplectic_euler.h"
 
+#include "base/loan.h"
 #include "dynamics/constraints.h"
 #include "dynamics/explicit_steppers.h"
 #include "dynamics/forces.h"
@@ -25,7 +26,7 @@ StepReport SymplecticEuler::step(State& state, const Loads& loads, const double 
   const Constraints constraints(loads, state.x.size());
   const auto mass = model_.lumped_mass();
   total_force(model_, loads, {state.time, state.x, state.v}, MassDamping::left_out, force_);
-  Points x = state.x, v = state.v;
+  Loan<Vec3> x(state.x), v(state.v);
   for (std::size_t i = 0; i < x.size(); ++i) {
     v[i] = (v[i] + per_mass(dt, mass[i]) * force_[i]) / (1 + dt * loads.mass_damping);
     x[i] += dt * v[i];

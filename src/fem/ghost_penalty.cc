@@ -196,8 +196,8 @@ void GhostPenalty::add_product(const std::span<const double> p, const std::span<
     }
 }
 
-std::vector<double> GhostPenalty::diagonal(const std::size_t n_corners) const {
-  std::vector<double> all(n_corners, 0.0);
+Loan<double> GhostPenalty::diagonal(const std::size_t n_corners) const {
+  Loan<double> all(n_corners, 0.0);
   for (const GhostFace& face : faces_)
     for (int i = 0; i < 4; ++i) {
       all[face.a[i]] += face.stiffness;

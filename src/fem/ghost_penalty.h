@@ -40,6 +40,7 @@
 /// faces between well-filled copies have none; and it is measured by mass, which keeps both spectra flat where several
 /// near-empty copies lie in a row (tests/fem/ghost_penalty_test.cc has the figures).
 
+#include "base/loan.h"
 #include "base/vec.h"
 #include "grid/solid.h"
 #include "material/elastic.h"
@@ -89,7 +90,7 @@ class GhostPenalty {
   /// y += K p [N] for p [m].
   void add_product(std::span<const double> p, std::span<double> y) const;
   /// K is a number times the identity for each pair of corners: the diagonal ones [N/m].
-  std::vector<double> diagonal(std::size_t n_corners) const;
+  Loan<double> diagonal(std::size_t n_corners) const;
   void add_entries(std::vector<Eigen::Triplet<double>>& entries) const;
 
  private:

@@ -1,5 +1,6 @@
 #include "fem/hexahedra.h"
 
+#include "base/loan.h"
 #include "base/parallel.h"
 #include "dynamics/state.h"
 #include "fem/assembly.h"
@@ -251,7 +252,7 @@ std::optional<double> Hexahedra::force(const Points& x, Points& forces, const Wi
   Rows sums = scratch_.borrow(batching_.n_rows());
   clear(sums.data(), batching_.n_rows());
   const double spins = frame_ == Frame::turning ? 1 : 0;
-  std::vector<double> energies(with_energy == WithEnergy::always || is_hookean() ? batching_.batches().size() : 0);
+  Loan<double> energies(with_energy == WithEnergy::always || is_hookean() ? batching_.batches().size() : 0);
   batching_.for_each_in_order([&](const std::size_t i) {
     const Turns turns = this->turns(i, rows.data());
     Lanes9<double> stress{};

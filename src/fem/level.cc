@@ -1,12 +1,12 @@
 #include "fem/level.h"
 
+#include "base/loan.h"
 #include "fem/row_of_floats.h"
 #include "grid/cube.h"
 
 #include <Eigen/LU>
 
 #include <algorithm>
-#include <map>
 #include <tuple>
 #include <utility>
 
@@ -160,29 +160,26 @@ void Level::put_inverse_block(const std::size_t corner, const Mat3& block) { put
 
 void Level::invert_diagonal(const std::function<Mat3(std::uint32_t corner, const Mat3& block)>& inverse_where_held) {
   inverse = std::move(diagonal);
-  for_each_corner([&](const std::size_t i) {
-    put_inverse_block(i, inverse_block(i) + double(mass[i]) * Mat3::Identity());
-  });
+  for_each_corner(
+    [&](const std::size_t i) { put_inverse_block(i, inverse_block(i) + double(mass[i]) * Mat3::Identity()); });
   const auto add = [&](const std::uint32_t corner, const Mat3& block) {
     put_inverse_block(corner, inverse_block(corner) + block);
   };
   for (const Spring& spring : springs)
     add(spring.corner, spring.block);
-  clusters = Clusters(points, n_corners());
+  if (!points.empty() || !clusters.empty())
+    clusters = Clusters(points, n_corners());
   clusters.add_bound(points, add);
-  std::map<std::uint32_t, Mat3> free;
-  std::vector<Spring> where_held;
-  for (const Spring& one : held) {
-    free[one.corner] = one.block;
-    where_held.push_back({one.corner, inverse_where_held(one.corner, inverse_block(one.corner))});
-  }
+  Loan<Spring> where_held;
+  for (const Spring& one : held)
+    where_held->push_back({one.corner, inverse_where_held(one.corner, inverse_block(one.corner))});
   clusters.invert([&](const std::uint32_t corner) { return inverse_block(corner); },
                   [&](const std::uint32_t corner) {
-                    const auto it = free.find(corner);
-                    return it == free.end() ? Mat3(Mat3::Identity()) : it->second;
+                    const auto it = std::ranges::lower_bound(held, corner, {}, &Spring::corner);
+                    return it == held.end() || it->corner != corner ? Mat3(Mat3::Identity()) : it->block;
                   });
   for_each_corner([&](const std::size_t i) { put_inverse_block(i, fem::inverse(inverse_block(i))); });
-  for (const Spring& one : where_held)
+  for (const Spring& one : *where_held)
     put_inverse_block(one.corner, one.block);
   clusters.for_each(
     [](std::uint32_t) { return Eigen::Vector3f::Zero(); },

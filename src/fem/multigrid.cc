@@ -1,5 +1,6 @@
 #include "fem/multigrid.h"
 
+#include "base/loan.h"
 #include "base/parallel.h"
 #include "fem/level.h"
 #include "fem/level_elements.h"
@@ -41,16 +42,15 @@ void fill(Level& level, const std::function<const Element&(std::uint32_t)>& elem
 }
 
 /// Blocks at coarse corners, of the sum of the fine ones.
-std::vector<Spring> restricted(const std::vector<Spring>& fine, const Weights& prolongation,
-                               const std::size_t n_coarse) {
-  std::vector<std::uint32_t> place(n_coarse, CellsOfLevel::unused);
-  std::vector<Spring> coarse;
+Loan<Spring> restricted(const std::vector<Spring>& fine, const Weights& prolongation, const std::size_t n_coarse) {
+  Loan<std::uint32_t> place(n_coarse, CellsOfLevel::unused);
+  Loan<Spring> coarse;
   for (const Spring& spring : fine)
     for (std::uint32_t k = prolongation.begin[spring.corner]; k < prolongation.begin[spring.corner + 1]; ++k) {
       std::uint32_t& p = place[prolongation.column[k]];
       if (p == CellsOfLevel::unused) {
         p = static_cast<std::uint32_t>(coarse.size());
-        coarse.push_back({prolongation.column[k], Mat3::Zero()});
+        coarse->push_back({prolongation.column[k], Mat3::Zero()});
       }
       coarse[p].block += double(prolongation.weight[k]) * spring.block;
     }
@@ -82,7 +82,10 @@ struct Multigrid::Coarsest {
   Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> sparse;
 
   void factorise(const Multigrid::Level& level, std::span<const Mat3> rotations);
-  void solve(Multigrid::Level& level, const Row<float>* b, Row<float>* x) const;
+  void solve(Multigrid::Level& level, const Row<float>* b, Row<float>* x);
+  Eigen::MatrixXd matrix;
+  Eigen::VectorXd right, solution;
+
   static bool is_dense(const fem::Level& level) { return level.n_corners() <= 2 * few; }
   /// What does not get coarser, like dust, is smoothed alone.
   static bool is_too_large(const fem::Level& level) { return level.n_corners() > 8 * few; }
@@ -146,7 +149,8 @@ void Multigrid::Coarsest::factorise(const Multigrid::Level& level, const std::sp
   };
   const auto n = static_cast<Eigen::Index>(3 * level.n_corners());
   if (is_dense(level)) {
-    Eigen::MatrixXd A = Eigen::MatrixXd::Zero(n, n);
+    Eigen::MatrixXd& A = this->matrix;
+    A.setZero(n, n);
     add_entries(level, matrix, [&](const std::uint32_t i, const std::uint32_t j, const Mat3& block) {
       A.block<3, 3>(3 * i, 3 * j) += block;
     });
@@ -164,16 +168,19 @@ void Multigrid::Coarsest::factorise(const Multigrid::Level& level, const std::sp
   sparse.compute(A);
 }
 
-void Multigrid::Coarsest::solve(Multigrid::Level& level, const Row<float>* const b, Row<float>* const x) const {
+void Multigrid::Coarsest::solve(Multigrid::Level& level, const Row<float>* const b, Row<float>* const x) {
   if (is_too_large(level)) {
     level.smooth_from_zero(b, x);
     return;
   }
-  Eigen::VectorXd right(3 * level.n_corners());
+  right.resize(static_cast<Eigen::Index>(3 * level.n_corners()));
   for (std::size_t i = 0; i < level.n_corners(); ++i)
     right.segment<3>(3 * i) << b[i].x, b[i].y, b[i].z;
-  const Eigen::VectorXd y =
-    is_dense(level) ? Eigen::VectorXd(dense.solve(right)) : Eigen::VectorXd(sparse.solve(right));
+  Eigen::VectorXd& y = solution;
+  if (is_dense(level))
+    y = dense.solve(right);
+  else
+    y = sparse.solve(right);
   for (std::size_t i = 0; i < level.n_corners(); ++i)
     x[i] = {float(y[3 * i]), float(y[3 * i + 1]), float(y[3 * i + 2])};
 }
@@ -266,7 +273,7 @@ void Multigrid::put_rotations(const std::span<const Lanes9<double>> finest) {
   for (std::size_t l = 0; l < levels_.size(); ++l) {
     Level& level = levels_[l];
     const bool is_last = l + 1 == levels_.size();
-    std::vector<Mat3> sums(is_last ? 0 : levels_[l + 1].cells.n_copies(), Mat3::Zero());
+    Loan<Mat3> sums(is_last ? 0 : levels_[l + 1].cells.n_copies(), Mat3::Zero());
     for (std::size_t i = 0; i < level.batching.batches().size(); ++i) {
       const BatchOfCopies& batch = level.batching.batches()[i];
       for (std::size_t lane = 0; lane < n_lanes; ++lane) {
@@ -317,13 +324,14 @@ void Multigrid::hold(const dynamics::LinearEquation& equation) {
   Level& finest = levels_[0];
   finest.springs.clear();
   finest.held.clear();
-  finest.points = point_springs(equation);
-  std::vector<Mat3> pairs; // of points that loads join
+  if (!finest.points.empty() || !equation.loads.empty())
+    finest.points = point_springs(equation);
+  Loan<Mat3> pairs; // of points that loads join
   if (!equation.loads.empty()) {
-    pairs.assign(finest.n_corners(), Mat3::Zero());
+    pairs->assign(finest.n_corners(), Mat3::Zero());
     equation.loads.add_bound_of_pairs(pairs);
   }
-  std::vector<Spring> springs; // for the coarse levels
+  Loan<Spring> springs; // for the coarse levels
   for (std::uint32_t i = 0; i < finest.n_corners(); ++i) {
     Mat3 coarse = Mat3::Zero();
     if (!pairs.empty() && pairs[i].cwiseAbs().maxCoeff() > 0) {
@@ -337,12 +345,14 @@ void Multigrid::hold(const dynamics::LinearEquation& equation) {
       finest.held.push_back({i, free});
     }
     if (coarse.cwiseAbs().maxCoeff() > 0)
-      springs.push_back({i, coarse});
+      springs->push_back({i, coarse});
   }
   for (std::size_t l = 1; l < levels_.size(); ++l) {
     springs = restricted(springs, levels_[l - 1].to_coarse.prolongation, levels_[l].n_corners());
-    levels_[l].springs = springs;
-    levels_[l].points = coarsened(levels_[l - 1].points, levels_[l - 1].to_coarse.prolongation, levels_[l].n_corners());
+    levels_[l].springs = *springs;
+    if (!levels_[l].points.empty() || !finest.points.empty())
+      levels_[l].points =
+        coarsened(levels_[l - 1].points, levels_[l - 1].to_coarse.prolongation, levels_[l].n_corners());
   }
 }
 

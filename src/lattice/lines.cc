@@ -1,6 +1,7 @@
 #include "lattice/lines.h"
 
 #include "base/error.h"
+#include "base/loan.h"
 #include "base/parallel.h"
 #include "lattice/kernels.h"
 
@@ -74,8 +75,8 @@ void Lines::sum_windows_along(const Axis& axis, std::vector<double>& f) const {
   const std::size_t n_lines = axis.start.size() - 1, width = f.size() / n_points();
   const std::size_t worth = n_points() < worth_points ? n_lines + 1 : 2;
   parallel_ranges(n_lines, worth, [&](const std::size_t first, const std::size_t last) {
-    std::vector<double> scratch(2 * width * axis.longest);
-    sum_windows({first, last, axis.start.data(), axis.points.data()}, half_width_, width, f.data(), scratch.data());
+    Loan<double> scratch(2 * width * axis.longest);
+    sum_windows({first, last, axis.start.data(), axis.points.data()}, half_width_, width, f.data(), scratch->data());
   });
 }
 

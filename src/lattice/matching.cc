@@ -1,6 +1,7 @@
 #include "lattice/matching.h"
 
 #include "base/error.h"
+#include "base/loan.h"
 #include "base/parallel.h"
 #include "base/parameters.h"
 #include "lattice/kernels.h"
@@ -157,7 +158,7 @@ double Matching::match(const Points& x, const Vec3& centre) const {
     worth_items);
   sum_over_regions();
   const std::size_t n_blocks = (regions_.size() + block_size - 1) / block_size;
-  std::vector<double> residuals(n_blocks);
+  Loan<double> residuals(n_blocks);
   parallel_for(
     n_blocks,
     [&](const std::size_t b) {
@@ -249,7 +250,7 @@ void Matching::sum_angular_momentum(const Points& x, const Points& v, const Vec3
 void Matching::rigid_velocities(const Points& x, const Points& v, Points& u) const {
   const Vec3 centre = mean(x);
   sum_moments(x, v, centre);
-  const std::vector<double> moments = region_field_;
+  const Loan<double> moments(region_field_);
   sum_angular_momentum(x, v, centre);
   parallel_for(
     regions_.size(),

@@ -1,6 +1,7 @@
 #include "lattice/shape_matching.h"
 
 #include "base/error.h"
+#include "base/loan.h"
 #include "base/parallel.h"
 #include "dynamics/forces.h"
 
@@ -76,7 +77,7 @@ void ShapeMatching::settle(const dynamics::Loads& loads, const dynamics::Constra
 void ShapeMatching::add_loads(const dynamics::Moment& now, const dynamics::Loads& loads, const double dt, Points& v) {
   if (loads.acting.empty())
     return;
-  Points accelerations(v.size(), Vec3::Zero()); // forces, at first
+  Loan<Vec3> accelerations(v.size(), Vec3::Zero()); // forces, at first
   dynamics::add_load_forces(loads, now, accelerations);
   const auto mass = model_.lumped_mass();
   for (std::size_t c = 0; c < v.size(); ++c)
@@ -100,8 +101,9 @@ dynamics::StepReport ShapeMatching::step(dynamics::State& state, const dynamics:
   const double alpha = model_.stiffness() * dt * dt;
   require_allowed(alpha, dt);
   const dynamics::Constraints constraints(loads, state.x.size());
-  Points x = state.x, v = state.v;
-  const auto n_settled = state.numbers.find(settled_corners);
+  Loan<Vec3> lent_x(state.x), lent_v(state.v);
+  Points &x = lent_x, &v = lent_v;
+  const auto n_settled = state.numbers.find(dynamics::settled_corners);
   if (n_settled == state.numbers.end() || n_settled->second != static_cast<double>(x.size()))
     settle(loads, constraints, x, v);
   model_.goals(x, goals_);
@@ -122,7 +124,7 @@ dynamics::StepReport ShapeMatching::step(dynamics::State& state, const dynamics:
   state.x.swap(x);
   state.v.swap(v);
   state.time += dt;
-  state.numbers[settled_corners] = static_cast<double>(state.x.size());
+  state.numbers[dynamics::settled_corners] = static_cast<double>(state.x.size());
   return {};
 }
 

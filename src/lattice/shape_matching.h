@@ -44,9 +44,6 @@ void check(const ShapeMatchingParameters& parameters);
 /// k = alpha / dt^2 [1/s^2] and so on, after a check.
 MatchingOptions matching_options(const ShapeMatchingParameters& parameters, double density, double dt);
 
-/// In State::numbers: how many corners there were when riders were put to their goals last.
-inline constexpr const char* settled_corners = "settled corners [1]";
-
 class ShapeMatching : public dynamics::Stepper {
  public:
   /// The model must outlive the stepper. Region damping in [1/s].

@@ -1,5 +1,6 @@
 #include "pba/corners.h"
 
+#include "base/loan.h"
 #include "base/parallel.h"
 #include "grid/followed.h"
 #include "pba/kernel.h"
@@ -131,7 +132,7 @@ CornerMap build_corner_map(const grid::Solid& solid, const Phyxels& phyxels, con
 }
 
 void follow(const CornerMap& map, const Points& x, const std::vector<Mat3>& F, Points& corners) {
-  std::vector<Motion> motions(x.size()), rows(map.start.size() - 1);
+  Loan<Motion> motions(x.size()), rows(map.start.size() - 1);
   for (std::size_t i = 0; i < x.size(); ++i)
     motions[i] << F[i], x[i] - F[i] * map.rest[i];
   parallel_for(

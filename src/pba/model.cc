@@ -1,6 +1,7 @@
 #include "pba/model.h"
 
 #include "base/error.h"
+#include "base/loan.h"
 #include "base/parallel.h"
 #include "material/polar.h"
 #include "pba/kernel.h"
@@ -169,7 +170,8 @@ Mat3 PhyxelModel::gradient(const std::size_t i, const At& at) const {
 
 template <class At, class Stress>
 void PhyxelModel::pair_forces(const At& at, const Stress& stress, double* const forces) const {
-  std::vector<Mat3> T(phyxels_.size());
+  Loan<Mat3> lent(phyxels_.size());
+  std::vector<Mat3>& T = lent;
   parallel_for(
     phyxels_.size(),
     [&](const std::size_t i) {
@@ -192,7 +194,7 @@ void PhyxelModel::pair_forces(const At& at, const Stress& stress, double* const 
 }
 
 double PhyxelModel::energy(const Points& x) const {
-  std::vector<double> energies(phyxels_.size());
+  Loan<double> energies(phyxels_.size());
   parallel_for(
     phyxels_.size(),
     [&](const std::size_t i) {

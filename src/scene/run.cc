@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/interrupt.h"
+#include "base/loan.h"
 #include "dynamics/sound_steps.h"
 #include "scene/initial_state.h"
 #include "scene/soundness.h"
@@ -95,7 +96,7 @@ void advance(World& world, const int step, Timings& seconds) {
     on(world, body, step, t1, [&] {
       if (body.accounts)
         body.accounts->before_step(body.state);
-      const Points before = body.state.x;
+      const Loan<Vec3> before(body.state.x);
       body.report = body.physics->step(body.state, body.loads, dt);
       require_sound_motion(body, before, dt);
       body.n_divided += body.report.n_rejected > 0 ? 1 : 0;
