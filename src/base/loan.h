@@ -18,7 +18,7 @@ class Loan {
   Loan() : values_(taken()) {}
   explicit Loan(const std::size_t n) : Loan() { values_.resize(n); }
   Loan(const std::size_t n, const T& value) : Loan() { values_.assign(n, value); }
-  explicit Loan(const Vector& values) : Loan() { values_ = values; }
+  Loan(const Vector& values) : Loan() { values_ = values; } // NOLINT: a copy of one
   Loan(Loan&& other) noexcept : values_(std::exchange(other.values_, {})) {}
   Loan(const Loan&) = delete;
   Loan& operator=(const Loan&) = delete;

@@ -39,6 +39,8 @@ std::vector<grid::EdgeCut> PendingCuts::push(const std::span<const grid::EdgeCut
 
 std::vector<grid::EdgeCut> PendingCuts::release(const grid::Solid& solid) {
   std::vector<grid::EdgeCut> released;
+  if (queue_.empty())
+    return released;
   std::deque<grid::EdgeCut> waiting;
   CutCounts counts;
   for (const grid::EdgeCut& cut : queue_) {

@@ -44,7 +44,7 @@ void obey(const Constraints& constraints, const double time, const double dt, Po
   constraints.place_velocity(time, part_of_step * dt, v);
 }
 
-void take_over(State& state, Points& x, Points& v, const double dt, const std::string& name) {
+void take_over(State& state, Points& x, Points& v, const double dt, const char* const name) {
   require_finite(v, name);
   state.x.swap(x);
   state.v.swap(v);
@@ -53,12 +53,12 @@ void take_over(State& state, Points& x, Points& v, const double dt, const std::s
 
 } // namespace
 
-void require_finite(const Points& v, const std::string& name) {
+void require_finite(const Points& v, const char* name) {
   double total = 0; // sum, not maximum: it keeps NaN
   for (const Vec3& velocity : v)
     total += velocity.squaredNorm();
   if (!std::isfinite(total))
-    throw NumericalError("velocities are no longer finite: " + name +
+    throw NumericalError("velocities are no longer finite: " + std::string(name) +
                          " is unstable beyond a time step that the largest frequency sets. Use a smaller time step, "
                          "or implicit Euler");
 }

@@ -68,6 +68,6 @@ class VelocityVerlet : public Stepper {
 };
 
 /// Throws NumericalError when a velocity is no longer finite.
-void require_finite(const Points& v, const std::string& name);
+void require_finite(const Points& v, const char* name);
 
 } // namespace kerf::dynamics

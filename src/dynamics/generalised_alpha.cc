@@ -111,7 +111,11 @@ Balance GeneralisedAlpha::balance(const State& state, const Points& a, const Con
 StepReport GeneralisedAlpha::step(State& state, const Loads& loads, const double dt) {
   const Constraints constraints(loads, state.x.size());
   const Points* const known = remembered(state, "acceleration");
-  Loan<Vec3> a(known ? *known : first_acceleration(state, loads, dt)), x;
+  Loan<Vec3> a, x;
+  if (known)
+    *a = *known;
+  else
+    *a = first_acceleration(state, loads, dt);
   const StepReport report = accepted(solver_.solve(loads, constraints, balance(state, a, constraints, dt), x));
   const Loan<Vec3> start(state.x);
   const auto [alpha_m, alpha_f, beta, gamma] = c_;

@@ -26,7 +26,7 @@ Points Mixing::mixed(const Points& x, const Points& d, const std::span<const dou
   if (last_x_.size() == x.size())
     past_.push_back({difference(x, last_x_), difference(d, last_d_)});
   if (past_.size() > depth_)
-    past_.pop_front();
+    past_.erase(past_.begin());
   last_x_ = x;
   last_d_ = d;
   const auto n = static_cast<Eigen::Index>(past_.size());

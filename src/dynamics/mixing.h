@@ -8,8 +8,8 @@
 #include "base/vec.h"
 
 #include <cstddef>
-#include <deque>
 #include <span>
+#include <vector>
 
 namespace kerf::dynamics {
 
@@ -28,7 +28,7 @@ class Mixing {
   };
 
   std::size_t depth_;
-  std::deque<Change> past_;
+  std::vector<Change> past_; // few
   Points last_x_, last_d_;
 };
 

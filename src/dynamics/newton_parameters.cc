@@ -5,8 +5,10 @@
 namespace kerf::dynamics {
 
 void NewtonParameters::describe(Parameters& p) {
-  p.integer("Newton iterations [1]", n_newton, {.min = 1}, "At most, a step; 1 is the linearly implicit method. Implicit Euler goes on where a first one, not searched, "
-            "does not bear its tests.");
+  p.integer(
+    "Newton iterations [1]", n_newton, {.min = 1},
+    "At most, a step; 1 is the linearly implicit method. Implicit Euler goes on where a first one, not searched, "
+    "does not bear its tests.");
   p.number("Newton tolerance [1]", newton_tolerance, non_negative,
            "Forces out of balance over the forces that balance. 0: always all iterations, and no test.");
   p.boolean("Line search", line_search, "Shorten corrections until the energy of the step falls.");

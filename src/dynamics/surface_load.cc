@@ -45,8 +45,8 @@ Traction::Traction(SurfacePatch patch, Field traction) : patch_(std::move(patch)
   check(patch_);
 }
 
-Points Traction::vertex_forces(const double time) const {
-  Points forces(patch_.rest.size(), Vec3::Zero());
+Loan<Vec3> Traction::vertex_forces(const double time) const {
+  Loan<Vec3> forces(patch_.rest.size(), Vec3::Zero());
   for (const auto& triangle : patch_.triangles) {
     Vec3 t[3], sum = Vec3::Zero();
     for (int k = 0; k < 3; ++k)
@@ -60,7 +60,7 @@ Points Traction::vertex_forces(const double time) const {
 }
 
 double Traction::energy(const double time, const Points& x) const {
-  const Points forces = vertex_forces(time);
+  const Loan<Vec3> forces = vertex_forces(time);
   double sum = 0;
   for (std::size_t i = 0; i < forces.size(); ++i)
     if (!forces[i].isZero(0))
@@ -69,7 +69,7 @@ double Traction::energy(const double time, const Points& x) const {
 }
 
 void Traction::add_force(const Moment& moment, Points& forces) const {
-  const Points of_vertices = vertex_forces(moment.time);
+  const Loan<Vec3> of_vertices = vertex_forces(moment.time);
   for (std::size_t i = 0; i < of_vertices.size(); ++i)
     if (!of_vertices[i].isZero(0))
       patch_.points.add_force(i, of_vertices[i], forces);

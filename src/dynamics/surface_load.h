@@ -9,6 +9,7 @@
 /// stiffness -df/dx_k = -(p/6) [x_{k+1} - x_{k+2}]x is not symmetric on an open one and is left out of the positive
 /// tangent.
 
+#include "base/loan.h"
 #include "base/parameters.h"
 #include "dynamics/body_force.h"
 
@@ -39,7 +40,7 @@ class Traction : public Load {
   void add_tangent(Tangent, const Moment&, double, LoadTangent&) const override {} // does not depend on x
 
  private:
-  Points vertex_forces(double time) const;
+  Loan<Vec3> vertex_forces(double time) const;
 
   SurfacePatch patch_;
   Field traction_;

@@ -217,7 +217,7 @@ double Hexahedra::energy(const Points& x) const {
     return *known;
   Rows rows = scratch_.borrow(batching_.n_rows());
   put_rows(dynamics::flat(x), rows);
-  std::vector<double> energies(batching_.batches().size());
+  Loan<double> energies(batching_.batches().size());
   batching_.for_each([&](const std::size_t i) {
     const Turns turns = this->turns(i, rows.data());
     alignas(64) double of_lanes[n_lanes];
@@ -233,7 +233,7 @@ double Hexahedra::energy_ahead(const Points& x) const {
     known_.put_energy(x, energy);
     return energy;
   }
-  Points forces;
+  Loan<Vec3> forces;
   const double energy = *force(x, forces, WithEnergy::always);
   known_.put(x, forces, energy);
   return energy;
@@ -313,7 +313,7 @@ void Hexahedra::apply_stiffness(const std::span<const double> p, const std::span
 
 void Hexahedra::stiffness_diagonal(std::vector<Mat3>& blocks) const {
   blocks.resize(mass_.size());
-  std::vector<double> penalty = ghost_penalty_.diagonal(mass_.size());
+  Loan<double> penalty = ghost_penalty_.diagonal(mass_.size());
   ties_.add_diagonal(penalty);
   Rows sums = scratch_.borrow(2 * batching_.n_rows());
   clear(sums.data(), 2 * batching_.n_rows());

@@ -1,5 +1,6 @@
 #include "fem/multigrid.h"
 
+#include "base/function_ref.h"
 #include "base/loan.h"
 #include "base/parallel.h"
 #include "fem/level.h"
@@ -100,7 +101,7 @@ namespace {
 
 /// Adds a block for a pair of corners.
 template <class Add>
-void add_entries(const Level& level, const std::function<Matrix24(std::size_t copy)>& matrix, const Add& add) {
+void add_entries(const Level& level, const FunctionRef<Matrix24(std::size_t copy)> matrix, const Add& add) {
   for (std::size_t c = 0; c < level.cells.n_copies(); ++c) {
     if (!level.cells.is_used(c))
       continue;

@@ -1,6 +1,7 @@
 #include "scene/soundness.h"
 
 #include "base/error.h"
+#include "base/loan.h"
 #include "dynamics/forces.h"
 #include "fem/hexahedra.h"
 
@@ -44,8 +45,8 @@ const grid::Copy& copy_of(const Body& body, const std::size_t c) {
 }
 
 /// Signed volume of each piece that the surface bounds, with its vertices at `points`; none of crumbs, which are rigid.
-std::vector<double> piece_volumes(const Body& body, const Watch& watch, const Points& points) {
-  std::vector<double> volumes(watch.rest_volumes.size(), 0);
+Loan<double> piece_volumes(const Body& body, const Watch& watch, const Points& points) {
+  Loan<double> volumes(watch.rest_volumes.size(), 0);
   for (std::size_t t = 0; t < body.surface.triangles.size(); ++t) {
     if (body.solid.crumbs.holds(body.surface.copies[t]))
       continue;
@@ -65,7 +66,7 @@ void bring_up_to_date(const Body& body, Watch& watch) {
   for (std::size_t c = 0; c < body.solid.complex.n_copies(); ++c)
     watch.piece_of_copy.push_back(pieces[copy_of(body, c).corners[0].value]);
   watch.rest_volumes.assign(pieces.empty() ? 0 : 1 + *std::max_element(pieces.begin(), pieces.end()), 0);
-  watch.rest_volumes = piece_volumes(body, watch, body.surface.rest);
+  watch.rest_volumes = *piece_volumes(body, watch, body.surface.rest);
 }
 
 /// det F in the middle of a copy: the mean of its four edges along each axis.
@@ -131,7 +132,7 @@ bool is_of_small_strain(const Body& body) {
 /// What is wrong with the body's volumes; nothing: they are sound.
 std::string unsound_volume(const Body& body, const Watch& watch) {
   constexpr double most = 10, most_inverted = 0.1;
-  const std::vector<double> now = piece_volumes(body, watch, body.positions);
+  const Loan<double> now = piece_volumes(body, watch, body.positions);
   const bool is_small_strain = is_of_small_strain(body);
   constexpr double most_turned = 1.25; // small strain takes I + tan(a) x for a turn by a: 1 + tan^2(a) of the volume
   for (std::uint32_t p = 0; p < now.size(); ++p) {

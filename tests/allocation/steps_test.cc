@@ -7,6 +7,9 @@
 #include <cerrno>
 #include <cstdlib>
 
+// Sanitizers have their own.
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+
 // In place of the C library's, whose own are behind them: what any library of this program allocates is counted.
 extern "C" {
 void* __libc_malloc(std::size_t);
@@ -106,11 +109,12 @@ INSTANTIATE_TEST_SUITE_P(
                   Trial{"Newmark", {"Integrator = Newmark"}, 0.01},
                   Trial{"generalised_alpha", {"Integrator = generalised alpha"}, 0.01},
                   Trial{"BDF2", {"Integrator = BDF2"}, 0.01},
-                  Trial{"symplectic", {"Integrator = symplectic Euler", "Beyond the stable step = go on"}, 1e-4},
-                  Trial{"Verlet", {"Integrator = velocity Verlet"}, 1e-4},
-                  Trial{"points", {"Backend = pba"}, 0.01}, Trial{"springs", {"Backend = mass-spring"}, 0.01},
-                  Trial{"lattice", {"Backend = lattice"}, 0.002}),
+                  Trial{"symplectic", {"Integrator = symplectic Euler"}, 1e-4},
+                  Trial{"Verlet", {"Integrator = velocity Verlet"}, 1e-4}, Trial{"points", {"Backend = pba"}, 0.01},
+                  Trial{"springs", {"Backend = mass-spring"}, 0.01}, Trial{"lattice", {"Backend = lattice"}, 0.002}),
   [](const auto& trial) { return trial.param.name; });
 
 } // namespace
 } // namespace kerf::scene
+
+#endif
