@@ -79,7 +79,8 @@ class Source {
   /// Distances from the middle to the boundary, squared: n_steps rows of n_directions + 1, the last of a row is its
   /// first [m^2].
   std::vector<float> squared_radii_;
-  std::vector<Vec2> middles_; ///< the swept barycentre, by step [m]
+  std::vector<float> squared_border_; ///< of a component: its own border, with jumps, as a row of those; else empty
+  std::vector<Vec2> middles_;         ///< the swept barycentre, by step [m]
   image::Grey beside_;        ///< of a component: how far beside it a pixel is, 1 from four pixels on; else empty
   std::vector<double> reach_; ///< of a component: from its middle to its border, by direction [m]; else empty
   Mat2 to_pixels_ = Mat2::Identity();
