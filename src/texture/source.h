@@ -5,11 +5,11 @@
 /// The plane of a face is swept through the cell until it contains the point p; then the ray from the swept barycentre
 /// to p is taken back to the face, and the source point divides it in the same ratio between barycentre and boundary.
 /// Distances to the boundary are tabulated by sweep and direction, the boundary being the outermost one where a ray
-/// meets several, without its jumps (source.cc). In between their squares are bilinear: sections of what is round shrink like the root of what is left
-/// of the sweep. Continuous, and exact in the face itself, whatever the table's resolution.
+/// meets several, without its jumps (source.cc). In between their squares are bilinear: sections of what is round shrink
+/// like the root of what is left of the sweep. Continuous, and exact in the face itself, whatever the table's resolution.
 ///
 /// A face that is one component of several keeps its source points: its boundary is followed from that of the component
-/// itself, and what would lie beside the component, over another one, is drawn to its border.
+/// itself, and what would lie beside the component, over another one or in a bay, is drawn to its border.
 
 #include "texture/kernels.h"
 #include "texture/partition.h"
