@@ -66,14 +66,7 @@ double parts_for(const double square_side, const double resolution) {
   return std::max(1.0, std::ceil(square_side / resolution - rounding));
 }
 
-} // namespace
-
-void Atlas::fill_skin(const std::size_t t, const Skin& skin) {
-  std::uint32_t sample = first_[t];
-  for_each_point(filled_[t], parts_[t], [&](const Vec3& p) { colours_[sample++] = to_bytes(skin.colour(p)); });
-}
-
-/// Colours of what a brush has collected: eight at a time.
+/// Colours of places in the rest frame [m], eight at a time.
 void find_colours(const Interior& inside, const std::vector<Vec3>& places, std::vector<Eigen::Array4f>& colours) {
   colours.resize(places.size());
   std::array<Blend, n_lanes> blends;
@@ -86,6 +79,13 @@ void find_colours(const Interior& inside, const std::vector<Vec3>& places, std::
     for (std::size_t l = 0; l < n; ++l)
       colours[first + l] = inside.colour(blends[l]);
   }
+}
+
+} // namespace
+
+void Atlas::fill_skin(const std::size_t t, const Skin& skin) {
+  std::uint32_t sample = first_[t];
+  for_each_point(filled_[t], parts_[t], [&](const Vec3& p) { colours_[sample++] = to_bytes(skin.colour(p)); });
 }
 
 /// Paints groups of triangles; what they have in common is found once.
@@ -216,8 +216,7 @@ std::size_t Atlas::fill(const SurfaceView& surface, const Paint& paint) {
     (labels_[t] == 0 ? skin : revealed).push_back(t);
   const std::vector<FlatGroup> groups = groups_of(revealed, paint);
   parallel_for(skin.size(), [&](const std::size_t i) { fill_skin(skin[i], *paint.skin); });
-  constexpr std::size_t most =
-    4096; // what they take memory for, at most 50 bytes each, stays in a processor's own cache
+  constexpr std::size_t most = 4096; // what painting notes of them, at most 50 bytes each, stays in a core's cache
   const std::vector<std::size_t> ends = parts_of(groups, most);
   parallel_ranges(ends.size(), 2, [&](const std::size_t begin, const std::size_t end) {
     Brush brush{
