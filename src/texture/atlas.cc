@@ -11,6 +11,15 @@
 
 namespace kerf::texture {
 
+/// What painting takes memory for, which is kept from group to group.
+struct Brush {
+  InPlane plane;
+  SamplePoints points = {};
+  std::vector<std::size_t> triangles = {};
+  std::vector<Corners> corners = {};
+  std::vector<Eigen::Array4f> colours = {};
+};
+
 namespace {
 
 /// By how much the relief rises along whole edges.
@@ -20,8 +29,8 @@ class Slope {
     : inside_(inside),
       along_(inside.along(edge.stableNormalized())),
       scale_(static_cast<float>(relief * edge.norm() / (2 * pixel))) {}
-  /// Seen at p.
-  float at(const Vec3& p) const { return scale_ * inside_.rise(p, along_); }
+  /// At a point of the lattice.
+  float at(const Eigen::Vector2f& q) const { return scale_ * inside_.rise(q, along_); }
 
  private:
   const InPlane& inside_;
@@ -57,6 +66,21 @@ double parts_for(const double square_side, const double resolution) {
   return std::max(1.0, std::ceil(square_side / resolution - rounding));
 }
 
+/// Colours of places in the rest frame [m], eight at a time.
+void find_colours(const Interior& inside, const std::vector<Vec3>& places, std::vector<Eigen::Array4f>& colours) {
+  colours.resize(places.size());
+  std::array<Blend, n_lanes> blends;
+  std::array<Blend*, n_lanes> each;
+  for (std::size_t l = 0; l < n_lanes; ++l)
+    each[l] = &blends[l];
+  for (std::size_t first = 0; first < places.size(); first += n_lanes) {
+    const std::size_t n = std::min<std::size_t>(n_lanes, places.size() - first);
+    inside.blend(std::span(places).subspan(first, n), inside.options().blending, each);
+    for (std::size_t l = 0; l < n; ++l)
+      colours[first + l] = inside.colour(blends[l]);
+  }
+}
+
 } // namespace
 
 void Atlas::fill_skin(const std::size_t t, const Skin& skin) {
@@ -64,35 +88,31 @@ void Atlas::fill_skin(const std::size_t t, const Skin& skin) {
   for_each_point(filled_[t], parts_[t], [&](const Vec3& p) { colours_[sample++] = to_bytes(skin.colour(p)); });
 }
 
-void Atlas::fill_group(const FlatGroup& group, const Paint& paint, InPlane& inside) {
-  std::vector<Corners> triangles;
-  for (const std::size_t t : group)
-    triangles.push_back(filled_[t]);
-  inside.lay(triangles);
+/// Paints groups of triangles; what they have in common is found once.
+void Atlas::fill_groups(const std::span<const FlatGroup> groups, const Paint& paint, Brush& brush) {
+  brush.triangles.clear();
+  for (const FlatGroup& group : groups)
+    brush.triangles.insert(brush.triangles.end(), group.begin(), group.end());
+  brush.points.collect(brush.triangles, filled_, parts_);
+  find_colours(*paint.inside, brush.points.places(), brush.colours);
   const double pixel = paint.inside->pixel();
-  for (const std::size_t t : group) {
-    const Slope first(inside, filled_[t][1] - filled_[t][0], paint.relief, pixel);
-    const Slope second(inside, filled_[t][2] - filled_[t][0], paint.relief, pixel);
-    std::uint32_t sample = first_[t];
-    std::array<Vec3, n_lanes> points;
-    std::size_t n = 0;
-    const auto paint_points = [&] {
-      std::array<Eigen::Array4f, n_lanes> colours;
-      inside.colours(std::span(points).first(n), colours);
-      for (std::size_t l = 0; l < n; ++l, ++sample) {
-        colours_[sample] = to_bytes(colours[l]);
+  const std::uint32_t* number = brush.points.numbers().data();
+  for (const FlatGroup& group : groups) {
+    brush.corners.clear();
+    for (const std::size_t t : group)
+      brush.corners.push_back(filled_[t]);
+    brush.plane.lay(brush.corners);
+    for (const std::size_t t : group) {
+      const Slope first(brush.plane, filled_[t][1] - filled_[t][0], paint.relief, pixel);
+      const Slope second(brush.plane, filled_[t][2] - filled_[t][0], paint.relief, pixel);
+      const std::size_t end = first_[t] + n_samples(parts_[t]);
+      for (std::size_t sample = first_[t]; sample < end; ++sample, ++number) {
+        const Eigen::Vector2f q = brush.plane.on_lattice(brush.points.places()[*number]);
+        colours_[sample] = to_bytes((brush.colours[*number] + brush.plane.change(q)).max(0.0f).min(1.0f));
         if (paint.relief != 0)
-          slopes_[sample] = {first.at(points[l]), second.at(points[l])};
+          slopes_[sample] = {first.at(q), second.at(q)};
       }
-      n = 0;
-    };
-    for_each_point(filled_[t], parts_[t], [&](const Vec3& p) {
-      points[n++] = p;
-      if (n == n_lanes)
-        paint_points();
-    });
-    if (n > 0)
-      paint_points();
+    }
   }
 }
 
@@ -142,15 +162,34 @@ std::vector<std::size_t> Atlas::lay_out(const SurfaceView& surface, const Paint&
   return fresh;
 }
 
-/// Each triangle by itself where none sees its surroundings.
+/// Where none sees its surroundings, any do.
 std::vector<FlatGroup> Atlas::groups_of(const std::vector<std::size_t>& revealed, const Paint& paint) const {
   if (paint.detail || paint.relief != 0)
     return flat_groups(revealed, filled_, paint.inside->charts().front().body_axes, paint.inside->origin(),
                        paint.inside->pixel());
+  constexpr std::ptrdiff_t size = 16;
   std::vector<FlatGroup> groups;
-  for (const std::size_t t : revealed)
-    groups.push_back({t});
+  for (auto t = revealed.begin(); t != revealed.end();) {
+    const auto end = revealed.end() - t > size ? t + size : revealed.end();
+    groups.emplace_back(t, end);
+    t = end;
+  }
   return groups;
+}
+
+/// Parts groups so that each part has not many more than `most` samples.
+std::vector<std::size_t> Atlas::parts_of(const std::vector<FlatGroup>& groups, const std::size_t most) const {
+  std::vector<std::size_t> ends;
+  std::size_t n = 0;
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    for (const std::size_t t : groups[i])
+      n += n_samples(parts_[t]);
+    if (n >= most || i + 1 == groups.size()) {
+      ends.push_back(i + 1);
+      n = 0;
+    }
+  }
+  return ends;
 }
 
 /// What rises along the edges from the first's first corner rises along the twin's as their differences do.
@@ -177,10 +216,15 @@ std::size_t Atlas::fill(const SurfaceView& surface, const Paint& paint) {
     (labels_[t] == 0 ? skin : revealed).push_back(t);
   const std::vector<FlatGroup> groups = groups_of(revealed, paint);
   parallel_for(skin.size(), [&](const std::size_t i) { fill_skin(skin[i], *paint.skin); });
-  parallel_ranges(groups.size(), 2, [&](const std::size_t begin, const std::size_t end) {
-    InPlane inside(*paint.inside, paint.detail, paint.relief != 0 ? InPlane::Relief::wanted : InPlane::Relief::none);
-    for (std::size_t i = begin; i < end; ++i)
-      fill_group(groups[i], paint, inside);
+  constexpr std::size_t most = 4096; // what painting notes of them, at most 50 bytes each, stays in a core's cache
+  const std::vector<std::size_t> ends = parts_of(groups, most);
+  parallel_ranges(ends.size(), 2, [&](const std::size_t begin, const std::size_t end) {
+    Brush brush{
+      .plane = {*paint.inside, paint.detail, paint.relief != 0 ? InPlane::Relief::wanted : InPlane::Relief::none}};
+    for (std::size_t i = begin; i < end; ++i) {
+      const std::size_t first = i > 0 ? ends[i - 1] : 0;
+      fill_groups(std::span(groups).subspan(first, ends[i] - first), paint, brush);
+    }
   });
   parallel_for(sides.twins.size(), [&](const std::size_t i) { copy(sides.twins[i]); });
   return fresh.size();

@@ -10,6 +10,7 @@
 #include "base/archive.h"
 #include "texture/flat.h"
 #include "texture/paint.h"
+#include "texture/sample_points.h"
 #include "texture/skin.h"
 
 #include <cstdint>
@@ -17,7 +18,7 @@
 
 namespace kerf::texture {
 
-class InPlane;
+struct Brush;
 
 /// A surface in the rest configuration.
 struct SurfaceView {
@@ -59,9 +60,10 @@ class Atlas {
 
  private:
   std::vector<std::size_t> lay_out(const SurfaceView& surface, const Paint& paint);
-  std::vector<FlatGroup> groups_of(const std::vector<std::size_t>& revealed, const Paint& paint) const;
   void fill_skin(std::size_t t, const Skin& skin);
-  void fill_group(const FlatGroup& group, const Paint& paint, InPlane& inside);
+  std::vector<FlatGroup> groups_of(const std::vector<std::size_t>& revealed, const Paint& paint) const;
+  std::vector<std::size_t> parts_of(const std::vector<FlatGroup>& groups, std::size_t most) const;
+  void fill_groups(std::span<const FlatGroup> groups, const Paint& paint, Brush& brush);
   void copy(const Twin& twin);
 
   double resolution_;
@@ -73,19 +75,8 @@ class Atlas {
   std::vector<std::uint16_t> labels_;
 };
 
-/// Samples of a triangle with n parts a side.
-inline std::size_t n_samples(const int n) { return static_cast<std::size_t>(n + 1) * (n + 2) / 2; }
-
 /// How many samples revealed faces of that area take [m^2] where a plane cuts cubes along a layer of them: in triangles
 /// with two sides of half a cube's edge at a right angle. Elsewhere there are more and smaller triangles.
 double n_samples_of(double area, double resolution, double cube_edge);
-
-/// Calls f(i, j) for each sample in their order: the point a + i/n (b - a) + j/n (c - a) of the triangle a, b, c.
-template <class Function>
-void for_each_sample(const int n, const Function& f) {
-  for (int i = 0; i <= n; ++i)
-    for (int j = 0; i + j <= n; ++j)
-      f(i, j);
-}
 
 } // namespace kerf::texture

@@ -32,7 +32,8 @@ void InPlane::lay(const std::span<const Corners> triangles) {
   x_ = in_plane(inside_.charts().front().body_axes, normal);
   y_ = normal.cross(x_);
   const double margin = has_relief ? 2 : 1;
-  mark(lay_out(triangles, margin), margin, detail_ ? window_radius : 0);
+  lay_out(triangles, margin);
+  mark(margin, detail_ ? window_radius : 0);
   windows_.reset(width_, height_in_points_);
   find_blends();
   for (int r = 0; r < height_in_points_; ++r)
@@ -49,40 +50,24 @@ void InPlane::lay(const std::span<const Corners> triangles) {
   }
 }
 
-void InPlane::colours(const std::span<const Vec3> points, const std::span<Eigen::Array4f> colours) const {
-  std::array<Blend, n_lanes> blends;
-  std::array<Blend*, n_lanes> places;
-  for (int l = 0; l < n_lanes; ++l)
-    places[l] = &blends[l];
-  inside_.blend(points, inside_.options().blending, places);
-  for (std::size_t l = 0; l < points.size(); ++l) {
-    colours[l] = inside_.colour(blends[l]);
-    if (change_.width == 0)
-      continue;
-    const Eigen::Vector2f q = on_lattice(points[l]).cast<float>();
-    colours[l] = (colours[l] + image::sample(change_, q[0], q[1])).max(0.0f).min(1.0f);
-  }
-}
-
-float InPlane::rise(const Vec3& p, const Eigen::Vector2f& d) const {
+float InPlane::rise(const Eigen::Vector2f& q, const Eigen::Vector2f& d) const {
   if (height_.width == 0)
     return 0;
-  const Eigen::Vector2f q = on_lattice(p).cast<float>();
   return image::sample(height_, q[0] + d[0], q[1] + d[1]) - image::sample(height_, q[0] - d[0], q[1] - d[1]);
 }
 
 /// The part of the plane's lattice around triangles, and where they lie in it: what is within `margin` points of them is
 /// asked for, and windows reach beyond that. Starts at a point that has a blend of its own.
-std::vector<InPlane::Flat> InPlane::lay_out(const std::span<const Corners> triangles, const double margin) {
+void InPlane::lay_out(const std::span<const Corners> triangles, const double margin) {
   pixel_ = inside_.pixel();
-  std::vector<Flat> flat(triangles.size());
+  flat_.resize(triangles.size());
   Vec2 lower = Vec2::Constant(1e300), upper = -lower;
   for (std::size_t t = 0; t < triangles.size(); ++t)
     for (int i = 0; i < 3; ++i) {
       const Vec3 d = triangles[t][i] - inside_.origin();
-      flat[t][i] = Vec2(x_.dot(d), y_.dot(d)) / pixel_;
-      lower = lower.cwiseMin(flat[t][i]);
-      upper = upper.cwiseMax(flat[t][i]);
+      flat_[t][i] = Vec2(x_.dot(d), y_.dot(d)) / pixel_;
+      lower = lower.cwiseMin(flat_[t][i]);
+      upper = upper.cwiseMax(flat_[t][i]);
     }
   const double around = margin + window_radius + 1;
   const Vec2 first = step * ((lower.array() - around) / step).floor().matrix();
@@ -92,10 +77,9 @@ std::vector<InPlane::Flat> InPlane::lay_out(const std::span<const Corners> trian
   origin_ = inside_.origin() + height * normal + pixel_ * (first[0] * x_ + first[1] * y_);
   width_ = static_cast<int>(size[0]) + 1;
   height_in_points_ = static_cast<int>(size[1]) + 1;
-  for (Flat& triangle : flat)
+  for (Flat& triangle : flat_)
     for (Vec2& corner : triangle)
       corner -= first;
-  return flat;
 }
 
 /// The columns of a row that are within a margin of a triangle.
@@ -121,31 +105,40 @@ Span InPlane::span_of(const Flat& triangle, const int row, const double margin) 
 }
 
 /// Marks the points that are within a margin of triangles, and those that windows of that radius around them reach.
-void InPlane::mark(const std::vector<Flat>& triangles, const double margin, const int radius) {
+void InPlane::mark(const double margin, const int radius) {
   reset(asked_, width_ / step + 1, height_in_points_);
-  reset(reached_, asked_.width, asked_.height);
-  const auto mark_span = [](Marks& marks, const int row, const Span& span) {
-    for (int k = span.first / step; k <= span.last / step && span.first <= span.last; ++k) {
-      const int first = std::max(span.first - k * step, 0), last = std::min(span.last - k * step, step - 1);
-      marks(k, row) |= static_cast<Lanes>((2 << last) - (1 << first));
-    }
-  };
-  std::vector<Span> rows(height_in_points_);
-  for (const Flat& triangle : triangles) {
+  for (const Flat& triangle : flat_) {
     const auto [low, high] = std::minmax({triangle[0][1], triangle[1][1], triangle[2][1]});
-    const int first = static_cast<int>(std::ceil(low - margin)), last = static_cast<int>(std::floor(high + margin));
-    for (int r = first; r <= last; ++r) {
-      rows[r] = span_of(triangle, r, margin);
-      mark_span(asked_, r, rows[r]);
+    const int last_row = static_cast<int>(std::floor(high + margin));
+    for (int r = static_cast<int>(std::ceil(low - margin)); r <= last_row; ++r) {
+      const Span span = span_of(triangle, r, margin);
+      for (int k = span.first / step; k <= span.last / step && span.first <= span.last; ++k) {
+        const int first = std::max(span.first - k * step, 0), last = std::min(span.last - k * step, step - 1);
+        asked_(k, r) |= static_cast<Lanes>((2 << last) - (1 << first));
+      }
     }
-    for (int r = first - radius; r <= last + radius; ++r) {
-      Span span{1 << 20, -(1 << 20)};
-      for (int k = std::max(first, r - radius); k <= std::min(last, r + radius); ++k)
-        if (rows[k].last >= rows[k].first) {
-          span.first = std::min(span.first, rows[k].first - radius);
-          span.last = std::max(span.last, rows[k].last + radius);
-        }
-      mark_span(reached_, r, span);
+  }
+  // Rows around each row in one, then columns.
+  const int n = asked_.width * asked_.height, beyond = radius * asked_.width;
+  rows_.assign(static_cast<std::size_t>(n + 2 * beyond), 0);
+  for (int k = 0; k <= 2 * radius; ++k) {
+    Lanes* const rows = &rows_[k * asked_.width];
+    for (int i = 0; i < n; ++i)
+      rows[i] |= asked_.values[i];
+  }
+  reset(reached_, asked_.width, asked_.height);
+  for (int r = 0; r < reached_.height; ++r) {
+    const Lanes* const rows = &rows_[beyond + r * reached_.width];
+    unsigned before = 0, here = rows[0];
+    for (int k = 0; k < reached_.width; ++k) {
+      const unsigned next = k + 1 < reached_.width ? rows[k + 1] : 0;
+      const unsigned row = before | here << step | next << 2 * step;
+      unsigned reached = row;
+      for (int shift = 1; shift <= radius; ++shift)
+        reached |= row << shift | row >> shift;
+      reached_(k, r) = static_cast<Lanes>(reached >> step);
+      before = here;
+      here = next;
     }
   }
 }
@@ -154,12 +147,12 @@ void InPlane::find_blends() {
   blends_.width = width_ / step + 1;
   blends_.height = height_in_points_ / step + 1;
   blends_.values.resize(static_cast<std::size_t>(blends_.width) * blends_.height);
-  image::Raster<char> needed(blends_.width, blends_.height, 0);
+  reset(needed_, blends_.width, blends_.height);
   for (int r = 0; r < height_in_points_; ++r)
     for (int i = 0; i + 1 < blends_.width; ++i)
       if (reached_(i, r) != 0)
-        needed(i, r / step) = 1;
-  const auto is_needed = [&](const int i, const int k) { return i >= 0 && k >= 0 && needed(i, k) != 0; };
+        needed_(i, r / step) = 1;
+  const auto is_needed = [&](const int i, const int k) { return i >= 0 && k >= 0 && needed_(i, k) != 0; };
   std::array<Vec3, n_lanes> points;
   std::array<Blend*, n_lanes> places;
   std::size_t n = 0;

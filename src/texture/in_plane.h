@@ -1,11 +1,11 @@
 #pragma once
 
-/// Colours of triangles that lie in nearly one plane (flat.h), with small features and relief.
+/// Small features and relief of triangles that lie in nearly one plane (flat.h).
 ///
 /// What windows see lies on a lattice of points that belongs to the plane, not to a triangle: neighbours in it see the
 /// same. It is as fine as the exemplars' pixels; there, source points and weights are found at every eighth point each
-/// way, for the cells of the points around it, and are bilinear in between. A colour itself is exact: only what small
-/// features add to it, and the height of the relief, come from the lattice.
+/// way, for the cells of the points around it, and are bilinear in between. Colours themselves are found elsewhere, and
+/// exact: what small features add to them, and the height of the relief, come from the lattice.
 
 #include "texture/twins.h"
 #include "texture/windows.h"
@@ -23,16 +23,20 @@ class InPlane {
     : inside_(inside), detail_(detail), relief_(relief), windows_(0, 0, 0, 1) {}
 
   /// The triangles that are asked about next, and whose plane is that of the first: without an area it has none, and
-  /// colours are those of the inside. Others lie next to the plane. Memory is kept for the next ones.
+  /// nothing is added. Others lie next to the plane. Memory is kept for the next ones.
   void lay(std::span<const Corners> triangles);
 
-  /// Of up to eight points of triangles [m].
-  void colours(std::span<const Vec3> points, std::span<Eigen::Array4f> colours) const;
+  /// Where a point of triangles lies on the lattice.
+  Eigen::Vector2f on_lattice(const Vec3& p) const {
+    return Vec2(x_.dot(p - origin_), y_.dot(p - origin_)).cast<float>() / static_cast<float>(pixel_);
+  }
+  /// What small features add to red, green and blue at a point of the lattice.
+  float change(const Eigen::Vector2f& q) const { return change_.width > 0 ? image::sample(change_, q[0], q[1]) : 0; }
   /// A unit vector in the plane, in points of the lattice.
   Eigen::Vector2f along(const Vec3& unit) const { return Vec2(x_.dot(unit), y_.dot(unit)).cast<float>(); }
   /// By how much the luminance, with small features, rises over two pixels along a vector of along(), midway at a point
-  /// of a triangle [m]. Where relief is wanted.
-  float rise(const Vec3& p, const Eigen::Vector2f& along) const;
+  /// of the lattice. Where relief is wanted.
+  float rise(const Eigen::Vector2f& q, const Eigen::Vector2f& along) const;
 
  private:
   /// Eight points of a row, from a multiple of eight on: a bit for each.
@@ -40,9 +44,9 @@ class InPlane {
   using Marks = image::Raster<Lanes>;
   using Flat = std::array<Vec2, 3>; ///< a triangle in the plane [points of the lattice]
 
-  std::vector<Flat> lay_out(std::span<const Corners> triangles, double margin);
+  void lay_out(std::span<const Corners> triangles, double margin);
   Span span_of(const Flat& triangle, int row, double margin) const;
-  void mark(const std::vector<Flat>& triangles, double margin, int radius);
+  void mark(double margin, int radius);
   void find_blends();
   void find_luminance(int row);
   void find_change(int row);
@@ -60,7 +64,6 @@ class InPlane {
   Blend mixed(int column, int row);
   PointRow points(const Around& around, int i, int row) const;
   Vec3 point(const int column, const int row) const { return origin_ + pixel_ * (column * x_ + row * y_); }
-  Vec2 on_lattice(const Vec3& p) const { return Vec2(x_.dot(p - origin_), y_.dot(p - origin_)) / pixel_; }
 
   static constexpr int step = n_lanes; ///< points of the lattice from blend to blend
 
@@ -71,8 +74,11 @@ class InPlane {
   Vec3 origin_ = Vec3::Zero(), x_ = Vec3::Zero(), y_ = Vec3::Zero();
   double pixel_ = 1;
   int width_ = 0, height_in_points_ = 0;
+  std::vector<Flat> flat_;
   Marks asked_;                                ///< points around triangles, for interpolation and slopes
   Marks reached_;                              ///< those that windows around them reach
+  std::vector<Lanes> rows_;                    ///< what is asked for in any of the rows that a window spans
+  image::Raster<char> needed_;                 ///< squares between blends where some point is reached
   image::Raster<Blend> blends_;                ///< of every step-th point
   std::map<std::array<int, 3>, Blend> others_; ///< the same for other cells than their own: by column, row, cell
   image::Grey change_, height_;                ///< of the lattice's points; of no width where not wanted

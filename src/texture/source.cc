@@ -218,9 +218,13 @@ void Source::tabulate(const Cell& cell, const Exemplar& exemplar, const geometry
     if (!guess.empty())
       guess = row;
     middles_[i] = middle;
-    const std::vector<double> smooth = reach_.empty() ? without_jumps(row) : row;
-    for (int k = 0; k <= n_directions; ++k)
-      squared_radii_.push_back(static_cast<float>(smooth[k % n_directions] * smooth[k % n_directions]));
+    const auto add_squares = [](const std::vector<double>& radii, std::vector<float>& squares) {
+      for (int k = 0; k <= n_directions; ++k)
+        squares.push_back(static_cast<float>(radii[k % n_directions] * radii[k % n_directions]));
+    };
+    if (i == 0 && !reach_.empty())
+      add_squares(row, squared_border_);
+    add_squares(without_jumps(row), squared_radii_);
   }
 }
 
@@ -240,9 +244,8 @@ Vec2 Source::find(const Swept& swept) const {
   const double here = squared(0), there = (1 - s) * squared(i) + s * squared(i + 1);
   const double ratio = std::sqrt(here / there);
   if (!reach_.empty()) {
-    const double length = arm.norm();
-    return length > 0 ? Vec2(middles_[0] + drawn_in(length * ratio, std::sqrt(here), arm / length) * arm / length)
-                      : middles_[0];
+    const double length = arm.norm(), border = std::sqrt((1 - u) * squared_border_[k] + u * squared_border_[k + 1]);
+    return length > 0 ? Vec2(middles_[0] + drawn_in(length * ratio, border, arm / length) * arm / length) : middles_[0];
   }
   // Far beyond the boundary, outside of the body, the source point stays there. How far is far falls from infinity in
   // the face itself, where interpolated radii may cut a corner off and the source point must still be the point itself:

@@ -5,11 +5,11 @@
 /// The plane of a face is swept through the cell until it contains the point p; then the ray from the swept barycentre
 /// to p is taken back to the face, and the source point divides it in the same ratio between barycentre and boundary.
 /// Distances to the boundary are tabulated by sweep and direction, the boundary being the outermost one where a ray
-/// meets several, without its jumps (source.cc). In between their squares are bilinear: sections of what is round shrink like the root of what is left
-/// of the sweep. Continuous, and exact in the face itself, whatever the table's resolution.
+/// meets several, without its jumps (source.cc). In between their squares are bilinear: sections of what is round shrink
+/// like the root of what is left of the sweep. Continuous, and exact in the face itself, whatever the table's resolution.
 ///
 /// A face that is one component of several keeps its source points: its boundary is followed from that of the component
-/// itself, and what would lie beside the component, over another one, is drawn to its border.
+/// itself, and what would lie beside the component, over another one or in a bay, is drawn to its border.
 
 #include "texture/kernels.h"
 #include "texture/partition.h"
@@ -79,7 +79,8 @@ class Source {
   /// Distances from the middle to the boundary, squared: n_steps rows of n_directions + 1, the last of a row is its
   /// first [m^2].
   std::vector<float> squared_radii_;
-  std::vector<Vec2> middles_; ///< the swept barycentre, by step [m]
+  std::vector<float> squared_border_; ///< of a component: its own border, with jumps, as a row of those; else empty
+  std::vector<Vec2> middles_;         ///< the swept barycentre, by step [m]
   image::Grey beside_;        ///< of a component: how far beside it a pixel is, 1 from four pixels on; else empty
   std::vector<double> reach_; ///< of a component: from its middle to its border, by direction [m]; else empty
   Mat2 to_pixels_ = Mat2::Identity();

@@ -6,20 +6,20 @@
 
 namespace kerf::texture {
 
+std::uint64_t hash_of(const Vec3& point) {
+  std::uint64_t mixed = 0;
+  for (const double x : point) {
+    mixed = (mixed ^ std::bit_cast<std::uint64_t>(x + 0.0)) * 0x9e3779b97f4a7c15ull; // + 0: -0 is 0
+    mixed ^= mixed >> 29;
+  }
+  return mixed;
+}
+
 namespace {
 
 /// The same for any order of the corners.
-std::uint64_t hash_of(const Corners& corners) {
-  std::uint64_t sum = 0;
-  for (const Vec3& corner : corners) {
-    std::uint64_t mixed = 0;
-    for (const double x : corner) {
-      mixed = (mixed ^ std::bit_cast<std::uint64_t>(x + 0.0)) * 0x9e3779b97f4a7c15ull; // + 0: -0 is 0
-      mixed ^= mixed >> 29;
-    }
-    sum += mixed;
-  }
-  return sum;
+std::uint64_t hash_of_triangle(const Corners& corners) {
+  return hash_of(corners[0]) + hash_of(corners[1]) + hash_of(corners[2]);
 }
 
 /// Which corner of `b` lies on each of `a`.
@@ -44,7 +44,7 @@ Sides find_sides(const std::span<const std::size_t> triangles, const std::span<c
   Sides sides;
   std::unordered_map<std::uint64_t, std::size_t> first;
   for (const std::size_t t : triangles) {
-    const std::size_t earlier = labels[t] > 0 ? first.emplace(hash_of(corners[t]), t).first->second : t;
+    const std::size_t earlier = labels[t] > 0 ? first.emplace(hash_of_triangle(corners[t]), t).first->second : t;
     const auto same = earlier != t ? same_corners(corners[t], corners[earlier]) : std::nullopt;
     if (same)
       sides.twins.push_back({t, earlier, *same});

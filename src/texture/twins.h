@@ -14,6 +14,9 @@ namespace kerf::texture {
 
 using Corners = std::array<Vec3, 3>;
 
+/// The same for points that are equal.
+std::uint64_t hash_of(const Vec3& point);
+
 /// A triangle, and an earlier one with the same corners, to the bit.
 struct Twin {
   std::size_t number, first;

@@ -1,12 +1,15 @@
 /// Bodies with arms and bays between four parallel sections of a procedural solid, along each axis of the mesh: how far
 /// points a pixel apart are drawn apart on their way to the sections, and PSNR [dB] against the truth.
 ///
-///     bench_texture_arms MESH...
+///     bench_texture_arms [each] MESH...
+///
+/// each: components of a section one by one, not together.
 
 #include "image/compare.h"
 #include "tests/texture/solids.h"
 
 #include <cstdio>
+#include <string>
 
 namespace {
 
@@ -41,7 +44,7 @@ double apart(const Blend& a, const Blend& b) {
   return most;
 }
 
-void measure(const std::string& path, const int axis) {
+void measure(const std::string& path, const int axis, const Components components) {
   Vec3 extent;
   const geometry::TriangleMesh body = centred(path, extent);
   const Vec3 z = Vec3::Unit(axis), y = Vec3::Unit((axis + 2) % 3),
@@ -51,7 +54,7 @@ void measure(const std::string& path, const int axis) {
     exemplars.push_back(exemplar_of("e" + std::to_string(exemplars.size()), wood, (place * extent[axis] + 1e-5) * z,
                                     Vec3::Unit((axis + 1) % 3), y, n, half));
   InteriorOptions options;
-  options.components = Components::together;
+  options.components = components;
   const Interior inside(exemplars, body, options);
   double n_points = 0, n_far = 0, most = 0, blend = 0, first_order = 0;
   for (const double place : {-0.55, -0.2, 0.15, 0.5}) {
@@ -85,8 +88,9 @@ void measure(const std::string& path, const int axis) {
 } // namespace
 
 int main(const int argc, char** const argv) {
-  for (int i = 1; i < argc; ++i)
+  const bool each = argc > 1 && argv[1] == std::string("each");
+  for (int i = each ? 2 : 1; i < argc; ++i)
     for (int axis = 0; axis < 3; ++axis)
-      measure(argv[i], axis);
+      measure(argv[i], axis, each ? Components::each : Components::together);
   return 0;
 }

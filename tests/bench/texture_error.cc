@@ -251,36 +251,86 @@ image::Colours truth_of(const Solid& solid, const Patch& patch) {
   return truth;
 }
 
+double border_of_ball(const double z) { return std::sqrt(std::max(0.0, 0.0025 - z * z)); }
+
+/// The radius [m] at one height of the layer of the onion that has this radius at another; 0 where it does not reach.
+double layer_at(const double radius, const double from, const double to) {
+  const auto height = [](const double z) { return 0.9 * (z - 0.006); };
+  return std::sqrt(std::max(0.0, radius * radius + height(from) * height(from) - height(to) * height(to)));
+}
+
+/// The heights of the sections below and above [m].
+std::array<double, 2> sections_around(const std::vector<Exemplar>& exemplars, const double z) {
+  std::size_t i = 0;
+  while (i + 2 < exemplars.size() && z > exemplars[i + 1].plane.origin()[2])
+    ++i;
+  return {exemplars[i].plane.origin()[2], exemplars[i + 1].plane.origin()[2]};
+}
+
 /// What (3.14) gives of the onion with the warps that its layers have: how near any warps can come. Source points are
 /// those of the ball, as far from its axis as the ball's border is wider there.
 image::Colours onion_by_its_layers(const std::vector<Exemplar>& exemplars, const Patch& patch) {
   image::Colours painted(patch.width, patch.height, image::Rgb::Zero());
-  const auto border = [](const double z) { return std::sqrt(std::max(0.0, 0.0025 - z * z)); };
-  const auto height = [](const double z) { return 0.9 * (z - 0.006); };
-  const auto warped = [&](const double radius, const double from, const double to) {
-    return std::sqrt(std::max(0.0, radius * radius + height(from) * height(from) - height(to) * height(to)));
-  };
   for (int r = 0; r < patch.height; ++r)
     for (int c = 0; c < patch.width; ++c) {
       const Vec3 p = patch.point(c, r);
-      std::size_t i = 0;
-      while (i + 2 < exemplars.size() && p[2] > exemplars[i + 1].plane.origin()[2])
-        ++i;
-      const double a = exemplars[i].plane.origin()[2], b = exemplars[i + 1].plane.origin()[2];
-      const double weight = (b - p[2]) / (b - a), ratio = std::hypot(p[0], p[1]) / border(p[2]);
-      const double on_a = weight * ratio * border(a) + (1 - weight) * warped(ratio * border(b), b, a);
-      const double on_b = (1 - weight) * ratio * border(b) + weight * warped(ratio * border(a), a, b);
+      const auto [a, b] = sections_around(exemplars, p[2]);
+      const double weight = (b - p[2]) / (b - a), ratio = std::hypot(p[0], p[1]) / border_of_ball(p[2]);
+      const double on_a = weight * ratio * border_of_ball(a) + (1 - weight) * layer_at(ratio * border_of_ball(b), b, a);
+      const double on_b = (1 - weight) * ratio * border_of_ball(b) + weight * layer_at(ratio * border_of_ball(a), a, b);
       painted(c, r) = mixed(onion(Vec3(on_b, 0, b)), onion(Vec3(on_a, 0, a)), weight);
     }
   return painted;
 }
 
-void print_best_onion(const int n) {
-  double mean = 0;
-  for (const Patch& patch : test_patches())
-    mean +=
-      image::psnr(onion_by_its_layers(sections_along_z(onion, n), patch), truth_of(onion, patch), ball_mask(patch)) / 3;
-  std::printf("%-16s %-20s %7.2f\n", (std::to_string(n) + " exemplars").c_str(), "its layers' own warps", mean);
+/// By how much the ring of a point's layer moves between the sections around it, once their borders match, in distances
+/// of rings.
+double motion_of_ring(const std::vector<Exemplar>& exemplars, const Vec3& p) {
+  constexpr double apart = 0.0075;
+  const auto [a, b] = sections_around(exemplars, p[2]);
+  const double radius = std::hypot(p[0], p[1]), here = border_of_ball(p[2]);
+  return std::abs(layer_at(radius, p[2], a) / border_of_ball(a) - layer_at(radius, p[2], b) / border_of_ball(b)) *
+         here / apart;
+}
+
+/// PSNR [dB] of the blend, of (3.14), and of it with the warps that the onion's layers have: of all points, and by how
+/// far their rings move.
+void print_best_onion(const Interior& interior, const int n) {
+  const auto exemplars = sections_along_z(onion, n);
+  constexpr std::array<double, 5> bounds = {0, 0.25, 0.5, 1, 1e300};
+  std::array<std::array<double, 3>, bounds.size()> errors = {}; // the last row: of all
+  std::array<double, bounds.size()> counts = {};
+  for (const Patch& patch : test_patches()) {
+    const Grey mask = ball_mask(patch);
+    const std::array<image::Colours, 3> painted = {
+      colours_of(paint(interior, patch, nullptr, {.morph = Morph::blend})),
+      colours_of(paint(interior, patch, nullptr, {.morph = Morph::first_order})),
+      onion_by_its_layers(exemplars, patch)};
+    for (int r = 0; r < patch.height; ++r)
+      for (int c = 0; c < patch.width; ++c) {
+        if (mask(c, r) < 0.5f)
+          continue;
+        const Vec3 p = patch.point(c, r);
+        const double motion = motion_of_ring(exemplars, p);
+        std::size_t k = 0;
+        while (motion >= bounds[k + 1])
+          ++k;
+        for (const std::size_t row : {k, bounds.size() - 1}) {
+          ++counts[row];
+          for (std::size_t m = 0; m < painted.size(); ++m)
+            errors[row][m] += (painted[m](c, r) - onion(p)).square().mean();
+        }
+      }
+  }
+  std::printf("%d exemplars, by motion of rings: share of points; blend, first order, its layers' own warps\n", n);
+  for (std::size_t k = 0; k < bounds.size(); ++k) {
+    const bool all = k + 1 == bounds.size();
+    std::printf("  %-10s %5.1f %%", all ? "all" : ("from " + std::to_string(bounds[k]).substr(0, 4)).c_str(),
+                100 * counts[k] / counts.back());
+    for (const double error : errors[k])
+      std::printf(" %6.2f", 10 * std::log10(counts[k] / error));
+    std::printf("\n");
+  }
 }
 
 void study_solid(const std::string& name, const Solid& solid, const std::string& folder) {
@@ -304,7 +354,7 @@ void study_solid(const std::string& name, const Solid& solid, const std::string&
     for (std::size_t m = 0; m < means.size(); ++m)
       print(std::to_string(n) + " exemplars", name_of(m), means[m]);
     if (name == "onion")
-      print_best_onion(n);
+      print_best_onion(interior, n);
   }
 }
 

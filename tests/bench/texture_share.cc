@@ -3,9 +3,10 @@
 /// all their time, the median and the worst of them; and what the worst one filled. Nothing is written or drawn. The same
 /// steps are run several times, and of each frame the shortest times count: what else the machine does makes them longer.
 /// Times are the processor's: colour is timed on an atlas of our own, which is filled once more when the next frame has
-/// been: what it reads is then as cold as it was.
+/// been: what it reads is then as cold as it was. Scenes that are named are measured instead, with the insides that they
+/// have.
 ///
-///     bench_texture_share [THREADS [RUNS]]
+///     bench_texture_share [THREADS [RUNS [SCENE...]]]
 
 #include "base/parallel.h"
 #include "scene/compose.h"
@@ -36,18 +37,21 @@ std::string interior(const std::string& more) {
          exemplar("coronal_y140", "0.05, 0.08, 0", "0.0007, 0, 0", "0, 0, 0.0005") + "  end\n";
 }
 
-/// The liver's scene with an inside.
-World world_with(const std::string& more) {
-  const std::string file = support::checkout() + "/params/liver.prm";
-  SceneText text = read_scene_text(file, {});
-  std::string lines = text.text;
-  const std::string before = "  subsection Support back";
-  lines.insert(lines.find(before), interior(more));
+/// A scene that writes and draws nothing, with an inside put before a line of it.
+World world_of(const std::string& file, const std::string& inside = "", const std::string& before = "") {
+  std::string lines = read_scene_text(file, {}).text;
+  if (!inside.empty())
+    lines.insert(lines.find(before), inside);
   for (const char* output : {"subsection Surface file", "subsection Images"}) {
     const std::size_t at = lines.find(output);
-    lines.erase(at, lines.find("\nend", at) + 5 - at);
+    if (at != std::string::npos)
+      lines.erase(at, lines.find("\nend", at) + 5 - at);
   }
   return compose(scan_scene_text(lines, file, {}));
+}
+
+World liver_with(const std::string& more) {
+  return world_of(support::checkout() + "/params/liver.prm", interior(more), "  subsection Support back");
 }
 
 struct Frame {
@@ -91,10 +95,11 @@ std::vector<Frame> revealing_frames(World& world) {
   return frames;
 }
 
-std::vector<Frame> shortest_frames(const std::string& more, const int n_runs) {
+template <class Make>
+std::vector<Frame> shortest_frames(const Make& make, const int n_runs) {
   std::vector<Frame> frames;
   for (int run = 0; run < n_runs; ++run) {
-    World world = world_with(more);
+    World world = make();
     const std::vector<Frame> again = revealing_frames(world);
     frames.resize(again.size(), {0, 0, 1e300, 1e300});
     for (std::size_t i = 0; i < frames.size(); ++i)
@@ -104,8 +109,9 @@ std::vector<Frame> shortest_frames(const std::string& more, const int n_runs) {
   return frames;
 }
 
-void measure(const char* what, const std::string& more, const int n_runs) {
-  std::vector<Frame> frames = shortest_frames(more, n_runs);
+template <class Make>
+void measure(const std::string& what, const int n_runs, const Make& make) {
+  std::vector<Frame> frames = shortest_frames(make, n_runs);
   std::sort(frames.begin(), frames.end(), [](const Frame& a, const Frame& b) { return a.share() < b.share(); });
   double colour = 0, all = 0, samples = 0;
   for (const Frame& frame : frames) {
@@ -114,7 +120,7 @@ void measure(const char* what, const std::string& more, const int n_runs) {
     samples += static_cast<double>(frame.n_samples);
   }
   const Frame& worst = frames.back();
-  std::printf("%-34s %6zu %9.2f %9.2f %9.2f   step %d: %zu samples in %.2f of %.2f ms; %.3g samples/s\n", what,
+  std::printf("%-34s %6zu %9.2f %9.2f %9.2f   step %d: %zu samples in %.2f of %.2f ms; %.3g samples/s\n", what.c_str(),
               frames.size(), 100 * colour / all, 100 * frames[frames.size() / 2].share(), 100 * worst.share(),
               worst.step, worst.n_samples, 1e3 * worst.colour, 1e3 * worst.all, samples / colour);
 }
@@ -123,10 +129,16 @@ void measure(const char* what, const std::string& more, const int n_runs) {
 
 int main(const int argc, char** const argv) {
   set_n_threads(argc > 1 ? std::atoi(argv[1]) : 1);
+  std::setvbuf(stdout, nullptr, _IOLBF, 0);
   std::printf("%-34s %6s %9s %9s %9s\n", "share of colour [%]", "frames", "mean", "median", "worst");
   const int n_runs = argc > 2 ? std::atoi(argv[2]) : 5;
-  measure("plain", "", n_runs);
-  measure("small features", "    set Small features = yes\n", n_runs);
-  measure("small features and relief", "    set Small features = yes\n    set Relief [m] = 0.0005\n", n_runs);
+  for (int i = 3; i < argc; ++i)
+    measure(argv[i], n_runs, [&] { return world_of(argv[i]); });
+  if (argc > 3)
+    return 0;
+  const std::string detail = "    set Small features = yes\n";
+  measure("plain", n_runs, [] { return liver_with(""); });
+  measure("small features", n_runs, [&] { return liver_with(detail); });
+  measure("small features and relief", n_runs, [&] { return liver_with(detail + "    set Relief [m] = 0.0005\n"); });
   return 0;
 }
