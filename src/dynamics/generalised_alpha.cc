@@ -64,6 +64,9 @@ Points GeneralisedAlpha::first_acceleration(const State& state, const Loads& loa
   total_force(model_, loads, {state.time, state.x, v}, MassDamping::included, a);
   const auto mass = model_.lumped_mass();
   const double least = massless * *std::max_element(mass.begin(), mass.end());
+  for (const Follower& follower : model_.followers())
+    for (std::uint32_t k = 0; k < follower.n_leaders; ++k)
+      a[follower.leaders[k]] += follower.weights[k] * a[follower.corner];
   const auto by_lumped = [&](const std::span<const double> f, const std::span<double> result) {
     for (std::size_t i = 0; i < f.size(); ++i)
       result[i] = mass[i / 3] > least ? f[i] / mass[i / 3] : 0;

@@ -15,7 +15,9 @@
 /// it goes on to the step's end as its leaders do. Extrapolated from the step's start as they are, it would swing about y with the
 /// factor -alpha_f / (1 - alpha_f), for ever where rho_inf is 1.
 ///
-/// State::history "acceleration" [m/s^2] is a_0; without it the balance of forces at the start gives it.
+/// State::history "acceleration" [m/s^2] is a_0; without it the balance of forces at the start gives it. Followers are
+/// not in balance there yet: what pulls at them is given to their leaders, with the weights that lead them, so that
+/// forces which keep the body's momentum still do.
 
 #include "dynamics/newton_parameters.h"
 
