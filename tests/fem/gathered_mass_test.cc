@@ -2,6 +2,7 @@
 
 #include "fem/gathered_mass.h"
 
+#include "dynamics/followers.h"
 #include "dynamics/forces.h"
 #include "dynamics/generalised_alpha.h"
 #include "tests/fem/models.h"
@@ -123,6 +124,34 @@ TEST(GatheredMass, AFirstStepGivesNoMomentum) {
       EXPECT_LT(moment(model.lumped_mass(), state.v).norm(), 1e-6 * std::sqrt(2 * mass * energy)) << rho << ' ' << i;
     }
   }
+}
+
+/// Leaders that ring give their followers no more speed than they have themselves, and those that turn the speed of a turn.
+TEST(GatheredMass, FollowersAreLedRigidly) {
+  const Body body = slivers(9);
+  const Hexahedra model(body, {.material = {}, .inertia = Inertia::gathered});
+  const auto mass = model.lumped_mass();
+  const Points rest = body.rest();
+  Draw draw(10);
+  const Vec3 u(1, 2, 3), omega(-2, 1, 4);
+  Points rings, turns;
+  for (const Vec3& X : rest) {
+    turns.push_back(u + omega.cross(X));
+    rings.push_back((draw.matrix() * X).normalized());
+  }
+  dynamics::lead_rigidly(model, rest, turns);
+  dynamics::lead_rigidly(model, rest, rings);
+  double fastest = 0, affine = 0;
+  std::size_t n_in_space = 0;
+  for (const dynamics::Follower& follower : model.followers()) {
+    fastest = std::max(fastest, rings[follower.corner].norm());
+    affine = std::max(affine, follower.led(rings).norm());
+    n_in_space += follower.n_leaders > 3 ? 1 : 0;
+    EXPECT_LT((turns[follower.corner] - u - omega.cross(rest[follower.corner])).norm(), 1e-9) << follower.corner;
+  }
+  EXPECT_GT(n_in_space, 50u);
+  EXPECT_LT(fastest, 3);
+  EXPECT_GT(affine, 3);
 }
 
 /// Put half a cube off, a light corner is back within a step and stays there, even where no vibration is damped.
