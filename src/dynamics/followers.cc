@@ -5,7 +5,7 @@
 
 namespace kerf::dynamics {
 
-Vec3 led_rigidly(const Follower& follower, const std::span<const double> mass, const Points& x, const Points& values) {
+Vec3 led_along(const Follower& follower, const std::span<const double> mass, const Points& x, const Points& values) {
   constexpr double in_a_row = 1e-3; // of their largest moment of inertia
   const std::span<const std::uint32_t> leaders(follower.leaders.data(), follower.n_leaders);
   double all = 0;
@@ -26,13 +26,14 @@ Vec3 led_rigidly(const Follower& follower, const std::span<const double> mass, c
   const Eigen::LDLT<Mat3> factors(inertia);
   if (!(factors.rcond() > in_a_row))
     return mean;
-  return mean + Vec3(factors.solve(spin)).cross(x[follower.corner] - centre);
+  const Vec3 rigid = factors.solve(spin).cross(x[follower.corner] - centre), affine = follower.led(values) - mean;
+  return mean + (rigid.squaredNorm() < affine.squaredNorm() ? rigid : affine);
 }
 
-void lead_rigidly(const ForceModel& model, const Points& x, Points& v) {
+void lead_along(const ForceModel& model, const Points& x, Points& v) {
   const auto mass = model.lumped_mass();
   for (const Follower& follower : model.followers())
-    v[follower.corner] = led_rigidly(follower, mass, x, v);
+    v[follower.corner] = led_along(follower, mass, x, v);
 }
 
 } // namespace kerf::dynamics

@@ -130,10 +130,10 @@ StepReport GeneralisedAlpha::step(State& state, const Loads& loads, const double
   }
   for (const Follower& follower : model_.followers()) {
     const auto i = follower.corner;
-    state.x[i] = x[i] + alpha_f / (1 - alpha_f) * led_rigidly(follower, model_.lumped_mass(), start, way);
+    state.x[i] = x[i] + alpha_f / (1 - alpha_f) * led_along(follower, model_.lumped_mass(), start, way);
     a[i].setZero();
   }
-  lead_rigidly(model_, state.x, state.v);
+  lead_along(model_, state.x, state.v);
   state.time += dt;
   constraints.place(state.time, state.x);
   constraints.place_velocity(state.time, part_of_step * dt, state.v);

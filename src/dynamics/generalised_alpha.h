@@ -12,7 +12,7 @@
 /// beta = 1/4, gamma = 1/2 keeps the energy of linear bodies.
 ///
 /// A corner without mass follows (followers.h): the balance gives its place y where it holds, whatever its place before.
-/// From there it goes on to the step's end as its leaders do, rigidly. Extrapolated from the step's start as they are, it
+/// From there it goes on to the step's end as its leaders do. Extrapolated from the step's start as they are, it
 /// would swing about y with the factor -alpha_f / (1 - alpha_f), for ever where rho_inf is 1.
 ///
 /// State::history "acceleration" [m/s^2] is a_0; without it the balance of forces at the start gives it. Followers are

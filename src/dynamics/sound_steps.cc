@@ -240,7 +240,7 @@ StepReport SoundSteps::by_last_resort(State& state, const Loads& loads, const do
   forget_past(after);
   StepReport report = last_resort_->step(after, loads, dt);
   forget_past(after);
-  lead_rigidly(model_, after.x, after.v);
+  lead_along(model_, after.x, after.v);
   after.numbers["energy gained [J]"] = 0;
   state = std::move(after);
   return report;

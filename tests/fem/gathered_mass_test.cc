@@ -126,8 +126,8 @@ TEST(GatheredMass, AFirstStepGivesNoMomentum) {
   }
 }
 
-/// Leaders that ring give their followers no more speed than they have themselves, and those that turn the speed of a turn.
-TEST(GatheredMass, FollowersAreLedRigidly) {
+/// Leaders that ring give their followers hardly more speed than they have, and leaders that turn that of the turn.
+TEST(GatheredMass, LeadersThatRingGiveFollowersNoMore) {
   const Body body = slivers(9);
   const Hexahedra model(body, {.material = {}, .inertia = Inertia::gathered});
   const auto mass = model.lumped_mass();
@@ -139,17 +139,19 @@ TEST(GatheredMass, FollowersAreLedRigidly) {
     turns.push_back(u + omega.cross(X));
     rings.push_back((draw.matrix() * X).normalized());
   }
-  dynamics::lead_rigidly(model, rest, turns);
-  dynamics::lead_rigidly(model, rest, rings);
+  dynamics::lead_along(model, rest, turns);
+  dynamics::lead_along(model, rest, rings);
   double fastest = 0, affine = 0;
   std::size_t n_in_space = 0;
   for (const dynamics::Follower& follower : model.followers()) {
     fastest = std::max(fastest, rings[follower.corner].norm());
     affine = std::max(affine, follower.led(rings).norm());
-    n_in_space += follower.n_leaders > 3 ? 1 : 0;
-    EXPECT_LT((turns[follower.corner] - u - omega.cross(rest[follower.corner])).norm(), 1e-9) << follower.corner;
+    n_in_space += follower.n_leaders > 4 ? 1 : 0; // the affine motion of a plane says nothing across it
+    if (follower.n_leaders > 4) {
+      EXPECT_LT((turns[follower.corner] - u - omega.cross(rest[follower.corner])).norm(), 1e-9) << follower.corner;
+    }
   }
-  EXPECT_GT(n_in_space, 50u);
+  EXPECT_GT(n_in_space, 20u);
   EXPECT_LT(fastest, 3);
   EXPECT_GT(affine, 3);
 }
