@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "dynamics/conjugate_gradients.h"
+#include "dynamics/followers.h"
 #include "dynamics/forces.h"
 
 #include <algorithm>
@@ -64,6 +65,9 @@ Points GeneralisedAlpha::first_acceleration(const State& state, const Loads& loa
   total_force(model_, loads, {state.time, state.x, v}, MassDamping::included, a);
   const auto mass = model_.lumped_mass();
   const double least = massless * *std::max_element(mass.begin(), mass.end());
+  for (const Follower& follower : model_.followers())
+    for (std::uint32_t k = 0; k < follower.n_leaders; ++k)
+      a[follower.leaders[k]] += follower.weights[k] * a[follower.corner];
   const auto by_lumped = [&](const std::span<const double> f, const std::span<double> result) {
     for (std::size_t i = 0; i < f.size(); ++i)
       result[i] = mass[i / 3] > least ? f[i] / mass[i / 3] : 0;
@@ -118,20 +122,22 @@ StepReport GeneralisedAlpha::step(State& state, const Loads& loads, const double
     *a = first_acceleration(state, loads, dt);
   const StepReport report = accepted(solver_.solve(loads, constraints, balance(state, a, constraints, dt), x));
   const Loan<Vec3> start(state.x);
+  Loan<Vec3> way(x.size());
   const auto [alpha_m, alpha_f, beta, gamma] = c_;
   for (std::size_t i = 0; i < x.size(); ++i) {
     const Vec3 moved = (x[i] - state.x[i]) / (1 - alpha_f);
     const Vec3 a_1 = (moved - dt * state.v[i]) / (beta * dt * dt) - (0.5 / beta - 1) * a[i];
+    way[i] = x[i] - start[i];
     state.x[i] += moved;
     state.v[i] += dt * ((1 - gamma) * a[i] + gamma * a_1);
     a[i] = a_1;
   }
   for (const Follower& follower : model_.followers()) {
     const auto i = follower.corner;
-    state.x[i] = x[i] + alpha_f / (1 - alpha_f) * (follower.led(x) - follower.led(start));
-    state.v[i] = follower.led(state.v);
+    state.x[i] = x[i] + alpha_f / (1 - alpha_f) * led_along(follower, model_.lumped_mass(), start, way);
     a[i].setZero();
   }
+  lead_along(model_, state.x, state.v);
   state.time += dt;
   constraints.place(state.time, state.x);
   constraints.place_velocity(state.time, part_of_step * dt, state.v);

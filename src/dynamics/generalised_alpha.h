@@ -11,11 +11,13 @@
 /// every dt, and no more damping at low frequency than needed. Newmark is alpha_m = alpha_f = 0; average acceleration
 /// beta = 1/4, gamma = 1/2 keeps the energy of linear bodies.
 ///
-/// A corner without mass follows (Follower): the balance gives its place y where it holds, whatever its place before. From there
-/// it goes on to the step's end as its leaders do. Extrapolated from the step's start as they are, it would swing about y with the
-/// factor -alpha_f / (1 - alpha_f), for ever where rho_inf is 1.
+/// A corner without mass follows (followers.h): the balance gives its place y where it holds, whatever its place before.
+/// From there it goes on to the step's end as its leaders do. Extrapolated from the step's start as they are, it
+/// would swing about y with the factor -alpha_f / (1 - alpha_f), for ever where rho_inf is 1.
 ///
-/// State::history "acceleration" [m/s^2] is a_0; without it the balance of forces at the start gives it.
+/// State::history "acceleration" [m/s^2] is a_0; without it the balance of forces at the start gives it. Followers are
+/// not in balance there yet: what pulls at them is given to their leaders, with the weights that lead them, so that
+/// forces which keep the body's momentum still do.
 
 #include "dynamics/newton_parameters.h"
 

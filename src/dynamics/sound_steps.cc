@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "dynamics/constraints.h"
+#include "dynamics/followers.h"
 #include "dynamics/forces.h"
 
 #include <algorithm>
@@ -252,6 +253,7 @@ StepReport SoundSteps::by_last_resort(State& state, const Loads& loads, const do
   forget_past(after);
   StepReport report = last_resort_->step(after, loads, dt);
   forget_past(after);
+  lead_along(model_, after.x, after.v);
   after.numbers[energy_gained] = 0;
   state = std::move(after);
   return report;

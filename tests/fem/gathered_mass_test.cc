@@ -2,6 +2,7 @@
 
 #include "fem/gathered_mass.h"
 
+#include "dynamics/followers.h"
 #include "dynamics/forces.h"
 #include "dynamics/generalised_alpha.h"
 #include "tests/fem/models.h"
@@ -100,6 +101,59 @@ TEST(GatheredMass, FollowersFallWithTheOthers) {
       EXPECT_LT((state.v[i] - t * loads.gravity).norm(), 1e-5) << rho << ' ' << i;
     }
   }
+}
+
+/// A body that is stretched and let go: what pulls at light corners in the first step pulls at those that carry them.
+TEST(GatheredMass, AFirstStepGivesNoMomentum) {
+  for (const double rho : {-1.0, 0.8}) { // -1: Newmark's
+    const Body body = slivers(8);
+    Hexahedra model(body, {.material = {.youngs_modulus = 1e5}, .inertia = Inertia::gathered});
+    ASSERT_FALSE(model.followers().empty());
+    dynamics::GeneralisedAlpha stepper(model, rho < 0 ? dynamics::newmark(0.25, 0.5) : dynamics::generalised_alpha(rho),
+                                       {.max_iterations = 100,
+                                        .tolerance = 1e-10,
+                                        .line_search = dynamics::LineSearch::backtracking,
+                                        .cg_tolerance = 1e-12,
+                                        .max_cg_iterations = 5000});
+    dynamics::State state{body.rest(), Points(model.lumped_mass().size(), Vec3::Zero())};
+    for (Vec3& x : state.x)
+      x *= 1.1;
+    const double energy = model.energy(state.x), mass = total(model.lumped_mass());
+    for (int i = 0; i < 3; ++i) {
+      stepper.step(state, {}, 0.01);
+      EXPECT_LT(moment(model.lumped_mass(), state.v).norm(), 1e-6 * std::sqrt(2 * mass * energy)) << rho << ' ' << i;
+    }
+  }
+}
+
+/// Leaders that ring give their followers hardly more speed than they have, and leaders that turn that of the turn.
+TEST(GatheredMass, LeadersThatRingGiveFollowersNoMore) {
+  const Body body = slivers(9);
+  const Hexahedra model(body, {.material = {}, .inertia = Inertia::gathered});
+  const auto mass = model.lumped_mass();
+  const Points rest = body.rest();
+  Draw draw(10);
+  const Vec3 u(1, 2, 3), omega(-2, 1, 4);
+  Points rings, turns;
+  for (const Vec3& X : rest) {
+    turns.push_back(u + omega.cross(X));
+    rings.push_back((draw.matrix() * X).normalized());
+  }
+  dynamics::lead_along(model, rest, turns);
+  dynamics::lead_along(model, rest, rings);
+  double fastest = 0, affine = 0;
+  std::size_t n_in_space = 0;
+  for (const dynamics::Follower& follower : model.followers()) {
+    fastest = std::max(fastest, rings[follower.corner].norm());
+    affine = std::max(affine, follower.led(rings).norm());
+    n_in_space += follower.n_leaders > 4 ? 1 : 0; // the affine motion of a plane says nothing across it
+    if (follower.n_leaders > 4) {
+      EXPECT_LT((turns[follower.corner] - u - omega.cross(rest[follower.corner])).norm(), 1e-9) << follower.corner;
+    }
+  }
+  EXPECT_GT(n_in_space, 20u);
+  EXPECT_LT(fastest, 3);
+  EXPECT_GT(affine, 3);
 }
 
 /// Put half a cube off, a light corner is back within a step and stays there, even where no vibration is damped.
