@@ -201,10 +201,7 @@ class Placer {
     const double part =
       part_before_line(from, p, at(skeleton::on_line(of_skin.lines[0])), at(skeleton::on_arc(face, arc)),
                        at(skeleton::on_line(of_skin.lines[1])), cube::face_axis(face));
-    const Vec3 q = hold_below_skin(from, p, part);
-    const bool folds = is_folded(solid_, view, side, q);
-    is_held_ |= folds;
-    solid_.cuts.set_inner_point(f, arc, folds ? at(skeleton::on_arc(face, arc)) : q);
+    solid_.cuts.set_inner_point(f, arc, hold_below_skin(from, p, part));
     count_held();
   }
 
