@@ -15,7 +15,7 @@ namespace skeleton = grid::skeleton;
 
 namespace {
 
-constexpr double negligible = 1e-13, little = 0.02; // of h^3
+constexpr double negligible = 1e-13, little = 0.02; // of h^2, h^3
 
 /// Adds the integrals of the shape functions over a tetrahedron, by a rule that is exact for them.
 void add(std::array<double, 8>& integrals, const grid::Tetrahedron& t) {
@@ -61,6 +61,37 @@ bool is_folded(const grid::Solid& solid, const View& view) {
       return true;
   }
   return false;
+}
+
+bool is_folded(const grid::Solid& solid, const View& view, const int side, const Vec3& p) {
+  const auto& [n, items, segments] = view.now.skeleton().side[side];
+  const int axis = cube::face_axis(side / 2);
+  const double outward = side / 2 % 2 == 1 ? 1 : -1,
+               unit = (view.upper - view.lower)[axis] * (view.upper - view.lower)[axis];
+  double area = 0, first = 0; // of the part that an item ends, of the one that the side begins in
+  bool has_node = false, first_has_node = false, is_first = true;
+  const auto is_negative = [&](const double of, const bool with_node) {
+    return of < -(with_node ? negligible : little) * unit;
+  };
+  for (int i = 0; i < n; ++i) {
+    const Vec3 a = grid::item_point(solid, view.cell, items[i]) - p,
+               b = grid::item_point(solid, view.cell, items[(i + 1) % n]) - p;
+    has_node |= items[i] < cube::n_vertices;
+    if ((view.now.blades >> segments[i] & 1) == 0) {
+      area += 0.5 * outward * a.cross(b)[axis];
+      continue;
+    }
+    const Vec3 at = grid::segment_point(solid, view.cell, view.now.skeleton(), segments[i]) - p;
+    area += 0.5 * outward * a.cross(at)[axis];
+    if (is_first) {
+      first = area;
+      first_has_node = has_node;
+    } else if (is_negative(area, has_node))
+      return true;
+    is_first = has_node = false;
+    area = 0.5 * outward * at.cross(b)[axis];
+  }
+  return is_negative(first + area, first_has_node || has_node);
 }
 
 } // namespace kerf::surface
