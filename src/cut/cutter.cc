@@ -88,7 +88,7 @@ Cutter::Added Cutter::add(Solid& solid, const SweepCuts& cuts) {
   const auto meet = [&](const auto& cut, const auto& segment, auto& met) {
     if (const auto* const first = solid.cuts.find(segment); first && first->label == cut.label)
       return;
-    solid.cuts.add(segment, grid::LaterCut{cut.normal, cut.label});
+    solid.cuts.add(segment, grid::LaterCut{cut.t, cut.normal, cut.label});
     met.push_back(segment);
   };
   for (const EdgeCut& cut : cuts.later)
@@ -148,14 +148,16 @@ void Cutter::join(Solid& solid, const Added& added, const Points& x, std::vector
   std::vector<grid::CellId> cells;
   std::ranges::set_union(cut, met, std::back_inserter(cells));
   for (const grid::CellId c : cells) {
-    std::vector<grid::Items> groups;
+    std::vector<grid::Joined> groups;
     if (solid.cuts.front(c) == nullptr)
       groups = near_each_other(solid, c, on_same_sides(solid, c), x);
-    const std::vector<grid::Items>* const earlier = solid.cuts.joined(c);
+    const std::vector<grid::Joined>* const earlier = solid.cuts.joined(c);
     if (earlier ? groups == *earlier : groups.empty())
       continue;
-    const bool joins = std::ranges::any_of(groups, [&](const grid::Items group) {
-      const auto holds = [&](const grid::CopyId copy) { return (solid.complex.copies[copy].items() & group) != 0; };
+    const bool joins = std::ranges::any_of(groups, [&](const grid::Joined& group) {
+      const auto holds = [&](const grid::CopyId copy) {
+        return (solid.complex.copies[copy].items() & group.items) != 0;
+      };
       const auto copies = solid.complex.copies_of(c);
       std::size_t n = 0;
       for (const grid::CopyId copy : copies)

@@ -6,6 +6,7 @@
 #include <bit>
 #include <map>
 #include <optional>
+#include <ranges>
 
 namespace kerf::cut {
 
@@ -14,7 +15,9 @@ namespace {
 namespace skeleton = grid::skeleton;
 using grid::CellId;
 using grid::CutLabel;
+using grid::Intervals;
 using grid::Items;
+using grid::Joined;
 using grid::Segments;
 using grid::Solid;
 
@@ -26,24 +29,23 @@ using Sides = std::array<std::int8_t, most_labels>;
 /// What crosses the segments of a cell.
 class Meetings {
  public:
-  Meetings(const Solid& solid, const CellId c, const grid::CellCuts& cuts) : cuts_(cuts), of_(cuts.skeleton()) {
+  Meetings(const Solid& solid, const CellId c, const grid::CellCuts& cuts) : of_(cuts.skeleton()) {
     const auto edges = solid.grid.edges(c);
     for (Segments left = cuts.blades & of_.segments; left != 0; left &= left - 1) {
       const int segment = std::countr_zero(left);
       const auto& [a, b] = of_.segment[segment].ends;
       const Vec3 along = grid::item_point(solid, c, b) - grid::item_point(solid, c, a);
-      if (segment < skeleton::first_half) {
-        const grid::EdgeCut& cut = *solid.cuts.find(edges[segment]);
-        add(segment, along, cut.normal, cut.label);
-        for (const grid::LaterCut& later : solid.cuts.later_cuts(edges[segment]))
-          add(segment, along, later.normal, later.label);
-      } else {
-        const grid::SkinSegment at = grid::skin_segment(solid.grid, c, segment);
-        const grid::SkinCut& cut = *solid.cuts.find(at);
-        add(segment, along, cut.normal, cut.label);
+      const auto add_all = [&](const auto& at, const bool is_reversed) {
+        const auto& first = *solid.cuts.find(at);
+        add(segment, along, {first.t, first.normal, first.label}, is_reversed);
         for (const grid::LaterCut& later : solid.cuts.later_cuts(at))
-          add(segment, along, later.normal, later.label);
-      }
+          add(segment, along, later, is_reversed);
+      };
+      if (segment < skeleton::first_half)
+        add_all(edges[segment], a != grid::cube::line_vertices[segment][0]);
+      else
+        add_all(grid::skin_segment(solid.grid, c, segment), false);
+      std::ranges::sort(crossings_[segment], {}, &Crossing::t);
     }
   }
 
@@ -80,18 +82,45 @@ class Meetings {
     return result;
   }
 
+  /// Calls f(interval, its sides, the segment's ends) for all intervals that a cell can tell apart: up to two of a line,
+  /// one of a half.
+  template <class Function>
+  void for_each_interval(const std::array<Sides, skeleton::n_items>& sides, const Function& f) const {
+    for (int segment = 0; segment < skeleton::first_spoke; ++segment) {
+      const auto& crossings = crossings_[segment];
+      const Intervals all = skeleton::intervals_of(segment);
+      const auto n = static_cast<int>(crossings.size());
+      if (n < 2 || n > std::popcount(all) + 1)
+        continue;
+      const auto& [a, b] = of_.segment[segment].ends;
+      Sides at = sides[a];
+      for (int i = 0; i + 1 < n; ++i) {
+        at[crossings[i].label] = static_cast<std::int8_t>(at[crossings[i].label] + crossings[i].step);
+        if (crossings[i + 1].t - crossings[i].t > grid::min_edge_parameter)
+          f(Intervals(1) << (std::countr_zero(all) + i), at, Items(1) << a | Items(1) << b);
+      }
+    }
+  }
+
  private:
-  void add(const int segment, const Vec3& along, const Vec3& normal, const CutLabel label) {
-    const auto [first, is_new] = first_.try_emplace(label, First{n_labels_, normal});
+  struct Crossing {
+    double t;  ///< from the segment's first end [1]
+    int label; ///< by its number here
+    int step;  ///< to the sides beyond it
+  };
+
+  void add(const int segment, const Vec3& along, const grid::LaterCut& cut, const bool is_reversed) {
+    const auto [first, is_new] = first_.try_emplace(cut.label, First{n_labels_, cut.normal});
     n_labels_ += is_new ? 1 : 0;
     const auto& [number, of_first] = first->second;
     if (number < most_labels)
-      steps_[segment][number] = (normal.dot(along) > 0) == (normal.dot(of_first) > 0) ? 1 : -1;
+      crossings_[segment].push_back({is_reversed ? 1 - cut.t : cut.t, number,
+                                     (cut.normal.dot(along) > 0) == (cut.normal.dot(of_first) > 0) ? 1 : -1});
   }
 
   Sides beyond(Sides sides, const int segment, const int way) const {
-    for (int i = 0; i < most_labels; ++i)
-      sides[i] = static_cast<std::int8_t>(sides[i] + way * steps_[segment][i]);
+    for (const auto& [t, label, step] : crossings_[segment])
+      sides[label] = static_cast<std::int8_t>(sides[label] + way * step);
     return sides;
   }
 
@@ -100,24 +129,64 @@ class Meetings {
     Vec3 normal; ///< to whose side others are turned
   };
 
-  grid::CellCuts cuts_;
   const grid::Skeleton& of_;
   int n_labels_ = 0;
   std::map<CutLabel, First> first_;
-  std::array<Sides, skeleton::n_segments> steps_{};
+  std::array<std::vector<Crossing>, skeleton::n_segments> crossings_;
 };
 
 /// All items that segments lead to, cut or not.
 Items in_reach(const grid::Skeleton& skeleton, const Items from) { return skeleton.reachable(from, 0); }
 
+/// The copy of a cell that holds these items.
+grid::CopyId copy_of(const Solid& solid, const CellId c, const Items items) {
+  const auto& complex = solid.complex;
+  for (const grid::CopyId copy : complex.copies_of(c))
+    if ((complex.copies[copy].items() & items) != 0)
+      return copy;
+  // Of one that does not know its skin yet.
+  return complex.copy_at(c, grid::cuts_of(solid, c).skeleton().vertex[std::countr_zero(items)]);
+}
+
+bool are_near(const Solid& solid, const Points& x, const grid::CopyId a, const int v, const grid::CopyId b,
+              const int w) {
+  constexpr double near = 0.25;
+  const auto& copies = solid.complex.copies;
+  return (x[copies[a].corners[v].value] - x[copies[b].corners[w].value]).norm() <= near * solid.grid.h();
+}
+
+/// Without those of a face across which the copy that has them is too far away.
+Intervals near_each_other(const Solid& solid, const CellId c, const Joined& group, const Points& x) {
+  Intervals kept = group.intervals;
+  const grid::CopyId own = copy_of(solid, c, group.items);
+  for (int face = 0; face < grid::cube::n_faces; ++face) {
+    const CellId next = solid.grid.neighbour(c, face);
+    const auto* const there = next.valid() ? solid.cuts.joined(next) : nullptr;
+    if (!there)
+      continue;
+    const int axis = grid::cube::face_axis(face);
+    for (const Joined& others : *there) {
+      const grid::Part mine{0, 0, group.intervals}, its{0, 0, others.intervals};
+      if (face % 2 == 1 ? !grid::are_glued(mine, its, axis) : !grid::are_glued(its, mine, axis))
+        continue;
+      const grid::CopyId other = copy_of(solid, next, others.items);
+      if (!std::ranges::all_of(grid::cube::face_vertices[face],
+                               [&](const int v) { return are_near(solid, x, own, v, other, v ^ 1 << axis); }))
+        for (int i = 0; i < 8; ++i)
+          kept &= ~skeleton::intervals_of(skeleton::in_face(face, i));
+    }
+  }
+  return kept;
+}
+
 } // namespace
 
-std::vector<Items> on_same_sides(const Solid& solid, const CellId c) {
+std::vector<Joined> on_same_sides(const Solid& solid, const CellId c) {
   grid::CellCuts cuts = grid::cuts_of(solid, c);
   cuts.joined = nullptr;
   const grid::Parts parts = grid::parts_of(cuts);
-  std::vector<Items> groups;
-  if (parts.n < 3)
+  std::vector<Joined> groups;
+  if (parts.n < (solid.cuts.has_later_cuts() ? 2 : 3))
     return groups;
   const Meetings meetings(solid, c, cuts);
   if (meetings.n_labels() < 2)
@@ -132,47 +201,42 @@ std::vector<Items> on_same_sides(const Solid& solid, const CellId c) {
     const Items items = part->items();
     if ((items & grouped) != 0)
       continue;
-    Items group = items;
+    Joined group{items, 0};
+    const Items around = in_reach(skeleton, items);
     for (const grid::Part* other = part + 1; other != parts.end(); ++other)
-      if (side_of(other->items()) == side_of(items) && (in_reach(skeleton, items) & other->items()) != 0)
-        group |= other->items();
-    if (group != items)
+      if (side_of(other->items()) == side_of(items) && (around & other->items()) != 0)
+        group.items |= other->items();
+    meetings.for_each_interval(*sides, [&](const Intervals interval, const Sides& at, const Items ends) {
+      if (at == side_of(items) && (around & ends) != 0)
+        group.intervals |= interval;
+    });
+    if (group != Joined{items, 0})
       groups.push_back(group);
-    grouped |= group;
+    grouped |= group.items;
   }
   return groups;
 }
 
-std::vector<Items> near_each_other(const Solid& solid, const CellId c, std::vector<Items> groups, const Points& x) {
-  constexpr double near = 0.25;
-  const auto& complex = solid.complex;
+std::vector<Joined> near_each_other(const Solid& solid, const CellId c, std::vector<Joined> groups, const Points& x) {
   grid::CellCuts cuts = grid::cuts_of(solid, c);
   cuts.joined = nullptr;
   const grid::Parts parts = grid::parts_of(cuts);
-  for (Items& group : groups) {
+  for (Joined& group : groups) {
     Items kept = 0;
-    grid::CopyId first;
     for (const grid::Part& part : parts) {
-      if ((part.items() & group) == 0)
+      if ((part.items() & group.items) == 0)
         continue;
-      const auto in_part = [&](const grid::CopyId copy) { return (complex.copies[copy].items() & part.items()) != 0; };
-      grid::CopyId of_part;
-      for (const grid::CopyId copy : complex.copies_of(c))
-        if (in_part(copy))
-          of_part = copy;
-      if (!first.valid())
-        first = of_part;
-      double apart = 0;
-      for (int v = 0; v < 8 && of_part.valid(); ++v) // else it is of one copy that does not know its skin yet
-        apart = std::max(
-          apart, (x[complex.copies[first].corners[v].value] - x[complex.copies[of_part].corners[v].value]).norm());
-      if (apart <= near * solid.grid.h())
+      const grid::CopyId first = copy_of(solid, c, group.items), of_part = copy_of(solid, c, part.items());
+      const auto is_near = [&](const int v) { return are_near(solid, x, first, v, of_part, v); };
+      if (std::ranges::all_of(std::views::iota(0, grid::cube::n_vertices), is_near))
         kept |= part.items();
     }
-    group = kept;
+    group.items = kept;
+    group.intervals = near_each_other(solid, c, group, x);
   }
-  std::erase_if(groups, [&](const Items group) {
-    return std::ranges::any_of(parts, [&](const grid::Part& part) { return part.items() == group; });
+  std::erase_if(groups, [&](const Joined& group) {
+    return group.intervals == 0 &&
+           std::ranges::any_of(parts, [&](const grid::Part& part) { return part.items() == group.items; });
   });
   return groups;
 }

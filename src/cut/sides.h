@@ -8,18 +8,26 @@
 /// turned to one side, each meeting is a step of +1 or -1 from one end of the segment to the other; steps along ways add
 /// up to how an item lies to the label. Where that depends on the way, for any label, as where a cut ends in the cell or
 /// comes back beside itself, nothing is said of the cell.
+///
+/// Splinters of such a wedge lie in cells next to each other too, where it passes through the face between them with none
+/// of the face's nodes in it. Its material in the face is seen on the face's segments: an *interval* between two cuts
+/// that meet a segment lies on known sides of all, and belongs in each cell around to the part that lies so. Copies that
+/// have an interval in common are glued as those are that have a node in common (grid/parts.h). Three cuts leave two
+/// intervals of a line; a half of an arc that three meet, or a line that four meet, is not asked. Where the wedge passes
+/// through a cell that has no node in it, nothing leads on: at five degrees half the bodies of seven cubes keep splinters.
 
 #include "grid/solid.h"
 
 namespace kerf::cut {
 
-/// Items of a cell, in groups that lie on the same sides, of two or more parts each.
-std::vector<grid::Items> on_same_sides(const grid::Solid& solid, grid::CellId c);
+/// What of a cell lies on the same sides, in groups of two or more parts, or of one with intervals.
+std::vector<grid::Joined> on_same_sides(const grid::Solid& solid, grid::CellId c);
 
 /// Of these groups what can be one: parts that are one copy already, or whose copies' corners have moved apart by less
-/// than a quarter of a cube, with the corners at `x` [m]: a copy is turned inside out where one of its faces moves by a
-/// cube against the other, or both by half of one; joined corners are moved by a quarter at most, half of that.
-std::vector<grid::Items> near_each_other(const grid::Solid& solid, grid::CellId c, std::vector<grid::Items> groups,
-                                         const Points& x);
+/// than a quarter of a cube, with the corners at `x` [m]; and of intervals those beyond which, across a face, lies no copy
+/// that has moved away so far. A copy is turned inside out where one of its faces moves by a cube against the other, or
+/// both by half of one; joined corners are moved by a quarter at most, half of that.
+std::vector<grid::Joined> near_each_other(const grid::Solid& solid, grid::CellId c, std::vector<grid::Joined> groups,
+                                          const Points& x);
 
 } // namespace kerf::cut

@@ -137,8 +137,9 @@ bool Target::is_asked(const grid::EdgeId edge, const grid::CutLabel label) const
 /// An edge that is cut already, from its one end to its other, wherever these are now.
 void Target::judge_later(const grid::EdgeId edge, const grid::CutLabel label, const Judge& judge,
                          SweepCuts& result) const {
-  const double t = solid_.cuts.find(edge)->t;
+  const grid::EdgeCut& first = *solid_.cuts.find(edge);
   Verdict verdict;
+  double from = 0, to = 1;
   if (solid_.cuts.is_cut_twice(edge)) {
     const auto around = solid_.grid.cells(edge);
     const grid::CellId c = *std::ranges::find_if(around, [](const grid::CellId cell) { return cell.valid(); });
@@ -146,12 +147,15 @@ void Target::judge_later(const grid::EdgeId edge, const grid::CutLabel label, co
     const int line = static_cast<int>(std::ranges::find(edges, edge) - edges.begin());
     const SkinNow skin(solid_, c);
     verdict = judge(skin.segment(line, x_before_), skin.segment(line, x_));
+    from = solid_.grid.is_material(solid_.grid.ends(edge)[0]) ? 0 : 1;
+    to = solid_.cuts.find_outer(edge)->t;
   } else {
     const EdgeEnds ends = ends_of(solid_, edge);
     verdict = judge(ends.segment(x_before_), ends.segment(x_));
   }
   if (verdict.n_crossings % 2 == 1)
-    result.later.push_back({edge, t, pulled_back(solid_, x_, edge, t, verdict.normal), label});
+    result.later.push_back(
+      {edge, from + verdict.t * (to - from), pulled_back(solid_, x_, edge, first.t, verdict.normal), label});
 }
 
 void Target::judge(const grid::EdgeId edge, const grid::CutLabel label, const Judge& judge, SweepCuts& result) const {

@@ -57,12 +57,13 @@ void make_copies(const Grid& grid, const std::vector<CutCell>& cut_cells, CellCo
   for (const CellId c : ids<CellId>(grid.n_cells())) {
     complex.first_copy.push_back(CopyId(complex.n_copies()));
     if (cut == cut_cells.end() || cut->cell != c) {
-      complex.copies.push_back({c, 0xff, 0, {}, {}});
+      complex.copies.push_back({.cell = c, .nodes = 0xff, .corners = {}, .next = {}});
       continue;
     }
     for (const Part& part : cut->parts) {
       const bool is_last = &part + 1 == cut->parts.end();
-      complex.copies.push_back({c, part.nodes, part.skin, {}, is_last ? CopyId() : CopyId(complex.n_copies() + 1)});
+      complex.copies.push_back(
+        {c, part.nodes, part.skin, {}, is_last ? CopyId() : CopyId(complex.n_copies() + 1), part.intervals});
     }
     ++cut;
   }
@@ -198,14 +199,14 @@ class Update {
 
   void split(const CellId cell) {
     const CellCuts cell_cuts = cuts_of_copies(solid_, cell);
-    const Parts parts = parts_of(cell_cuts), before = unsaid_parts(cell, cell_cuts);
-    bool splits = false;
+    const Parts parts = parts_of(cell_cuts), unsaid = unsaid_parts(cell, cell_cuts);
+    bool is_other = false;
     for (CopyId c = solid_.complex.first_copy[cell]; c.valid();) {
       const CopyId next = solid_.complex.copies[c].next;
-      splits |= divide(c, parts, before);
+      is_other |= divide(c, parts, unsaid);
       c = next;
     }
-    if (splits) {
+    if (is_other) {
       sort_copies(cell);
       add_slots(cell);
     }
@@ -217,28 +218,30 @@ class Update {
       slots_.push_back({nodes[v], v, cell});
   }
 
-  /// Where a front is taken back, or others hang together: parts may join what the cell's copies were. A part goes on as the copy that had its lowest
-  /// item, if that does not go on as a lower one.
+  /// Where a front is taken back, or others hang together: parts may join what the cell's copies were. A part goes on as
+  /// the copy that had its lowest item, if that does not go on as a lower one.
   void divide_anew(const CellId cell) {
     std::vector<CopyId> before, now;
-    std::vector<Copy> were;
+    std::vector<Items> were;
     std::vector<std::uint32_t> crumb_of;
+    const CellCuts cell_cuts = cuts_of(solid_, cell);
+    const Parts unsaid = unsaid_parts(cell, cell_cuts);
     for (const CopyId c : solid_.complex.copies_of(cell)) {
       before.push_back(c);
-      were.push_back(solid_.complex.copies[c]);
+      were.push_back(whole(c, unsaid).items());
       crumb_of.push_back(solid_.crumbs.of(c));
     }
-    for (const Part& part : parts_of(cuts_of(solid_, cell))) {
+    for (const Part& part : parts_of(cell_cuts)) {
       const Items lowest = part.items() & -part.items();
-      const auto from = std::ranges::find_if(were, [&](const Copy& copy) { return (copy.items() & lowest) != 0; });
+      const auto from = std::ranges::find_if(were, [&](const Items items) { return (items & lowest) != 0; });
       const CopyId old = before[static_cast<std::size_t>(from - were.begin())];
       const bool is_taken = std::ranges::find(now, old) != now.end();
-      now.push_back(is_taken ? solid_.complex.copies.push_back(*from) : old);
-      if (is_taken || part != from->part())
+      now.push_back(is_taken ? solid_.complex.copies.push_back(Copy(solid_.complex.copies[old])) : old);
+      if (is_taken || part != solid_.complex.copies[old].part())
         set_part(now.back(), part);
       std::optional<std::uint32_t> crumb; // that all of the part comes from
       for (std::size_t i = 0; i < were.size(); ++i)
-        if ((were[i].items() & part.items()) != 0)
+        if ((were[i] & part.items()) != 0)
           crumb = !crumb || *crumb == crumb_of[i] ? crumb_of[i] : Crumbs::none;
       solid_.crumbs.set(now.back(), *crumb);
     }
@@ -247,8 +250,8 @@ class Update {
     solid_.complex.first_copy[cell] = now[0];
     for (std::size_t i = 0; i < before.size(); ++i)
       if (std::ranges::find(now, before[i]) == now.end()) {
-        const auto heir = std::ranges::find_if(
-          now, [&](const CopyId c) { return (solid_.complex.copies[c].items() & were[i].items()) != 0; });
+        const auto heir =
+          std::ranges::find_if(now, [&](const CopyId c) { return (solid_.complex.copies[c].items() & were[i]) != 0; });
         lapsing_.push_back({before[i], heir == now.end() ? now[0] : *heir});
       }
     add_slots(cell);
@@ -265,13 +268,18 @@ class Update {
     return whole_parts_of({cell_cuts.material, cell_cuts.cut, 0});
   }
 
+  /// What a copy is of, as unsaid_parts() have it.
+  Part whole(const CopyId c, const Parts& unsaid) const {
+    const Copy& copy = solid_.complex.copies[c];
+    const auto found = std::ranges::find_if(unsaid, [&](const Part& part) { return (part.nodes & copy.nodes) != 0; });
+    return found == unsaid.end() ? copy.part() : *found;
+  }
+
   /// The first of the parts that a copy falls into keeps it; the others start with its corners, and stand behind it.
-  /// Returns whether there are several.
-  bool divide(const CopyId c, const Parts& parts, const Parts& before) {
-    Part whole = solid_.complex.copies[c].part();
-    for (const Part& part : before)
-      if ((part.nodes & whole.nodes) != 0)
-        whole = part;
+  /// Returns whether it may be glued to others than before: there are several, or it has other intervals.
+  bool divide(const CopyId c, const Parts& parts, const Parts& unsaid) {
+    const Part whole = this->whole(c, unsaid);
+    const Intervals intervals = solid_.complex.copies[c].intervals;
     bool is_first = true, is_split = false;
     for (const Part& part : parts) {
       if ((part.items() & whole.items()) == 0)
@@ -287,12 +295,13 @@ class Update {
     }
     if (is_split)
       change_.copies.push_back(c);
-    return is_split;
+    return is_split || solid_.complex.copies[c].intervals != intervals;
   }
 
   void set_part(const CopyId c, const Part& part) {
     solid_.complex.copies[c].nodes = part.nodes;
     solid_.complex.copies[c].skin = part.skin;
+    solid_.complex.copies[c].intervals = part.intervals;
     change_.copies.push_back(c);
   }
 

@@ -1,9 +1,9 @@
 #pragma once
 
 /// The cells, duplicated once per connected component (the virtual node algorithm of Molino, Bao and Fedkiw 2004, on
-/// cubes; thesis §2.4.2). Two copies in face-adjacent cells that share a material node, or a point of the skin (parts.h),
-/// on the common face are glued along the whole face. Corners are the node instances that come out of it, the unknowns of
-/// every physics.
+/// cubes; thesis §2.4.2). Two copies in face-adjacent cells that share a material node, a point of the skin, or an
+/// interval between two cuts (parts.h) on the common face are glued along the whole face. Corners are the node instances
+/// that come out of it, the unknowns of every physics.
 ///
 /// A cut splits copies, and a corner depends on the copies of the (up to eight) cells around its node alone. So an
 /// update looks at the cells around the new cut edges and at the nodes of those that split; all that is there keeps its
@@ -30,11 +30,12 @@ struct Copy {
   std::uint32_t skin = 0;          ///< bits of its points of the skin, where blades have cut that (Part)
   std::array<CornerId, 8> corners; ///< in deal.II's vertex order
   CopyId next;                     ///< the cell's next copy, by its part (parts.h); invalid for the last
+  Intervals intervals = 0;         ///< where cuts cross (Part)
 
-  Part part() const { return {nodes, skin}; }
+  Part part() const { return {nodes, skin, intervals}; }
   Items items() const { return part().items(); }
   bool is_lapsed() const { return nodes == 0 && skin == 0; }
-  void archive(Archive& a) { a(cell, nodes, skin, corners, next); }
+  void archive(Archive& a) { a(cell, nodes, skin, corners, next, intervals); }
 };
 
 /// The copies of one cell: for (const CopyId c : complex.copies_of(cell)).

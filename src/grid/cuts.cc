@@ -43,7 +43,7 @@ void Cuts::add_to(std::vector<LaterCut>& all, const LaterCut& later) {
     all.push_back(later);
 }
 
-void Cuts::set_joined(const CellId c, std::vector<Items> groups) {
+void Cuts::set_joined(const CellId c, std::vector<Joined> groups) {
   if (groups.empty())
     joined_.erase(c);
   else

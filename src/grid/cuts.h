@@ -61,10 +61,20 @@ struct SkinCut {
 
 /// Who meets a segment that another one has cut: it parts nothing there, but tells on which side of it the ends lie.
 struct LaterCut {
+  double t = 0.5;              ///< as in EdgeCut or SkinCut [1]
   Vec3 normal = Vec3::UnitX(); ///< as in EdgeCut
   CutLabel label = 1;
 
-  void archive(Archive& a) { a(normal, label); }
+  void archive(Archive& a) { a(t, normal, label); }
+};
+
+/// What hangs together in a cell though cuts part all segments between (cut/sides.h).
+struct Joined {
+  Items items = 0;
+  Intervals intervals = 0; ///< that belong to it
+
+  bool operator==(const Joined&) const = default;
+  void archive(Archive& a) { a(items, intervals); }
 };
 
 /// A cell in which a cut ends, or would by fronts.h: the copies are parted as if it went on through the cell in a plane,
@@ -131,17 +141,17 @@ class Cuts {
   /// Each label once.
   void add(EdgeId e, const LaterCut& later) { add_to(later_of_edges_[e], later); }
   void add(const SkinSegment& segment, const LaterCut& later) { add_to(later_of_skin_[segment], later); }
+  bool has_later_cuts() const { return !later_of_edges_.empty() || !later_of_skin_.empty(); }
   std::span<const LaterCut> later_cuts(const EdgeId e) const { return found_in(later_of_edges_, e); }
   std::span<const LaterCut> later_cuts(const SkinSegment& segment) const { return found_in(later_of_skin_, segment); }
 
-  /// Items of a cell that hang together though cuts part all segments between them (cut/sides.h), in groups; null where
-  /// there are none.
-  const std::vector<Items>* joined(const CellId c) const {
+  /// Null where there are none.
+  const std::vector<Joined>* joined(const CellId c) const {
     const auto found = joined_.empty() ? joined_.end() : joined_.find(c);
     return found == joined_.end() ? nullptr : &found->second;
   }
   /// In place of the cell's earlier ones.
-  void set_joined(CellId c, std::vector<Items> groups);
+  void set_joined(CellId c, std::vector<Joined> groups);
 
   /// Null in cells where no cut ends.
   const Front* front(const CellId c) const {
@@ -230,7 +240,7 @@ class Cuts {
   std::vector<Front> fronts_;
   std::map<EdgeId, std::vector<LaterCut>> later_of_edges_;
   std::map<SkinSegment, std::vector<LaterCut>> later_of_skin_;
-  std::map<CellId, std::vector<Items>> joined_;
+  std::map<CellId, std::vector<Joined>> joined_;
   std::vector<EdgeCut> cuts_;
   std::vector<SkinCut> skin_cuts_;
   std::size_t n_cut_twice_ = 0, n_settled_ = 0, n_settled_of_skin_ = 0;

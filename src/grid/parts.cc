@@ -23,28 +23,32 @@ constexpr std::array<std::uint16_t, 256> skin_lines = [] {
 Parts parts_of_nodes(const unsigned material, const unsigned cut) {
   Parts result;
   for (unsigned left = material; left != 0; left &= ~unsigned(result.items[result.n++].nodes))
-    result.items[result.n] = {cube::reachable(std::countr_zero(left), cut), 0};
+    result.items[result.n] = {cube::reachable(std::countr_zero(left), cut)};
   return result;
 }
 
 /// Parts that hold items of one group are one: the first of them.
-Parts joined(const Parts& parts, const std::vector<Items>* const groups) {
+Parts joined(const Parts& parts, const std::vector<Joined>* const groups) {
   if (!groups)
     return parts;
-  std::array<Items, skeleton::n_items> items;
-  std::ranges::transform(parts, items.begin(), &Part::items);
-  for (const Items group : *groups)
+  std::array<Joined, skeleton::n_items> all;
+  std::ranges::transform(parts, all.begin(), [](const Part& part) { return Joined{part.items(), 0}; });
+  for (const auto& [items, intervals] : *groups)
     for (int i = 0, first = -1; i < parts.n; ++i)
-      if ((items[i] & group) != 0) {
-        if (first < 0)
+      if ((all[i].items & items) != 0) {
+        if (first < 0) {
           first = i;
-        else
-          items[first] |= std::exchange(items[i], 0);
+          all[i].intervals |= intervals;
+        } else
+          all[first].items |= std::exchange(all[i].items, 0);
       }
   Parts result;
   for (int i = 0; i < parts.n; ++i)
-    if (items[i] != 0)
-      result.items[result.n++] = Part::of(items[i]);
+    if (all[i].items != 0) {
+      Part& part = result.items[result.n++];
+      part = Part::of(all[i].items);
+      part.intervals = all[i].intervals;
+    }
   return result;
 }
 

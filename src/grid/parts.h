@@ -7,14 +7,16 @@
 #include "grid/cuts.h"
 #include "grid/skeleton.h"
 
+#include <bit>
+
 namespace kerf::grid {
 
 /// What cuts have done to a cell.
 struct CellCuts {
-  unsigned material = 0;                      ///< vertices (bits)
-  unsigned cut = 0;                           ///< lines that are cut, by the skin or by blades (bits)
-  Segments blades = 0;                        ///< segments that blades have cut
-  const std::vector<Items>* joined = nullptr; ///< Cuts::joined()
+  unsigned material = 0;                       ///< vertices (bits)
+  unsigned cut = 0;                            ///< lines that are cut, by the skin or by blades (bits)
+  Segments blades = 0;                         ///< segments that blades have cut
+  const std::vector<Joined>* joined = nullptr; ///< Cuts::joined()
 
   const Skeleton& skeleton() const { return skeleton_of(material); }
   bool has_skin() const { return material != 0xff; }
@@ -45,10 +47,11 @@ struct Part {
   /// Bits of its points of the skin, items from skeleton::first_on_line on; none where no blade has cut at the skin, as
   /// it is known then what they hang on.
   std::uint32_t skin = 0;
+  Intervals intervals = 0; ///< where cuts cross (Cuts::joined)
 
   Items items() const { return nodes | Items(skin) << skeleton::first_on_line; }
   static Part of(const Items items) {
-    return {static_cast<std::uint8_t>(items), static_cast<std::uint32_t>(items >> skeleton::first_on_line)};
+    return {static_cast<std::uint8_t>(items), static_cast<std::uint32_t>(items >> skeleton::first_on_line), 0};
   }
   bool operator==(const Part&) const = default;
 };
@@ -77,6 +80,16 @@ constexpr unsigned in_face(const Part& part, const int face) {
   constexpr int first = skeleton::first_on_arc - skeleton::first_on_line;
   return bits | (part.skin >> (first + 2 * face) & 3) << 8;
 }
+constexpr bool share_interval(const Part& below, const Part& above, const int axis) {
+  const auto of_segment = [](const Part& part, const int segment) {
+    return (part.intervals & skeleton::intervals_of(segment)) >> std::countr_zero(skeleton::intervals_of(segment));
+  };
+  for (int i = 0; i < 8; ++i)
+    if ((of_segment(below, skeleton::in_face(2 * axis + 1, i)) & of_segment(above, skeleton::in_face(2 * axis, i))) !=
+        0)
+      return true;
+  return false;
+}
 } // namespace detail
 
 /// Have two parts of cells that share a face, one below and one above it along an axis, material in common there?
@@ -84,8 +97,10 @@ constexpr bool are_glued(const Part& below, const Part& above, const int axis) {
   constexpr std::array<unsigned, 3> lower_face = {cube::face_mask(0), cube::face_mask(2), cube::face_mask(4)};
   if ((below.nodes >> (1 << axis) & above.nodes & lower_face[axis]) != 0)
     return true;
-  return below.skin != 0 && above.skin != 0 &&
-         (detail::in_face(below, 2 * axis + 1) & detail::in_face(above, 2 * axis)) != 0;
+  if (below.skin != 0 && above.skin != 0 &&
+      (detail::in_face(below, 2 * axis + 1) & detail::in_face(above, 2 * axis)) != 0)
+    return true;
+  return below.intervals != 0 && above.intervals != 0 && detail::share_interval(below, above, axis);
 }
 
 } // namespace kerf::grid

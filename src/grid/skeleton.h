@@ -13,6 +13,8 @@
 ///   items      0 .. 7 nodes, 8 .. 19 on lines, 20 .. 31 on arcs (two a face), 32 .. 35 middles
 ///   segments   0 .. 11 lines, 12 .. 35 halves of arcs (four a face, by the place of their line: cube::face_lines),
 ///              36 .. 47 spokes to lines, 48 .. 59 spokes to arcs
+///   intervals  0 .. 23 of lines (two a line), 24 .. 47 of halves: what of them lies between two cuts that meet them,
+///              counted from the segment's first end
 ///   sides      0 .. 11 polygons (two a face, by arc), 12 .. 35 triangles, by the half of an arc that bounds them
 
 #include "grid/cube.h"
@@ -23,8 +25,9 @@
 
 namespace kerf::grid {
 
-/// Sets of items, of segments, of sides.
+/// Sets of items, of intervals, of segments, of sides.
 using Items = std::uint64_t;
+using Intervals = std::uint64_t;
 using Segments = std::uint64_t;
 using Sides = std::uint64_t;
 
@@ -43,6 +46,13 @@ constexpr int spoke(const int line) { return first_spoke + line; }
 constexpr int arc_spoke(const int face, const int arc) { return first_arc_spoke + 2 * face + arc; }
 constexpr int polygon(const int face, const int arc) { return 2 * face + arc; }
 constexpr int triangle(const int face, const int place) { return first_triangle + 4 * face + place; }
+
+/// All of a segment that lies in a face.
+constexpr Intervals intervals_of(const int segment) {
+  return segment < first_half ? Intervals(3) << 2 * segment : Intervals(1) << (first_half + segment);
+}
+/// The segments of a face, in the same order in both of its cells: four lines, four halves.
+constexpr int in_face(const int face, const int i) { return i < 4 ? cube::face_lines[face][i] : half(face, i - 4); }
 
 constexpr Segments lines = 0xfff;
 /// The halves of a face's arcs.

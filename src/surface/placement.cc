@@ -202,10 +202,22 @@ class Placer {
       part_before_line(from, p, at(skeleton::on_line(of_skin.lines[0])), at(skeleton::on_arc(face, arc)),
                        at(skeleton::on_line(of_skin.lines[1])), cube::face_axis(face));
     const Vec3 q = hold_below_skin(from, p, part);
-    const bool folds = is_folded(solid_, view, side, q);
+    const bool folds = !is_on_planes(view, of, q) && is_folded(solid_, view, side, q);
     is_held_ |= folds;
     solid_.cuts.set_inner_point(f, arc, folds ? at(skeleton::on_arc(face, arc)) : q);
     count_held();
+  }
+
+  /// Do all cuts of some segments lie in one plane, with p in it? Then what they leave of a face has the same area
+  /// wherever in the plane its vertex lies, and giving way is no help.
+  bool is_on_planes(const View& view, const grid::Segments of, const Vec3& p) const {
+    constexpr double round_off = 1e-9; // of h
+    bool result = true;
+    for_each_bit(view.now.blades & of, [&](const int segment) {
+      const Plane& plane = cut_plane(solid_, view, segment).plane;
+      result = result && std::abs(plane.normal.dot(p - plane.point)) <= round_off * solid_.grid.h();
+    });
+    return result;
   }
 
   /// On the skin itself: halfway between two cuts of its sides, and so on the rim. A cut of the third side meets it

@@ -308,6 +308,42 @@ TEST_F(Resume, SaysFromWhereItGoesOn) {
   say("nothing is there to resume: starts from step 0");
 }
 
+/// Copies whose nodes no edges between them hold together: parts that lie on the same side of all cuts.
+std::size_t n_joined_copies(const output::Complex& complex) {
+  return static_cast<std::size_t>(std::ranges::count_if(complex.nodes, [](const unsigned nodes) {
+    unsigned reached = nodes & ~(nodes - 1);
+    for (int i = 0; i < 3; ++i) // no way in a cube is longer
+      for (int axis = 0; axis < 3; ++axis)
+        for (unsigned v = 0; v < 8; ++v)
+          reached |= (reached >> v & 1) << (v ^ 1u << axis) & nodes;
+    return reached != nodes;
+  }));
+}
+
+/// Killed while a blade crosses an earlier cut at 15 degrees, after parts have been joined again.
+TEST_F(Resume, KeepsPartsThatWereJoinedAgain) {
+  const std::string first = "subsection Cut surface first\n  set Shape = plane\n  set Point [m] = 0.008, 0, 0\n"
+                            "  set Normal [1] = 0.959, -0.204, 0.197\nend\n";
+  write("scene.prm", busy_scene("fem") + first);
+  ASSERT_EQ(kerf({"run", "scene.prm", "--output", "whole"}).exit_code, 0) << read_text(folder / "stderr");
+  const output::Reader whole(folder / "whole/run.h5");
+  std::vector<std::size_t> n_joined;
+  for (std::size_t i = 0; i < whole.n_frames("cube"); ++i)
+    n_joined.push_back(n_joined_copies(whole.complex("cube", whole.frame("cube", i).complex)));
+  const auto some = std::ranges::find_if(n_joined, [](const std::size_t n) { return n > 0; });
+  ASSERT_NE(some, n_joined.end());
+  const auto step =
+    static_cast<std::int64_t>(whole.frame("cube", static_cast<std::size_t>(some - n_joined.begin())).step);
+  const pid_t id = start({"run", "scene.prm", "--output", "out"});
+  const auto checkpoint = folder / "out/checkpoint.kerf";
+  while (!std::filesystem::exists(checkpoint) || output::read_checkpoint(checkpoint)->step < step)
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  ::kill(id, SIGKILL);
+  ASSERT_TRUE(WIFSIGNALED(status_of(id)));
+  ASSERT_EQ(kerf({"run", "scene.prm", "--output", "out", "--resume"}).exit_code, 0) << read_text(folder / "stderr");
+  expect_same_runs("whole", "out");
+}
+
 /// The processor time and memory of a row are those of all processes that it took.
 TEST_F(Resume, ARowsCostIsThatOfAllItsProcesses) {
   const std::string scene = busy_scene("fem");

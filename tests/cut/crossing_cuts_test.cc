@@ -169,12 +169,13 @@ TEST(AtSkin, TheOrderOfThreeCutsLeavesTheSameNodesTogether) {
 }
 
 /// Two planes that cross at a small angle, by blades and at once: four pieces. Where the wedge between them is thinner
-/// than a cube, nodes lie in it here and there: those of one cell hang together, others may be splinters of it.
+/// than a cube, nodes lie in it here and there: those of one cell hang together, and of cells next to each other; others
+/// may be splinters of it.
 class SmallAngle : public testing::TestWithParam<int> {};
 
 TEST_P(SmallAngle, LeavesFourPiecesAndFewSplinters) {
   Random random(111);
-  for (const auto& [degrees, least] : {std::pair{5.0, 0.0}, {15.0, 0.3}, {30.0, 0.9}, {60.0, 1.0}}) {
+  for (const auto& [degrees, least] : {std::pair{5.0, 0.25}, {15.0, 0.95}, {30.0, 1.0}, {60.0, 1.0}}) {
     const double angle = degrees * std::numbers::pi / 180;
     int n_bodies = 0, n_of_four = 0;
     std::size_t n_splinters = 0;
@@ -216,11 +217,33 @@ TEST_P(SmallAngle, LeavesFourPiecesAndFewSplinters) {
     EXPECT_GE(n_of_four, least * n_bodies);
   }
 }
+
+/// Copies on two sides of a face that have no node or point of the skin in common there, and yet its four corners.
+std::size_t n_glued_by_intervals(const Body& body) {
+  std::size_t n = 0;
+  const auto& complex = body.complex;
+  for (const auto c : ids<grid::CellId>(body.grid.n_cells()))
+    for (int face = 1; face < grid::cube::n_faces; face += 2) {
+      const grid::CellId next = body.grid.neighbour(c, face);
+      for (const grid::CopyId a : complex.copies_of(c))
+        for (grid::CopyId b = next.valid() ? complex.first_copy[next] : grid::CopyId(); b.valid();
+             b = complex.copies[b].next) {
+          grid::Part mine = complex.copies[a].part(), its = complex.copies[b].part();
+          mine.intervals = its.intervals = 0;
+          n += !grid::are_glued(mine, its, face / 2) &&
+               std::ranges::all_of(grid::cube::face_vertices[face], [&](const int v) {
+                 return complex.copies[a].corners[v] == complex.copies[b].corners[v ^ 1 << face / 2];
+               });
+        }
+    }
+  return n;
+}
+
 /// Whether cuts end at faces or inside cells: complex and surface, which follow a blade that crosses an earlier cut, are
 /// in every 16th step those that are built from what is cut.
 TEST(AtSkin, WhatASmallAngleJoinsIsAsBuilt) {
   Random random(112);
-  std::size_t n_joined = 0;
+  std::size_t n_joined = 0, n_across_faces = 0;
   for (int i = 0; i < 4; ++i) {
     const double angle = (i % 3 + 1) * 10 * std::numbers::pi / 180;
     const Body body =
@@ -240,8 +263,10 @@ TEST(AtSkin, WhatASmallAngleJoinsIsAsBuilt) {
     }
     for (const auto c : ids<grid::CellId>(body.grid.n_cells()))
       n_joined += cutting.body.cuts.joined(c) != nullptr;
+    n_across_faces += n_glued_by_intervals(cutting.body);
   }
   EXPECT_GT(n_joined, 10u);
+  EXPECT_GT(n_across_faces, 10u);
 }
 
 INSTANTIATE_TEST_SUITE_P(Short, SmallAngle, testing::Values(8));

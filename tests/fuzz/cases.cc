@@ -264,7 +264,7 @@ class Run {
       const auto *const is = subject_.solid.cuts.joined(c), *const was = other.solid.cuts.joined(c);
       if (!is && !was)
         continue;
-      other.solid.cuts.set_joined(c, is ? *is : std::vector<grid::Items>());
+      other.solid.cuts.set_joined(c, is ? *is : std::vector<grid::Joined>());
       cells.push_back(c);
     }
     grid::update_complex(other.solid, {}, {}, cells);

@@ -191,26 +191,32 @@ void require_pieces(const Items& items, const grid::Solid& solid, const HeldByCe
     complain("the number of pieces is wrong");
 }
 
-/// Item by item: the copies on both sides of a face that hold an item of it are one along the whole face.
-Links glued_slots(const grid::Solid& solid, const HeldByCell& held) {
+/// Item by item: the copies on both sides of a face that hold an item of it are one along the whole face; and where cuts
+/// cross those that hold the same interval.
+Links glued_slots(const Items& items, const grid::Solid& solid, const HeldByCell& held) {
   Links links;
   for (const CellId below : ids<CellId>(solid.grid.n_cells()))
     for (int axis = 0; axis < 3; ++axis) {
       const CellId above = solid.grid.cells(solid.grid.faces(below)[2 * axis + 1])[1];
       if (!above.valid())
         continue;
+      const auto glue = [&](const CopyId a, const CopyId b) {
+        for (const int w : cube::face_vertices[2 * axis])
+          links.push_back({8 * a.value + (w | 1 << axis), 8 * b.value + w});
+      };
       for (const auto& [item, a] : held[below]) {
         const std::size_t at = place_of(held[above], item);
         if (at < held[above].size())
-          for (const int w : cube::face_vertices[2 * axis])
-            links.push_back({8 * a.value + (w | 1 << axis), 8 * held[above][at].copy.value + w});
+          glue(a, held[above][at].copy);
       }
+      for (const auto& [item, other] : links_above(solid, items, below, axis))
+        glue(held[below][place_of(held[below], item)].copy, held[above][place_of(held[above], other)].copy);
     }
   return links;
 }
 
-void require_gluing(const grid::Solid& solid, const HeldByCell& held) {
-  const Labels glued = flooded(8 * solid.complex.n_copies(), glued_slots(solid, held));
+void require_gluing(const Items& items, const grid::Solid& solid, const HeldByCell& held) {
+  const Labels glued = flooded(8 * solid.complex.n_copies(), glued_slots(items, solid, held));
   Labels slots, corners;
   for (const CopyId c : ids<CopyId>(solid.complex.n_copies()))
     for (int v = 0; v < 8 && !solid.complex.copies[c].is_lapsed(); ++v) {
@@ -261,7 +267,7 @@ void require_sound_complex(const grid::Solid& solid, const Items& items) {
   require_sound_copies(items, solid, held);
   require_real_corners(solid);
   require_pieces(items, solid, held);
-  require_gluing(solid, held);
+  require_gluing(items, solid, held);
 }
 
 UnionFind require_sound_parents(const CellComplex& before, const CellComplex& after,
@@ -269,13 +275,14 @@ UnionFind require_sound_parents(const CellComplex& before, const CellComplex& af
   UnionFind together(before.n_corners());
   struct Past {
     std::set<CornerId> corners;
-    bool is_joined = false; ///< a copy that holds it comes from several
+    bool is_joined = false; ///< a copy that holds it comes from several, or is glued by an interval
   };
   std::vector<Past> pasts(after.n_corners());
   for (const Copy& copy : after.copies) {
     const auto origins = origins_of(before, copy);
     for (int v = 0; v < cube::n_vertices && !copy.is_lapsed(); ++v) {
       Past& past = pasts[copy.corners[v].value];
+      past.is_joined |= copy.intervals != 0;
       for (const CopyId origin : origins) {
         if (!origin.valid())
           complain("a copy of cell " + std::to_string(copy.cell.value) + " comes from nowhere");
@@ -308,7 +315,8 @@ void require_sound_change(const CellComplex& before, const CellComplex& after, c
   Table<CopyId, std::uint8_t> has_changed(after.n_copies(), 1); // new ones have
   for (const CopyId c : ids<CopyId>(before.n_copies())) {
     const Copy &was = before.copies[c], &is = after.copies[c];
-    has_changed[c] = was.nodes != is.nodes || was.skin != is.skin || was.corners != is.corners;
+    has_changed[c] =
+      was.nodes != is.nodes || was.skin != is.skin || was.intervals != is.intervals || was.corners != is.corners;
   }
   for (std::size_t i = before.n_copies(); i < after.n_copies(); ++i)
     for (const CopyId origin : origins_of(before, after.copies[CopyId(i)]))

@@ -3,6 +3,7 @@
 #include "tests/grid/slow_parts.h"
 
 #include <algorithm>
+#include <iterator>
 #include <bit>
 #include <map>
 
@@ -105,22 +106,48 @@ namespace {
 
 /// That lie on the same sides of all cuts.
 void add_joined(const grid::Solid& solid, const Items& items, const CellId cell, ItemLinks& links) {
-  if (const std::vector<grid::Items>* const groups = solid.cuts.joined(cell))
-    for (const grid::Items group : *groups)
+  if (const auto* const groups = solid.cuts.joined(cell))
+    for (const grid::Joined& group : *groups)
       for (int i = 0; i < grid::skeleton::n_items; ++i)
-        if (group >> i & 1)
-          links.push_back({items.name[cell][std::countr_zero(group)], items.name[cell][i]});
+        if (group.items >> i & 1)
+          links.push_back({items.name[cell][std::countr_zero(group.items)], items.name[cell][i]});
 }
 
 } // namespace
+
+ItemLinks links_above(const grid::Solid& solid, const Items& items, const CellId cell, const int axis) {
+  ItemLinks links;
+  const int face = 2 * axis + 1;
+  const CellId above = solid.grid.neighbour(cell, face);
+  const auto* const groups = solid.cuts.joined(cell);
+  const auto* const others = above.valid() ? solid.cuts.joined(above) : nullptr;
+  if (!groups || !others)
+    return links;
+  for (const grid::Joined& one : *groups)
+    for (const grid::Joined& other : *others) {
+      bool is_shared = false;
+      for (int i = 0; i < 4; ++i) { // two bits of each line, from 24 on one of each half
+        is_shared |= (one.intervals >> 2 * grid::cube::face_lines[face][i] & 3 &
+                      other.intervals >> 2 * grid::cube::face_lines[face - 1][i]) != 0;
+        is_shared |= (one.intervals >> (24 + 4 * face + i) & 1 & other.intervals >> (20 + 4 * face + i)) != 0;
+      }
+      if (is_shared)
+        links.push_back(
+          {items.name[cell][std::countr_zero(one.items)], items.name[above][std::countr_zero(other.items)]});
+    }
+  return links;
+}
 
 ItemLinks links(const grid::Solid& solid, const Items& items) {
   ItemLinks result;
   for (const ItemSegment& segment : items.all)
     if (!is_cut(solid, segment))
       result.push_back(segment.ends);
-  for (const auto cell : ids<CellId>(solid.grid.n_cells()))
+  for (const auto cell : ids<CellId>(solid.grid.n_cells())) {
     add_joined(solid, items, cell, result);
+    for (int axis = 0; axis < 3; ++axis)
+      std::ranges::copy(links_above(solid, items, cell, axis), std::back_inserter(result));
+  }
   return result;
 }
 

@@ -193,13 +193,13 @@ TEST(Crumbs, KeepTheirNamesUntilTheyAreCut) {
 CutChange join(Body& body, const CopyId a, const CopyId b) {
   const CellId cell = body.complex.copies[a].cell;
   const Items group = body.complex.copies[a].items() | body.complex.copies[b].items();
-  std::vector<Items> groups = {group};
+  std::vector<Joined> groups = {{group, 0}};
   if (const auto* const earlier = body.cuts.joined(cell))
-    for (const Items other : *earlier) {
-      if ((other & group) == 0)
+    for (const Joined& other : *earlier) {
+      if ((other.items & group) == 0)
         groups.push_back(other);
       else
-        groups[0] |= other;
+        groups[0].items |= other.items;
     }
   body.cuts.set_joined(cell, groups);
   return update_complex(body, {}, {}, std::array{cell});

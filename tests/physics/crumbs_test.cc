@@ -41,7 +41,7 @@ struct Dust {
         if (const Index3& at = block.body.grid.index(node); at[0] == 4 && at[1] >= 2 && at[1] < 2 + n_rows &&
                                                             at[2] >= 2 && at[2] <= 3 &&
                                                             (cells.empty() || cells.back() != c)) {
-          block.body.cuts.set_joined(c, {~grid::Items(0)});
+          block.body.cuts.set_joined(c, {{~grid::Items(0), 0}});
           cells.push_back(c);
         }
     return followed(grid::update_complex(block.body, {}, {}, cells));
