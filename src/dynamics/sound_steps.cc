@@ -176,8 +176,11 @@ double ElasticEnergies::at(const Points& x) {
   if (known_[0].x == x)
     return known_[0].energy;
   std::swap(known_[0], known_[1]);
-  if (known_[0].x != x)
-    known_[0].energy = model_.energy_ahead(known_[0].x = x);
+  if (known_[0].x != x) {
+    const double energy = model_.energy_ahead(x); // which may fail: then nothing is known of x
+    known_[0].x = x;
+    known_[0].energy = energy;
+  }
   return known_[0].energy;
 }
 
