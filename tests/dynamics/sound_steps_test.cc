@@ -2,6 +2,7 @@
 
 #include "dynamics/sound_steps.h"
 
+#include "base/error.h"
 #include "dynamics/conjugate_gradients.h"
 #include "dynamics/explicit_steppers.h"
 #include "dynamics/forces.h"
@@ -264,6 +265,31 @@ TEST(Mixing, SolvesWhatItHasSeen) {
     x[0] += mixing.mixed(x, d, weight)[0];
   }
   EXPECT_LT((x[0] - answer).norm(), 1e-8); // plain steps would leave 95 % of the slowest
+}
+
+/// Beyond a centimetre its energy cannot be told, the first time.
+class Shy : public Chain {
+ public:
+  using Chain::Chain;
+  double energy_ahead(const Points& x) const override {
+    if ((x[0] - rest()[0]).norm() > 0.01 && ++n_asked_ == 1)
+      throw NumericalError("too far");
+    return energy(x);
+  }
+
+ private:
+  mutable int n_asked_ = 0;
+};
+
+TEST(ElasticEnergies, RememberNothingOfWhatFails) {
+  const Shy model({1.0}, {.anchor = 100});
+  ElasticEnergies energies(model);
+  Points far = model.rest();
+  far[0].x() += 0.1;
+  EXPECT_EQ(energies.at(model.rest()), 0);
+  EXPECT_THROW(energies.at(far), NumericalError);
+  EXPECT_EQ(energies.at(far), model.energy(far));
+  EXPECT_EQ(energies.at(model.rest()), 0);
 }
 
 } // namespace
