@@ -20,11 +20,13 @@ class UnionFind {
     return i;
   }
 
-  void unite(const std::uint32_t a, const std::uint32_t b) {
+  /// Returns the root of both.
+  std::uint32_t unite(const std::uint32_t a, const std::uint32_t b) {
     std::uint32_t low = root(a), high = root(b);
     if (low > high)
       std::swap(low, high);
     parent_[high] = low;
+    return low;
   }
 
   /// Numbers the sets from 0 in the order of their smallest members; returns how many there are.

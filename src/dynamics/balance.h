@@ -161,7 +161,8 @@ class BalanceSolver {
   void apply(const Problem& problem, std::span<const double> p, std::span<double> y);
   /// Tests the first correction where it ends, and moves there.
   Verdict judge(const Problem& problem, const Points& end);
-  bool bears_tests(const Problem& problem, const Points& end);
+  /// Whether the power of what is out of balance along d has fallen enough in every piece.
+  bool slopes_little(const Points& d, const std::vector<double>& at_start, double scale) const;
   /// Work that may be left out of balance at x in each piece: the energy that the integrator itself takes, from the
   /// stiffness at its start, and what the linear solver does not see [J].
   Loan<double> most_work(const Problem& problem, const Points& x);

@@ -37,17 +37,8 @@ Loan<std::uint8_t> BalanceSolver::seen(const double scale) const {
   return is_seen;
 }
 
-bool BalanceSolver::bears_tests(const Problem& problem, const Points& end) {
+bool BalanceSolver::slopes_little(const Points& d, const std::vector<double>& at_start, const double scale) const {
   constexpr double part = 0.25; // of the slope at the start
-  const Loan<Vec3> d = unlike_flight(problem, correction_);
-  const Loan<double> at_start = pieces_.products(residual_, d);
-  double scale = 0;
-  try {
-    move_to(problem, end);
-    scale = assemble_residual(problem);
-  } catch (const NumericalError&) { // no forces there
-    return false;
-  }
   const Loan<double> at_end = pieces_.products(residual_, d);
   const auto is_seen = seen(scale);
   for (std::size_t p = 0; p < pieces_.n(); ++p) {
@@ -55,14 +46,23 @@ bool BalanceSolver::bears_tests(const Problem& problem, const Points& end) {
     if (is_seen[p] && std::abs(at_end[p]) > part * slope + std::sqrt(slope) * error_of_cg())
       return false;
   }
-  return turns_little(problem, end);
+  return true;
 }
 
 BalanceSolver::Verdict BalanceSolver::judge(const Problem& problem, const Points& end) {
-  if (!bears_tests(problem, end))
+  const Loan<Vec3> d = unlike_flight(problem, correction_);
+  const Loan<double> at_start = pieces_.products(residual_, d);
+  double scale = 0;
+  try {
+    move_to(problem, end);
+    scale = assemble_residual(problem);
+  } catch (const NumericalError&) { // no forces there
+    return Verdict::refused;
+  }
+  if (!slopes_little(d, at_start, scale) || !turns_little(problem, end))
     return Verdict::refused;
   most_work_ = *most_work(problem, end);
-  return works_little(problem, end, assemble_residual(problem)) ? Verdict::taken : Verdict::goes_on;
+  return works_little(problem, end, scale) ? Verdict::taken : Verdict::goes_on;
 }
 
 Loan<double> BalanceSolver::most_work(const Problem& problem, const Points& x) {
@@ -97,7 +97,7 @@ bool BalanceSolver::turns_little(const Problem& problem, const Points& x) const 
     double energy = 0, inertia = 0; // twice the kinetic energy
   };
   const Balance& b = problem.balance;
-  if (b.velocity_factor == 0)
+  if (b.velocity_factor == 0 || std::ranges::count(flies_, 0) == std::ssize(flies_))
     return true;
   const double dt = 1 / b.velocity_factor;
   const Loan<Vec3> r = unlike_flight(problem, x), v = unlike_flight(problem, velocity_),

@@ -18,6 +18,8 @@ Loan<double> Pieces::products(const Points& a, const Points& b) const {
 
 Loan<Vec3> Pieces::without_mean(const std::span<const double> mass, const Points& values,
                                 const std::span<const std::uint8_t> which) const {
+  if (std::ranges::count(which, 0) == std::ssize(which))
+    return values;
   Loan<double> all(n_, 0);
   Loan<Vec3> mean(n_, Vec3::Zero());
   for (std::size_t i = 0; i < values.size(); ++i) {

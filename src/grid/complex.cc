@@ -452,9 +452,11 @@ CutChange update_complex(Solid& solid, std::vector<EdgeId> new_edges, std::vecto
 Pieces pieces(const CellComplex& complex) {
   UnionFind corners(complex.n_corners());
   const auto first = [](const Copy& copy) { return copy.corners[0].value; };
-  for (const Copy& copy : complex.copies)
+  for (const Copy& copy : complex.copies) {
+    std::uint32_t root = first(copy);
     for (const CornerId corner : copy.corners) // that others have too where they are glued, and only there
-      corners.unite(first(copy), corner.value);
+      root = corners.unite(root, corner.value);
+  }
   for (const auto& [c, d] : complex.tied)
     corners.unite(first(complex.copies[c]), first(complex.copies[d]));
   Pieces result;

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/loan.h"
+#include "base/parallel.h"
 #include "dynamics/forces.h"
 #include "fem/hexahedra.h"
 
@@ -61,24 +62,29 @@ void bring_up_to_date(const Body& body, Watch& watch) {
   if (watch.n_recuts == body.n_recuts)
     return;
   watch.n_recuts = body.n_recuts;
-  const std::vector<std::uint32_t> pieces = physics::corner_pieces(body.solid.complex);
-  watch.piece_of_copy.clear();
-  for (std::size_t c = 0; c < body.solid.complex.n_copies(); ++c)
-    watch.piece_of_copy.push_back(pieces[copy_of(body, c).corners[0].value]);
-  watch.rest_volumes.assign(pieces.empty() ? 0 : 1 + *std::max_element(pieces.begin(), pieces.end()), 0);
+  grid::Pieces pieces = grid::pieces(body.solid.complex);
+  watch.piece_of_copy = std::move(pieces.piece.items());
+  watch.rest_volumes.assign(pieces.n_pieces, 0);
   watch.rest_volumes = *piece_volumes(body, watch, body.surface.rest);
 }
 
-/// det F in the middle of a copy: the mean of its four edges along each axis.
-double volume_ratio(const Body& body, const grid::Copy& copy) {
-  const Points& x = corners(body);
-  Mat3 F;
-  for (int axis = 0; axis < 3; ++axis) {
-    Vec3 sum = Vec3::Zero();
+/// The twelve edges of a copy, four along each axis [m].
+std::array<Vec3, 12> edges(const Points& x, const grid::Copy& copy) {
+  std::array<Vec3, 12> all;
+  std::size_t n = 0;
+  for (int axis = 0; axis < 3; ++axis)
     for (int v = 0; v < 8; ++v)
       if ((v >> axis & 1) == 0)
-        sum += x[copy.corners[v | 1 << axis].value] - x[copy.corners[v].value];
-    F.col(axis) = sum / (4 * body.solid.grid.h());
+        all[n++] = x[copy.corners[v | 1 << axis].value] - x[copy.corners[v].value];
+  return all;
+}
+
+/// det F in the middle of a copy: the mean of its four edges along each axis.
+double volume_ratio(const std::array<Vec3, 12>& edges, const double h) {
+  Mat3 F;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const Vec3* const e = &edges[4 * axis];
+    F.col(static_cast<Eigen::Index>(axis)) = (e[0] + e[1] + e[2] + e[3]) / (4 * h);
   }
   return F.determinant();
 }
@@ -95,23 +101,59 @@ std::string worst_copy(const Body& body, const std::function<bool(std::size_t)>&
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t c = 0; c < body.solid.complex.n_copies(); ++c)
     if (is_meant(c))
-      if (const double ratio = volume_ratio(body, copy_of(body, c)); ratio < least) {
+      if (const double ratio = volume_ratio(edges(corners(body), copy_of(body, c)), body.solid.grid.h());
+          ratio < least) {
         least = ratio;
         worst = c;
       }
   return in_words(body, worst);
 }
 
-/// Part of the nodes whose copies are inside out in their middle: nodes count, so near-empty copies hardly do.
-double inverted_part(const Body& body) {
-  double inverted = 0, all = 0;
-  for (std::size_t c = 0; c < body.solid.complex.n_copies(); ++c) {
-    const double n = std::popcount(static_cast<unsigned>(copy_of(body, c).nodes));
-    all += n;
-    if (!body.solid.crumbs.holds(grid::CopyId(static_cast<std::uint32_t>(c))))
-      inverted += volume_ratio(body, copy_of(body, c)) < 0 ? n : 0;
+/// What becomes of the cubes of copies.
+struct Cubes {
+  std::size_t n_nodes = 0, n_inverted = 0; ///< of them: those of copies that are inside out in their middle
+  std::size_t longest = 0;                 ///< the copy that has the longest edge
+  double squared_length = 0;               ///< of that [m^2]
+
+  void take_in(const Cubes& more) {
+    n_nodes += more.n_nodes;
+    n_inverted += more.n_inverted;
+    if (more.squared_length > squared_length) {
+      longest = more.longest;
+      squared_length = more.squared_length;
+    }
   }
-  return all > 0 ? inverted / all : 0;
+};
+
+Cubes cubes(const Body& body) {
+  constexpr std::size_t block = 4096;
+  const Points& x = corners(body);
+  const std::size_t n = body.solid.complex.n_copies();
+  Loan<Cubes> blocks((n + block - 1) / block);
+  parallel_for(blocks.size(), [&](const std::size_t b) {
+    Cubes& all = blocks[b];
+    for (std::size_t c = b * block; c < std::min(n, (b + 1) * block); ++c) {
+      const grid::Copy& copy = copy_of(body, c);
+      const auto n_nodes = static_cast<std::size_t>(std::popcount(static_cast<unsigned>(copy.nodes)));
+      all.n_nodes += n_nodes;
+      if (body.solid.crumbs.holds(grid::CopyId(static_cast<std::uint32_t>(c)))) // rigid
+        continue;
+      const auto e = edges(x, copy);
+      all.n_inverted += volume_ratio(e, body.solid.grid.h()) < 0 ? n_nodes : 0;
+      double longest = 0;
+      for (const Vec3& edge : e)
+        longest = std::max(longest, edge.squaredNorm());
+      all.take_in({0, 0, c, longest});
+    }
+  });
+  Cubes all;
+  for (const Cubes& one : *blocks)
+    all.take_in(one);
+  return all;
+}
+
+Stretch stretch_of(const Cubes& all, const Body& body) {
+  return {all.longest, std::sqrt(all.squared_length) / body.solid.grid.h()};
 }
 
 constexpr char remedy[] = ". What acts on it is more than its material bears: use a stiffer material or smaller loads";
@@ -152,11 +194,13 @@ std::string unsound_volume(const Body& body, const Watch& watch) {
            ": its volume is " + in_short(100 * ratio) + " % of that at rest. Worst is " +
            worst_copy(body, [&](const std::size_t c) { return watch.piece_of_copy[c] == p; }) + remedy;
   }
-  if (const double part = inverted_part(body); part > most_inverted)
+  const Cubes all = cubes(body);
+  // Nodes count, so near-empty copies hardly do.
+  if (const double part = double(all.n_inverted) / double(std::max<std::size_t>(all.n_nodes, 1)); part > most_inverted)
     return in_short(100 * part) + " % of the body are inside out. Worst is " +
            worst_copy(body, [](std::size_t) { return true; }) + remedy;
   constexpr double most_stretch = 32; // of 308 sound runs of unseen bodies 4 come to more than 12, none to more than 16
-  if (const Stretch stretch = largest_stretch(body); stretch.factor > most_stretch)
+  if (const Stretch stretch = stretch_of(all, body); stretch.factor > most_stretch)
     return in_words(body, stretch.copy) + ", is drawn out to " + in_short(stretch.factor) + " times its edge" + remedy;
   return "";
 }
@@ -195,19 +239,7 @@ void require_sound_motion(const Body& body, const Points& before, const double d
                          " J) could move an eighth of a cube. Use a smaller time step");
 }
 
-Stretch largest_stretch(const Body& body) {
-  const Points& x = corners(body);
-  Stretch most;
-  for (std::size_t c = 0; c < body.solid.complex.n_copies(); ++c) {
-    if (body.solid.crumbs.holds(grid::CopyId(static_cast<std::uint32_t>(c))))
-      continue;
-    const auto& corner = copy_of(body, c).corners;
-    for (const auto& [a, b] : grid::cube::line_vertices)
-      if (const double squared = (x[corner[b].value] - x[corner[a].value]).squaredNorm(); squared > most.factor)
-        most = {c, squared};
-  }
-  return {most.copy, std::sqrt(most.factor) / body.solid.grid.h()};
-}
+Stretch largest_stretch(const Body& body) { return stretch_of(cubes(body), body); }
 
 void require_sound_volume(const Body& body, Watch& watch) {
   bring_up_to_date(body, watch);
