@@ -1,35 +1,62 @@
 #include "fem/batches.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace kerf::fem {
 
-Batching::Batching(const std::span<const std::uint32_t> order, const std::function<Kind(std::uint32_t)>& kind,
-                   const std::uint32_t* const corners, const std::size_t n_corners) {
-  constexpr std::size_t chunk_size = 512;
-  std::vector<std::uint32_t> full, partial;
-  std::vector<Chunk> chunks;
-  for (std::size_t begin = 0; begin < order.size(); begin += chunk_size) {
+std::vector<std::uint32_t> Batching::update(const CopiesInOrder& copies, const std::span<const std::uint8_t> is_same) {
+  const std::vector<BatchOfCopies> batches_before = std::exchange(batches_, {});
+  const std::vector<Chunk> chunks_before = std::exchange(chunks_, {});
+  batches_.reserve(batches_before.size() + 16);
+  std::vector<std::uint8_t> is_taken(n_places_, 0);
+  std::vector<std::uint32_t> full, partial, renewed;
+  const auto stays = [&](const BatchOfCopies& batch, const BatchOfCopies& before) {
+    return !is_same.empty() && std::equal(std::begin(batch.copies), std::end(batch.copies), before.copies) &&
+           std::ranges::all_of(
+             batch.copies, [&](const std::uint32_t copy) { return copy == BatchOfCopies::none || is_same[copy] != 0; });
+  };
+  std::uint32_t begin = 0;
+  for (std::size_t k = 0; k < copies.chunk_ends.size(); begin = copies.chunk_ends[k++]) {
     full.clear();
     partial.clear();
-    for (const std::uint32_t copy : order.subspan(begin, std::min(chunk_size, order.size() - begin)))
-      if (const Kind k = kind(copy); k != Kind::unused)
-        (k == Kind::full ? full : partial).push_back(copy);
+    for (const std::uint32_t copy : copies.order.subspan(begin, copies.chunk_ends[k] - begin))
+      if (const Kind kind = copies.kind[copy]; kind != Kind::unused)
+        (kind == Kind::full ? full : partial).push_back(copy);
     const auto first = static_cast<std::uint32_t>(batches_.size()),
-               row = static_cast<std::uint32_t>(n_corners + chunks.size());
-    add_batches(full, Kind::full, corners, row);
-    add_batches(partial, Kind::partial, corners, row);
-    chunks.push_back({first, static_cast<std::uint32_t>(batches_.size()) - first});
+               row = static_cast<std::uint32_t>(copies.n_corners + k);
+    add_batches(full, copies.corners, row);
+    const auto first_partial = static_cast<std::uint32_t>(batches_.size());
+    add_batches(partial, copies.corners, row);
+    const auto end = static_cast<std::uint32_t>(batches_.size());
+    const Chunk before = k < chunks_before.size() ? chunks_before[k] : Chunk{0, 0, 0};
+    for (std::uint32_t i = first_partial, was = before.first + before.n_full; i < end; ++i, ++was)
+      if (was < before.first + before.n && stays(batches_[i], batches_before[was])) {
+        batches_[i].partial = batches_before[was].partial;
+        is_taken[batches_[i].partial] = 1;
+      } else {
+        renewed.push_back(i);
+      }
+    chunks_.push_back({first, first_partial - first, end - first});
   }
-  n_rows_ = n_corners + chunks.size();
-  colour(chunks, n_corners);
+  std::size_t place = 0;
+  for (const std::uint32_t i : renewed) {
+    while (place < n_places_ && is_taken[place] != 0)
+      ++place;
+    batches_[i].partial = static_cast<std::uint32_t>(place++);
+  }
+  n_places_ = std::max(n_places_, place);
+  n_rows_ = copies.n_corners + chunks_.size();
+  colour(copies.n_corners);
+  return renewed;
 }
 
-void Batching::add_batches(const std::span<const std::uint32_t> copies, const Kind kind,
-                           const std::uint32_t* const corners, const std::uint32_t row) {
+/// As if of full cubes.
+void Batching::add_batches(const std::span<const std::uint32_t> copies, const std::uint32_t* const corners,
+                           const std::uint32_t row) {
   for (std::size_t begin = 0; begin < copies.size(); begin += n_lanes) {
     BatchOfCopies& batch = batches_.emplace_back();
-    batch.partial = kind == Kind::partial ? static_cast<std::uint32_t>(n_partial_++) : BatchOfCopies::none;
+    batch.partial = BatchOfCopies::none;
     for (std::size_t lane = 0; lane < n_lanes; ++lane) {
       const bool is_used = begin + lane < copies.size();
       const std::uint32_t copy = is_used ? copies[begin + lane] : BatchOfCopies::none;
@@ -41,9 +68,10 @@ void Batching::add_batches(const std::span<const std::uint32_t> copies, const Ki
 }
 
 /// Each chunk the first colour that no chunk before it has that shares a corner.
-void Batching::colour(const std::span<const Chunk> chunks, const std::size_t n_corners) {
+void Batching::colour(const std::size_t n_corners) {
+  colours_.clear();
   std::vector<std::uint64_t> taken(n_corners, 0); // bits of the colours that hold a corner
-  for (const Chunk& chunk : chunks) {
+  for (const Chunk& chunk : chunks_) {
     std::uint64_t met = 0;
     const auto for_each_corner = [&](const auto& f) {
       for (std::uint32_t i = chunk.first; i < chunk.first + chunk.n; ++i)
@@ -76,9 +104,9 @@ CubeConstants<T> constants(const double h, const material::Elastic& material, co
 }
 
 template <class T>
-void put(const Element& element, const std::size_t lane, PartialCubes<T>& cubes) {
+void put(const Element& element, const double bound, const std::size_t lane, PartialCubes<T>& cubes) {
   cubes.volume[lane] = T(element.volume);
-  cubes.weight[lane] = 1;
+  cubes.weight[lane] = T(std::max(1.0, element.bound / bound));
   const auto gradients = mode_gradients(element);
   for (int i = 0; i < n_hourglass; ++i)
     cubes.gradient[i][lane] = T(gradients[i]);
@@ -90,20 +118,35 @@ void put(const Element& element, const std::size_t lane, PartialCubes<T>& cubes)
 
 template <class T>
 BatchedElements<T> batched(const Batching& batching, const double h, const material::Elastic& material,
-                           const Element& full, const std::function<const Element&(std::uint32_t)>& element) {
+                           const Element& full, const PartialElements& partial) {
   BatchedElements<T> all{constants<T>(h, material, full), {}, {}, {}};
-  all.partial.resize(batching.n_partial_batches());
-  all.rotations.resize(batching.batches().size());
-  batching.for_each([&](const std::size_t i) {
-    const BatchOfCopies& batch = batching.batches()[i];
+  std::vector<std::uint32_t> all_partial;
+  for (std::uint32_t i = 0; i < batching.batches().size(); ++i)
+    if (batching.batches()[i].partial != BatchOfCopies::none)
+      all_partial.push_back(i);
+  follow(batching, all_partial, partial, all);
+  for (Lanes9<T>& rotations : all.rotations)
     for (int k = 0; k < 3; ++k)
-      std::fill_n(all.rotations[i].row[4 * k], n_lanes, T(1));
-    if (batch.partial != BatchOfCopies::none)
+      std::fill_n(rotations.row[4 * k], n_lanes, T(1));
+  return all;
+}
+
+template <class T>
+void follow(const Batching& batching, const std::span<const std::uint32_t> renewed, const PartialElements& partial,
+            BatchedElements<T>& elements) {
+  elements.partial.resize(batching.n_places());
+  elements.rotations.resize(batching.batches().size());
+  parallel_for(
+    renewed.size(),
+    [&](const std::size_t i) {
+      const BatchOfCopies& batch = batching.batches()[renewed[i]];
+      PartialCubes<T>& cubes = elements.partial[batch.partial];
+      cubes = {};
       for (std::size_t lane = 0; lane < n_lanes; ++lane)
         if (batch.copies[lane] != BatchOfCopies::none)
-          put(element(batch.copies[lane]), lane, all.partial[batch.partial]);
-  });
-  return all;
+          put(partial.of(batch.copies[lane]), partial.bound, lane, cubes);
+    },
+    16);
 }
 
 template <class T>
@@ -120,9 +163,11 @@ void add_diagonal(const Batching& batching, const BatchedElements<T>& elements, 
 }
 
 template BatchedElements<double> batched(const Batching&, double, const material::Elastic&, const Element&,
-                                         const std::function<const Element&(std::uint32_t)>&);
+                                         const PartialElements&);
 template BatchedElements<float> batched(const Batching&, double, const material::Elastic&, const Element&,
-                                        const std::function<const Element&(std::uint32_t)>&);
+                                        const PartialElements&);
+template void follow(const Batching&, std::span<const std::uint32_t>, const PartialElements&, BatchedElements<double>&);
+template void follow(const Batching&, std::span<const std::uint32_t>, const PartialElements&, BatchedElements<float>&);
 template void add_product(const Batching&, const BatchedElements<double>&, const Row<double>*, Row<double>*);
 template void add_product(const Batching&, const BatchedElements<float>&, const Row<float>*, Row<float>*);
 template void add_diagonal(const Batching&, const BatchedElements<double>&, Row<double>*);

@@ -2,15 +2,18 @@
 
 /// Elements in batches for the kernels: which copies go through them together, and what they are made of.
 ///
-/// Copies go in the order of their cells, so that what lies side by side is read together, in chunks of some hundred:
-/// first a chunk's full cubes, then its partial ones, each in batches of 16. Chunks that share a corner have different
-/// colours. One colour after the other, and a chunk's batches in their order, is the order of all sums: the same for
-/// any number of threads, as it depends on the copies and their corners alone.
+/// Copies go in the order of their cells, so that what lies side by side is read together, in chunks, the copies of some
+/// hundred cells each: first a chunk's full cubes, then its partial ones, each in batches of 16. Chunks that share a corner
+/// have different colours. One colour after the other, and a chunk's batches in their order, is the order of all sums: the
+/// same for any number of threads, as it depends on the copies and their corners alone.
+///
+/// A cut changes the batches of the chunks that it meets. What partial cubes are made of stays where it is for all others.
 
 #include "base/parallel.h"
 #include "fem/element.h"
 
 #include <functional>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -27,18 +30,32 @@ struct BatchOfCopies {
   static constexpr std::uint32_t none = 0xffffffff;
   alignas(64) std::uint32_t corners[8][n_lanes];
   std::uint32_t copies[n_lanes]; ///< `none` in lanes that are not used
-  std::uint32_t partial;         ///< which of the partial batches; `none` for full cubes
+  std::uint32_t partial;         ///< the place of what its cubes are made of; `none` for full ones
+};
+
+/// All copies, side by side what is near.
+struct CopiesInOrder {
+  std::span<const std::uint32_t> order;
+  std::span<const std::uint32_t> chunk_ends; ///< in `order`, ascending
+  std::span<const Kind> kind;                ///< of each copy
+  const std::uint32_t* corners;              ///< 8 a copy
+  std::size_t n_corners;
 };
 
 class Batching {
  public:
-  /// `order`: all copies, side by side what is near; `corners`: 8 a copy.
-  Batching(std::span<const std::uint32_t> order, const std::function<Kind(std::uint32_t copy)>& kind,
-           const std::uint32_t* corners, std::size_t n_corners);
+  static constexpr std::size_t chunk_size = 512; ///< cells
+
+  explicit Batching(const CopiesInOrder& copies) { update(copies, {}); }
   Batching() = default;
 
+  /// Takes over copies after a cut; is_same: of each, whether it has the corners and the material that it had. Returns the
+  /// batches of partial cubes of which one is not what it was, or was elsewhere.
+  std::vector<std::uint32_t> update(const CopiesInOrder& copies, std::span<const std::uint8_t> is_same);
+
   std::span<const BatchOfCopies> batches() const { return batches_; }
-  std::size_t n_partial_batches() const { return n_partial_; }
+  /// Places for what partial cubes are made of, some of them empty.
+  std::size_t n_places() const { return n_places_; }
   /// Rows of corners that kernels read and write: after the corners one for each chunk, for lanes that are not used.
   std::size_t n_rows() const { return n_rows_; }
 
@@ -60,15 +77,16 @@ class Batching {
  private:
   static constexpr std::size_t worth_ = 32; // batches from which on a second thread pays
   struct Chunk {
-    std::uint32_t first, n;
+    std::uint32_t first, n_full, n; // batches: full ones come first
   };
 
-  void add_batches(std::span<const std::uint32_t> copies, Kind kind, const std::uint32_t* corners, std::uint32_t row);
-  void colour(std::span<const Chunk> chunks, std::size_t n_corners);
+  void add_batches(std::span<const std::uint32_t> copies, const std::uint32_t* corners, std::uint32_t row);
+  void colour(std::size_t n_corners);
 
   std::vector<BatchOfCopies> batches_;
+  std::vector<Chunk> chunks_;
   std::vector<std::vector<Chunk>> colours_;
-  std::size_t n_partial_ = 0, n_rows_ = 0;
+  std::size_t n_places_ = 0, n_rows_ = 0;
 };
 
 template <class T>
@@ -95,10 +113,20 @@ struct BatchedElements {
   }
 };
 
-/// `element(copy)`: of a partial one. All rotations are the identity.
+/// Of partial copies.
+struct PartialElements {
+  std::function<const Element&(std::uint32_t copy)> of;
+  /// `diagonal` counts elements whose own bound (jacobi_bound) is more than this by as much more [1].
+  double bound = std::numeric_limits<double>::infinity();
+};
+/// All rotations are the identity.
 template <class T>
 BatchedElements<T> batched(const Batching& batching, double h, const material::Elastic& material, const Element& full,
-                           const std::function<const Element&(std::uint32_t copy)>& element);
+                           const PartialElements& partial);
+/// After a cut: `renewed` is what Batching::update() has returned. Rotations are lost.
+template <class T>
+void follow(const Batching& batching, std::span<const std::uint32_t> renewed, const PartialElements& partial,
+            BatchedElements<T>& elements);
 
 /// y += K p.
 template <class T>

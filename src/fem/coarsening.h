@@ -25,6 +25,22 @@ struct CellsOfLevel {
   bool is_used(const std::size_t copy) const { return corners[8 * copy] != unused; }
 };
 
+/// Such copies, kept elsewhere.
+struct CellsView {
+  std::span<const Index3> place;
+  std::span<const std::uint32_t> corners;
+  std::size_t n_corners;
+
+  CellsView(const std::span<const Index3> place_of, const std::span<const std::uint32_t> corners_of,
+            const std::size_t n)
+    : place(place_of), corners(corners_of), n_corners(n) {}
+  CellsView(const CellsOfLevel& cells)
+    : CellsView(cells.place, cells.corners, cells.n_corners) {} // NOLINT: a view of them
+
+  std::size_t n_copies() const { return place.size(); }
+  bool is_used(const std::size_t copy) const { return corners[8 * copy] != CellsOfLevel::unused; }
+};
+
 /// A sparse matrix of weights, row by row.
 struct Weights {
   std::vector<std::uint32_t> begin = {0}; ///< of each row, and the end
@@ -39,6 +55,6 @@ struct Coarsening {
   std::vector<std::uint8_t> octant;  ///< in which part of it: bits of the axes
   Weights prolongation, restriction; ///< trilinear: a row for each fine corner; its transpose
 };
-Coarsening coarsened(const CellsOfLevel& fine);
+Coarsening coarsened(const CellsView& fine);
 
 } // namespace kerf::fem

@@ -15,6 +15,7 @@ namespace kerf::fem {
 namespace {
 
 constexpr std::size_t worth = 4096; // corners from which on a second thread pays
+constexpr double no_bound = std::numeric_limits<double>::infinity();
 
 using material::Tangent;
 
@@ -99,7 +100,7 @@ void Hexahedra::follow(const grid::Solid& solid, const std::span<const grid::Cop
     for (const grid::CopyId c : changed)
       former_levels_.same_copy[c.value] = CellsOfLevel::unused;
   }
-  batch(solid);
+  batch(solid, changed);
   sum_mass(corners);
   ghost_penalty_.update( // to which a crumb's copies are as good as full
     solid, changed, [this](const std::size_t copy) { return incidence_.is_used(copy) ? fill(copy) : 1; }, mass_);
@@ -111,21 +112,41 @@ void Hexahedra::follow(const grid::Solid& solid, const std::span<const grid::Cop
     consistent_mass_->update(solid, changed, mass_, lumped_mass());
 }
 
-void Hexahedra::batch(const grid::Solid& solid) {
-  std::vector<std::uint32_t> order; // by cell
+void Hexahedra::batch(const grid::Solid& solid, const std::span<const grid::CopyId> changed) {
+  std::vector<std::uint32_t> order, chunk_ends; // by cell
   order.reserve(n_elements());
   places_.resize(n_elements());
-  for (const auto cell : ids<grid::CellId>(solid.grid.n_cells())) {
+  kinds_.resize(n_elements());
+  const std::size_t n_cells = solid.grid.n_cells();
+  for (const auto cell : ids<grid::CellId>(n_cells)) {
     const Index3 place = solid.grid.index(solid.grid.nodes(cell)[0]);
     for (const grid::CopyId c : solid.complex.copies_of(cell)) {
       order.push_back(c.value);
       places_[c.value] = place;
+      kinds_[c.value] = !incidence_.is_used(c.value) ? Kind::unused
+                        : elements_.is_full(c.value) ? Kind::full
+                                                     : Kind::partial;
     }
+    if ((cell.value + 1) % Batching::chunk_size == 0 || cell.value + 1 == n_cells)
+      chunk_ends.push_back(static_cast<std::uint32_t>(order.size()));
   }
-  batching_ = Batching(
-    order, [this](const std::uint32_t copy) { return kind(copy); }, incidence_.corners(0), incidence_.n_corners());
-  batched_ = batched<double>(batching_, h_, material_, elements_.full(),
-                             [this](const std::uint32_t copy) -> const Element& { return elements_[copy]; });
+  std::vector<std::uint8_t> is_same(n_elements(), 1);
+  for (const grid::CopyId c : changed)
+    is_same[c.value] = 0;
+  const bool is_new = batching_->batches().empty();
+  const std::vector<std::uint32_t> renewed =
+    batching_->update({order, chunk_ends, kinds_, incidence_.corners(0), incidence_.n_corners()}, is_same);
+  if (is_new) {
+    batched_ = batched<double>(*batching_, h_, material_, elements_.full(), partial_elements(no_bound));
+    return;
+  }
+  fem::follow(*batching_, renewed, partial_elements(no_bound), batched_);
+  if (!former_levels_.coarse.empty())
+    fem::follow(*batching_, renewed, partial_elements(elements_.full().bound), former_levels_.finest);
+}
+
+PartialElements Hexahedra::partial_elements(const double bound) const {
+  return {[this](const std::uint32_t copy) -> const Element& { return elements_[copy]; }, bound};
 }
 
 void Hexahedra::sum_mass(const std::span<const std::uint32_t> corners) {
@@ -164,7 +185,7 @@ Turned Hexahedra::turned_element(const std::size_t copy, const Points& x) const 
 void Hexahedra::put_rows(const std::span<const double> values, Rows& rows) const {
   const std::size_t n = incidence_.n_corners();
   parallel_for(
-    batching_.n_rows(),
+    batching_->n_rows(),
     [&](const std::size_t i) {
       rows.data()[i] = i < n ? Row<double>{values[3 * i], values[3 * i + 1], values[3 * i + 2]} : Row<double>{};
     },
@@ -174,7 +195,7 @@ void Hexahedra::put_rows(const std::span<const double> values, Rows& rows) const
 template <class Function>
 void Hexahedra::for_each_lane(const std::size_t batch, const Function& f) const {
   for (std::size_t lane = 0; lane < n_lanes; ++lane)
-    if (const std::uint32_t copy = batching_.batches()[batch].copies[lane]; copy != BatchOfCopies::none)
+    if (const std::uint32_t copy = batching_->batches()[batch].copies[lane]; copy != BatchOfCopies::none)
       f(lane, copy);
 }
 
@@ -189,7 +210,7 @@ Turns Hexahedra::turns(const std::size_t batch, const Row<double>* const x) cons
       put(lane, Mat3::Identity());
     return all;
   }
-  const unsigned unknown = force_kernels().turn(batched_.cube, batched_.batch(batching_, batch), x, all);
+  const unsigned unknown = force_kernels().turn(batched_.cube, batched_.batch(*batching_, batch), x, all);
   for_each_lane(batch, [&](const std::size_t lane, std::uint32_t) {
     if ((unknown >> lane & 1) != 0)
       put(lane, material::rotation_of(gradient_of(all, lane)));
@@ -215,13 +236,13 @@ void Hexahedra::add_energies(const std::size_t batch, const Turns& turns, const 
 double Hexahedra::energy(const Points& x) const {
   if (const auto known = known_.energy(x))
     return *known;
-  Rows rows = scratch_.borrow(batching_.n_rows());
+  Rows rows = scratch_.borrow(batching_->n_rows());
   put_rows(dynamics::flat(x), rows);
-  Loan<double> energies(batching_.batches().size());
-  batching_.for_each([&](const std::size_t i) {
+  Loan<double> energies(batching_->batches().size());
+  batching_->for_each([&](const std::size_t i) {
     const Turns turns = this->turns(i, rows.data());
     alignas(64) double of_lanes[n_lanes];
-    force_kernels().energy(batched_.cube, batched_.batch(batching_, i), turns, mean_part(), rows.data(), of_lanes);
+    force_kernels().energy(batched_.cube, batched_.batch(*batching_, i), turns, mean_part(), rows.data(), of_lanes);
     add_energies(i, turns, of_lanes, energies[i]);
   });
   return sum_energies(x, energies);
@@ -247,13 +268,13 @@ void Hexahedra::force(const Points& x, Points& forces) const {
 }
 
 std::optional<double> Hexahedra::force(const Points& x, Points& forces, const WithEnergy with_energy) const {
-  Rows rows = scratch_.borrow(batching_.n_rows());
+  Rows rows = scratch_.borrow(batching_->n_rows());
   put_rows(dynamics::flat(x), rows);
-  Rows sums = scratch_.borrow(batching_.n_rows());
-  clear(sums.data(), batching_.n_rows());
+  Rows sums = scratch_.borrow(batching_->n_rows());
+  clear(sums.data(), batching_->n_rows());
   const double spins = frame_ == Frame::turning ? 1 : 0;
-  Loan<double> energies(with_energy == WithEnergy::always || is_hookean() ? batching_.batches().size() : 0);
-  batching_.for_each_in_order([&](const std::size_t i) {
+  Loan<double> energies(with_energy == WithEnergy::always || is_hookean() ? batching_->batches().size() : 0);
+  batching_->for_each_in_order([&](const std::size_t i) {
     const Turns turns = this->turns(i, rows.data());
     Lanes9<double> stress{};
     if (!is_hookean())
@@ -264,7 +285,7 @@ std::optional<double> Hexahedra::force(const Points& x, Points& forces, const Wi
           stress.row[k][lane] = P.data()[k];
       });
     alignas(64) double of_lanes[n_lanes];
-    force_kernels().force(batched_.cube, batched_.batch(batching_, i), turns, mean_part(),
+    force_kernels().force(batched_.cube, batched_.batch(*batching_, i), turns, mean_part(),
                           is_hookean() ? nullptr : stress.row, spins, rows.data(), sums.data(),
                           energies.empty() ? nullptr : of_lanes);
     if (!energies.empty())
@@ -274,17 +295,17 @@ std::optional<double> Hexahedra::force(const Points& x, Points& forces, const Wi
   write(sums.data(), dynamics::flat(forces));
   ghost_penalty_.add_force(x, forces);
   ties_.add_force(x, forces);
-  if (energies.empty() && !batching_.batches().empty())
+  if (energies.empty() && !batching_->batches().empty())
     return std::nullopt;
   return sum_energies(x, energies);
 }
 
 void Hexahedra::linearise(const Points& x) {
-  Rows rows = scratch_.borrow(batching_.n_rows());
+  Rows rows = scratch_.borrow(batching_->n_rows());
   put_rows(dynamics::flat(x), rows);
-  const std::size_t n = batching_.batches().size();
+  const std::size_t n = batching_->batches().size();
   batched_.tangents.resize(is_hookean() ? 0 : n);
-  batching_.for_each([&](const std::size_t i) {
+  batching_->for_each([&](const std::size_t i) {
     const Turns turns = this->turns(i, rows.data());
     std::copy_n(turns.R[0], 9 * n_lanes, batched_.rotations[i].row[0]);
     if (is_hookean())
@@ -301,11 +322,11 @@ void Hexahedra::linearise(const Points& x) {
 }
 
 void Hexahedra::apply_stiffness(const std::span<const double> p, const std::span<double> y) const {
-  Rows rows = scratch_.borrow(batching_.n_rows());
+  Rows rows = scratch_.borrow(batching_->n_rows());
   put_rows(p, rows);
-  Rows sums = scratch_.borrow(batching_.n_rows());
-  clear(sums.data(), batching_.n_rows());
-  add_product(batching_, batched_, rows.data(), sums.data());
+  Rows sums = scratch_.borrow(batching_->n_rows());
+  clear(sums.data(), batching_->n_rows());
+  add_product(*batching_, batched_, rows.data(), sums.data());
   write(sums.data(), y);
   ghost_penalty_.add_product(p, y);
   ties_.add_product(p, y);
@@ -315,9 +336,9 @@ void Hexahedra::stiffness_diagonal(std::vector<Mat3>& blocks) const {
   blocks.resize(mass_.size());
   Loan<double> penalty = ghost_penalty_.diagonal(mass_.size());
   ties_.add_diagonal(penalty);
-  Rows sums = scratch_.borrow(2 * batching_.n_rows());
-  clear(sums.data(), 2 * batching_.n_rows());
-  add_diagonal(batching_, batched_, sums.data());
+  Rows sums = scratch_.borrow(2 * batching_->n_rows());
+  clear(sums.data(), 2 * batching_->n_rows());
+  add_diagonal(*batching_, batched_, sums.data());
   parallel_for(
     mass_.size(),
     [&](const std::size_t i) {
@@ -328,13 +349,20 @@ void Hexahedra::stiffness_diagonal(std::vector<Mat3>& blocks) const {
 }
 
 void Hexahedra::make_multigrid() {
-  CellsOfLevel cells{places_, {}, incidence_.n_corners()};
-  cells.corners.assign(incidence_.corners(0), incidence_.corners(0) + 8 * n_elements());
+  const double bound = elements_.full().bound;
   multigrid_ = std::make_unique<Multigrid>(
-    FinestLevel{std::move(cells), h_, material_, elements_.full(),
-                [this](const std::uint32_t copy) { return kind(copy); },
-                [this](const std::uint32_t copy) -> const Element& { return elements_[copy]; }, batching_,
-                ghost_penalty_.faces(), ties_.all()},
+    FinestLevel{{places_, {incidence_.corners(0), 8 * n_elements()}, incidence_.n_corners()},
+                h_,
+                material_,
+                elements_.full(),
+                kinds_,
+                [this](const std::uint32_t copy) -> const Element& { return elements_[copy]; },
+                batching_,
+                former_levels_.coarse.empty()
+                  ? batched<float>(*batching_, h_, material_, elements_.full(), partial_elements(bound))
+                  : std::move(former_levels_.finest),
+                ghost_penalty_.faces(),
+                ties_.all()},
     former_levels_);
   former_levels_ = {};
 }

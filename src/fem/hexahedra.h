@@ -107,11 +107,9 @@ class Hexahedra : public dynamics::ElasticModel, public dynamics::StiffnessMatri
   void sum_mass(std::span<const std::uint32_t> corners);
   /// Part of its cube that a copy's material is [1].
   double fill(const std::size_t copy) const { return elements_[copy].volume / (h_ * h_ * h_); }
-  void batch(const grid::Solid& solid);
+  void batch(const grid::Solid& solid, std::span<const grid::CopyId> changed);
+  PartialElements partial_elements(double bound) const;
   void make_multigrid();
-  Kind kind(const std::size_t copy) const {
-    return !incidence_.is_used(copy) ? Kind::unused : elements_.is_full(copy) ? Kind::full : Kind::partial;
-  }
   std::array<Vec3, 8> corners_of(std::size_t copy, const Points& x) const;
   Turned turned_element(std::size_t copy, const Points& x) const;
   Matrix24 element_matrix(std::size_t copy, const Points& x, dynamics::Tangent kind) const;
@@ -139,14 +137,15 @@ class Hexahedra : public dynamics::ElasticModel, public dynamics::StiffnessMatri
 
   ElementTable elements_;
   Incidence incidence_;
-  Batching batching_;
+  std::vector<Index3> places_; // of the copies' cells
+  std::vector<Kind> kinds_;    // of the copies
+  std::shared_ptr<Batching> batching_ = std::make_shared<Batching>();
   BatchedElements<double> batched_; // rotations and tangents at the linearisation point
   GhostPenalty ghost_penalty_;
   Ties ties_;
   std::vector<double> mass_;
   GatheredMass gathered_;                           // where it is wanted
   std::unique_ptr<ConsistentMass> consistent_mass_; // none where mass is lumped
-  std::vector<Index3> places_;                      // of the copies' cells
   std::unique_ptr<Multigrid> multigrid_;            // none until it is asked for
   FormerLevels former_levels_;                      // when it was asked for last, if a cut came since
   mutable Scratch<Row<double>> scratch_;

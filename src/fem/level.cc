@@ -71,7 +71,7 @@ std::vector<GhostLine> lines_of(const std::span<const GhostFace> faces) {
   return lines;
 }
 
-std::vector<GhostLine> coarsened(const std::span<const GhostLine> fine, const CellsOfLevel& cells,
+std::vector<GhostLine> coarsened(const std::span<const GhostLine> fine, const CellsView& cells,
                                  const Coarsening& coarsening) {
   std::map<std::tuple<std::uint32_t, std::uint32_t, int, int>, double> stiffness; // by copies, axis, vertex
   for (const GhostLine& line : fine) {
@@ -120,7 +120,7 @@ std::vector<Tie> coarsened(const std::span<const Tie> fine, const Weights& prolo
 void Level::resize() {
   for (auto* const values : {&r_, &d_, &t_})
     values->assign(n_rows(), {});
-  mass.resize(n_corners());
+  mass.resize(n_corners);
   lines_of_product_.clear();
   for (const GhostLine& line : lines)
     lines_of_product_.push_back({line.a, line.b, line.c, float(line.stiffness)});
@@ -128,15 +128,15 @@ void Level::resize() {
 
 template <class Function>
 void Level::for_each_corner(const Function& f) const {
-  parallel_for(n_corners(), f, worth);
+  parallel_for(n_corners, f, worth);
 }
 
 void Level::make_diagonal() {
   const auto weight = [&](const double alone) { return std::max(1.0, alone / bound); };
   const double of_line = weight(3), of_tie = weight(2); // eigenvalues of one alone
   diagonal = std::move(inverse);
-  diagonal.assign(2 * batching.n_rows(), {});
-  add_diagonal(batching, elements, diagonal.data());
+  diagonal.assign(2 * batching->n_rows(), {});
+  add_diagonal(*batching, elements, diagonal.data());
   const auto add = [&](const std::uint32_t corner, const double value) {
     FloatRow& row = diagonal[2 * std::size_t(corner)];
     const auto k = float(value);
@@ -168,7 +168,7 @@ void Level::invert_diagonal(const std::function<Mat3(std::uint32_t corner, const
   for (const Spring& spring : springs)
     add(spring.corner, spring.block);
   if (!points.empty() || !clusters.empty())
-    clusters = Clusters(points, n_corners());
+    clusters = Clusters(points, n_corners);
   clusters.add_bound(points, add);
   Loan<Spring> where_held;
   for (const Spring& one : held)
@@ -188,7 +188,7 @@ void Level::invert_diagonal(const std::function<Mat3(std::uint32_t corner, const
 
 /// y += A x but for the masses.
 void Level::add_products(const FloatRow* const x, FloatRow* const y) const {
-  add_product(batching, elements, x, y);
+  add_product(*batching, elements, x, y);
   for (const LineOfProduct& line : lines_of_product_) {
     const Four f = line.stiffness * (load(x[line.a]) - 2 * load(x[line.b]) + load(x[line.c]));
     add(y[line.a], f);
@@ -281,7 +281,7 @@ void Level::take_steps(const FloatRow* const b, FloatRow* const x) {
 }
 
 void Level::smooth_from_zero(const FloatRow* const b, FloatRow* const x) {
-  std::fill(x + n_corners(), x + n_rows(), FloatRow{});
+  std::fill(x + n_corners, x + n_rows(), FloatRow{});
   take_steps<true>(b, x);
 }
 
@@ -292,7 +292,7 @@ void Level::smooth(const FloatRow* const b, FloatRow* const x) {
 
 void Level::multiply(const FloatRow* const x, FloatRow* const y) {
   for_each_corner([&](const std::size_t i) { store(y[i], mass[i] * load(x[i])); });
-  std::fill(y + n_corners(), y + n_rows(), FloatRow{});
+  std::fill(y + n_corners, y + n_rows(), FloatRow{});
   add_products(x, y);
   project(y);
 }

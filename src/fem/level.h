@@ -9,6 +9,7 @@
 #include "fem/ties.h"
 
 #include <functional>
+#include <memory>
 
 namespace kerf::fem {
 
@@ -21,8 +22,7 @@ struct GhostLine {
 };
 std::vector<GhostLine> lines_of(std::span<const GhostFace> faces);
 /// For motions of coarse cubes, lumped to the lines of the coarse faces.
-std::vector<GhostLine> coarsened(std::span<const GhostLine> fine, const CellsOfLevel& cells,
-                                 const Coarsening& coarsening);
+std::vector<GhostLine> coarsened(std::span<const GhostLine> fine, const CellsView& cells, const Coarsening& coarsening);
 
 /// For motions of coarse cubes: sums of squares of mean jumps, at most. None between corners that are one.
 std::vector<Tie> coarsened(std::span<const Tie> fine, const Weights& prolongation);
@@ -39,11 +39,10 @@ struct ChebyshevStep {
 };
 
 struct Level {
-  CellsOfLevel cells;
-  Batching batching;
+  std::size_t n_corners = 0;
+  std::shared_ptr<const Batching> batching;
   BatchedElements<float> elements;
-  std::vector<double> volume; ///< of each copy [m^3]
-  double bound = 0;           ///< of the eigenvalues of D^-1 A [1]
+  double bound = 0; ///< of the eigenvalues of D^-1 A [1]
   std::vector<GhostLine> lines;
   std::vector<Tie> ties;
   Coarsening to_coarse; ///< of no use on the coarsest
@@ -57,9 +56,8 @@ struct Level {
   std::vector<Row<float>> inverse;  ///< of all blocks among the free directions, likewise; in the memory of `diagonal`
   std::vector<Spring> held;         ///< projectors onto the free directions of corners that are held
 
-  std::size_t n_corners() const { return cells.n_corners; }
   /// Of vectors: a row for each corner, and what batches have for lanes that are not used (kernels.h).
-  std::size_t n_rows() const { return batching.n_rows(); }
+  std::size_t n_rows() const { return batching->n_rows(); }
 
   /// When cells, batches and lines are there.
   void resize();

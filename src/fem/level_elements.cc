@@ -64,7 +64,9 @@ LevelElements coarse_elements(const Coarsening& coarsening, const FineElements& 
   for (std::uint32_t c = 0; c < n; ++c) {
     const auto of = children.of(c);
     coarse.n_children[c] = static_cast<std::uint8_t>(of.size());
-    coarse.kind[c] = of.size() == 8 && std::all_of(of.begin(), of.end(), fine.is_full) ? Kind::full : Kind::partial;
+    const bool is_full =
+      of.size() == 8 && std::ranges::all_of(of, [&](const auto child) { return fine.kind[child] == Kind::full; });
+    coarse.kind[c] = is_full ? Kind::full : Kind::partial;
     coarse.same_as[c] = before ? same_before(of, *before) : none;
     coarse.which[c] = static_cast<std::uint32_t>(partial.size());
     if (coarse.kind[c] == Kind::partial)

@@ -24,7 +24,7 @@ struct LevelElements {
 /// The elements that become children.
 struct FineElements {
   std::function<const Element&(std::uint32_t copy)> element; ///< of any copy that is used
-  std::function<bool(std::uint32_t copy)> is_full;
+  std::span<const Kind> kind;                                ///< of each copy
   const Element& full;
 };
 

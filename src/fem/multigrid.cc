@@ -22,26 +22,6 @@ namespace {
 constexpr std::size_t worth = 8192; // corners from which on a second thread pays
 constexpr std::size_t few = 48;     // corners that are factorised as they are
 
-void fill(Level& level, const std::function<const Element&(std::uint32_t)>& element, const Element& full,
-          const double h, const material::Elastic& material) {
-  level.bound = full.bound;
-  level.volume.assign(level.cells.n_copies(), 0);
-  level.elements = batched<float>(level.batching, h, material, full, element);
-  level.batching.for_each([&](const std::size_t i) {
-    const BatchOfCopies& batch = level.batching.batches()[i];
-    const bool is_partial = batch.partial != BatchOfCopies::none;
-    for (std::size_t lane = 0; lane < n_lanes; ++lane) {
-      const std::uint32_t c = batch.copies[lane];
-      if (c == BatchOfCopies::none)
-        continue;
-      level.volume[c] = is_partial ? element(c).volume : full.volume;
-      if (is_partial)
-        level.elements.partial[batch.partial].weight[lane] = float(std::max(1.0, element(c).bound / full.bound));
-    }
-  });
-  level.resize();
-}
-
 /// Blocks at coarse corners, of the sum of the fine ones.
 Loan<Spring> restricted(const std::vector<Spring>& fine, const Weights& prolongation, const std::size_t n_coarse) {
   Loan<std::uint32_t> place(n_coarse, CellsOfLevel::unused);
@@ -87,25 +67,28 @@ struct Multigrid::Coarsest {
   Eigen::MatrixXd matrix;
   Eigen::VectorXd right, solution;
 
-  static bool is_dense(const fem::Level& level) { return level.n_corners() <= 2 * few; }
+  static bool is_dense(const fem::Level& level) { return level.n_corners <= 2 * few; }
   /// What does not get coarser, like dust, is smoothed alone.
-  static bool is_too_large(const fem::Level& level) { return level.n_corners() > 8 * few; }
+  static bool is_too_large(const fem::Level& level) { return level.n_corners > 8 * few; }
 };
 
 struct Multigrid::Level : fem::Level {
-  std::vector<Mat3> rotations; // of each copy; of coarse levels
-  LevelElements made_of;       // of coarse levels
+  // Of coarse levels.
+  CellsOfLevel cells;
+  LevelElements made_of;
+  std::vector<Mat3> rotations; // of each copy
 };
 
 namespace {
 
 /// Adds a block for a pair of corners.
 template <class Add>
-void add_entries(const Level& level, const FunctionRef<Matrix24(std::size_t copy)> matrix, const Add& add) {
-  for (std::size_t c = 0; c < level.cells.n_copies(); ++c) {
-    if (!level.cells.is_used(c))
+void add_entries(const Level& level, const CellsOfLevel& cells, const FunctionRef<Matrix24(std::size_t copy)> matrix,
+                 const Add& add) {
+  for (std::size_t c = 0; c < cells.n_copies(); ++c) {
+    if (!cells.is_used(c))
       continue;
-    const std::uint32_t* const corners = level.cells.corners.data() + 8 * c;
+    const std::uint32_t* const corners = cells.corners.data() + 8 * c;
     const Matrix24 K = matrix(c);
     for (int a = 0; a < 8; ++a)
       for (int b = 0; b < 8; ++b)
@@ -133,7 +116,7 @@ void add_entries(const Level& level, const FunctionRef<Matrix24(std::size_t copy
         add(rows.column[k], rows.column[l],
             Mat3(double(rows.weight[k]) * double(rows.weight[l]) * blocks[i].cast<double>()));
   constexpr double unseen = 1e-5;
-  for (std::uint32_t i = 0; i < level.n_corners(); ++i) {
+  for (std::uint32_t i = 0; i < level.n_corners; ++i) {
     const Row<float>& d = level.diagonal[2 * std::size_t(i)];
     const double size = d.x + d.y + d.z;
     add(i, i, Mat3((double(level.mass[i]) + (size > 0 ? unseen * size : 1)) * Mat3::Identity()));
@@ -148,18 +131,18 @@ void Multigrid::Coarsest::factorise(const Multigrid::Level& level, const std::sp
   const auto matrix = [&](const std::size_t c) {
     return turned_stiffness(stiffness(level.made_of[c], material), rotations[c]);
   };
-  const auto n = static_cast<Eigen::Index>(3 * level.n_corners());
+  const auto n = static_cast<Eigen::Index>(3 * level.n_corners);
   if (is_dense(level)) {
     Eigen::MatrixXd& A = this->matrix;
     A.setZero(n, n);
-    add_entries(level, matrix, [&](const std::uint32_t i, const std::uint32_t j, const Mat3& block) {
+    add_entries(level, level.cells, matrix, [&](const std::uint32_t i, const std::uint32_t j, const Mat3& block) {
       A.block<3, 3>(3 * i, 3 * j) += block;
     });
     dense.compute(A);
     return;
   }
   std::vector<Eigen::Triplet<double>> entries;
-  add_entries(level, matrix, [&](const std::uint32_t i, const std::uint32_t j, const Mat3& block) {
+  add_entries(level, level.cells, matrix, [&](const std::uint32_t i, const std::uint32_t j, const Mat3& block) {
     for (int a = 0; a < 3; ++a)
       for (int b = 0; b < 3; ++b)
         entries.emplace_back(3 * i + a, 3 * j + b, block(a, b));
@@ -174,15 +157,15 @@ void Multigrid::Coarsest::solve(Multigrid::Level& level, const Row<float>* const
     level.smooth_from_zero(b, x);
     return;
   }
-  right.resize(static_cast<Eigen::Index>(3 * level.n_corners()));
-  for (std::size_t i = 0; i < level.n_corners(); ++i)
+  right.resize(static_cast<Eigen::Index>(3 * level.n_corners));
+  for (std::size_t i = 0; i < level.n_corners; ++i)
     right.segment<3>(3 * i) << b[i].x, b[i].y, b[i].z;
   Eigen::VectorXd& y = solution;
   if (is_dense(level))
     y = dense.solve(right);
   else
     y = sparse.solve(right);
-  for (std::size_t i = 0; i < level.n_corners(); ++i)
+  for (std::size_t i = 0; i < level.n_corners; ++i)
     x[i] = {float(y[3 * i]), float(y[3 * i + 1]), float(y[3 * i + 2])};
 }
 
@@ -190,30 +173,29 @@ Multigrid::~Multigrid() = default;
 
 std::size_t Multigrid::n_levels() const { return levels_.size(); }
 
-Multigrid::Multigrid(const FinestLevel& finest, const FormerLevels& former) {
+Multigrid::Multigrid(FinestLevel finest, const FormerLevels& former) {
   constexpr double stands_still = 0.7; // corners over those of the level before
-  const auto finest_element = [&](const std::uint32_t c) -> const Element& {
-    return finest.kind(c) == Kind::full ? finest.full : finest.element(c);
-  };
-  double h = finest.h;
   levels_.emplace_back();
-  levels_[0].cells = finest.cells;
+  levels_[0].n_corners = finest.cells.n_corners;
   levels_[0].batching = finest.batching;
+  levels_[0].elements = std::move(finest.elements);
+  levels_[0].bound = finest.full.bound;
   levels_[0].lines = lines_of(finest.faces);
   levels_[0].ties.assign(finest.ties.begin(), finest.ties.end());
-  fill(levels_[0], finest_element, finest.full, h, finest.material);
-  while (levels_.back().n_corners() > few) {
+  levels_[0].resize();
+  double h = finest.h;
+  while (levels_.back().n_corners > few) {
     Level& fine = levels_.back();
     const std::size_t n = levels_.size();
-    Coarsening coarsening = coarsened(fine.cells);
-    if (double(coarsening.coarse.n_corners) > stands_still * double(fine.n_corners()))
+    const CellsView cells = n == 1 ? finest.cells : CellsView(fine.cells);
+    Coarsening coarsening = coarsened(cells);
+    if (double(coarsening.coarse.n_corners) > stands_still * double(fine.n_corners))
       break;
     const LevelElements& of_fine = fine.made_of;
     const FineElements children =
       n == 1
-        ? FineElements{finest_element, [&](const std::uint32_t c) { return finest.kind(c) == Kind::full; }, finest.full}
-        : FineElements{[&](const std::uint32_t c) -> const Element& { return of_fine[c]; },
-                       [&](const std::uint32_t c) { return of_fine.kind[c] == Kind::full; }, of_fine.full};
+        ? FineElements{finest.element, finest.kind, finest.full}
+        : FineElements{[&](const std::uint32_t c) -> const Element& { return of_fine[c]; }, of_fine.kind, of_fine.full};
     Level coarse;
     if (former.coarse.size() >= n) {
       const auto& [parent, elements] = former.coarse[n - 1];
@@ -223,18 +205,13 @@ Multigrid::Multigrid(const FinestLevel& finest, const FormerLevels& former) {
       coarse.made_of = coarse_elements(coarsening, children, h, finest.material, nullptr);
     }
     h *= 2;
-    coarse.cells = coarsening.coarse;
-    coarse.lines = coarsened(fine.lines, fine.cells, coarsening);
+    coarse.lines = coarsened(fine.lines, cells, coarsening);
     coarse.ties = coarsened(fine.ties, coarsening.prolongation);
-    std::vector<std::uint32_t> order(coarse.cells.n_copies());
-    std::iota(order.begin(), order.end(), 0);
-    const LevelElements& elements = coarse.made_of;
-    coarse.batching = Batching(
-      order, [&](const std::uint32_t c) { return elements.kind[c]; }, coarse.cells.corners.data(),
-      coarse.cells.n_corners);
-    fill(
-      coarse, [&](const std::uint32_t c) -> const Element& { return elements[c]; }, elements.full, h, finest.material);
+    coarse.cells = std::move(coarsening.coarse);
+    coarse.n_corners = coarse.cells.n_corners;
     fine.to_coarse = std::move(coarsening);
+    put_batches(h, finest.material, coarse);
+    coarse.resize();
     levels_.push_back(std::move(coarse));
   }
   coarsest_ = std::make_unique<Coarsest>(finest.material);
@@ -246,12 +223,29 @@ Multigrid::Multigrid(const FinestLevel& finest, const FormerLevels& former) {
   });
 }
 
+void Multigrid::put_batches(const double h, const material::Elastic& material, Level& coarse) {
+  const LevelElements& elements = coarse.made_of;
+  std::vector<std::uint32_t> order(coarse.cells.n_copies()), ends;
+  std::iota(order.begin(), order.end(), 0);
+  for (std::size_t end = 0; end < order.size();) {
+    end = std::min(end + Batching::chunk_size, order.size());
+    ends.push_back(static_cast<std::uint32_t>(end));
+  }
+  coarse.batching = std::make_shared<Batching>(
+    CopiesInOrder{order, ends, elements.kind, coarse.cells.corners.data(), coarse.cells.n_corners});
+  coarse.bound = elements.full.bound;
+  coarse.elements =
+    batched<float>(*coarse.batching, h, material, elements.full,
+                   {[&](const std::uint32_t c) -> const Element& { return elements[c]; }, elements.full.bound});
+}
+
 FormerLevels Multigrid::give_way() {
   FormerLevels former;
+  former.finest = std::move(levels_[0].elements);
+  former.same_copy.resize(levels_[0].to_coarse.parent.size());
+  std::iota(former.same_copy.begin(), former.same_copy.end(), 0);
   for (std::size_t l = 1; l < levels_.size(); ++l)
     former.coarse.push_back({std::move(levels_[l - 1].to_coarse.parent), std::move(levels_[l].made_of)});
-  former.same_copy.resize(levels_[0].cells.n_copies());
-  std::iota(former.same_copy.begin(), former.same_copy.end(), 0);
   return former;
 }
 
@@ -275,8 +269,10 @@ void Multigrid::put_rotations(const std::span<const Lanes9<double>> finest) {
     Level& level = levels_[l];
     const bool is_last = l + 1 == levels_.size();
     Loan<Mat3> sums(is_last ? 0 : levels_[l + 1].cells.n_copies(), Mat3::Zero());
-    for (std::size_t i = 0; i < level.batching.batches().size(); ++i) {
-      const BatchOfCopies& batch = level.batching.batches()[i];
+    for (std::size_t i = 0; i < level.batching->batches().size(); ++i) {
+      const BatchOfCopies& batch = level.batching->batches()[i];
+      const float* const volume =
+        batch.partial != BatchOfCopies::none ? level.elements.partial[batch.partial].volume : nullptr;
       for (std::size_t lane = 0; lane < n_lanes; ++lane) {
         const std::uint32_t c = batch.copies[lane];
         if (c == BatchOfCopies::none)
@@ -289,7 +285,7 @@ void Multigrid::put_rotations(const std::span<const Lanes9<double>> finest) {
         for (int k = 0; k < 9; ++k)
           level.elements.rotations[i].row[k][lane] = float(R.data()[k]);
         if (!is_last)
-          sums[level.to_coarse.parent[c]] += level.volume[c] * R;
+          sums[level.to_coarse.parent[c]] += double(volume ? volume[lane] : level.elements.cube.volume) * R;
       }
     }
     if (is_last)
@@ -299,7 +295,7 @@ void Multigrid::put_rotations(const std::span<const Lanes9<double>> finest) {
     parallel_for(
       sums.size(),
       [&](const std::size_t c) {
-        const double volume = levels_[l + 1].volume[c];
+        const double volume = levels_[l + 1].made_of[c].volume;
         coarse[c] = volume > 0 ? material::rotation_of(sums[c] / volume) : Mat3(Mat3::Identity());
       },
       256);
@@ -308,11 +304,11 @@ void Multigrid::put_rotations(const std::span<const Lanes9<double>> finest) {
 
 void Multigrid::put_masses(const dynamics::LinearEquation& equation) {
   const double factor = equation.mass_factor / equation.stiffness_factor;
-  for (std::size_t i = 0; i < levels_[0].n_corners(); ++i)
+  for (std::size_t i = 0; i < levels_[0].n_corners; ++i)
     levels_[0].mass[i] = float(factor * equation.mass[i]);
   for (std::size_t l = 0; l + 1 < levels_.size(); ++l) {
     const Weights& restriction = levels_[l].to_coarse.restriction;
-    for (std::size_t j = 0; j < levels_[l + 1].n_corners(); ++j) {
+    for (std::size_t j = 0; j < levels_[l + 1].n_corners; ++j) {
       float sum = 0;
       for (std::uint32_t k = restriction.begin[j]; k < restriction.begin[j + 1]; ++k)
         sum += restriction.weight[k] * levels_[l].mass[restriction.column[k]];
@@ -329,11 +325,11 @@ void Multigrid::hold(const dynamics::LinearEquation& equation) {
     finest.points = point_springs(equation);
   Loan<Mat3> pairs; // of points that loads join
   if (!equation.loads.empty()) {
-    pairs->assign(finest.n_corners(), Mat3::Zero());
+    pairs->assign(finest.n_corners, Mat3::Zero());
     equation.loads.add_bound_of_pairs(pairs);
   }
   Loan<Spring> springs; // for the coarse levels
-  for (std::uint32_t i = 0; i < finest.n_corners(); ++i) {
+  for (std::uint32_t i = 0; i < finest.n_corners; ++i) {
     Mat3 coarse = Mat3::Zero();
     if (!pairs.empty() && pairs[i].cwiseAbs().maxCoeff() > 0) {
       coarse = pairs[i] / equation.stiffness_factor;
@@ -349,16 +345,15 @@ void Multigrid::hold(const dynamics::LinearEquation& equation) {
       springs->push_back({i, coarse});
   }
   for (std::size_t l = 1; l < levels_.size(); ++l) {
-    springs = restricted(springs, levels_[l - 1].to_coarse.prolongation, levels_[l].n_corners());
+    springs = restricted(springs, levels_[l - 1].to_coarse.prolongation, levels_[l].n_corners);
     levels_[l].springs = *springs;
     if (!levels_[l].points.empty() || !finest.points.empty())
-      levels_[l].points =
-        coarsened(levels_[l - 1].points, levels_[l - 1].to_coarse.prolongation, levels_[l].n_corners());
+      levels_[l].points = coarsened(levels_[l - 1].points, levels_[l - 1].to_coarse.prolongation, levels_[l].n_corners);
   }
 }
 
 void Multigrid::apply(const std::span<const double> r, const std::span<double> z) {
-  const std::size_t n = levels_[0].n_corners();
+  const std::size_t n = levels_[0].n_corners;
   double most = 0;
   for (const double value : r)
     most = std::max(most, std::abs(value));

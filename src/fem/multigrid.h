@@ -35,13 +35,14 @@ namespace kerf::fem {
 
 /// What multigrid starts from.
 struct FinestLevel {
-  CellsOfLevel cells;
+  CellsView cells;
   double h; ///< [m]
   const material::Elastic& material;
   const Element& full;
-  std::function<Kind(std::uint32_t copy)> kind;
+  std::span<const Kind> kind; ///< of each copy
   std::function<const Element&(std::uint32_t copy)> element;
-  const Batching& batching;
+  std::shared_ptr<const Batching> batching;
+  BatchedElements<float> elements; ///< partial ones count by their bounds over that of `full`
   std::span<const GhostFace> faces;
   std::span<const Tie> ties;
 };
@@ -52,6 +53,7 @@ struct FormerLevels {
     std::vector<std::uint32_t> parent; ///< of the copies of the level below
     LevelElements elements;
   };
+  BatchedElements<float> finest;
   std::vector<OfLevel> coarse;
   std::vector<std::uint32_t>
     same_copy; ///< of each finest copy its own number; CellsOfLevel::unused: it has changed since
@@ -60,7 +62,7 @@ struct FormerLevels {
 class Multigrid : public dynamics::Preconditioner {
  public:
   /// Building anew gives the same bits.
-  explicit Multigrid(const FinestLevel& finest, const FormerLevels& former = {});
+  explicit Multigrid(FinestLevel finest, const FormerLevels& former = {});
   ~Multigrid() override;
 
   /// With one there is nothing coarser, and nothing gained.
@@ -78,6 +80,7 @@ class Multigrid : public dynamics::Preconditioner {
   struct Level;
   struct Coarsest;
 
+  static void put_batches(double h, const material::Elastic& material, Level& coarse);
   void put_rotations(std::span<const Lanes9<double>> finest);
   void put_masses(const dynamics::LinearEquation& equation);
   void hold(const dynamics::LinearEquation& equation);

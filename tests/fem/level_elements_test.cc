@@ -42,8 +42,8 @@ TEST(LevelElements, TakeOverWhatHasNotChanged) {
   const Coarsening coarsening = coarsened(cells);
   ASSERT_EQ(coarsening.coarse.n_copies(), 64u);
   const Element full = make_element(full_cube_moments(), 0.1, material, {});
-  const FineElements children{[&](const std::uint32_t c) -> const Element& { return fine[c]; },
-                              [](std::uint32_t) { return false; }, full};
+  const std::vector<Kind> kinds(fine.size(), Kind::partial);
+  const FineElements children{[&](const std::uint32_t c) -> const Element& { return fine[c]; }, kinds, full};
   const LevelElements before = coarse_elements(coarsening, children, 0.1, material, nullptr);
   std::vector<std::uint32_t> same(fine.size());
   for (std::uint32_t c = 0; c < same.size(); ++c)

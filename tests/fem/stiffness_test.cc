@@ -174,10 +174,13 @@ struct AnyElements {
       const material::Tangent A = material::Tangent::Random();
       tangents.push_back(A + A.transpose());
     }
-    batching = Batching(
-      order, [](const std::uint32_t e) { return e % 8 == 0 ? Kind::full : Kind::partial; }, corners.data(), n_corners);
+    std::vector<Kind> kinds;
+    for (std::uint32_t e = 0; e < n; ++e)
+      kinds.push_back(e % 8 == 0 ? Kind::full : Kind::partial);
+    const std::array<std::uint32_t, 1> ends = {n};
+    batching = Batching({order, ends, kinds, corners.data(), n_corners});
     batched = fem::batched<T>(batching, 0.3, rubber, full,
-                              [&](const std::uint32_t e) -> const Element& { return elements[e]; });
+                              {[&](const std::uint32_t e) -> const Element& { return elements[e]; }});
     batched.tangents.resize(has_tangents ? batching.batches().size() : 0);
     for (std::size_t i = 0; i < batching.batches().size(); ++i)
       for (std::size_t lane = 0; lane < n_lanes; ++lane)

@@ -1,0 +1,103 @@
+#include "fem/batches.h"
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+namespace kerf::fem {
+namespace {
+
+/// A row of cubes in three chunks, every third of them partial, and what they are made of.
+struct RowOfCubes {
+  static constexpr std::uint32_t per_chunk = 100;
+  std::vector<std::uint32_t> order, chunk_ends, corners;
+  std::vector<Kind> kinds;
+  std::vector<Element> elements;
+  std::size_t n_corners;
+
+  RowOfCubes() : order(3 * per_chunk), n_corners(4 * (order.size() + 1)) {
+    std::iota(order.begin(), order.end(), 0);
+    for (const std::uint32_t c : order) {
+      kinds.push_back(c % 3 == 0 ? Kind::partial : Kind::full);
+      elements.emplace_back();
+      elements.back().volume = c;
+      for (std::uint32_t a = 0; a < 8; ++a)
+        corners.push_back(4 * (c + a % 2) + a / 2);
+    }
+    chunk_ends = {per_chunk, 2 * per_chunk, 3 * per_chunk};
+  }
+  /// Another copy in the second chunk's last cell, with corners of its own.
+  void split() {
+    const auto last = static_cast<std::uint32_t>(kinds.size());
+    order.insert(order.begin() + chunk_ends[1], last);
+    ++chunk_ends[1];
+    ++chunk_ends[2];
+    kinds.push_back(Kind::partial);
+    elements.emplace_back();
+    elements.back().volume = 1000;
+    for (std::uint32_t a = 0; a < 8; ++a)
+      corners.push_back(static_cast<std::uint32_t>(n_corners) + a);
+    n_corners += 8;
+  }
+  CopiesInOrder copies() const { return {order, chunk_ends, kinds, corners.data(), n_corners}; }
+  PartialElements partial() const {
+    return {[this](const std::uint32_t copy) -> const Element& { return elements[copy]; }};
+  }
+};
+
+/// The places of what the batches of a chunk are made of.
+std::vector<std::uint32_t> places(const Batching& batching, const std::uint32_t first_copy,
+                                  const std::uint32_t last_copy) {
+  std::vector<std::uint32_t> all;
+  for (const BatchOfCopies& batch : batching.batches())
+    if (batch.partial != BatchOfCopies::none && batch.copies[0] >= first_copy && batch.copies[0] < last_copy)
+      all.push_back(batch.partial);
+  return all;
+}
+
+/// A copy more, and a partial cube that becomes full: of that chunk alone is anything made anew, and all lanes hold their elements,
+/// those beside too.
+TEST(Batches, OfOtherChunksStayWhereTheyAre) {
+  const material::Elastic material{.density = 1000, .youngs_modulus = 1e5, .poissons_ratio = 0.3};
+  RowOfCubes row;
+  Batching batching(row.copies());
+  BatchedElements<double> batched = fem::batched<double>(batching, 0.1, material, {}, row.partial());
+  const auto first = places(batching, 0, 100), third = places(batching, 200, 300);
+  ASSERT_EQ(first.size(), 3u); // 34 partial cubes
+  const std::size_t n_rows = batching.n_rows();
+  row.split();
+  row.kinds[102] = Kind::full;
+  std::vector<std::uint8_t> is_same(row.kinds.size(), 1);
+  is_same[102] = is_same[300] = 0;
+  std::vector<std::uint32_t> renewed = batching.update(row.copies(), is_same);
+  for (const std::uint32_t i : renewed)
+    for (const std::uint32_t copy : batching.batches()[i].copies)
+      EXPECT_TRUE(copy == BatchOfCopies::none || (copy >= 100 && copy < 200) || copy == 300) << copy;
+  EXPECT_EQ(renewed.size(), 3u);
+  EXPECT_EQ(places(batching, 0, 100), first);
+  EXPECT_EQ(places(batching, 200, 300), third);
+  EXPECT_EQ(batching.n_places(), 9u); // those of the second chunk are taken again
+  EXPECT_EQ(batching.n_rows(), n_rows + 8);
+  // A change of material alone.
+  is_same.assign(row.kinds.size(), 1);
+  is_same[0] = 0;
+  row.elements[0].volume = 2000;
+  fem::follow(batching, renewed, row.partial(), batched);
+  renewed = batching.update(row.copies(), is_same);
+  ASSERT_EQ(renewed.size(), 1u);
+  EXPECT_EQ(batching.batches()[renewed[0]].copies[0], 0u);
+  fem::follow(batching, renewed, row.partial(), batched);
+  std::size_t n = 0;
+  for (const BatchOfCopies& batch : batching.batches())
+    for (std::size_t lane = 0; batch.partial != BatchOfCopies::none && lane < n_lanes; ++lane)
+      if (const std::uint32_t copy = batch.copies[lane]; copy != BatchOfCopies::none) {
+        EXPECT_EQ(batched.partial[batch.partial].volume[lane], row.elements[copy].volume) << copy;
+        ++n;
+      }
+  EXPECT_EQ(n, 100u);
+  for (const BatchOfCopies& batch : batching.batches()) // lanes that are not used have rows of their own
+    for (std::size_t lane = 0; lane < n_lanes; ++lane)
+      EXPECT_EQ(batch.corners[0][lane] >= row.n_corners, batch.copies[lane] == BatchOfCopies::none);
+}
+
+} // namespace
+} // namespace kerf::fem
