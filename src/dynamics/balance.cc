@@ -13,6 +13,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace kerf::dynamics {
 namespace {
@@ -132,19 +133,26 @@ void BalanceSolver::move_to(const Problem& problem, const Points& x) {
     model_.apply_stiffness(flat(velocity_), flat(damping_));
   }
   tangent_ = load_tangent(problem.loads, Tangent::positive, {b.time, x, velocity_}, b.velocity_factor);
-  load_force_.assign(x.size(), Vec3::Zero());
-  add_load_forces(problem.loads, {b.time, x, velocity_}, load_force_);
+  load_force_.clear();
+  if (!problem.loads.acting.empty()) {
+    load_force_.assign(x.size(), Vec3::Zero());
+    add_load_forces(problem.loads, {b.time, x, velocity_}, load_force_);
+  }
 }
 
 void BalanceSolver::factorise(const Problem& problem) {
-  model_.stiffness_diagonal(blocks_);
-  for (std::size_t i = 0; i < blocks_.size(); ++i)
-    blocks_[i] = problem.stiffness_factor * blocks_[i] + problem.mass_factor * problem.mass[i] * Mat3::Identity();
-  tangent_.add_diagonal(blocks_);
-  scaling_.resize(blocks_.size());
-  parallel_for(
-    blocks_.size(),
-    [&](const std::size_t i) { scaling_[i] = inverse_factor(blocks_[i], problem.constraints.freedom(i)); }, worth);
+  std::vector<Mat3>& blocks = scaling_; // until they are inverted
+  model_.stiffness_diagonal(blocks);
+  const auto for_each_corner = [&](const auto& f) { parallel_for(blocks.size(), f, worth); };
+  for_each_corner([&](const std::size_t i) {
+    blocks[i] = problem.stiffness_factor * blocks[i] + problem.mass_factor * problem.mass[i] * Mat3::Identity();
+  });
+  tangent_.add_diagonal(blocks);
+  size_.resize(blocks.size());
+  for_each_corner([&](const std::size_t i) {
+    size_[i] = blocks[i].trace();
+    scaling_[i] = inverse_factor(blocks[i], problem.constraints.freedom(i));
+  });
 }
 
 Vec3 BalanceSolver::damping(const Problem& problem, const std::size_t i) const {
@@ -165,13 +173,13 @@ double BalanceSolver::assemble_residual(const Problem& problem) {
     for (std::size_t i = begin; i < end; ++i) {
       const Vec3 weight = mass[i] * loads.gravity,
                  resistance = mass[i] * (acceleration_[i] + loads.mass_damping * velocity_[i]) + damping(problem, i);
-      residual_[i] = force_[i] + weight + load_force_[i] + problem.offset(i) - resistance;
+      residual_[i] = force_[i] + weight + load_force(i) + problem.offset(i) - resistance;
       if (coupling)
         residual_[i] -= more[i];
       if (!constraints.is_free(i))
         residual_[i] = constraints.freedom(i).project * residual_[i];
       const Mat3& S = scaling_[i];
-      sum += (S * force_[i]).squaredNorm() + (S * weight).squaredNorm() + (S * load_force_[i]).squaredNorm() +
+      sum += (S * force_[i]).squaredNorm() + (S * weight).squaredNorm() + (S * load_force(i)).squaredNorm() +
              (S * (mass[i] * balance.acceleration[i])).squaredNorm();
     }
     return sum;
@@ -186,7 +194,7 @@ double BalanceSolver::balanced_forces(const Problem& problem) const {
   return std::sqrt(sum_of(force_.size(), [&](const std::size_t begin, const std::size_t end) {
     double sum = 0;
     for (std::size_t i = begin; i < end; ++i)
-      sum += force_[i].squaredNorm() + load_force_[i].squaredNorm() +
+      sum += force_[i].squaredNorm() + load_force(i).squaredNorm() +
              (problem.mass[i] * problem.loads.gravity).squaredNorm() +
              (problem.mass[i] * problem.balance.acceleration[i]).squaredNorm();
     return sum;
@@ -198,7 +206,7 @@ double BalanceSolver::round_off_of_forces(const Points& x) const {
   return round_off * std::sqrt(sum_of(x.size(), [&](const std::size_t begin, const std::size_t end) {
            double sum = 0;
            for (std::size_t i = begin; i < end; ++i)
-             sum += (blocks_[i].trace() * x[i]).squaredNorm(); // x itself is rounded, and A is what it meets
+             sum += (size_[i] * x[i]).squaredNorm(); // x itself is rounded, and A is what it meets
            return sum;
          }));
 }
@@ -210,7 +218,7 @@ double BalanceSolver::scaled_round_off() const {
                   round_off * std::sqrt(sum_of(position_.size(), [&](const std::size_t begin, const std::size_t end) {
                     double sum = 0;
                     for (std::size_t i = begin; i < end; ++i)
-                      sum += blocks_[i].trace() * position_[i].squaredNorm();
+                      sum += size_[i] * position_[i].squaredNorm();
                     return sum;
                   })));
 }
@@ -248,8 +256,9 @@ void BalanceSolver::apply_inverse_blocks(const std::span<const double> r, const 
 }
 
 Preconditioner* BalanceSolver::preconditioner(const Problem& problem) {
+  const double trace = std::accumulate(size_.begin(), size_.end(), 0.0);
   return model_.preconditioner(
-    {problem.mass_factor, problem.stiffness_factor, problem.mass, blocks_, tangent_, problem.constraints});
+    {problem.mass_factor, problem.stiffness_factor, problem.mass, trace, tangent_, problem.constraints});
 }
 
 int BalanceSolver::correct(const Problem& problem, const Points& guess, const double scale) {
@@ -328,11 +337,8 @@ double BalanceSolver::mixed_search(const Problem& problem, const Points& x, Mixi
   constexpr double far = 0.25; // a mixed correction that must be shorter knows nothing of what lies ahead
   if (options_.n_mixed == 0)
     return search(problem, x);
-  std::vector<double> weight(blocks_.size());
-  for (std::size_t i = 0; i < weight.size(); ++i)
-    weight[i] = blocks_[i].trace();
   Points plain = correction_;
-  correction_ = mixing.mixed(x, plain, weight);
+  correction_ = mixing.mixed(x, plain, size_);
   if (product(residual_, correction_) > 0)
     if (const double length = search(problem, x); length >= far)
       return length;

@@ -147,6 +147,7 @@ class BalanceSolver {
   /// Forces, velocities and accelerations at x; the linearisation stays.
   void move_to(const Problem& problem, const Points& x);
   void factorise(const Problem& problem);
+  Vec3 load_force(const std::size_t i) const { return load_force_.empty() ? Vec3(Vec3::Zero()) : load_force_[i]; }
   /// beta K v of a corner [N].
   Vec3 damping(const Problem& problem, std::size_t i) const;
   /// a + alpha v, which M resists; nothing where the mass is lumped.
@@ -177,7 +178,7 @@ class BalanceSolver {
   /// 1 for each piece that nothing holds and nothing but gravity acts on.
   Loan<std::uint8_t> flying(const Problem& problem) const;
   /// Values a corner, without their mean over pieces that fly, as anything follows that.
-  Loan<Vec3> unlike_flight(const Problem& problem, const Points& values) const;
+  Loan<Vec3> unlike_flight(const Problem& problem, Loan<Vec3> values) const;
   /// Squares of the ways from free motion to where the correction leads, in the energy norm.
   Loan<double> ways_from_free_motion(const Problem& problem);
   /// Whether what is left to correct is small beside the way from free motion, in every piece.
@@ -206,11 +207,12 @@ class BalanceSolver {
   const StiffnessMatrix* matrix_; // null: the model offers none
   NewtonOptions options_;
   Points position_, velocity_, acceleration_; // where move_to() was last
-  Points force_, load_force_, damping_;       // there
+  Points force_;                              // there
+  Points load_force_, damping_;               // there; empty: none
   Points residual_, correction_;
   LoadTangent tangent_;
-  std::vector<Mat3> blocks_;  // A's diagonal
-  std::vector<Mat3> scaling_; // L^-1 from the free directions' basis, a row of zeros for each that is held
+  std::vector<double> size_;  // of A's diagonal blocks: their traces [N/m]
+  std::vector<Mat3> scaling_; // L^-1 of them from the free directions' basis, a row of zeros for each that is held
   std::vector<double> load_product_, mass_product_;
   double way_ = 0; // from free motion to the first iterate, in the energy norm; 0: unknown
   Pieces pieces_;

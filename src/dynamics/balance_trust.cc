@@ -20,8 +20,9 @@ Loan<std::uint8_t> BalanceSolver::flying(const Problem& problem) const {
   return flies;
 }
 
-Loan<Vec3> BalanceSolver::unlike_flight(const Problem& problem, const Points& values) const {
-  return pieces_.without_mean(problem.mass, values, flies_);
+Loan<Vec3> BalanceSolver::unlike_flight(const Problem& problem, Loan<Vec3> values) const {
+  pieces_.take_out_mean(problem.mass, flies_, values);
+  return values;
 }
 
 double BalanceSolver::error_of_cg() const { return 0.5 * options_.step_tolerance * way_; }

@@ -96,14 +96,16 @@ class Inverse {
       shift_(shift),
       parameters_(parameters),
       n_iterations_(n_iterations),
-      blocks_(pencil.stiffness_diagonal()) {
+      inverse_blocks_(pencil.stiffness_diagonal()) {
     const auto mass = pencil.model().lumped_mass();
-    for (std::size_t i = 0; i < blocks_.size(); ++i) {
-      blocks_[i] += shift * mass[i] * Mat3::Identity();
-      const Mat3 factor = inverse_factor(blocks_[i], pencil.constraints().freedom(i));
-      inverse_blocks_.push_back(factor.transpose() * factor);
+    double trace = 0;
+    for (std::size_t i = 0; i < inverse_blocks_.size(); ++i) {
+      const Mat3 block = inverse_blocks_[i] + shift * mass[i] * Mat3::Identity(),
+                 factor = inverse_factor(block, pencil.constraints().freedom(i));
+      trace += block.trace();
+      inverse_blocks_[i] = factor.transpose() * factor;
     }
-    own_ = pencil.model().preconditioner({shift, 1, mass, blocks_, pencil.loads(), pencil.constraints()});
+    own_ = pencil.model().preconditioner({shift, 1, mass, trace, pencil.loads(), pencil.constraints()});
   }
 
   void vmult(Vector& x, const Vector& b) const {
@@ -139,7 +141,7 @@ class Inverse {
   double shift_;
   const ModalParameters& parameters_;
   int& n_iterations_;
-  std::vector<Mat3> blocks_, inverse_blocks_;
+  std::vector<Mat3> inverse_blocks_;
   Preconditioner* own_ = nullptr;
 };
 

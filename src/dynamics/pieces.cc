@@ -16,10 +16,10 @@ Loan<double> Pieces::products(const Points& a, const Points& b) const {
   return sum;
 }
 
-Loan<Vec3> Pieces::without_mean(const std::span<const double> mass, const Points& values,
-                                const std::span<const std::uint8_t> which) const {
+void Pieces::take_out_mean(const std::span<const double> mass, const std::span<const std::uint8_t> which,
+                           Points& values) const {
   if (std::ranges::count(which, 0) == std::ssize(which))
-    return values;
+    return;
   Loan<double> all(n_, 0);
   Loan<Vec3> mean(n_, Vec3::Zero());
   for (std::size_t i = 0; i < values.size(); ++i) {
@@ -28,10 +28,8 @@ Loan<Vec3> Pieces::without_mean(const std::span<const double> mass, const Points
   }
   for (std::size_t p = 0; p < n_; ++p)
     mean[p] = which[p] && all[p] > 0 ? Vec3(mean[p] / all[p]) : Vec3(Vec3::Zero());
-  Loan<Vec3> rest(values.size());
   for (std::size_t i = 0; i < values.size(); ++i)
-    rest[i] = values[i] - mean[of(i)];
-  return rest;
+    values[i] -= mean[of(i)];
 }
 
 } // namespace kerf::dynamics

@@ -21,9 +21,8 @@ class Pieces {
 
   /// Of a.b over the corners of each piece.
   Loan<double> products(const Points& a, const Points& b) const;
-  /// Values a corner, less their mean by mass over its piece; as they are where `which` is 0.
-  Loan<Vec3> without_mean(std::span<const double> mass, const Points& values,
-                          std::span<const std::uint8_t> which) const;
+  /// Takes from values a corner their mean by mass over its piece, where `which` is not 0.
+  void take_out_mean(std::span<const double> mass, std::span<const std::uint8_t> which, Points& values) const;
 
  private:
   std::vector<std::uint32_t> piece_;

@@ -14,7 +14,7 @@ namespace kerf::dynamics {
 struct LinearEquation {
   double mass_factor, stiffness_factor; ///< [1/s^2], [1]
   std::span<const double> mass;         ///< of each corner [kg]
-  std::span<const Mat3> blocks;         ///< A's diagonal 3 x 3 blocks, one a corner [N/m]
+  double trace;                         ///< of A [N/m]
   const LoadTangent& loads;             ///< what loads add to A, among all directions
   const Constraints& constraints;
 };

@@ -215,10 +215,9 @@ SoundSteps::LentState SoundSteps::lend(const State& like) {
   return lent;
 }
 
-void SoundSteps::add_checked(Tried& tried, const Loads& loads, const double dt) {
+void SoundSteps::add_checked(const State& state, const Loads& loads, const double dt, Tried& tried) {
   constexpr double most_in_sum = 0.5;
-  State& state = *tried.state;
-  const LentState lent = lend(state);
+  LentState lent = lend(state);
   State& after = *lent;
   const StepReport report = stepper_->step(after, loads, dt);
   keep_carried(loads, state, after);
@@ -238,13 +237,15 @@ void SoundSteps::add_checked(Tried& tried, const Loads& loads, const double dt) 
   tried.is_as_wanted = tried.is_as_wanted && change.gained <= options_.wanted_gain * change.dealt + change.unseen;
   tried.gained += std::max(0.0, change.gained);
   add(tried.report, report);
-  std::swap(state, after);
+  tried.state = std::move(lent);
 }
 
 SoundSteps::Tried SoundSteps::divided(const State& state, const Loads& loads, const double dt, const int n) {
-  Tried tried{{}, lend(state)};
-  for (int k = 1; k <= n; ++k)
-    add_checked(tried, loads, (state.time + k * dt / n) - tried.state->time);
+  Tried tried{{}, {nullptr, {this}}};
+  for (int k = 1; k <= n; ++k) {
+    const State& before = tried.state ? *tried.state : state;
+    add_checked(before, loads, (state.time + k * dt / n) - before.time, tried);
+  }
   tried.state->time = state.time + dt;
   if (n > 1)
     tried.report.n_substeps = n;

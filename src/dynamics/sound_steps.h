@@ -99,7 +99,7 @@ class SoundSteps : public Stepper {
 
   struct Tried {
     StepReport report;
-    LentState state;
+    LentState state; ///< null until there is one
     bool is_as_wanted = true;
     double gained = 0; ///< in substeps that gained [J]
   };
@@ -107,7 +107,8 @@ class SoundSteps : public Stepper {
   LentState lend(const State& like);
   /// From a state, all in `n` substeps.
   Tried divided(const State& state, const Loads& loads, double dt, int n);
-  void add_checked(Tried& tried, const Loads& loads, double dt);
+  /// One substep more from `state`, which may be that of `tried`.
+  void add_checked(const State& state, const Loads& loads, double dt, Tried& tried);
   StepReport by_last_resort(State& state, const Loads& loads, double dt);
 
   ForceModel& model_;

@@ -8,7 +8,9 @@ namespace kerf::fem {
 std::vector<std::uint32_t> Batching::update(const CopiesInOrder& copies, const std::span<const std::uint8_t> is_same) {
   const std::vector<BatchOfCopies> batches_before = std::exchange(batches_, {});
   const std::vector<Chunk> chunks_before = std::exchange(chunks_, {});
-  batches_.reserve(batches_before.size() + 16);
+  const auto n_used =
+    static_cast<std::size_t>(std::ranges::count_if(copies.kind, [](const Kind kind) { return kind != Kind::unused; }));
+  batches_.reserve(n_used / n_lanes + 2 * copies.chunk_ends.size());
   std::vector<std::uint8_t> is_taken(n_places_, 0);
   std::vector<std::uint32_t> full, partial, renewed;
   const auto stays = [&](const BatchOfCopies& batch, const BatchOfCopies& before) {

@@ -372,12 +372,10 @@ dynamics::Preconditioner* Hexahedra::preconditioner(const dynamics::LinearEquati
   constexpr double stiff = 30;              // K over M from which on conjugate gradients alone take longer
   if (incidence_.n_corners() < worth_levels)
     return nullptr;
-  double inertia = 0, all = 0;
-  for (std::size_t i = 0; i < equation.blocks.size(); ++i) {
-    inertia += 3 * equation.mass_factor * equation.mass[i];
-    all += equation.blocks[i].trace();
-  }
-  if (all < stiff * inertia)
+  double inertia = 0;
+  for (const double m : equation.mass)
+    inertia += 3 * equation.mass_factor * m;
+  if (equation.trace < stiff * inertia)
     return nullptr;
   if (!multigrid_)
     make_multigrid();

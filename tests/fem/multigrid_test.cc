@@ -106,10 +106,16 @@ struct Equation {
   }
   dynamics::Preconditioner& multigrid() {
     dynamics::Preconditioner* const found =
-      model.preconditioner({mass_factor, 1, model.lumped_mass(), blocks, springs.tangent, constraints});
+      model.preconditioner({mass_factor, 1, model.lumped_mass(), trace(), springs.tangent, constraints});
     if (!found)
       throw std::logic_error("no multigrid");
     return *found;
+  }
+  double trace() const {
+    double sum = 0;
+    for (const Mat3& block : blocks)
+      sum += block.trace();
+    return sum;
   }
   void project(const std::span<double> y) const {
     for (std::size_t i = 0; i < blocks.size(); ++i) {
