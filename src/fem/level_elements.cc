@@ -77,13 +77,13 @@ LevelElements coarse_elements(const Coarsening& coarsening, const FineElements& 
     partial.size(),
     [&](const std::size_t i) {
       if (const std::uint32_t same = coarse.same_as[partial[i]]; same != none) {
-        coarse.made[i] = before->elements[same];
+        coarse.made[i] = before->elements.made[before->elements.which[same]];
         return;
       }
       std::vector<Child> of;
       for (const std::uint32_t child : children.of(partial[i]))
         of.push_back({&fine.element(child), coarsening.octant[child]});
-      coarse.made[i] = coarse_element(of, h, material);
+      coarse.made[i] = std::make_shared<const Element>(coarse_element(of, h, material));
     },
     64);
   return coarse;

@@ -6,18 +6,20 @@
 #include "fem/batches.h"
 #include "fem/coarsening.h"
 
+#include <memory>
+
 namespace kerf::fem {
 
 struct LevelElements {
   Element full;
   std::vector<Kind> kind;           ///< of each copy
   std::vector<std::uint32_t> which; ///< of `made`, for partial copies
-  std::vector<Element> made;
+  std::vector<std::shared_ptr<const Element>> made; ///< some of them before the last cut
   std::vector<std::uint8_t> n_children;
   std::vector<std::uint32_t> same_as; ///< which copy had this element before the last cut; CellsOfLevel::unused: none
 
   const Element& operator[](const std::size_t copy) const {
-    return kind[copy] == Kind::full ? full : made[which[copy]];
+    return kind[copy] == Kind::full ? full : *made[which[copy]];
   }
 };
 
