@@ -23,18 +23,24 @@ class LoadTangent {
   void add(const Interpolation& points, std::size_t i, std::size_t j, const Mat3& B) {
     terms_.push_back({&points, i, j, B});
   }
+  /// What another one says, for corners that have other numbers here: `numbers` by corner, which must outlive this.
+  /// Corners whose number is `uncounted` do not move.
+  void add(const LoadTangent& by_corner, std::span<const std::uint32_t> numbers);
+  static constexpr std::uint32_t uncounted = 0xffffffff;
 
   bool empty() const { return terms_.empty(); }
   /// y += K p, in 3 n numbers.
   void add_product(std::span<const double> p, std::span<double> y) const;
   /// Adds the symmetric part of the diagonal 3 x 3 blocks.
   void add_diagonal(std::vector<Mat3>& blocks) const;
-  /// Calls f(points, i, block) for each term of one point, with its symmetric part.
-  template <class Function>
-  void for_each_point(const Function& f) const {
+  /// For each term of one point calls add(corner, weight) for its corners, then end(block) with its symmetric part.
+  template <class Add, class End>
+  void for_each_point(const Add& add, const End& end) const {
     for (const Term& term : terms_)
-      if (term.i == term.j)
-        f(*term.points, term.i, Mat3(0.5 * (term.block + term.block.transpose())));
+      if (term.i == term.j) {
+        term.for_each_corner(term.i, add);
+        end(Mat3(0.5 * (term.block + term.block.transpose())));
+      }
   }
   /// Adds blocks that together are at least what the terms of two points are.
   void add_bound_of_pairs(std::vector<Mat3>& blocks) const;
@@ -46,6 +52,17 @@ class LoadTangent {
     const Interpolation* points;
     std::size_t i, j;
     Mat3 block;
+    const std::uint32_t* numbers = nullptr; ///< of the corners; null: their own
+
+    /// Calls f(corner, weight).
+    template <class Function>
+    void for_each_corner(const std::size_t point, const Function& f) const {
+      for (auto k = points->start[point]; k < points->start[point + 1]; ++k) {
+        const std::uint32_t corner = numbers ? numbers[points->corners[k]] : points->corners[k];
+        if (corner != uncounted)
+          f(corner, points->values[k]);
+      }
+    }
   };
   std::vector<Term> terms_;
 };

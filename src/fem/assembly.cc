@@ -3,6 +3,7 @@
 #include "base/parallel.h"
 
 #include <algorithm>
+#include <array>
 
 namespace kerf::fem {
 
@@ -11,14 +12,13 @@ namespace {
 using Matrix = Eigen::SparseMatrix<double>;
 
 /// The corners that share a copy with each corner, itself among them, ascending.
-std::vector<std::vector<std::uint32_t>> neighbours(const Incidence& incidence) {
-  std::vector<std::vector<std::uint32_t>> all(incidence.n_corners());
-  parallel_for(all.size(), [&](const std::size_t corner) {
-    auto& mine = all[corner];
-    for (const auto user : incidence.users(corner)) {
-      const std::uint32_t* const c = incidence.corners(user / 8);
-      mine.insert(mine.end(), c, c + 8);
-    }
+std::vector<std::vector<std::uint32_t>> neighbours(const Incidence& incidence, const grid::CornerNumbers& numbers) {
+  std::vector<std::vector<std::uint32_t>> all(numbers.size());
+  parallel_for(all.size(), [&](const std::size_t i) {
+    auto& mine = all[i];
+    for (const auto user : incidence.users(numbers.corner(i)))
+      for (int a = 0; a < 8; ++a)
+        mine.push_back(numbers[incidence.corners(user / 8)[a]]);
     std::sort(mine.begin(), mine.end());
     mine.erase(std::unique(mine.begin(), mine.end()), mine.end());
   });
@@ -59,10 +59,10 @@ void add(const Matrix24& element, const std::uint32_t* const corners,
 
 } // namespace
 
-Eigen::SparseMatrix<double> assemble(const Incidence& incidence,
+Eigen::SparseMatrix<double> assemble(const Incidence& incidence, const grid::CornerNumbers& numbers,
                                      const std::function<Matrix24(std::size_t copy)>& element_matrix) {
   constexpr std::size_t chunk = 1024; // of 4.6 kB each: stays in cache, and no more memory than that
-  const auto pattern = neighbours(incidence);
+  const auto pattern = neighbours(incidence, numbers);
   Matrix K = empty_matrix(pattern);
   std::vector<Matrix24> matrices(std::min(chunk, incidence.n_copies()));
   for (std::size_t first = 0; first < incidence.n_copies(); first += chunk) {
@@ -75,8 +75,12 @@ Eigen::SparseMatrix<double> assemble(const Incidence& incidence,
       },
       64);
     for (std::size_t i = 0; i < n; ++i)
-      if (incidence.is_used(first + i))
-        add(matrices[i], incidence.corners(first + i), pattern, K);
+      if (incidence.is_used(first + i)) {
+        std::array<std::uint32_t, 8> corners;
+        for (int a = 0; a < 8; ++a)
+          corners[a] = numbers[incidence.corners(first + i)[a]];
+        add(matrices[i], corners.data(), pattern, K);
+      }
   }
   return K;
 }

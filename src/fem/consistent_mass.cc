@@ -16,9 +16,9 @@ Vec3 at(const std::span<const double> values, const std::size_t i) {
 
 } // namespace
 
-ConsistentMass::ConsistentMass(const ElementTable& elements, const Incidence& incidence, const double density,
-                               const double h)
-  : elements_(elements), incidence_(incidence), mass_of_cube_(density * h * h * h) {
+ConsistentMass::ConsistentMass(const ElementTable& elements, const Incidence& incidence,
+                               const grid::CornerNumbers& numbers, const double density, const double h)
+  : elements_(elements), incidence_(incidence), numbers_(numbers), mass_of_cube_(density * h * h * h) {
   pairs_.push_back(pairs_of(full_cube_moments()));
 }
 
@@ -61,17 +61,19 @@ void ConsistentMass::for_each_neighbour(const std::size_t corner, const Function
     const std::uint32_t* const corners = incidence_.corners(copy);
     for (int b = 0; b < 8; ++b)
       if (b != a)
-        f(corners[b], mass[pair_index(std::max(a, b), std::min(a, b))] * std::min(kept_[corner], kept_[corners[b]]));
+        f(numbers_[corners[b]],
+          mass[pair_index(std::max(a, b), std::min(a, b))] * std::min(kept_[corner], kept_[corners[b]]));
   }
 }
 
 void ConsistentMass::add_product(const std::span<const double> p, const std::span<double> y) const {
   parallel_for(
-    incidence_.n_corners(),
+    numbers_.size(),
     [&](const std::size_t i) {
       const Vec3 here = at(p, i);
       Vec3 sum = Vec3::Zero();
-      for_each_neighbour(i, [&](const std::uint32_t other, const double mass) { sum += mass * (at(p, other) - here); });
+      for_each_neighbour(numbers_.corner(i),
+                         [&](const std::uint32_t other, const double mass) { sum += mass * (at(p, other) - here); });
       for (int k = 0; k < 3; ++k)
         y[3 * i + k] += sum[k];
     },
@@ -79,8 +81,8 @@ void ConsistentMass::add_product(const std::span<const double> p, const std::spa
 }
 
 void ConsistentMass::add_entries(const double factor, std::vector<Eigen::Triplet<double>>& entries) const {
-  for (std::size_t i = 0; i < incidence_.n_corners(); ++i)
-    for_each_neighbour(i, [&](const std::uint32_t other, const double mass) {
+  for (std::size_t i = 0; i < numbers_.size(); ++i)
+    for_each_neighbour(numbers_.corner(i), [&](const std::uint32_t other, const double mass) {
       for (std::size_t k = 0; k < 3; ++k) {
         entries.emplace_back(3 * i + k, 3 * other + k, factor * mass);
         entries.emplace_back(3 * i + k, 3 * i + k, -factor * mass);

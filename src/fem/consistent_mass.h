@@ -12,13 +12,15 @@
 #include "dynamics/model.h"
 #include "fem/element_table.h"
 #include "fem/incidence.h"
+#include "grid/corner_numbers.h"
 
 namespace kerf::fem {
 
 class ConsistentMass : public dynamics::MassCoupling {
  public:
-  /// Both must outlive it. `density` [kg/m^3], `h` [m].
-  ConsistentMass(const ElementTable& elements, const Incidence& incidence, double density, double h);
+  /// All must outlive it. `density` [kg/m^3], `h` [m]. Products and entries are by `numbers`.
+  ConsistentMass(const ElementTable& elements, const Incidence& incidence, const grid::CornerNumbers& numbers,
+                 double density, double h);
 
   /// Follows a cut, as the two have. Masses by corner [kg].
   void update(const grid::Solid& solid, std::span<const grid::CopyId> changed, std::span<const double> lumped,
@@ -38,6 +40,7 @@ class ConsistentMass : public dynamics::MassCoupling {
 
   const ElementTable& elements_;
   const Incidence& incidence_;
+  const grid::CornerNumbers& numbers_;
   double mass_of_cube_;
   std::vector<Pairs> pairs_;            // [0] is the full cube's
   std::vector<std::uint32_t> pairs_of_; // by copy

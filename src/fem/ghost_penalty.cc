@@ -165,6 +165,13 @@ void GhostPenalty::weigh_faces() {
   }
 }
 
+void GhostPenalty::count_by(const grid::CornerNumbers& numbers) {
+  for (GhostFace& face : faces_)
+    for (auto* const line : {&face.a, &face.b, &face.c})
+      for (auto& corner : *line)
+        corner = numbers[corner];
+}
+
 double GhostPenalty::energy(const Points& x) const {
   double sum = 0;
   for (const GhostFace& face : faces_) {

@@ -42,6 +42,7 @@
 
 #include "base/loan.h"
 #include "base/vec.h"
+#include "grid/corner_numbers.h"
 #include "grid/solid.h"
 #include "material/elastic.h"
 
@@ -78,6 +79,10 @@ class GhostPenalty {
   /// pass over faces and masses.
   void update(const grid::Solid& solid, std::span<const grid::CopyId> changed,
               const std::function<double(std::size_t copy)>& fill, std::span<const double> mass);
+
+  /// Counts the corners of faces that have a penalty by these numbers, until the next update; masses stay by corner.
+  /// Crumbs have no such faces.
+  void count_by(const grid::CornerNumbers& numbers);
 
   /// Those that have a penalty, in the order of their lower copies, axes, and upper copies.
   std::span<const GhostFace> faces() const { return faces_; }

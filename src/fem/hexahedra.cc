@@ -70,9 +70,10 @@ Hexahedra::Hexahedra(const grid::Solid& solid, const HexahedraOptions& options)
     material_(options.material),
     elements_(solid, table_options(options)),
     incidence_(solid),
+    counted_(options.counted),
     ghost_penalty_(options.ghost_penalty, options.material, h_) {
   if (options.mass == MassMatrix::consistent)
-    consistent_mass_ = std::make_unique<ConsistentMass>(elements_, incidence_, options.material.density, h_);
+    consistent_mass_ = std::make_unique<ConsistentMass>(elements_, incidence_, numbers_, options.material.density, h_);
   std::vector<std::uint32_t> corners(solid.complex.n_corners());
   std::iota(corners.begin(), corners.end(), 0);
   std::vector<grid::CopyId> copies;
@@ -80,7 +81,9 @@ Hexahedra::Hexahedra(const grid::Solid& solid, const HexahedraOptions& options)
   for (const auto c : ids<grid::CopyId>(solid.complex.n_copies()))
     copies.push_back(c);
   follow(solid, copies, corners);
-  linearise(grid::rest_positions(solid));
+  Points rest;
+  numbers_.gather(grid::rest_positions(solid), rest);
+  linearise(rest);
 }
 
 void Hexahedra::update(const grid::Solid& solid, const std::span<const grid::CopyId> changed) {
@@ -100,6 +103,7 @@ void Hexahedra::follow(const grid::Solid& solid, const std::span<const grid::Cop
     for (const grid::CopyId c : changed)
       former_levels_.same_copy[c.value] = CellsOfLevel::unused;
   }
+  numbers_ = grid::CornerNumbers(solid, counted_);
   batch(solid, changed);
   sum_mass(corners);
   ghost_penalty_.update( // to which a crumb's copies are as good as full
@@ -109,7 +113,20 @@ void Hexahedra::follow(const grid::Solid& solid, const std::span<const grid::Cop
                                          : GatheredMass{ghost_penalty_.extended_mass(), {}};
   ties_.update(solid, material_);
   if (consistent_mass_)
-    consistent_mass_->update(solid, changed, mass_, lumped_mass());
+    consistent_mass_->update(solid, changed, mass_, mass_by_corner());
+  if (!numbers_.are_all())
+    count();
+}
+
+void Hexahedra::count() {
+  ghost_penalty_.count_by(numbers_);
+  ties_.count_by(numbers_);
+  numbers_.gather(mass_by_corner(), mass_by_number_);
+  for (dynamics::Follower& follower : gathered_.followers) {
+    follower.corner = numbers_[follower.corner];
+    for (std::uint32_t k = 0; k < follower.n_leaders; ++k)
+      follower.leaders[k] = numbers_[follower.leaders[k]];
+  }
 }
 
 void Hexahedra::batch(const grid::Solid& solid, const std::span<const grid::CopyId> changed) {
@@ -130,12 +147,20 @@ void Hexahedra::batch(const grid::Solid& solid, const std::span<const grid::Copy
     if ((cell.value + 1) % Batching::chunk_size == 0 || cell.value + 1 == n_cells)
       chunk_ends.push_back(static_cast<std::uint32_t>(order.size()));
   }
+  numbers_of_copies_.clear();
+  if (!numbers_.are_all()) {
+    numbers_of_copies_.reserve(8 * n_elements());
+    for (std::size_t copy = 0; copy < n_elements(); ++copy)
+      for (int a = 0; a < 8; ++a)
+        numbers_of_copies_.push_back(incidence_.is_used(copy) ? numbers_[incidence_.corners(copy)[a]]
+                                                              : CellsOfLevel::unused);
+  }
   std::vector<std::uint8_t> is_same(n_elements(), 1);
   for (const grid::CopyId c : changed)
     is_same[c.value] = 0;
   const bool is_new = batching_->batches().empty();
   const std::vector<std::uint32_t> renewed =
-    batching_->update({order, chunk_ends, kinds_, incidence_.corners(0), incidence_.n_corners()}, is_same);
+    batching_->update({order, chunk_ends, kinds_, corner_numbers(0), numbers_.size()}, is_same);
   if (is_new) {
     batched_ = batched<double>(*batching_, h_, material_, elements_.full(), partial_elements(no_bound));
     return;
@@ -166,7 +191,7 @@ double Hexahedra::volume() const {
 }
 
 std::array<Vec3, 8> Hexahedra::corners_of(const std::size_t copy, const Points& x) const {
-  const std::uint32_t* const c = incidence_.corners(copy);
+  const std::uint32_t* const c = corner_numbers(copy);
   return {x[c[0]], x[c[1]], x[c[2]], x[c[3]], x[c[4]], x[c[5]], x[c[6]], x[c[7]]};
 }
 
@@ -183,7 +208,7 @@ Turned Hexahedra::turned_element(const std::size_t copy, const Points& x) const 
 }
 
 void Hexahedra::put_rows(const std::span<const double> values, Rows& rows) const {
-  const std::size_t n = incidence_.n_corners();
+  const std::size_t n = numbers_.size();
   parallel_for(
     batching_->n_rows(),
     [&](const std::size_t i) {
@@ -291,7 +316,7 @@ std::optional<double> Hexahedra::force(const Points& x, Points& forces, const Wi
     if (!energies.empty())
       add_energies(i, turns, of_lanes, energies[i]);
   });
-  forces.resize(mass_.size());
+  forces.resize(numbers_.size());
   write(sums.data(), dynamics::flat(forces));
   ghost_penalty_.add_force(x, forces);
   ties_.add_force(x, forces);
@@ -333,14 +358,14 @@ void Hexahedra::apply_stiffness(const std::span<const double> p, const std::span
 }
 
 void Hexahedra::stiffness_diagonal(std::vector<Mat3>& blocks) const {
-  blocks.resize(mass_.size());
-  Loan<double> penalty = ghost_penalty_.diagonal(mass_.size());
+  blocks.resize(numbers_.size());
+  Loan<double> penalty = ghost_penalty_.diagonal(blocks.size());
   ties_.add_diagonal(penalty);
   Rows sums = scratch_.borrow(2 * batching_->n_rows());
   clear(sums.data(), 2 * batching_->n_rows());
   add_diagonal(*batching_, batched_, sums.data());
   parallel_for(
-    mass_.size(),
+    blocks.size(),
     [&](const std::size_t i) {
       const Row<double>&d = sums.data()[2 * i], &s = sums.data()[2 * i + 1];
       blocks[i] << d.x + penalty[i], s.x, s.z, s.x, d.y + penalty[i], s.y, s.z, s.y, d.z + penalty[i];
@@ -351,7 +376,7 @@ void Hexahedra::stiffness_diagonal(std::vector<Mat3>& blocks) const {
 void Hexahedra::make_multigrid() {
   const double bound = elements_.full().bound;
   multigrid_ = std::make_unique<Multigrid>(
-    FinestLevel{{places_, {incidence_.corners(0), 8 * n_elements()}, incidence_.n_corners()},
+    FinestLevel{{places_, {corner_numbers(0), 8 * n_elements()}, numbers_.size()},
                 h_,
                 material_,
                 elements_.full(),
@@ -370,7 +395,7 @@ void Hexahedra::make_multigrid() {
 dynamics::Preconditioner* Hexahedra::preconditioner(const dynamics::LinearEquation& equation) {
   constexpr std::size_t worth_levels = 200; // corners
   constexpr double stiff = 30;              // K over M from which on conjugate gradients alone take longer
-  if (incidence_.n_corners() < worth_levels)
+  if (numbers_.size() < worth_levels)
     return nullptr;
   double inertia = 0;
   for (const double m : equation.mass)
@@ -405,10 +430,10 @@ Eigen::SparseMatrix<double> Hexahedra::stiffness_matrix(const Points& x, const d
   std::vector<Eigen::Triplet<double>> penalty;
   ghost_penalty_.add_entries(penalty);
   ties_.add_entries(penalty);
-  const auto n = static_cast<Eigen::Index>(3 * mass_.size());
+  const auto n = static_cast<Eigen::Index>(3 * numbers_.size());
   Eigen::SparseMatrix<double> K(n, n);
   K.setFromTriplets(penalty.begin(), penalty.end());
-  K += assemble(incidence_, [&](const std::size_t copy) { return element_matrix(copy, x, kind); });
+  K += assemble(incidence_, numbers_, [&](const std::size_t copy) { return element_matrix(copy, x, kind); });
   return K;
 }
 

@@ -14,7 +14,9 @@
 /// semi-definite; stiffness_matrix() has the exact second derivative too.
 ///
 /// Copies of crumbs (grid/crumbs.h) have neither mass nor stiffness, and cost nothing in the loops over elements, which
-/// go over batches of like ones (batches.h).
+/// go over batches of like ones (batches.h). Their corners cost nothing either where that is asked for: then integrators
+/// see those that have a number (numbers()), and all that they give and get is by number. What is asked of one copy or
+/// corner is by corner as ever.
 ///
 /// Every copy's element is its own, and sums over copies are taken in an order that the complex alone says: any number
 /// of threads, and any way of getting to a complex, gives the same bits. Functions that are const may be called from
@@ -34,6 +36,7 @@
 #include "fem/scratch.h"
 #include "fem/ties.h"
 #include "fem/turned.h"
+#include "grid/corner_numbers.h"
 #include "material/laws.h"
 
 namespace kerf::fem {
@@ -59,6 +62,7 @@ struct HexahedraOptions {
   Inertia inertia = Inertia::lumped;
   MassMatrix mass = MassMatrix::lumped;
   GhostPenaltyOptions ghost_penalty = {};
+  grid::Counted counted = grid::Counted::all; ///< corners that integrators see
 };
 
 class Hexahedra : public dynamics::ElasticModel, public dynamics::StiffnessMatrix {
@@ -69,10 +73,11 @@ class Hexahedra : public dynamics::ElasticModel, public dynamics::StiffnessMatri
   /// anew, bit by bit. The linearisation is lost.
   void update(const grid::Solid& solid, std::span<const grid::CopyId> changed);
 
+  /// Corners as integrators see them.
+  const grid::CornerNumbers& numbers() const { return numbers_; }
+
   std::span<const double> lumped_mass() const override {
-    return inertia_ == Inertia::lumped     ? mass_
-           : inertia_ == Inertia::gathered ? gathered_.mass
-                                           : ghost_penalty_.extended_mass();
+    return numbers_.are_all() ? mass_by_corner() : mass_by_number_;
   }
   const dynamics::MassCoupling* mass_coupling() const override { return consistent_mass_.get(); }
   std::span<const dynamics::Follower> followers() const override { return gathered_.followers; }
@@ -97,20 +102,32 @@ class Hexahedra : public dynamics::ElasticModel, public dynamics::StiffnessMatri
   const material::Elastic& material() const { return material_; }
   const Element& element(const std::size_t copy) const { return elements_[copy]; }
   const Incidence& incidence() const { return incidence_; }
+  Inertia inertia() const { return inertia_; }
   const GhostPenalty& ghost_penalty() const { return ghost_penalty_; }
-  /// Mean deformation gradient of a copy [1].
+  /// Mean deformation gradient of a copy [1]; x by corner.
   Mat3 deformation_gradient(std::size_t copy, const Points& x) const;
 
  private:
   bool is_hookean() const { return frame_ == Frame::fixed || std::holds_alternative<material::Corotational>(law_); }
   void follow(const grid::Solid& solid, std::span<const grid::CopyId> changed, std::span<const std::uint32_t> corners);
   void sum_mass(std::span<const std::uint32_t> corners);
+  const std::vector<double>& mass_by_corner() const {
+    return inertia_ == Inertia::lumped     ? mass_
+           : inertia_ == Inertia::gathered ? gathered_.mass
+                                           : ghost_penalty_.extended_mass();
+  }
+  /// Takes the corners of all that integrators see by number.
+  void count();
+  /// Numbers of a copy's corners.
+  const std::uint32_t* corner_numbers(const std::size_t copy) const {
+    return numbers_.are_all() ? incidence_.corners(copy) : numbers_of_copies_.data() + 8 * copy;
+  }
   /// Part of its cube that a copy's material is [1].
   double fill(const std::size_t copy) const { return elements_[copy].volume / (h_ * h_ * h_); }
   void batch(const grid::Solid& solid, std::span<const grid::CopyId> changed);
   PartialElements partial_elements(double bound) const;
   void make_multigrid();
-  std::array<Vec3, 8> corners_of(std::size_t copy, const Points& x) const;
+  std::array<Vec3, 8> corners_of(std::size_t copy, const Points& x) const; // x by number
   Turned turned_element(std::size_t copy, const Points& x) const;
   Matrix24 element_matrix(std::size_t copy, const Points& x, dynamics::Tangent kind) const;
 
@@ -137,14 +154,18 @@ class Hexahedra : public dynamics::ElasticModel, public dynamics::StiffnessMatri
 
   ElementTable elements_;
   Incidence incidence_;
-  std::vector<Index3> places_; // of the copies' cells
-  std::vector<Kind> kinds_;    // of the copies
+  grid::Counted counted_;
+  grid::CornerNumbers numbers_;
+  std::vector<std::uint32_t> numbers_of_copies_; // 8 a copy; none where all corners have their own
+  std::vector<Index3> places_;                   // of the copies' cells
+  std::vector<Kind> kinds_;                      // of the copies
   std::shared_ptr<Batching> batching_ = std::make_shared<Batching>();
   BatchedElements<double> batched_; // rotations and tangents at the linearisation point
   GhostPenalty ghost_penalty_;
   Ties ties_;
-  std::vector<double> mass_;
-  GatheredMass gathered_;                           // where it is wanted
+  std::vector<double> mass_;                        // by corner
+  std::vector<double> mass_by_number_;              // that integrators get; none where all corners have their own
+  GatheredMass gathered_;                           // where it is wanted; followers by number
   std::unique_ptr<ConsistentMass> consistent_mass_; // none where mass is lumped
   std::unique_ptr<Multigrid> multigrid_;            // none until it is asked for
   FormerLevels former_levels_;                      // when it was asked for last, if a cut came since

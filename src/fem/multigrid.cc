@@ -41,14 +41,15 @@ Loan<Spring> restricted(const std::vector<Spring>& fine, const Weights& prolonga
 /// What loads resist at points.
 PointSprings point_springs(const dynamics::LinearEquation& equation) {
   PointSprings springs;
-  equation.loads.for_each_point([&](const Interpolation& points, const std::size_t i, const Mat3& block) {
-    for (auto k = points.start[i]; k < points.start[i + 1]; ++k) {
-      springs.rows.column.push_back(points.corners[k]);
-      springs.rows.weight.push_back(float(points.values[k]));
-    }
-    springs.rows.begin.push_back(static_cast<std::uint32_t>(springs.rows.column.size()));
-    springs.blocks.push_back((block / equation.stiffness_factor).cast<float>());
-  });
+  equation.loads.for_each_point(
+    [&](const std::uint32_t corner, const double weight) {
+      springs.rows.column.push_back(corner);
+      springs.rows.weight.push_back(float(weight));
+    },
+    [&](const Mat3& block) {
+      springs.rows.begin.push_back(static_cast<std::uint32_t>(springs.rows.column.size()));
+      springs.blocks.push_back((block / equation.stiffness_factor).cast<float>());
+    });
   return springs;
 }
 

@@ -20,6 +20,13 @@ void Ties::update(const grid::Solid& solid, const material::Elastic& material) {
     ties_.push_back({tie.a.value, tie.b.value, modulus * tie.length});
 }
 
+void Ties::count_by(const grid::CornerNumbers& numbers) {
+  for (Tie& tie : ties_) {
+    tie.a = numbers[tie.a];
+    tie.b = numbers[tie.b];
+  }
+}
+
 double Ties::energy(const Points& x) const {
   double sum = 0;
   for (const auto& [a, b, k] : ties_)

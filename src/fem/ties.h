@@ -2,6 +2,7 @@
 
 /// The springs that hold copies together where a cut ends between them (grid/fronts.h): E = sum of k/2 |x_a - x_b|^2.
 
+#include "grid/corner_numbers.h"
 #include "grid/fronts.h"
 #include "material/elastic.h"
 
@@ -20,6 +21,8 @@ class Ties {
  public:
   /// Takes over all of them.
   void update(const grid::Solid& solid, const material::Elastic& material);
+  /// Counts corners by these numbers from now on. No tie is at a corner that has none.
+  void count_by(const grid::CornerNumbers& numbers);
 
   std::span<const Tie> all() const { return ties_; }
   double energy(const Points& x) const;

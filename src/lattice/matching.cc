@@ -60,9 +60,10 @@ Vec3 angular_velocity(const Mat3& J, const Vec3& L) {
 
 Matching::Matching(const grid::Solid& solid, const MatchingOptions& options)
   : stiffness_(options.stiffness),
+    numbers_(solid, options.counted),
     lines_(solid, options.half_width),
-    rest_(grid::rest_positions(solid)),
-    mass_(solid.complex.n_corners(), 0.0) {
+    mass_(numbers_.size(), 0.0) {
+  numbers_.gather(grid::rest_positions(solid), rest_);
   require_positive("Density [kg/m^3]", options.density);
   require_positive("Stiffness [1/s^2]", options.stiffness);
   const Vec3 middle = mean(rest_);
@@ -71,23 +72,27 @@ Matching::Matching(const grid::Solid& solid, const MatchingOptions& options)
   count_shares(material_shares(solid, options.density));
   measure_regions();
   const double h = solid.grid.h();
-  riders_ = Riders(solid.complex, mass_, options.density * h * h * h);
+  std::vector<double> mass_by_corner(solid.complex.n_corners(), 0.0);
+  numbers_.spread(mass_, mass_by_corner);
+  riders_ = Riders(solid.complex, mass_by_corner, options.density * h * h * h);
+  riders_.count_by(numbers_);
 }
 
 void Matching::count_shares(const std::vector<Share>& shares) {
   std::vector<double> holders(6 * lines_.n_points(), 1.0);
   lines_.sum_over_holders(holders); // N_n, six times
   for (const Share& share : shares)
-    mass_[share.corner.value] += share.mass;
+    mass_[numbers_[share.corner.value]] += share.mass;
 
   of_points_.start.push_back(0);
   of_corners_.start.assign(mass_.size() + 1, 0);
   std::size_t k = 0;
   for (std::size_t p = 0; p < lines_.n_points(); ++p) {
     for (; k < shares.size() && shares[k].node == lines_.nodes()[p]; ++k) {
-      of_points_.column.push_back(shares[k].corner.value);
+      const auto corner = numbers_[shares[k].corner.value];
+      of_points_.column.push_back(corner);
       of_points_.weight.push_back(shares[k].mass / holders[6 * p]);
-      ++of_corners_.start[shares[k].corner.value + 1];
+      ++of_corners_.start[corner + 1];
     }
     of_points_.start.push_back(static_cast<std::uint32_t>(of_points_.column.size()));
   }

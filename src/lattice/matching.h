@@ -25,6 +25,7 @@
 /// as long as a region may hold each other.
 
 #include "dynamics/model.h"
+#include "grid/corner_numbers.h"
 #include "lattice/lines.h"
 #include "lattice/riders.h"
 #include "lattice/shares.h"
@@ -35,12 +36,16 @@ struct MatchingOptions {
   double density = 1000;   ///< [kg/m^3]
   int half_width = 2;      ///< of the regions, in cubes; more than the body has is no error [1]
   double stiffness = 3600; ///< k, the square of the frequency of a corner that alone is off its goal [1/s^2]
+  grid::Counted counted = grid::Counted::all; ///< corners that integrators see
 };
 
 class Matching : public dynamics::ForceModel {
  public:
   /// Throws ParameterError for an option that makes no sense.
   Matching(const grid::Solid& solid, const MatchingOptions& options);
+
+  /// Corners as integrators see them: all that they give and get is by number.
+  const grid::CornerNumbers& numbers() const { return numbers_; }
 
   std::span<const double> lumped_mass() const override { return mass_; }
   /// Round-off is that of k sum of m_c |x_c|^2 from the body's middle.
@@ -86,6 +91,7 @@ class Matching : public dynamics::ForceModel {
   void sum_angular_momentum(const Points& x, const Points& v, const Vec3& centre) const;
 
   double stiffness_;
+  grid::CornerNumbers numbers_;
   Lines lines_;
   Points rest_;              // of the corners, from the body's middle [m]
   std::vector<double> mass_; // of the corners [kg]

@@ -76,6 +76,21 @@ Riders::Riders(const grid::CellComplex& complex, const std::span<const double> m
   }
 }
 
+void Riders::count_by(const grid::CornerNumbers& numbers) {
+  std::vector<Rider> counted;
+  for (Carrier& carrier : carriers_) {
+    for (std::uint32_t k = 0; k < carrier.n_corners; ++k)
+      carrier.corners[k] = numbers[carrier.corners[k]];
+    const auto first = static_cast<std::uint32_t>(counted.size());
+    for (const auto& [corner, need] : riders_of(carrier))
+      if (numbers.counts(corner))
+        counted.push_back({numbers[corner], need});
+    carrier.first = first;
+    carrier.last = static_cast<std::uint32_t>(counted.size());
+  }
+  riders_ = std::move(counted);
+}
+
 void Riders::settle(const Points& goals, const std::span<const double> mass, Points& x, Points& v) const {
   for (const Carrier& carrier : carriers_)
     settle(carrier, goals, mass, x, v);

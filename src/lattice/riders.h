@@ -33,6 +33,7 @@
 /// Limits: pieces without a carrier have no riders; and a carrier that is crushed to a line or to a point carries none.
 
 #include "grid/complex.h"
+#include "grid/corner_numbers.h"
 #include "grid/crumbs.h"
 
 #include <array>
@@ -47,6 +48,9 @@ class Riders {
   /// `mass` of the corners, `mass_of_cube` of a full one [kg]; `light`: m_ref over that of a cube [1].
   Riders(const grid::CellComplex& complex, std::span<const double> mass, double mass_of_cube,
          double light = grid::well_filled);
+
+  /// Counts corners by these numbers from now on. Those that carry have one; what has none rides no more.
+  void count_by(const grid::CornerNumbers& numbers);
 
   /// Moves riders to goals [m], in x [m] and v [m/s].
   void settle(const Points& goals, std::span<const double> mass, Points& x, Points& v) const;

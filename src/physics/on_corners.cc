@@ -22,27 +22,39 @@ std::vector<double> material_mass(const fem::Hexahedra& model) {
   return mass;
 }
 
-bool has_extended_mass(const fem::Hexahedra& model) {
-  return model.lumped_mass().data() == model.ghost_penalty().extended_mass().data();
-}
-
 } // namespace
 
 lattice::Riders riders_of(const fem::Hexahedra& model, const CutBody& body) {
   constexpr double light =
     1.0 / 32; // of a cube: what holds corners of less fades with their mass (fem/ghost_penalty.h)
-  if (!has_extended_mass(model) || !grid::is_cut(body.solid.cuts))
+  if (model.inertia() != fem::Inertia::extended || !grid::is_cut(body.solid.cuts))
     return {};
   const double h = body.solid.grid.h();
   return {body.solid.complex, material_mass(model), body.density * h * h * h, light};
 }
 
-void damp_riders(const fem::Hexahedra& model, const lattice::Riders& riders, const double dt, dynamics::State& state) {
+void damp_riders(const fem::Hexahedra& model, const lattice::Riders& riders, const std::span<const double> mass,
+                 const double dt, dynamics::State& state) {
   const auto& material = model.material();
   const double across = std::sqrt((material.lambda() + 2 * material.mu()) / material.density) / model.h(),
                alpha = std::min(1.0, across * dt * across * dt);
   if (riders.n_riders() > 0)
-    riders.damp(state.x, model.lumped_mass(), alpha, state.v);
+    riders.damp(state.x, mass, alpha, state.v);
+}
+
+std::vector<std::uint32_t> counted_pieces(std::vector<std::uint32_t> of_corners, const grid::CornerNumbers& numbers) {
+  if (numbers.are_all())
+    return of_corners;
+  constexpr std::uint32_t none = 0xffffffff;
+  std::vector<std::uint32_t> name(of_corners.size(), none), pieces; // no more pieces than corners
+  std::uint32_t n = 0;
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    std::uint32_t& piece = name[of_corners[numbers.corner(i)]];
+    if (piece == none)
+      piece = n++;
+    pieces.push_back(piece);
+  }
+  return pieces;
 }
 
 void join_lapsed(const std::span<const grid::Lapse> lapsed, const std::function<double(std::uint32_t)>& mass,

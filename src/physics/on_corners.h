@@ -6,11 +6,14 @@
 #include "fem/hexahedra.h"
 #include "lattice/shape_matching.h"
 #include "physics/carry_all.h"
+#include "physics/narrowed.h"
 #include "physics/physics.h"
+#include "physics/widened.h"
 #include "spring/mass_spring.h"
 
 #include <functional>
 #include <span>
+#include <type_traits>
 
 namespace kerf::physics {
 
@@ -19,19 +22,29 @@ namespace kerf::physics {
 /// of a lattice are (lattice/riders.h), critically for the frequency of a cube. Of the others none.
 inline lattice::Riders riders_of(const dynamics::ForceModel&, const CutBody&) { return {}; }
 lattice::Riders riders_of(const fem::Hexahedra& model, const CutBody& body);
-inline void damp_riders(const dynamics::ForceModel&, const lattice::Riders&, double, dynamics::State&) {}
-void damp_riders(const fem::Hexahedra& model, const lattice::Riders& riders, double dt, dynamics::State& state);
+inline void damp_riders(const dynamics::ForceModel&, const lattice::Riders&, std::span<const double>, double,
+                        dynamics::State&) {}
+/// `mass` by corner [kg].
+void damp_riders(const fem::Hexahedra& model, const lattice::Riders& riders, std::span<const double> mass, double dt,
+                 dynamics::State& state);
 
 /// Corners that lapse bring their heirs what they had of momentum, angular momentum and place, by mass as it was [kg].
 void join_lapsed(std::span<const grid::Lapse> lapsed, const std::function<double(std::uint32_t)>& mass,
                  dynamics::State& state);
 
-/// One model on the corners, with an integrator of it.
+/// Of the corners that are counted, by number: pieces without one are left out.
+std::vector<std::uint32_t> counted_pieces(std::vector<std::uint32_t> of_corners, const grid::CornerNumbers& numbers);
+
+/// One model on the corners, with an integrator of it. Both see those that the model counts (grid/corner_numbers.h); state and
+/// loads are of all.
 template <class Model>
 class OnCorners : public Physics {
  public:
   using ModelMaker = std::function<std::unique_ptr<Model>(const CutBody&)>;
   using IntegratorMaker = std::function<std::unique_ptr<dynamics::Stepper>(Model&, const PiecesOfParticles&)>;
+
+  using Widened =
+    std::conditional_t<std::is_base_of_v<dynamics::ElasticModel, Model>, WidenedElasticModel, WidenedForceModel>;
 
   OnCorners(const CutBody& body, ModelMaker make_model, IntegratorMaker make_integrator)
     : make_model_(std::move(make_model)),
@@ -41,10 +54,16 @@ class OnCorners : public Physics {
       crumbs_(body.density) {
     dynamics::State at_rest{rest_, Points(rest_.size(), Vec3::Zero())};
     follow_crumbs(body, at_rest);
+    widen(body);
     make_stepper(body);
   }
 
-  Model& model() override { return *model_; }
+  /// Of all corners.
+  dynamics::ForceModel& model() override {
+    return widened_ ? static_cast<dynamics::ForceModel&>(*widened_) : static_cast<dynamics::ForceModel&>(*model_);
+  }
+  /// Of those that it counts.
+  const Model& own_model() const { return *model_; }
   const Points& rest() const override { return rest_; }
   bool particles_are_corners() const override { return true; }
   const Crumbs& crumbs() const override { return crumbs_; }
@@ -54,8 +73,9 @@ class OnCorners : public Physics {
     if (carry_all(crumbs_)) {
       state.time += dt;
     } else {
-      damp_riders(*model_, riders_, dt, state);
-      report = stepper_->step(state, loads, dt);
+      damp_riders(*model_, riders_, model().lumped_mass(), dt, state);
+      report =
+        widened_ ? narrowed_step(*stepper_, model_->numbers(), state, loads, dt) : stepper_->step(state, loads, dt);
     }
     crumbs_.step(loads, dt, stepper_->motion(), state);
     follow_heirs(state);
@@ -63,7 +83,8 @@ class OnCorners : public Physics {
   }
 
   void follow_cut(const CutBody& body, const grid::CutChange& change, dynamics::State& state) override {
-    const Vec3 had = momentum(model_->lumped_mass(), crumbs_, state);
+    const std::vector<double> mass(model().lumped_mass().begin(), model().lumped_mass().end()); // before the cut
+    const Vec3 had = momentum(mass, crumbs_, state);
     const std::vector<std::uint8_t> carried = crumbs_.carried();
     for (Points* of_corners : {&rest_, &state.x, &state.v})
       grid::inherit(change, *of_corners);
@@ -71,7 +92,7 @@ class OnCorners : public Physics {
       change.lapsed,
       [&](const std::uint32_t corner) { // in the model, or in a crumb that may be material again
         return corner < change.n_corners_before
-                 ? model_->lumped_mass()[corner] + (crumbs_.carries(corner) ? crumbs_.carried_mass()[corner] : 0)
+                 ? mass[corner] + (crumbs_.carries(corner) ? crumbs_.carried_mass()[corner] : 0)
                  : 0;
       },
       state);
@@ -80,9 +101,10 @@ class OnCorners : public Physics {
         grid::inherit(change, values);
     dynamics::forget_forces(state);
     follow_cut_with_model(body, change);
+    widen(body);
     follow_crumbs(body, state);
     if (const auto freed = freed_corners(change, carried); !freed.empty())
-      restore_momentum(had, freed, model_->lumped_mass(), crumbs_, state);
+      restore_momentum(had, freed, model().lumped_mass(), crumbs_, state);
     make_stepper(body);
     follow_heirs(state);
   }
@@ -93,6 +115,7 @@ class OnCorners : public Physics {
     if (a.reads()) {
       rest_ = grid::rest_positions(body.solid);
       model_ = make_model_(body);
+      widen(body);
       make_stepper(body);
     }
     a(*stepper_);
@@ -130,11 +153,18 @@ class OnCorners : public Physics {
       },
       state);
   }
+  void widen(const CutBody& body) {
+    const grid::CornerNumbers& numbers = model_->numbers();
+    widened_ = nullptr;
+    if (!numbers.are_all())
+      widened_ = std::make_unique<Widened>(*model_, numbers, body.solid.complex.n_corners());
+  }
   /// All that is made again from what the body is now.
   void make_stepper(const CutBody& body) {
     lapsed_ = body.solid.complex.lapsed;
     // The complex outlives the call, as the stepper asks at once.
-    stepper_ = make_integrator_(*model_, [&body] { return corner_pieces(body.solid.complex); });
+    stepper_ =
+      make_integrator_(*model_, [&] { return counted_pieces(corner_pieces(body.solid.complex), model_->numbers()); });
     riders_ = riders_of(*model_, body);
   }
 
@@ -142,6 +172,7 @@ class OnCorners : public Physics {
   IntegratorMaker make_integrator_;
   Points rest_;
   std::unique_ptr<Model> model_;
+  std::unique_ptr<Widened> widened_; // null where the model counts all corners
   Crumbs crumbs_;
   std::unique_ptr<dynamics::Stepper> stepper_;
   lattice::Riders riders_;

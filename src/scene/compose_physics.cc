@@ -33,7 +33,8 @@ PhysicsMaker make_elements(const Section& section, const BodyParameters& paramet
     .boundary = boundary_named(parameters.integration),
     .strain = parameters.element == "enhanced" ? fem::Strain::enhanced : fem::Strain::trilinear,
     .inertia = integrator.inertia,
-    .mass = parameters.mass == "consistent" ? fem::MassMatrix::consistent : fem::MassMatrix::lumped};
+    .mass = parameters.mass == "consistent" ? fem::MassMatrix::consistent : fem::MassMatrix::lumped,
+    .counted = grid::Counted::deforming};
   return [=](const CutBody& body) {
     return std::make_unique<physics::Elements>(
       body, [=](const CutBody& b) { return std::make_unique<fem::Hexahedra>(b.solid, options); }, integrator.make);
@@ -48,7 +49,7 @@ PhysicsMaker make_springs(const Section& section, const BodyParameters& paramete
       body,
       [=](const CutBody& b) {
         return std::make_unique<spring::MassSpring>(
-          b.solid, spring::MassSpringOptions{material.density, material.youngs_modulus});
+          b.solid, spring::MassSpringOptions{material.density, material.youngs_modulus, grid::Counted::deforming});
       },
       integrator.make);
   };
@@ -105,7 +106,8 @@ PhysicsMaker make_lattice(const Section& section, const BodyParameters& paramete
       "Integrator", "the backend 'lattice' moves in time only",
       "Take another integrator (any: shape matching is its own) and let damping bring it to rest");
   const auto lattice = read_if_written<LatticeParameters>(section, "Lattice");
-  const lattice::MatchingOptions options = matching_options(section, lattice, parameters.cube_edge, dt);
+  lattice::MatchingOptions options = matching_options(section, lattice, parameters.cube_edge, dt);
+  options.counted = grid::Counted::deforming;
   return [=](const CutBody& body) {
     return std::make_unique<physics::ShapeMatching>(
       body, [=](const CutBody& b) { return std::make_unique<lattice::Matching>(b.solid, options); },

@@ -162,13 +162,12 @@ std::vector<std::string> check_crack_fronts(const Section& section, const Body& 
 
 double energy_release_rate(const Body& body, const NamedFront& front) {
   const auto& elements = dynamic_cast<const physics::Elements&>(*body.physics);
-  const auto& model = dynamic_cast<const fem::Hexahedra&>(body.physics->model());
-  return fem::energy_release_rate(model, elements.rest(), body.state.x, front.front, front.tubes);
+  return fem::energy_release_rate(elements.own_model(), elements.rest(), body.state.x, front.front, front.tubes);
 }
 
 double stress_intensity(const Body& body, const NamedFront& front) {
-  const auto& model = dynamic_cast<const fem::Hexahedra&>(body.physics->model());
-  return fem::stress_intensity(energy_release_rate(body, front), model.material());
+  const auto& elements = dynamic_cast<const physics::Elements&>(*body.physics);
+  return fem::stress_intensity(energy_release_rate(body, front), elements.own_model().material());
 }
 
 } // namespace kerf::scene

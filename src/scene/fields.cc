@@ -56,7 +56,7 @@ std::vector<double> shape_of(const Body& body, const std::size_t mode) {
 std::vector<double> values_of(const Body& body, const std::string& name) {
   if (name == "displacement")
     return displacements(body);
-  const auto& model = dynamic_cast<const fem::Hexahedra&>(body.physics->model());
+  const fem::Hexahedra& model = elements_of(body)->own_model();
   const Points& x = body.state.x;
   const auto tensors = fem::at_corners(
     model, body.physics->rest(), name == "strain" ? fem::strain_of_copies(model, x) : fem::stress_of_copies(model, x));

@@ -4,7 +4,7 @@
 #include "base/loan.h"
 #include "base/parallel.h"
 #include "dynamics/forces.h"
-#include "fem/hexahedra.h"
+#include "physics/on_corners.h"
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
@@ -167,8 +167,8 @@ bool may_be_anywhere(const Body& body) {
 }
 
 bool is_of_small_strain(const Body& body) {
-  const auto* const elements = dynamic_cast<const fem::Hexahedra*>(&body.physics->model());
-  return elements && elements->material().law == "small strain";
+  const auto* const elements = dynamic_cast<const physics::Elements*>(body.physics.get());
+  return elements && elements->own_model().material().law == "small strain";
 }
 
 /// What is wrong with the body's volumes; nothing: they are sound.
@@ -222,8 +222,10 @@ void require_sound_motion(const Body& body, const Points& before, const double d
   for (std::size_t i = 0; i < body.state.x.size(); ++i) {
     if (!body.state.x[i].allFinite() || !body.state.v[i].allFinite())
       throw NumericalError("the motion has diverged: " + particle_at(body, i) + ", has no finite place any more");
+    if (held[i])
+      continue;
     const double own = std::min((body.state.v[i] - mean).norm(), ((body.state.x[i] - before[i]) / dt - mean).norm());
-    if (!held[i] && own > speed) {
+    if (own > speed) {
       speed = own;
       fastest = i;
     }

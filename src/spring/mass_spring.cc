@@ -41,7 +41,7 @@ std::vector<Pair> pairs_of_cube() {
 } // namespace
 
 MassSpring::MassSpring(const grid::Solid& solid, const MassSpringOptions& options)
-  : mass_(solid.complex.n_corners(), 0.0) {
+  : numbers_(solid, options.counted), mass_(numbers_.size(), 0.0) {
   require_positive("Density [kg/m^3]", options.density);
   require_positive("Young's modulus [Pa]", options.youngs_modulus);
   std::vector<double> fill(solid.complex.n_copies());
@@ -57,7 +57,8 @@ MassSpring::MassSpring(const grid::Solid& solid, const MassSpringOptions& option
   const double eighth = options.density * solid.grid.h() * solid.grid.h() * solid.grid.h() / 8;
   for (const auto c : ids<grid::CopyId>(solid.complex.n_copies()))
     for (const auto corner : solid.complex.copies[c].corners)
-      mass_[corner.value] += fill[c.value] * eighth;
+      if (numbers_.counts(corner.value))
+        mass_[numbers_[corner.value]] += fill[c.value] * eighth;
   add_springs(solid, fill, options);
   find_users();
 }
@@ -74,12 +75,15 @@ void MassSpring::add_springs(const grid::Solid& solid, const std::vector<double>
     for (const Pair& pair : pairs) {
       if (fill[c.value] == 0)
         continue;
-      const auto a = complex.copies[c].corners[pair.a].value, b = complex.copies[c].corners[pair.b].value;
+      const auto a = numbers_[complex.copies[c].corners[pair.a].value],
+                 b = numbers_[complex.copies[c].corners[pair.b].value];
       all.push_back({std::min(a, b), std::max(a, b), fill[c.value] * (pair.is_edge ? edge : diagonal),
                      pair.is_edge ? h : std::sqrt(2.0) * h});
     }
-  for (const grid::Tie& tie : grid::ties(solid))
-    all.push_back({std::min(tie.a, tie.b).value, std::max(tie.a, tie.b).value, modulus * tie.length, 0});
+  for (const grid::Tie& tie : grid::ties(solid)) {
+    const auto a = numbers_[tie.a.value], b = numbers_[tie.b.value];
+    all.push_back({std::min(a, b), std::max(a, b), modulus * tie.length, 0});
+  }
   std::stable_sort(all.begin(), all.end(),
                    [](const Spring& s, const Spring& t) { return s.a != t.a ? s.a < t.a : s.b < t.b; });
   for (const Spring& spring : all) { // sums in the order of the copies

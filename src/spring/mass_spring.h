@@ -19,13 +19,14 @@
 /// only follows Hooke's law; springs know no inside out, and a body that is turned inside out stays so.
 
 #include "dynamics/model.h"
-#include "grid/solid.h"
+#include "grid/corner_numbers.h"
 
 namespace kerf::spring {
 
 struct MassSpringOptions {
-  double density = 1000;       ///< [kg/m^3]
-  double youngs_modulus = 1e4; ///< E [Pa]
+  double density = 1000;                      ///< [kg/m^3]
+  double youngs_modulus = 1e4;                ///< E [Pa]
+  grid::Counted counted = grid::Counted::all; ///< corners that integrators see
 };
 
 /// The only value that these springs can have [1].
@@ -35,6 +36,9 @@ class MassSpring : public dynamics::ElasticModel, public dynamics::StiffnessMatr
  public:
   /// Throws ParameterError for an option that makes no sense.
   MassSpring(const grid::Solid& solid, const MassSpringOptions& options);
+
+  /// Corners as integrators see them: all that they give and get is by number.
+  const grid::CornerNumbers& numbers() const { return numbers_; }
 
   std::span<const double> lumped_mass() const override { return mass_; }
   double energy(const Points& x) const override;
@@ -50,7 +54,7 @@ class MassSpring : public dynamics::ElasticModel, public dynamics::StiffnessMatr
 
  private:
   struct Spring {
-    std::uint32_t a, b; ///< corners, a < b
+    std::uint32_t a, b; ///< numbers of corners, a < b
     double stiffness;   ///< K [N/m]
     double length;      ///< at rest [m]
   };
@@ -69,6 +73,7 @@ class MassSpring : public dynamics::ElasticModel, public dynamics::StiffnessMatr
   /// y_c = sum of what springs do to corner c: plus at a, minus at b.
   void gather(const Points& of_springs, double* y) const;
 
+  grid::CornerNumbers numbers_;
   std::vector<Spring> springs_;                   // sorted by corners
   std::vector<std::uint32_t> user_start_, users_; // by corner: 2 spring + end
   std::vector<double> mass_;
