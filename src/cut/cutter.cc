@@ -37,6 +37,7 @@ Cutter::Cutter(const std::size_t n_labels, const Release release, const Fronts f
 
 void Cutter::begin(const Solid& solid, const Points& x) {
   boxes_.emplace(solid);
+  x_before_.reserve(x.size() + x.size() / 8); // some room for new corners
   x_before_ = x;
 }
 
