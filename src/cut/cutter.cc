@@ -18,14 +18,6 @@ using grid::Solid;
 
 namespace {
 
-void append(SweepCuts& all, const SweepCuts& more) {
-  all.cuts.insert(all.cuts.end(), more.cuts.begin(), more.cuts.end());
-  all.of_skin.insert(all.of_skin.end(), more.of_skin.begin(), more.of_skin.end());
-  all.later.insert(all.later.end(), more.later.begin(), more.later.end());
-  all.later_of_skin.insert(all.later_of_skin.end(), more.later_of_skin.begin(), more.later_of_skin.end());
-  all.n_double_crossings += more.n_double_crossings;
-}
-
 std::array<grid::CellId, 2> cells_of(const grid::Grid& grid, const grid::SkinSegment& segment) {
   return segment.face.valid() ? grid.cells(segment.face) : std::array{segment.cell, grid::CellId()};
 }
@@ -96,24 +88,20 @@ Cutter::Added Cutter::add(Solid& solid, const SweepCuts& cuts) {
     meet(cut, cut.edge, edges_met);
   for (const grid::SkinCut& cut : cuts.later_of_skin)
     meet(cut, cut.segment, segments_met);
-  for (const EdgeCut& cut : cuts.cuts) {
-    if (!solid.cuts.can_be_cut(solid.grid, cut.edge)) { // by another of the same step
+  for (const EdgeCut& cut : cuts.cuts)
+    if (solid.cuts.can_be_cut(solid.grid, cut.edge)) {
+      solid.cuts.add(solid.grid, cut);
+      edges.push_back(cut.edge);
+      passed_[cut.label - 1].remove(solid.grid.cells(cut.edge));
+    } else // by another of the same step
       meet(cut, cut.edge, edges_met);
-      continue;
-    }
-    solid.cuts.add(solid.grid, cut);
-    edges.push_back(cut.edge);
-    passed_[cut.label - 1].remove(solid.grid.cells(cut.edge));
-  }
-  for (const grid::SkinCut& cut : cuts.of_skin) {
-    if (solid.cuts.is_cut(cut.segment)) {
+  for (const grid::SkinCut& cut : cuts.of_skin)
+    if (!solid.cuts.is_cut(cut.segment)) {
+      solid.cuts.add(cut);
+      segments.push_back(cut.segment);
+      passed_[cut.label - 1].remove(cells_of(solid.grid, cut.segment));
+    } else
       meet(cut, cut.segment, segments_met);
-      continue;
-    }
-    solid.cuts.add(cut);
-    segments.push_back(cut.segment);
-    passed_[cut.label - 1].remove(cells_of(solid.grid, cut.segment));
-  }
   std::sort(edges.begin(), edges.end());
   std::sort(segments.begin(), segments.end());
   counts_.n_left_whole += leave_shreds(solid, edges, segments);

@@ -1,6 +1,7 @@
 #include "grid/complex.h"
 
 #include "base/parallel.h"
+#include "base/sort_unique.h"
 #include "base/union_find.h"
 #include "grid/corner_classes.h"
 #include "grid/cube.h"
@@ -29,12 +30,8 @@ struct CutCell {
 
 /// The cells with a cut edge, or with a front, ascending.
 std::vector<CutCell> find_cut_cells(const Solid& solid) {
-  std::vector<EdgeId> edges;
-  edges.reserve(solid.cuts.all().size());
-  for (const EdgeCut& cut : solid.cuts.all())
-    edges.push_back(cut.edge);
   std::vector<CutCell> cells;
-  for (const TouchedCell& touched : touched_cells(solid.grid, edges)) // by which lines is its configuration
+  for (const TouchedCell& touched : touched_cells(solid.grid, solid.cuts)) // by which lines is its configuration
     if (solid.cuts.front(touched.cell) == nullptr)
       cells.push_back({touched.cell, parts_of(cuts_of(solid, touched.cell, touched.lines))});
   for (const Front& front : solid.cuts.fronts())
@@ -137,12 +134,6 @@ void make_corners(const Grid& grid, const std::vector<CutCell>& cut_cells, CellC
           copy.corners[v] = complex.real_corner[nodes[v]];
     },
     worth);
-}
-
-template <class T>
-void sort_unique(std::vector<T>& all) {
-  std::sort(all.begin(), all.end());
-  all.erase(std::unique(all.begin(), all.end()), all.end());
 }
 
 /// Splits copies and renames corners around new cut edges.

@@ -97,8 +97,7 @@ CellCuts cuts_of(const Solid& solid, const CellId c) {
 CellCuts with(CellCuts cell, const Segments ahead) {
   cell.cut |= static_cast<unsigned>(ahead & skeleton::lines & ~Segments(skin_lines[cell.material]));
   cell.blades |= ahead;
-  cell.joined = nullptr;
-  return cell;
+  return without_joined(cell);
 }
 
 CellCuts cuts_of_copies(const Solid& solid, const CellId c) {

@@ -1,6 +1,7 @@
 #include "surface/surface.h"
 
 #include "base/parallel.h"
+#include "base/sort_unique.h"
 #include "surface/writer.h"
 
 #include <Eigen/Geometry>
@@ -32,8 +33,7 @@ std::vector<CellId> cells_of(const grid::CutChange& change, const CellComplex& c
   std::vector<CellId> cells;
   for (const CopyId c : change.reshaped)
     cells.push_back(complex.copies[c].cell);
-  std::sort(cells.begin(), cells.end());
-  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+  sort_unique(cells);
   return cells;
 }
 
