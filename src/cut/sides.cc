@@ -213,6 +213,18 @@ std::vector<Joined> on_same_sides(const Solid& solid, const CellId c) {
   return groups;
 }
 
+std::vector<Joined> without_cuts(const Solid& solid, const CellId c, const Segments cuts) {
+  const std::vector<Joined> settled = on_same_sides(solid, c);
+  std::vector<Joined> groups;
+  for (const grid::Part& part : whole_parts_of(grid::without(grid::cuts_of(solid, c), cuts))) {
+    Joined& group = groups.emplace_back(Joined{part.items(), part.intervals});
+    for (const Joined& side : settled)
+      if ((side.items & group.items) != 0)
+        group.intervals |= side.intervals;
+  }
+  return groups;
+}
+
 std::vector<Joined> near_each_other(const Solid& solid, const CellId c, std::vector<Joined> groups, const Points& x) {
   const grid::Parts parts = grid::parts_of(grid::without_joined(grid::cuts_of(solid, c)));
   for (Joined& group : groups) {

@@ -100,6 +100,12 @@ CellCuts with(CellCuts cell, const Segments ahead) {
   return without_joined(cell);
 }
 
+CellCuts without(CellCuts cell, const Segments cut) {
+  cell.cut &= ~static_cast<unsigned>(cut & skeleton::lines & ~Segments(skin_lines[cell.material]));
+  cell.blades &= ~cut;
+  return cell;
+}
+
 CellCuts cuts_of_copies(const Solid& solid, const CellId c) {
   const Front* const front = solid.cuts.front(c);
   return front ? with(cuts_of(solid, c), front->ahead) : cuts_of(solid, c);

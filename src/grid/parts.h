@@ -35,6 +35,8 @@ inline CellCuts without_joined(CellCuts cell) {
 }
 /// The same as if blades had cut these segments too.
 CellCuts with(CellCuts cell, Segments ahead);
+/// As if blades had not cut these.
+CellCuts without(CellCuts cell, Segments cut);
 /// What the cell's copies follow: where a cut ends in it, what is ahead of the front too.
 CellCuts cuts_of_copies(const Solid& solid, CellId c);
 
