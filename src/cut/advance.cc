@@ -80,20 +80,10 @@ bool is_in(const Box& box, const Patch& quad) {
 }
 
 Polygon clipped(Polygon polygon, const Box& box) {
-  for (int axis = 0; axis < 3; ++axis)
-    for (const double side : {-1.0, 1.0}) {
-      const double end = side * (side > 0 ? box.upper : box.lower)[axis];
-      Polygon kept;
-      for (std::size_t i = 0; i < polygon.size(); ++i) {
-        const Vec3 &p = polygon[i], &q = polygon[(i + 1) % polygon.size()];
-        const double at_p = side * p[axis] - end, at_q = side * q[axis] - end;
-        if (at_p <= 0)
-          kept.push_back(p);
-        if ((at_p < 0 && at_q > 0) || (at_p > 0 && at_q < 0))
-          kept.push_back(p + at_p / (at_p - at_q) * (q - p));
-      }
-      polygon = std::move(kept);
-    }
+  for (int axis = 0; axis < 3; ++axis) {
+    polygon = cut::clipped(polygon, {-Vec3::Unit(axis), -box.lower[axis]});
+    polygon = cut::clipped(polygon, {Vec3::Unit(axis), box.upper[axis]});
+  }
   return polygon;
 }
 
@@ -103,10 +93,7 @@ class Sweep {
   Sweep(const BladePath& path, const Solid& solid, const Points& x_before, const Points& x)
     : path_(path), solid_(solid), x_before_(x_before), x_(x), near_(patches(path)) {}
 
-  bool is_near(const EdgeBoxes::Block& block) const {
-    const Vec3 slack = Vec3::Constant(2 * block.longest);
-    return near_.may_be_in({block.box.lower - slack, block.box.upper + slack});
-  }
+  bool is_near(const EdgeBoxes::Block& block) const { return near_.may_be_in(block.around_cells()); }
   bool is_near(const CellId c) const {
     const grid::Copy& copy = solid_.complex.copies[solid_.complex.first_copy[c]];
     std::array<Vec3, 16> corners;

@@ -43,6 +43,19 @@ double area(const Polygon& polygon) {
   return 0.5 * sum.norm();
 }
 
+Polygon clipped(const Polygon& polygon, const HalfSpace& side) {
+  Polygon result;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Vec3 &p = polygon[i], &q = polygon[(i + 1) % polygon.size()];
+    const double at_p = side.beyond(p), at_q = side.beyond(q);
+    if (at_p <= 0)
+      result.push_back(p);
+    if ((at_p < 0) != (at_q < 0) && at_p != 0 && at_q != 0)
+      result.push_back(p + at_p / (at_p - at_q) * (q - p));
+  }
+  return result;
+}
+
 Vec3 mean(const Polygon& points) {
   Vec3 sum = Vec3::Zero();
   for (const Vec3& p : points)
@@ -178,10 +191,7 @@ Vec3 CellAtPlane::position(const int item) const {
 }
 
 Vec3 CellAtPlane::mapped(const Vec3& xi) const {
-  Vec3 p = Vec3::Zero();
-  for (int v = 0; v < cube::n_vertices; ++v)
-    p += grid::shape(v, xi) * x_[v];
-  return p;
+  return grid::interpolated(xi, [&](const int v) { return x_[v]; });
 }
 
 bool hangs_by_skin(const grid::Solid& solid, const grid::Front& front) {

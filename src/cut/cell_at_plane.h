@@ -13,6 +13,15 @@ Vec3 mean(const Polygon& points);
 /// Of the plane nearest to points, unit; the sign has no meaning.
 Vec3 normal(const Polygon& points);
 
+struct HalfSpace {
+  Vec3 outward;
+  double height; ///< outward . p <= height
+
+  double beyond(const Vec3& p) const { return outward.dot(p) - height; }
+};
+/// What of a polygon lies in a half-space.
+Polygon clipped(const Polygon& polygon, const HalfSpace& side);
+
 /// The corners of a cell at rest [m].
 std::array<Vec3, 8> rest_of(const grid::Solid& solid, grid::CellId c);
 

@@ -1,9 +1,12 @@
 #include "cut/cutter.h"
 
+#include "base/sort_unique.h"
 #include "cut/course.h"
 #include "cut/fronts.h"
+#include "cut/near_sweep.h"
 #include "cut/shreds.h"
 #include "cut/sides.h"
+#include "grid/parts.h"
 #include "grid/touched.h"
 
 #include <algorithm>
@@ -18,17 +21,48 @@ using grid::Solid;
 
 namespace {
 
-void append(SweepCuts& all, const SweepCuts& more) {
-  all.cuts.insert(all.cuts.end(), more.cuts.begin(), more.cuts.end());
-  all.of_skin.insert(all.of_skin.end(), more.of_skin.begin(), more.of_skin.end());
-  all.later.insert(all.later.end(), more.later.begin(), more.later.end());
-  all.later_of_skin.insert(all.later_of_skin.end(), more.later_of_skin.begin(), more.later_of_skin.end());
-  all.n_double_crossings += more.n_double_crossings;
-}
-
 std::array<grid::CellId, 2> cells_of(const grid::Grid& grid, const grid::SkinSegment& segment) {
   return segment.face.valid() ? grid.cells(segment.face) : std::array{segment.cell, grid::CellId()};
 }
+
+/// Where blades are.
+class Passage {
+ public:
+  explicit Passage(const std::span<const StandingEdge> edges) {
+    for (const auto& [label, line] : edges) {
+      std::vector<Patch> pieces;
+      for (std::size_t i = 1; i < line.size(); ++i)
+        pieces.push_back({line[i - 1], line[i], line[i], line[i - 1]});
+      edges_.push_back({label, NearSweep(std::move(pieces))});
+    }
+  }
+
+  /// What blades that are in a cell or beside it have cut there, if others have cut it too.
+  grid::Segments cuts_in(const Solid& solid, const grid::CellId c, const Points& x) const {
+    grid::Segments cuts = 0;
+    for (const auto& [label, near] : edges_)
+      if (is_near(near, solid, c, x))
+        cuts |= grid::cut_by(solid, c, label);
+    return (grid::cuts_of(solid, c).blades & ~cuts) != 0 ? cuts : 0;
+  }
+
+ private:
+  static bool is_near(const NearSweep& near, const Solid& solid, const grid::CellId c, const Points& x) {
+    const Vec3 cube = Vec3::Constant(solid.grid.h());
+    for (const grid::CopyId copy : solid.complex.copies_of(c)) {
+      const Box box = geometry::box_around(corners_of(solid.complex.copies[copy], x));
+      if (near.may_be_in({box.lower - cube, box.upper + cube}))
+        return true;
+    }
+    return false;
+  }
+
+  struct Edge {
+    grid::CutLabel label;
+    NearSweep near;
+  };
+  std::vector<Edge> edges_;
+};
 
 } // namespace
 
@@ -37,6 +71,7 @@ Cutter::Cutter(const std::size_t n_labels, const Release release, const Fronts f
 
 void Cutter::begin(const Solid& solid, const Points& x) {
   boxes_.emplace(solid);
+  x_before_.reserve(x.size() + x.size() / 8); // some room for new corners
   x_before_ = x;
 }
 
@@ -51,6 +86,9 @@ CutChange Cutter::step(Solid& solid, const std::span<const Blade> blades, const 
       for (const BladePath& path : paths(blade, t0, t1))
         advance_.sweep(path, solid, x_before_, x, *boxes_, blade.label);
   }
+  edges_.clear();
+  for (const Blade& blade : blades)
+    edges_.push_back({blade.label, world_points(blade, t1)});
   return take(solid, strokes, x);
 }
 
@@ -95,24 +133,20 @@ Cutter::Added Cutter::add(Solid& solid, const SweepCuts& cuts) {
     meet(cut, cut.edge, edges_met);
   for (const grid::SkinCut& cut : cuts.later_of_skin)
     meet(cut, cut.segment, segments_met);
-  for (const EdgeCut& cut : cuts.cuts) {
-    if (!solid.cuts.can_be_cut(solid.grid, cut.edge)) { // by another of the same step
+  for (const EdgeCut& cut : cuts.cuts)
+    if (solid.cuts.can_be_cut(solid.grid, cut.edge)) {
+      solid.cuts.add(solid.grid, cut);
+      edges.push_back(cut.edge);
+      passed_[cut.label - 1].remove(solid.grid.cells(cut.edge));
+    } else // by another of the same step
       meet(cut, cut.edge, edges_met);
-      continue;
-    }
-    solid.cuts.add(solid.grid, cut);
-    edges.push_back(cut.edge);
-    passed_[cut.label - 1].remove(solid.grid.cells(cut.edge));
-  }
-  for (const grid::SkinCut& cut : cuts.of_skin) {
-    if (solid.cuts.is_cut(cut.segment)) {
+  for (const grid::SkinCut& cut : cuts.of_skin)
+    if (!solid.cuts.is_cut(cut.segment)) {
+      solid.cuts.add(cut);
+      segments.push_back(cut.segment);
+      passed_[cut.label - 1].remove(cells_of(solid.grid, cut.segment));
+    } else
       meet(cut, cut.segment, segments_met);
-      continue;
-    }
-    solid.cuts.add(cut);
-    segments.push_back(cut.segment);
-    passed_[cut.label - 1].remove(cells_of(solid.grid, cut.segment));
-  }
   std::sort(edges.begin(), edges.end());
   std::sort(segments.begin(), segments.end());
   counts_.n_left_whole += leave_shreds(solid, edges, segments);
@@ -142,15 +176,24 @@ CutChange Cutter::part(Solid& solid, const Added& added, const std::span<const g
 
 /// Joins what lies on the same sides of all cuts. Adds to `anew` the cells whose copies join, or are parted by nothing
 /// that is cut now.
-void Cutter::join(Solid& solid, const Added& added, const Points& x, std::vector<grid::CellId>& anew) const {
+void Cutter::join(Solid& solid, const Added& added, const Points& x, std::vector<grid::CellId>& anew) {
   const auto cut = grid::touched_cells(solid.grid, added.edges, added.segments);
   const auto met = grid::touched_cells(solid.grid, added.edges_met, added.segments_met);
   std::vector<grid::CellId> cells;
   std::ranges::set_union(cut, met, std::back_inserter(cells));
+  cells.insert(cells.end(), unsettled_.begin(), unsettled_.end());
+  sort_unique(cells);
+  unsettled_.clear();
+  const Passage passage(edges_);
   for (const grid::CellId c : cells) {
     std::vector<grid::Joined> groups;
-    if (solid.cuts.front(c) == nullptr)
-      groups = near_each_other(solid, c, on_same_sides(solid, c), x);
+    if (solid.cuts.front(c) == nullptr) {
+      const grid::Segments unsettled = passage.cuts_in(solid, c, x);
+      groups =
+        near_each_other(solid, c, unsettled != 0 ? without_cuts(solid, c, unsettled) : on_same_sides(solid, c), x);
+      if (unsettled != 0)
+        unsettled_.insert(c);
+    }
     const std::vector<grid::Joined>* const earlier = solid.cuts.joined(c);
     if (earlier ? groups == *earlier : groups.empty())
       continue;

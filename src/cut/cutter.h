@@ -4,6 +4,10 @@
 /// waits and what may still go on, counts, and cuts the grid's edges and the copies. What it returns is all that a
 /// cut has changed: placement, surface and physics follow that (scene/body.cc).
 ///
+/// Where a blade crosses what others have cut, it parts a cell only once it has left the cell, and those beside it: what its
+/// cuts free before may belong to a part from which only later ones, or those of the next cell, tell that it does (sides.h).
+/// Such cells are *unsettled*: a blade that ends in them leaves them as others have cut them.
+///
 /// Labels: of blades and surfaces, from 1 on.
 
 #include "cut/advance.h"
@@ -23,6 +27,14 @@ struct Stroke {
   grid::CutLabel label = 1;
   SweepCuts found = {}; ///< that it meets
   Strip swept = {};     ///< triangles [m, world frame]
+};
+
+/// A blade's cutting edge where it stands, world frame [m].
+struct StandingEdge {
+  grid::CutLabel label = 1;
+  Points line = {};
+
+  void archive(Archive& a) { a(label, line); }
 };
 
 /// All so far.
@@ -76,7 +88,7 @@ class Cutter {
   /// All but the boxes, which are made of the body before its first cut and fitted in each step.
   void archive(Archive& a) {
     a.name("cutter");
-    a(pending_, passed_, advance_, x_before_, counts_);
+    a(pending_, passed_, advance_, edges_, unsettled_, x_before_, counts_);
   }
   /// Memory of what grows with the body [B].
   std::size_t n_bytes() const { return boxes_->n_bytes() + sizeof(Vec3) * x_before_.capacity(); }
@@ -93,7 +105,7 @@ class Cutter {
   };
   Added add(grid::Solid& solid, const SweepCuts& cuts);
   grid::CutChange part(grid::Solid& solid, const Added& added, std::span<const grid::Front> fronts, const Points& x);
-  void join(grid::Solid& solid, const Added& added, const Points& x, std::vector<grid::CellId>& anew) const;
+  void join(grid::Solid& solid, const Added& added, const Points& x, std::vector<grid::CellId>& anew);
   SweepCuts queue(const grid::Solid& solid, std::span<const Stroke> strokes, const Points& x);
 
   Release release_;
@@ -102,6 +114,8 @@ class Cutter {
   std::optional<EdgeBoxes> boxes_;  // around the edges; there from begin() on
   std::vector<PassedCells> passed_; // by label, from 1
   Advance advance_;
+  std::vector<StandingEdge> edges_; // after the last step
+  std::set<grid::CellId> unsettled_;
   Points x_before_; // where the corners were when the blades were met last [m]
   CutCounts counts_;
 };

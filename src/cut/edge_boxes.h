@@ -22,6 +22,12 @@ class EdgeBoxes {
   struct Block {
     Box box;            ///< holds them, if the body moves before and now [m]
     double longest = 0; ///< of them, now [m]
+
+    /// Other corners of the block's cells may lie beside the ends of edges.
+    Box around_cells() const {
+      const Vec3 slack = Vec3::Constant(2 * longest);
+      return {box.lower - slack, box.upper + slack};
+    }
   };
 
   EdgeBoxes(const grid::Solid& solid);

@@ -3,7 +3,7 @@
 #include "base/parallel.h"
 #include "cut/cell_triangles.h"
 #include "geometry/triangle.h"
-#include "grid/cube.h"
+#include "grid/parts.h"
 
 #include <Eigen/Geometry>
 
@@ -41,14 +41,6 @@ const Vec3& unit_vector(const std::array<int, 3>& lines) {
   return vectors[((lines[0] + most) * n + lines[1] + most) * n + lines[2] + most];
 }
 
-std::vector<grid::EdgeId> cut_edges_of(const grid::Cuts& cuts) {
-  std::vector<grid::EdgeId> edges;
-  edges.reserve(cuts.all().size());
-  for (const grid::EdgeCut& cut : cuts.all())
-    edges.push_back(cut.edge);
-  return edges;
-}
-
 /// The lines whose lower end is among the vertices, for each set of vertices (8 bits).
 constexpr std::array<std::uint16_t, 256> lines_up_from = [] {
   std::array<std::uint16_t, 256> lines{};
@@ -73,11 +65,7 @@ class CellFitter {
       lower_(solid.grid.origin(touched.cell)),
       faces_(solid.grid.faces(touched.cell)) {
     triangles.prefetch(place + 1);
-    const auto nodes = solid.grid.nodes(cell_);
-    unsigned material = 0;
-    for (int v = 0; v < cube::n_vertices; ++v)
-      material |= unsigned(solid.grid.is_material(nodes[v])) << v;
-    leave_upwards_ = lines_up_from[material];
+    leave_upwards_ = lines_up_from[grid::material_of(solid.grid, cell_)];
     groups_.resize((near_.size() + TriangleGroup::most - 1) / TriangleGroup::most);
     for (TriangleGroup& group : groups_)
       group.clear();
@@ -233,7 +221,7 @@ class CellFitter {
 } // namespace
 
 void fit_skin(const geometry::TriangleMesh& mesh, Solid& solid) {
-  const auto cells = grid::touched_cells(solid.grid, cut_edges_of(solid.cuts));
+  const auto cells = grid::touched_cells(solid.grid, solid.cuts);
   const CellTriangles triangles(mesh, solid.grid, cells);
   // Every vertex that is moved exists already, so each cell and face writes its own place. A centre waits for the faces
   // that other threads may be at: those of cells below that come before the range.

@@ -18,13 +18,6 @@ using grid::CellId;
 using grid::Front;
 using grid::Solid;
 
-struct HalfSpace {
-  Vec3 outward;
-  double height; ///< outward . p <= height
-
-  double beyond(const Vec3& p) const { return outward.dot(p) - height; }
-};
-
 /// A flat, convex shape.
 struct Outline {
   Vec3 point, normal;
@@ -62,27 +55,6 @@ template <class Shape>
 requires(!std::is_same_v<Shape, Disc> &&
          !std::is_same_v<Shape, Rectangle>) std::optional<Outline> outline_with_lag(const Shape&, double) {
   return std::nullopt;
-}
-
-Polygon clipped(const Polygon& polygon, const HalfSpace& side) {
-  Polygon result;
-  for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const Vec3 &p = polygon[i], &q = polygon[(i + 1) % polygon.size()];
-    const double at_p = side.beyond(p), at_q = side.beyond(q);
-    if (at_p <= 0)
-      result.push_back(p);
-    if ((at_p < 0) != (at_q < 0) && at_p != 0 && at_q != 0)
-      result.push_back(p + at_p / (at_p - at_q) * (q - p));
-  }
-  return result;
-}
-
-/// The corners of the cell's first copy.
-std::array<Vec3, 8> corners_of(const Solid& solid, const CellId c, const Points& x) {
-  std::array<Vec3, 8> corners;
-  const grid::Copy& copy = solid.complex.copies[solid.complex.first_copy[c]];
-  std::ranges::transform(copy.corners, corners.begin(), [&](const grid::CornerId corner) { return x[corner.value]; });
-  return corners;
 }
 
 /// How far the shape has come in the cell.
@@ -124,7 +96,7 @@ std::vector<Front> find_fronts(const CutSurface& surface, const Solid& solid, co
     const Front* const earlier = solid.cuts.front(c);
     if (copy.next.valid() && !earlier)
       continue;
-    const CellAtPlane cell(solid, c, {outline->point, outline->normal}, corners_of(solid, c, x));
+    const CellAtPlane cell(solid, c, {outline->point, outline->normal}, grid::corners_of(copy, x));
     if (!cell.is_met())
       continue;
     Front front = front_in(cell, *outline);

@@ -75,11 +75,7 @@ class Search {
     met_ = grid::touched_cells(solid.grid, edges, segments);
   }
 
-  /// Boxes hold the ends of edges alone; other corners of the cells may lie beside them.
-  bool is_near(const EdgeBoxes::Block& block) const {
-    const Vec3 slack = Vec3::Constant(2 * block.longest);
-    return near_.may_be_in({block.box.lower - slack, block.box.upper + slack});
-  }
+  bool is_near(const EdgeBoxes::Block& block) const { return near_.may_be_in(block.around_cells()); }
 
   /// `room`: no corner of a copy lies further from the middle between its first and its last one [m]. That is 1.5 of the
   /// longest edge at most, by any way along three edges.
@@ -90,9 +86,7 @@ class Search {
       if (((near_.reach().lower - middle).array() > room).any() ||
           ((middle - near_.reach().upper).array() > room).any())
         continue;
-      std::array<Vec3, 8> corners;
-      for (int v = 0; v < 8; ++v)
-        corners[v] = x_[copy.corners[v].value];
+      const std::array<Vec3, 8> corners = grid::corners_of(copy, x_);
       bool found = false;
       near_.for_each(geometry::box_around(corners), [&](const Patch& patch) {
         const std::array<Vec3, 3> triangle = {patch[0], patch[1], patch[2]};
@@ -140,11 +134,9 @@ class Search {
       if (found || !are_parted(heights, rest))
         return;
       grid::Tetrahedron now;
-      for (int i = 0; i < 4; ++i) {
-        now[i] = Vec3::Zero();
-        for (int v = 0; v < 8; ++v)
-          now[i] += grid::shape(v, rest[i]) * corners[v];
-      }
+      std::ranges::transform(rest, now.begin(), [&](const Vec3& xi) {
+        return grid::interpolated(xi, [&](const int v) { return corners[v]; });
+      });
       found = meets(triangle, now);
     });
     return found;

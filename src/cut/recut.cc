@@ -46,6 +46,14 @@ class Crossings {
 
 } // namespace
 
+void append(SweepCuts& all, const SweepCuts& more) {
+  all.cuts.insert(all.cuts.end(), more.cuts.begin(), more.cuts.end());
+  all.of_skin.insert(all.of_skin.end(), more.of_skin.begin(), more.of_skin.end());
+  all.later.insert(all.later.end(), more.later.begin(), more.later.end());
+  all.later_of_skin.insert(all.later_of_skin.end(), more.later_of_skin.begin(), more.later_of_skin.end());
+  all.n_double_crossings += more.n_double_crossings;
+}
+
 SweepCuts cut_edges(const Strip sweep, const grid::Solid& solid, const Points& x, const grid::CutLabel label,
                     const EdgeBoxes* const boxes) {
   if (sweep.empty())

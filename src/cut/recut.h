@@ -33,6 +33,9 @@ struct SweepCuts {
   std::vector<grid::SkinCut> later_of_skin = {}; ///< ordered by segment
 };
 
+/// Puts more behind what there is.
+void append(SweepCuts& all, const SweepCuts& more);
+
 /// The edges that `sweep` (triangles [m], world frame) cuts, when the corners are at `x` [m, world frame, one a
 /// corner]. Where an edge is crossed 3, 5, ... times, the crossing nearest to its lower node is kept. Throws
 /// NumericalError when a corner is not at a finite position.

@@ -1,5 +1,6 @@
 #include "cut/shreds.h"
 
+#include "base/sort_unique.h"
 #include "grid/material.h"
 #include "grid/touched.h"
 
@@ -77,10 +78,8 @@ void for_each_sharing(const grid::Grid& grid, const CellId c, const int item, co
   if (item >= skeleton::first_on_line) {
     const EdgeId edge = grid.edges(c)[item - skeleton::first_on_line];
     for (const CellId other : grid.cells(edge))
-      if (other.valid() && other != c) {
-        const auto edges = grid.edges(other);
-        f(other, skeleton::on_line(static_cast<int>(std::find(edges.begin(), edges.end(), edge) - edges.begin())));
-      }
+      if (other.valid() && other != c)
+        f(other, skeleton::on_line(grid.line(other, edge)));
     return;
   }
   for (int axis = 0; axis < 3; ++axis) // those cells reach the others around the node
@@ -192,8 +191,7 @@ void leave(const grid::Solid& solid, const Shred& shred, const NewCuts& new_cuts
 
 template <class Key>
 std::size_t take_back(grid::Cuts& cuts, std::vector<Key>& from, std::vector<Key>& back) {
-  std::sort(back.begin(), back.end());
-  back.erase(std::unique(back.begin(), back.end()), back.end());
+  sort_unique(back);
   if (!back.empty()) {
     cuts.take_back(back);
     std::erase_if(from, [&](const Key& key) { return std::ranges::binary_search(back, key); });
@@ -201,18 +199,12 @@ std::size_t take_back(grid::Cuts& cuts, std::vector<Key>& from, std::vector<Key>
   return back.size();
 }
 
-grid::CellCuts by_segments(const grid::Solid& solid, const CellId c) {
-  grid::CellCuts cuts = grid::cuts_of(solid, c);
-  cuts.joined = nullptr;
-  return cuts;
-}
-
 /// Of all shreds at the new cuts.
 TakenBack cuts_to_leave(const grid::Solid& solid, const NewCuts& new_cuts) {
   TakenBack back;
   ItemsOfCells seen, large; // of shreds, and of what is more
   for (const CellId c : grid::touched_cells(solid.grid, new_cuts.edges, new_cuts.segments))
-    for (const grid::Part& part : whole_parts_of(by_segments(solid, c))) {
+    for (const grid::Part& part : whole_parts_of(grid::without_joined(grid::cuts_of(solid, c)))) {
       if (holds(seen, c, part.items()) || holds(large, c, part.items()))
         continue;
       if (const auto shred = shred_at(solid, c, std::countr_zero(part.items()), large,

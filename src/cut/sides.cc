@@ -135,9 +135,6 @@ class Meetings {
   std::array<std::vector<Crossing>, skeleton::n_segments> crossings_;
 };
 
-/// All items that segments lead to, cut or not.
-Items in_reach(const grid::Skeleton& skeleton, const Items from) { return skeleton.reachable(from, 0); }
-
 /// The copy of a cell that holds these items.
 grid::CopyId copy_of(const Solid& solid, const CellId c, const Items items) {
   const auto& complex = solid.complex;
@@ -182,8 +179,7 @@ Intervals near_each_other(const Solid& solid, const CellId c, const Joined& grou
 } // namespace
 
 std::vector<Joined> on_same_sides(const Solid& solid, const CellId c) {
-  grid::CellCuts cuts = grid::cuts_of(solid, c);
-  cuts.joined = nullptr;
+  const grid::CellCuts cuts = grid::without_joined(grid::cuts_of(solid, c));
   const grid::Parts parts = grid::parts_of(cuts);
   std::vector<Joined> groups;
   if (parts.n < (solid.cuts.has_later_cuts() ? 2 : 3))
@@ -202,7 +198,7 @@ std::vector<Joined> on_same_sides(const Solid& solid, const CellId c) {
     if ((items & grouped) != 0)
       continue;
     Joined group{items, 0};
-    const Items around = in_reach(skeleton, items);
+    const Items around = skeleton.reachable(items, 0); // over segments, cut or not
     for (const grid::Part* other = part + 1; other != parts.end(); ++other)
       if (side_of(other->items()) == side_of(items) && (around & other->items()) != 0)
         group.items |= other->items();
@@ -217,10 +213,20 @@ std::vector<Joined> on_same_sides(const Solid& solid, const CellId c) {
   return groups;
 }
 
+std::vector<Joined> without_cuts(const Solid& solid, const CellId c, const Segments cuts) {
+  const std::vector<Joined> settled = on_same_sides(solid, c);
+  std::vector<Joined> groups;
+  for (const grid::Part& part : whole_parts_of(grid::without(grid::cuts_of(solid, c), cuts))) {
+    Joined& group = groups.emplace_back(Joined{part.items(), part.intervals});
+    for (const Joined& side : settled)
+      if ((side.items & group.items) != 0)
+        group.intervals |= side.intervals;
+  }
+  return groups;
+}
+
 std::vector<Joined> near_each_other(const Solid& solid, const CellId c, std::vector<Joined> groups, const Points& x) {
-  grid::CellCuts cuts = grid::cuts_of(solid, c);
-  cuts.joined = nullptr;
-  const grid::Parts parts = grid::parts_of(cuts);
+  const grid::Parts parts = grid::parts_of(grid::without_joined(grid::cuts_of(solid, c)));
   for (Joined& group : groups) {
     Items kept = 0;
     for (const grid::Part& part : parts) {

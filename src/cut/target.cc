@@ -30,13 +30,8 @@ SweepCuts joined(const std::size_t n, const Fill& fill) {
   std::vector<SweepCuts> parts(n);
   parallel_for(n, [&](const std::size_t k) { fill(k, parts[k]); });
   SweepCuts result;
-  for (const SweepCuts& part : parts) {
-    result.cuts.insert(result.cuts.end(), part.cuts.begin(), part.cuts.end());
-    result.of_skin.insert(result.of_skin.end(), part.of_skin.begin(), part.of_skin.end());
-    result.later.insert(result.later.end(), part.later.begin(), part.later.end());
-    result.later_of_skin.insert(result.later_of_skin.end(), part.later_of_skin.begin(), part.later_of_skin.end());
-    result.n_double_crossings += part.n_double_crossings;
-  }
+  for (const SweepCuts& part : parts)
+    append(result, part);
   std::ranges::sort(result.cuts, {}, &grid::EdgeCut::edge);
   std::ranges::sort(result.of_skin, {}, &grid::SkinCut::segment);
   std::ranges::sort(result.later, {}, &grid::EdgeCut::edge);
@@ -44,10 +39,10 @@ SweepCuts joined(const std::size_t n, const Fill& fill) {
   return result;
 }
 
-/// The vertex that a node is of a cell.
-int vertex_of(const grid::Grid& grid, const grid::CellId c, const grid::NodeId node) {
-  const auto nodes = grid.nodes(c);
-  return static_cast<int>(std::find(nodes.begin(), nodes.end(), node) - nodes.begin());
+/// One of those around an edge.
+grid::CellId cell_at(const grid::Grid& grid, const grid::EdgeId edge) {
+  const auto around = grid.cells(edge);
+  return *std::ranges::find_if(around, [](const grid::CellId cell) { return cell.valid(); });
 }
 
 /// The block's box holds edges between material nodes; edges of the skin begin at one of those. How far they reach, to
@@ -141,10 +136,8 @@ void Target::judge_later(const grid::EdgeId edge, const grid::CutLabel label, co
   Verdict verdict;
   double from = 0, to = 1;
   if (solid_.cuts.is_cut_twice(edge)) {
-    const auto around = solid_.grid.cells(edge);
-    const grid::CellId c = *std::ranges::find_if(around, [](const grid::CellId cell) { return cell.valid(); });
-    const auto edges = solid_.grid.edges(c);
-    const int line = static_cast<int>(std::ranges::find(edges, edge) - edges.begin());
+    const grid::CellId c = cell_at(solid_.grid, edge);
+    const int line = solid_.grid.line(c, edge);
     const SkinNow skin(solid_, c);
     verdict = judge(skin.segment(line, x_before_), skin.segment(line, x_));
     from = solid_.grid.is_material(solid_.grid.ends(edge)[0]) ? 0 : 1;
@@ -215,9 +208,8 @@ EdgeEnds ends_of(const grid::Solid& solid, const grid::EdgeId edge) {
   const bool from_lower = solid.grid.is_material(lower);
   if (from_lower == solid.grid.is_material(upper))
     return {{solid.complex.real_corner[lower], solid.complex.real_corner[upper]}};
-  const auto around = solid.grid.cells(edge);
-  const grid::CellId c = *std::ranges::find_if(around, [](const grid::CellId cell) { return cell.valid(); });
-  const int v = vertex_of(solid.grid, c, lower), w = v | 1 << solid.grid.axis(edge);
+  const grid::CellId c = cell_at(solid.grid, edge);
+  const int v = solid.grid.vertex(c, lower), w = v | 1 << solid.grid.axis(edge);
   const grid::Copy& copy = solid.complex.copies[solid.complex.copy_at(c, from_lower ? v : w)];
   const double skin = solid.cuts.find_outer(edge)->t;
   return {{copy.corners[v], copy.corners[w]}, from_lower ? 0 : skin, from_lower ? skin : 1};
@@ -229,7 +221,7 @@ Mat3 gradient_on(const grid::Solid& solid, const Points& x, const grid::EdgeId e
   for (const grid::CellId c : solid.grid.cells(edge)) {
     if (!c.valid())
       continue;
-    const int vertex = vertex_of(solid.grid, c, lower);
+    const int vertex = solid.grid.vertex(c, lower);
     Vec3 at(vertex & 1, vertex >> 1 & 1, vertex >> 2 & 1);
     at[solid.grid.axis(edge)] = t;
     const int held = solid.grid.is_material(lower) ? vertex : vertex | 1 << solid.grid.axis(edge);
@@ -293,11 +285,7 @@ Vec3 SkinNow::place(const int item, const Points& x) const {
     return (1 - v) * ((1 - u) * corner(vertices[0]) + u * corner(vertices[1])) +
            v * ((1 - u) * corner(vertices[2]) + u * corner(vertices[3]));
   }
-  const Vec3 at = local(item);
-  Vec3 sum = Vec3::Zero();
-  for (int v = 0; v < cube::n_vertices; ++v)
-    sum += grid::shape(v, at) * corner(v);
-  return sum;
+  return grid::interpolated(local(item), corner);
 }
 
 Vec3 SkinNow::pulled_back(const int segment, const double t, const Points& x, const Vec3& normal) const {

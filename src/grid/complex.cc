@@ -1,6 +1,7 @@
 #include "grid/complex.h"
 
 #include "base/parallel.h"
+#include "base/sort_unique.h"
 #include "base/union_find.h"
 #include "grid/corner_classes.h"
 #include "grid/cube.h"
@@ -10,7 +11,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <iterator>
 #include <optional>
 #include <stdexcept>
 
@@ -28,17 +28,10 @@ struct CutCell {
   Parts parts;
 };
 
-/// Parts come in this order.
-int rank(const Copy& copy) { return std::countr_zero(copy.items()); }
-
 /// The cells with a cut edge, or with a front, ascending.
 std::vector<CutCell> find_cut_cells(const Solid& solid) {
-  std::vector<EdgeId> edges;
-  edges.reserve(solid.cuts.all().size());
-  for (const EdgeCut& cut : solid.cuts.all())
-    edges.push_back(cut.edge);
   std::vector<CutCell> cells;
-  for (const TouchedCell& touched : touched_cells(solid.grid, edges)) // by which lines is its configuration
+  for (const TouchedCell& touched : touched_cells(solid.grid, solid.cuts)) // by which lines is its configuration
     if (solid.cuts.front(touched.cell) == nullptr)
       cells.push_back({touched.cell, parts_of(cuts_of(solid, touched.cell, touched.lines))});
   for (const Front& front : solid.cuts.fronts())
@@ -143,12 +136,6 @@ void make_corners(const Grid& grid, const std::vector<CutCell>& cut_cells, CellC
     worth);
 }
 
-template <class T>
-void sort_unique(std::vector<T>& all) {
-  std::sort(all.begin(), all.end());
-  all.erase(std::unique(all.begin(), all.end()), all.end());
-}
-
 /// Splits copies and renames corners around new cut edges.
 class Update {
  public:
@@ -164,12 +151,10 @@ class Update {
     change_.cells = touched_cells(solid_.grid, change_.edges, change_.segments);
     change_.cells.insert(change_.cells.end(), with_other_fronts.begin(), with_other_fronts.end());
     sort_unique(change_.cells);
-    std::vector<CellId> without_fronts;
-    std::ranges::copy_if(with_other_fronts, std::back_inserter(without_fronts),
-                         [&](const CellId cell) { return solid_.cuts.front(cell) == nullptr; });
-    std::ranges::sort(without_fronts);
+    std::vector<CellId> may_join(with_other_fronts.begin(), with_other_fronts.end());
+    std::ranges::sort(may_join);
     for (const CellId cell : change_.cells)
-      std::ranges::binary_search(without_fronts, cell) ? divide_anew(cell) : split(cell);
+      divide(cell, may_join);
     std::sort(slots_.begin(), slots_.end());
     for (auto slot = slots_.begin(); slot != slots_.end();) {
       const NodeId node = slot->node;
@@ -197,64 +182,70 @@ class Update {
     auto operator<=>(const Slot&) const = default;
   };
 
-  void split(const CellId cell) {
-    const CellCuts cell_cuts = cuts_of_copies(solid_, cell);
-    const Parts parts = parts_of(cell_cuts), unsaid = unsaid_parts(cell, cell_cuts);
-    bool is_other = false;
-    for (CopyId c = solid_.complex.first_copy[cell]; c.valid();) {
-      const CopyId next = solid_.complex.copies[c].next;
-      is_other |= divide(c, parts, unsaid);
-      c = next;
-    }
-    if (is_other) {
-      sort_copies(cell);
-      add_slots(cell);
-    }
-  }
-
   void add_slots(const CellId cell) {
     const auto nodes = solid_.grid.nodes(cell);
     for (int v = 0; v < 8; ++v)
       slots_.push_back({nodes[v], v, cell});
   }
 
-  /// Where a front is taken back, or others hang together: parts may join what the cell's copies were. A part goes on as
-  /// the copy that had its lowest item, if that does not go on as a lower one.
-  void divide_anew(const CellId cell) {
-    std::vector<CopyId> before, now;
-    std::vector<Items> were;
-    std::vector<std::uint32_t> crumb_of;
-    const CellCuts cell_cuts = cuts_of(solid_, cell);
-    const Parts unsaid = unsaid_parts(cell, cell_cuts);
-    for (const CopyId c : solid_.complex.copies_of(cell)) {
-      before.push_back(c);
-      were.push_back(whole(c, unsaid).items());
-      crumb_of.push_back(solid_.crumbs.of(c));
-    }
-    for (const Part& part : parts_of(cell_cuts)) {
-      const Items lowest = part.items() & -part.items();
-      const auto from = std::ranges::find_if(were, [&](const Items items) { return (items & lowest) != 0; });
-      const CopyId old = before[static_cast<std::size_t>(from - were.begin())];
-      const bool is_taken = std::ranges::find(now, old) != now.end();
-      now.push_back(is_taken ? solid_.complex.copies.push_back(Copy(solid_.complex.copies[old])) : old);
-      if (is_taken || part != solid_.complex.copies[old].part())
-        set_part(now.back(), part);
-      std::optional<std::uint32_t> crumb; // that all of the part comes from
-      for (std::size_t i = 0; i < were.size(); ++i)
-        if ((were[i] & part.items()) != 0)
-          crumb = !crumb || *crumb == crumb_of[i] ? crumb_of[i] : Crumbs::none;
-      solid_.crumbs.set(now.back(), *crumb);
-    }
-    for (std::size_t i = 0; i < now.size(); ++i)
-      solid_.complex.copies[now[i]].next = i + 1 < now.size() ? now[i + 1] : CopyId();
-    solid_.complex.first_copy[cell] = now[0];
-    for (std::size_t i = 0; i < before.size(); ++i)
-      if (std::ranges::find(now, before[i]) == now.end()) {
-        const auto heir =
-          std::ranges::find_if(now, [&](const CopyId c) { return (solid_.complex.copies[c].items() & were[i]) != 0; });
-        lapsing_.push_back({before[i], heir == now.end() ? now[0] : *heir});
+  /// A copy before its cell is divided.
+  struct Was {
+    CopyId copy;
+    Items items;
+    std::uint32_t crumb;
+  };
+
+  /// A part goes on as the copy that had its lowest item, or starts with that one's corners where a lower part goes on as
+  /// it. Where a front is taken back, or others hang together, parts may join what copies were: those that no part goes
+  /// on as lapse.
+  void divide(const CellId cell, const std::span<const CellId> may_join) {
+    const CellCuts cell_cuts = cuts_of_copies(solid_, cell);
+    const Parts parts = parts_of(cell_cuts), unsaid = unsaid_parts(cell, cell_cuts);
+    Table<CopyId, Copy>& copies = solid_.complex.copies;
+    std::array<Was, skeleton::n_items> room;
+    std::size_t n_before = 0;
+    for (const CopyId c : solid_.complex.copies_of(cell))
+      room[n_before++] = {c, whole(c, unsaid).items(), solid_.crumbs.of(c)};
+    const std::span<const Was> before = std::span(room).first(n_before);
+    std::array<CopyId, skeleton::n_items> now;
+    bool is_glued_anew = false;
+    for (const Was& was : before) {
+      bool is_taken = false;
+      for (int i = 0; i < parts.n; ++i) {
+        const Part& part = parts.items[i];
+        if ((part.items() & -part.items() & was.items) == 0)
+          continue;
+        if ((part.items() & ~was.items) != 0 && !std::ranges::binary_search(may_join, cell))
+          throw std::logic_error("a cut has joined what was parted");
+        is_glued_anew |= part.items() != was.items || part.intervals != copies[was.copy].intervals;
+        if (is_taken)
+          change_.copies.push_back(was.copy);
+        now[i] = is_taken ? copies.push_back(Copy(copies[was.copy])) : was.copy;
+        if (part != copies[now[i]].part())
+          set_part(now[i], part);
+        solid_.crumbs.set(now[i], crumb_of(part, before));
+        is_taken = true;
       }
-    add_slots(cell);
+    }
+    solid_.complex.first_copy[cell] = now[0];
+    for (int i = 0; i < parts.n; ++i)
+      copies[now[i]].next = i + 1 < parts.n ? now[i + 1] : CopyId();
+    for (const Was& was : before)
+      if (const auto end = now.begin() + parts.n; std::find(now.begin(), end, was.copy) == end) {
+        const auto heir = std::find_if(now.begin(), end, [&](const CopyId c) { return copies[c].items() & was.items; });
+        lapsing_.push_back({was.copy, heir == end ? now[0] : *heir});
+      }
+    if (is_glued_anew)
+      add_slots(cell);
+  }
+
+  /// The crumb that all of a part comes from.
+  static std::uint32_t crumb_of(const Part& part, const std::span<const Was> before) {
+    std::optional<std::uint32_t> crumb;
+    for (const Was& was : before)
+      if ((was.items & part.items()) != 0)
+        crumb = !crumb || *crumb == was.crumb ? was.crumb : Crumbs::none;
+    return *crumb;
   }
 
   /// Where blades have cut at the skin of a cell for the first time, what its copies were, points of the skin included;
@@ -275,56 +266,11 @@ class Update {
     return found == unsaid.end() ? copy.part() : *found;
   }
 
-  /// The first of the parts that a copy falls into keeps it; the others start with its corners, and stand behind it.
-  /// Returns whether it may be glued to others than before: there are several, or it has other intervals.
-  bool divide(const CopyId c, const Parts& parts, const Parts& unsaid) {
-    const Part whole = this->whole(c, unsaid);
-    const Intervals intervals = solid_.complex.copies[c].intervals;
-    bool is_first = true, is_split = false;
-    for (const Part& part : parts) {
-      if ((part.items() & whole.items()) == 0)
-        continue;
-      if ((part.items() & ~whole.items()) != 0)
-        throw std::logic_error("a cut has joined what was parted");
-      if (!is_first)
-        add_copy(c, part);
-      else if (part != solid_.complex.copies[c].part())
-        set_part(c, part);
-      is_split |= !is_first;
-      is_first = false;
-    }
-    if (is_split)
-      change_.copies.push_back(c);
-    return is_split || solid_.complex.copies[c].intervals != intervals;
-  }
-
   void set_part(const CopyId c, const Part& part) {
     solid_.complex.copies[c].nodes = part.nodes;
     solid_.complex.copies[c].skin = part.skin;
     solid_.complex.copies[c].intervals = part.intervals;
     change_.copies.push_back(c);
-  }
-
-  void add_copy(const CopyId from, const Part& part) {
-    Copy copy = solid_.complex.copies[from];
-    copy.next = solid_.complex.copies[from].next;
-    const CopyId added = solid_.complex.copies.push_back(copy);
-    solid_.complex.copies[from].next = added;
-    solid_.crumbs.set(added, solid_.crumbs.of(from));
-    set_part(added, part);
-  }
-
-  void sort_copies(const CellId cell) {
-    std::array<CopyId, skeleton::n_items> copies;
-    int n = 0;
-    for (const CopyId c : solid_.complex.copies_of(cell))
-      copies[n++] = c;
-    std::sort(copies.begin(), copies.begin() + n, [&](const CopyId a, const CopyId b) {
-      return rank(solid_.complex.copies[a]) < rank(solid_.complex.copies[b]);
-    });
-    solid_.complex.first_copy[cell] = copies[0];
-    for (int i = 0; i < n; ++i)
-      solid_.complex.copies[copies[i]].next = i + 1 < n ? copies[i + 1] : CopyId();
   }
 
   void rename(const NodeId node, const CornerClasses& classes) {

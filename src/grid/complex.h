@@ -17,6 +17,7 @@
 
 #include "grid/parts.h"
 
+#include <algorithm>
 #include <span>
 
 namespace kerf::grid {
@@ -37,6 +38,13 @@ struct Copy {
   bool is_lapsed() const { return nodes == 0 && skin == 0; }
   void archive(Archive& a) { a(cell, nodes, skin, corners, next, intervals); }
 };
+
+/// Where its corners are [m].
+inline std::array<Vec3, 8> corners_of(const Copy& copy, const Points& x) {
+  std::array<Vec3, 8> corners;
+  std::ranges::transform(copy.corners, corners.begin(), [&](const CornerId c) { return x[c.value]; });
+  return corners;
+}
 
 /// The copies of one cell: for (const CopyId c : complex.copies_of(cell)).
 class CopiesOfCell {

@@ -1,8 +1,8 @@
 #include "grid/crumbs.h"
 
+#include "base/sort_unique.h"
 #include "grid/locate.h"
 #include "grid/material.h"
-#include "grid/sampled_crumbs.h"
 
 #include <Eigen/Eigenvalues>
 
@@ -15,11 +15,6 @@
 namespace kerf::grid {
 
 namespace {
-
-void sort_unique(std::vector<CopyId>& copies) {
-  std::sort(copies.begin(), copies.end());
-  copies.erase(std::unique(copies.begin(), copies.end()), copies.end());
-}
 
 /// Of some copies' nodes.
 struct Extent {
@@ -221,13 +216,11 @@ void find_crumbs(Solid& solid) {
   }
 }
 
-namespace {
-
-void update_crumbs_by(const Rule& rule, Solid& solid, CutChange& change) {
+void update_crumbs(Solid& solid, CutChange& change, const Points* const samples) {
   Crumbs& crumbs = solid.crumbs;
   std::vector<CopyId> in_use = change.reshaped;
   std::erase_if(in_use, [&](const CopyId c) { return solid.complex.copies[c].is_lapsed(); });
-  Search search(solid, rule);
+  Search search(solid, {.may_be_small = true, .samples = samples});
   std::vector<Crumb> found = crumbs_at(search, crumbs.n_named, in_use);
   if (found.empty() && crumbs.all.empty())
     return;
@@ -254,14 +247,6 @@ void update_crumbs_by(const Rule& rule, Solid& solid, CutChange& change) {
   change.reshaped.insert(change.reshaped.end(), now.begin(), now.end());
   sort_unique(change.reshaped);
   add(solid, std::move(found));
-}
-
-} // namespace
-
-void update_crumbs(Solid& solid, CutChange& change) { update_crumbs_by({.may_be_small = true}, solid, change); }
-
-void update_crumbs(Solid& solid, CutChange& change, const Points& samples) {
-  update_crumbs_by({.may_be_small = true, .samples = &samples}, solid, change);
 }
 
 } // namespace kerf::grid

@@ -6,7 +6,9 @@
 /// A copy is *loose* when its material fills less than a quarter of its cube, or holds one node at most. A **crumb** is a
 /// piece of loose copies alone; or one that a cut has left, and whose nodes are all vertices of one cube: of such a
 /// piece the grid knows hardly more than one deformation gradient, and spends up to 27 copies on it. What a cut leaves
-/// of a crumb stays one. Where copies are joined (complex.h), and not all of a piece comes from one crumb, it is looked at as
+/// of a crumb stays one. A piece that a cut has left is one too where the physics knows the body by *samples*, points of its
+/// own, and those of the piece span no volume: they are none, up to three, or all near one plane, with a second moment about
+/// their mean of less than h^2 / 8 along some direction. What they do tells no deformation gradient. Where copies are joined (complex.h), and not all of a piece comes from one crumb, it is looked at as
 /// if it had been none: crumbs become material again.
 ///
 /// Found by walking from the copies that a cut has changed, over glued faces, for as long as it may be a crumb: what it
@@ -14,6 +16,7 @@
 
 #include "base/archive.h"
 #include "base/id.h"
+#include "base/vec.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -62,7 +65,7 @@ struct Crumbs {
 void find_crumbs(Solid& solid);
 
 /// Follows a cut whose vertices are placed. Copies that are in a crumb now, and were not, and the reverse, join
-/// change.reshaped.
-void update_crumbs(Solid& solid, CutChange& change);
+/// change.reshaped. `samples`: where they rest [m]; null where the physics has none.
+void update_crumbs(Solid& solid, CutChange& change, const Points* samples = nullptr);
 
 } // namespace kerf::grid

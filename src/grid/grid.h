@@ -15,6 +15,7 @@
 #include "grid/cube.h"
 #include "grid/rows.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -68,6 +69,10 @@ class Grid {
   /// Rest position of the cell's lowest node [m].
   Vec3 origin(CellId c) const { return position(nodes(c)[0]); }
 
+  /// Which of the cell's vertices a node is, which of its lines an edge.
+  int vertex(CellId c, NodeId n) const { return place_among(nodes(c), n); }
+  int line(CellId c, EdgeId e) const { return place_among(edges(c), e); }
+
   /// In deal.II's local numbering (cube.h).
   std::array<NodeId, 8> nodes(CellId c) const;
   std::array<EdgeId, 12> edges(CellId c) const;
@@ -108,6 +113,11 @@ class Grid {
   struct Members;
   /// What is known of each cell: four nodes, edges and faces; of two side by side along x the lower one.
   enum CellKind { node = 0, edge_x = 4, edge_y = 8, edge_z = 10, face_x = 12, face_y = 13, face_z = 15, n_kinds = 17 };
+
+  template <class Ids, class Id>
+  static int place_among(const Ids& all, const Id id) {
+    return static_cast<int>(std::find(all.begin(), all.end(), id) - all.begin());
+  }
 
   explicit Grid(const Lattice& lattice) : lattice_(lattice) {}
   void make(const RowSet& material);

@@ -3,6 +3,7 @@
 #include "base/parallel.h"
 #include "grid/cube.h"
 #include "grid/material.h"
+#include "grid/parts.h"
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
@@ -48,13 +49,6 @@ std::optional<CellId> cell_around(const Grid& grid, const Vec3& p) {
   return grid.find_cell({static_cast<int>(at[0]), static_cast<int>(at[1]), static_cast<int>(at[2])});
 }
 
-unsigned material_vertices(const Grid& grid, const CellId c) {
-  unsigned vertices = 0;
-  for (int v = 0; v < cube::n_vertices; ++v)
-    vertices |= unsigned(grid.is_material(grid.nodes(c)[v])) << v;
-  return vertices;
-}
-
 CopyId copy_among(const Solid& solid, const CellId cell, const unsigned empty, const Vec3& p) {
   return solid.cuts.configuration(solid.grid, cell) == 0
            ? solid.complex.first_copy[cell]
@@ -65,7 +59,7 @@ CopyId copy_among(const Solid& solid, const CellId cell, const unsigned empty, c
 
 CopyId copy_around(const Solid& solid, const Vec3& p) {
   const auto cell = cell_around(solid.grid, p);
-  return cell ? copy_among(solid, *cell, 0xff & ~material_vertices(solid.grid, *cell), p) : CopyId();
+  return cell ? copy_among(solid, *cell, 0xff & ~material_of(solid.grid, *cell), p) : CopyId();
 }
 
 std::vector<CopyId> copies_around(const Solid& solid, const Points& points) {

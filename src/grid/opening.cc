@@ -29,13 +29,6 @@ void add(const Solid& solid, const CellId cell, const int vertex, const int axis
   ++side.n;
 }
 
-int vertex_of(const Solid& solid, const CellId cell, const NodeId node) {
-  int v = 0;
-  while (solid.grid.nodes(cell)[v] != node)
-    ++v;
-  return v;
-}
-
 } // namespace
 
 std::vector<Gap> gaps(const Solid& solid, const CutLabel label, const Points& x) {
@@ -49,7 +42,7 @@ std::vector<Gap> gaps(const Solid& solid, const CutLabel label, const Points& x)
     std::array<Side, 2> sides;
     for (const CellId cell : solid.grid.cells(cut.edge))
       for (std::size_t end = 0; cell.valid() && end < 2; ++end)
-        add(solid, cell, vertex_of(solid, cell, ends[end]), axis, cut.t, x, sides[end]);
+        add(solid, cell, solid.grid.vertex(cell, ends[end]), axis, cut.t, x, sides[end]);
     const Mat3 F = 0.5 * (sides[0].gradient / sides[0].n + sides[1].gradient / sides[1].n);
     all.push_back({cut.edge, sides[1].position / sides[1].n - sides[0].position / sides[0].n,
                    h * h * F.col((axis + 1) % 3).cross(F.col((axis + 2) % 3))});

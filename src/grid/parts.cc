@@ -97,7 +97,12 @@ CellCuts cuts_of(const Solid& solid, const CellId c) {
 CellCuts with(CellCuts cell, const Segments ahead) {
   cell.cut |= static_cast<unsigned>(ahead & skeleton::lines & ~Segments(skin_lines[cell.material]));
   cell.blades |= ahead;
-  cell.joined = nullptr;
+  return without_joined(cell);
+}
+
+CellCuts without(CellCuts cell, const Segments cut) {
+  cell.cut &= ~static_cast<unsigned>(cut & skeleton::lines & ~Segments(skin_lines[cell.material]));
+  cell.blades &= ~cut;
   return cell;
 }
 

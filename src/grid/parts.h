@@ -28,8 +28,15 @@ CellCuts cuts_of(const Solid& solid, CellId c);
 /// The same for a cell whose cut lines are known.
 CellCuts cuts_of(const Solid& solid, CellId c, unsigned cut_lines);
 
-/// As if blades had cut these segments too.
+/// Parted by segments alone.
+inline CellCuts without_joined(CellCuts cell) {
+  cell.joined = nullptr;
+  return cell;
+}
+/// The same as if blades had cut these segments too.
 CellCuts with(CellCuts cell, Segments ahead);
+/// As if blades had not cut these.
+CellCuts without(CellCuts cell, Segments cut);
 /// What the cell's copies follow: where a cut ends in it, what is ahead of the front too.
 CellCuts cuts_of_copies(const Solid& solid, CellId c);
 

@@ -18,6 +18,15 @@ inline double shape(const int v, const Vec3& xi) {
   return n;
 }
 
+/// At `xi` between points, at(v) for each vertex v.
+template <class At>
+Vec3 interpolated(const Vec3& xi, const At& at) {
+  Vec3 sum = Vec3::Zero();
+  for (int v = 0; v < 8; ++v)
+    sum += shape(v, xi) * at(v);
+  return sum;
+}
+
 /// dN_v / dxi at `xi` [1].
 inline Vec3 shape_gradient(const int v, const Vec3& xi) {
   Vec3 value, slope;

@@ -55,8 +55,6 @@ constexpr Intervals intervals_of(const int segment) {
 constexpr int in_face(const int face, const int i) { return i < 4 ? cube::face_lines[face][i] : half(face, i - 4); }
 
 constexpr Segments lines = 0xfff;
-/// The halves of a face's arcs.
-constexpr Segments halves_of(const int face) { return Segments(0xf) << (first_half + 4 * face); }
 constexpr Segments spokes = ~Segments(0) << first_spoke & ~Segments(0) >> (64 - n_segments);
 
 } // namespace skeleton

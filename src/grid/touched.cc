@@ -1,5 +1,6 @@
 #include "grid/touched.h"
 
+#include "base/sort_unique.h"
 #include "grid/cube.h"
 
 #include <algorithm>
@@ -71,6 +72,14 @@ std::vector<TouchedCell> touched_cells(const Grid& grid, const std::span<const E
   return cells_per_edge * edges.size() > grid.n_cells() ? marked(grid, edges) : sorted(grid, edges);
 }
 
+std::vector<TouchedCell> touched_cells(const Grid& grid, const Cuts& cuts) {
+  std::vector<EdgeId> edges;
+  edges.reserve(cuts.all().size());
+  for (const EdgeCut& cut : cuts.all())
+    edges.push_back(cut.edge);
+  return touched_cells(grid, edges);
+}
+
 std::vector<CellId> touched_cells(const Grid& grid, const std::span<const EdgeId> edges,
                                   const std::span<const SkinSegment> segments) {
   std::vector<CellId> cells;
@@ -85,8 +94,7 @@ std::vector<CellId> touched_cells(const Grid& grid, const std::span<const EdgeId
           cells.push_back(c);
     } else
       cells.push_back(segment.cell);
-  std::sort(cells.begin(), cells.end());
-  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+  sort_unique(cells);
   return cells;
 }
 

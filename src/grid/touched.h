@@ -18,6 +18,9 @@ struct TouchedCell {
 /// cells only where the edges are many.
 std::vector<TouchedCell> touched_cells(const Grid& grid, std::span<const EdgeId> edges);
 
+/// The cells with a cut edge, ascending, with their configurations.
+std::vector<TouchedCell> touched_cells(const Grid& grid, const Cuts& cuts);
+
 /// The stored cells around edges, and those that segments of the skin belong to; ascending, each once.
 std::vector<CellId> touched_cells(const Grid& grid, std::span<const EdgeId> edges,
                                   std::span<const SkinSegment> segments);

@@ -2,7 +2,6 @@
 
 #include "cut/fit.h"
 #include "grid/locate.h"
-#include "grid/sampled_crumbs.h"
 #include "scene/held.h"
 
 namespace kerf::scene {
@@ -32,10 +31,7 @@ void follow_cut(Body& body, grid::CutChange change, Timings& timings) {
     body.placed.n_placed += placed.n_placed;
     body.placed.n_clamped += placed.n_clamped;
     surface::update_surface(body.solid, change, body.surface, body.surface_index);
-    if (body.physics->particles_are_corners())
-      grid::update_crumbs(body.solid, change);
-    else
-      grid::update_crumbs(body.solid, change, body.physics->rest());
+    grid::update_crumbs(body.solid, change, body.physics->particles_are_corners() ? nullptr : &body.physics->rest());
     ++body.n_recuts;
   }
   const ScopedTimer timer(timings, "assemble");

@@ -1,6 +1,7 @@
 #include "surface/surface.h"
 
 #include "base/parallel.h"
+#include "base/sort_unique.h"
 #include "surface/writer.h"
 
 #include <Eigen/Geometry>
@@ -11,11 +12,16 @@ namespace kerf::surface {
 
 namespace {
 
-/// Room for the vertices of closed surfaces with so many triangles: half as many, by Euler; of four, one is on an edge,
-/// two are in faces and one in a cell.
-void reserve_vertices(Surface& surface) {
-  constexpr double entries_per_vertex = (2 + 2 * 4 + 8) / 4.0, spare = 1.05;
-  const auto n = static_cast<std::size_t>(spare * 0.5 * static_cast<double>(surface.triangles.size()));
+/// Room for a closed surface with so many cut edges, and for some cuts, so that the first ones do not move whole tables.
+/// It has half as many vertices as triangles, by Euler; of four, one is on an edge, two are in faces and one in a cell.
+void reserve(Surface& surface, const std::size_t n_cut_edges) {
+  constexpr double entries_per_vertex = (2 + 2 * 4 + 8) / 4.0, spare = 1.125;
+  const auto n_triangles =
+    static_cast<std::size_t>(spare * static_cast<double>(triangles_per_end) * static_cast<double>(n_cut_edges));
+  surface.triangles.reserve(n_triangles);
+  surface.labels.reserve(n_triangles);
+  surface.copies.reserve(n_triangles);
+  const std::size_t n = n_triangles / 2;
   surface.rest.reserve(n);
   surface.weights.start.reserve(n + 1);
   surface.weights.corners.reserve(static_cast<std::size_t>(entries_per_vertex * static_cast<double>(n)));
@@ -27,8 +33,7 @@ std::vector<CellId> cells_of(const grid::CutChange& change, const CellComplex& c
   std::vector<CellId> cells;
   for (const CopyId c : change.reshaped)
     cells.push_back(complex.copies[c].cell);
-  std::sort(cells.begin(), cells.end());
-  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+  sort_unique(cells);
   return cells;
 }
 
@@ -62,9 +67,8 @@ Surface build_surface(const Solid& solid, SurfaceIndex& index) {
   index.first_face_vertex = index.first_inner_vertex = grid::SparseIndex<FaceId>(solid.grid.n_faces());
   index.first_skin_centre = grid::SparseIndex<CellId>(solid.grid.n_cells());
   index.centres.reserve(solid.complex.copies.items().capacity());
-  Writer writer(solid, surface, index, Known::kept);
-  reserve_vertices(surface);
-  writer.write_all();
+  reserve(surface, solid.cuts.all().size());
+  Writer(solid, surface, index, Known::kept).write_all();
   return surface;
 }
 

@@ -42,11 +42,7 @@ class Writer {
 
   /// All cells with a cut edge.
   void write_all() {
-    std::vector<EdgeId> edges;
-    edges.reserve(solid_.cuts.all().size());
-    for (const grid::EdgeCut& cut : solid_.cuts.all())
-      edges.push_back(cut.edge);
-    for (const grid::TouchedCell& touched : grid::touched_cells(solid_.grid, edges)) // its lines: the configuration
+    for (const grid::TouchedCell& touched : touched_cells(solid_.grid, solid_.cuts)) // its lines: the configuration
       write(touched.cell, touched.lines);
   }
 

@@ -3,7 +3,6 @@
 #include "grid/crumbs.h"
 
 #include "grid/material.h"
-#include "grid/sampled_crumbs.h"
 #include "tests/grid/histories.h"
 #include "tests/support/placed.h"
 #include "tests/support/same.h"
@@ -291,7 +290,7 @@ TEST(Crumbs, AreThoseWhoseSamplesSpanNoVolume) {
       samples.push_back(p + Vec3(0.01, 0.01, 0.33));
     CutChange change = cutter.cut(body, support::cuts_of_plane(body, {Vec3::UnitZ(), 0.35}, 1));
     surface::place(body, change, {});
-    update_crumbs(body, change, samples);
+    update_crumbs(body, change, &samples);
     EXPECT_EQ(body.crumbs.all.size(), is_crumb ? 1u : 0u) << above.size() << " above";
     for (const Crumb& crumb : body.crumbs.all)
       for (const CopyId c : crumb.copies)
