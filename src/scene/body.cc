@@ -4,7 +4,6 @@
 #include "grid/locate.h"
 #include "grid/sampled_crumbs.h"
 #include "scene/held.h"
-#include "scene/soundness.h"
 
 namespace kerf::scene {
 
@@ -40,10 +39,8 @@ void follow_cut(Body& body, grid::CutChange change, Timings& timings) {
     ++body.n_recuts;
   }
   const ScopedTimer timer(timings, "assemble");
-  const double before = energy_around_cut(body);
   body.physics->follow_cut(seen(body), change, body.state);
   make_loads(body);
-  require_sound_cut(body, before);
 }
 
 /// Cuts, and lets all of the body follow.

@@ -169,31 +169,6 @@ std::string particle_at(const Body& body, const std::size_t particle) {
          (particle < rest.size() ? ", which rests at " + place(rest[particle]) : "");
 }
 
-double energy_around_cut(const Body& body) {
-  return body.physics->model().energy_ahead(body.state.x) + kinetic_energy(*body.physics, body.state);
-}
-
-void require_sound_cut(const Body& body, const double before) {
-  constexpr double most = 0.5; // of the energy after it
-  const double now = energy_around_cut(body);
-  if (now - before <= most * now)
-    return;
-  const dynamics::ForceModel& model = body.physics->model();
-  Loan<Vec3> grown(body.state.x), force;
-  for (Vec3& p : grown)
-    p *= 1.001;
-  constexpr double round_off = 1e-8; // of what it costs to grow by a thousandth
-  if (now - before <= round_off * std::abs(model.energy(grown) - model.energy(body.state.x)))
-    return;
-  model.force(body.state.x, force);
-  const auto pushed = std::max_element(force.begin(), force.end(),
-                                       [](const Vec3& a, const Vec3& b) { return a.squaredNorm() < b.squaredNorm(); });
-  throw NumericalError("a cut gave the body " + in_short(now - before) + " J, where it had " + in_short(before) +
-                       " J of kinetic and elastic energy. It shows most at " +
-                       particle_at(body, static_cast<std::size_t>(pushed - force.begin())) +
-                       ". Use smaller cubes or a smaller time step, or cut elsewhere");
-}
-
 void require_sound_motion(const Body& body, const Points& before, const double dt) {
   const dynamics::ForceModel& model = body.physics->model();
   const Vec3 mean = mean_velocity(model, body.state.v);

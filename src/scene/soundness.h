@@ -2,9 +2,7 @@
 
 /// Whether a body may still be what it says: asked after each step, of every backend and integrator.
 ///
-/// Five things no elastic body does. One that has more than twice the kinetic and elastic energy that it had before a cut:
-/// a cut takes bonds away, so that energy can only fall, and more than half of what there is then is not the body's (as
-/// dynamics/sound_steps.h has it of steps). A particle without a finite place. A particle that crosses more than a cube in a
+/// Four things no elastic body does. A particle without a finite place. A particle that crosses more than a cube in a
 /// step against the mean motion while all kinetic and elastic energy of the body could not move an eighth of a full
 /// cube, which is the least that a corner of whole cubes has, that fast: what moves so is lighter than anything that
 /// the grid resolves. A piece that is inside out, or crushed to a tenth or blown up to ten times its volume (at small
@@ -26,11 +24,6 @@ struct Watch {
   void archive(Archive& a) { a(is_sound); } // the rest is found again
 };
 
-/// Kinetic and elastic energy [J], where forces are wanted next.
-double energy_around_cut(const Body& body);
-/// After a cut at once of a body that had this energy before [J]. Throws NumericalError that names the particle that is pushed
-/// most, and its place.
-void require_sound_cut(const Body& body, double before);
 /// After a step of dt [s] from `before` [m], before the surface follows. Velocities may ring where nothing damps them, and statics
 /// go far without any: the less of a velocity and of the way over dt counts. Throws NumericalError that names the particle and its place.
 void require_sound_motion(const Body& body, const Points& before, double dt);
