@@ -17,6 +17,8 @@ namespace {
 constexpr double massless = 1e-12;
 constexpr double part_of_step = 1e-2; // for velocities of supports, by central differences
 
+const std::string under_way = "under way [1]"; // in State::numbers from the first step on
+
 void require(const bool holds, const std::string& path, const double value, const std::string& rule) {
   if (!holds)
     throw ParameterError(Complaint{.path = path, .value = to_text(value), .rule = rule, .remedy = ""});
@@ -80,9 +82,39 @@ Points GeneralisedAlpha::first_acceleration(const State& state, const Loads& loa
   return a;
 }
 
-Balance GeneralisedAlpha::balance(const State& state, const Points& a, const Constraints& constraints,
-                                  const double dt) const {
-  const auto [alpha_m, alpha_f, beta, gamma] = c_;
+NewtonOptions GeneralisedAlpha::one_solution(NewtonOptions options) {
+  options.max_iterations = 1;
+  options.tolerance = 0;
+  options.line_search = LineSearch::none;
+  options.tangent = Tangent::positive;
+  return options;
+}
+
+Loan<Vec3> GeneralisedAlpha::resolved_acceleration(const State& state, const Loads& loads, const double dt,
+                                                   StepReport& report) {
+  const Constraints constraints(loads, state.x.size());
+  const auto& c = after_jump_;
+  const double kappa = 1 / (c.beta * dt * dt);
+  Balance b{.time = state.time,
+            .mass_factor = kappa,
+            .velocity_factor = c.gamma / (c.beta * dt),
+            .start = Loan<Vec3>(state.x),
+            .velocity = Loan<Vec3>(state.v),
+            .acceleration = Loan<Vec3>(state.x.size(), Vec3::Zero())};
+  constraints.place_velocity(state.time, part_of_step * dt, b.velocity);
+  Loan<Vec3> a;
+  report.n_iterations += first_.solve(loads, constraints, b, a).n_linear;
+  for (std::size_t i = 0; i < a.size(); ++i)
+    a[i] = kappa * (a[i] - state.x[i]);
+  constraints.project(a);
+  for (const Follower& follower : model_.followers())
+    a[follower.corner].setZero();
+  return a;
+}
+
+Balance GeneralisedAlpha::balance(const AlphaCoefficients& c, const State& state, const Points& a,
+                                  const Constraints& constraints, const double dt) const {
+  const auto [alpha_m, alpha_f, beta, gamma] = c;
   const std::size_t n = state.x.size();
   Balance b{.time = state.time + (1 - alpha_f) * dt,
             .mass_factor = (1 - alpha_m) / ((1 - alpha_f) * beta * dt * dt),
@@ -115,15 +147,21 @@ Balance GeneralisedAlpha::balance(const State& state, const Points& a, const Con
 StepReport GeneralisedAlpha::step(State& state, const Loads& loads, const double dt) {
   const Constraints constraints(loads, state.x.size());
   const Points* const known = remembered(state, "acceleration");
+  const bool has_jumped = !known && state.numbers.count(under_way) > 0;
+  const AlphaCoefficients& c = has_jumped ? after_jump_ : c_;
   Loan<Vec3> a, x;
+  StepReport begun;
   if (known)
     *a = *known;
+  else if (has_jumped)
+    a = resolved_acceleration(state, loads, dt, begun);
   else
     *a = first_acceleration(state, loads, dt);
-  const StepReport report = accepted(solver_.solve(loads, constraints, balance(state, a, constraints, dt), x));
+  StepReport report = accepted(solver_.solve(loads, constraints, balance(c, state, a, constraints, dt), x));
+  report.n_iterations += begun.n_iterations;
   const Loan<Vec3> start(state.x);
   Loan<Vec3> way(x.size());
-  const auto [alpha_m, alpha_f, beta, gamma] = c_;
+  const auto [alpha_m, alpha_f, beta, gamma] = c;
   for (std::size_t i = 0; i < x.size(); ++i) {
     const Vec3 moved = (x[i] - state.x[i]) / (1 - alpha_f);
     const Vec3 a_1 = (moved - dt * state.v[i]) / (beta * dt * dt) - (0.5 / beta - 1) * a[i];
@@ -143,6 +181,7 @@ StepReport GeneralisedAlpha::step(State& state, const Loads& loads, const double
   constraints.place_velocity(state.time, part_of_step * dt, state.v);
   constraints.project(a);
   state.history["acceleration"].swap(a);
+  state.numbers[under_way] = 1;
   return report;
 }
 

@@ -15,9 +15,21 @@
 /// From there it goes on to the step's end as its leaders do. Extrapolated from the step's start as they are, it
 /// would swing about y with the factor -alpha_f / (1 - alpha_f), for ever where rho_inf is 1.
 ///
-/// State::history "acceleration" [m/s^2] is a_0; without it the balance of forces at the start gives it. Followers are
+/// State::history "acceleration" [m/s^2] is a_0. At the start the balance of forces gives it. Followers are
 /// not in balance there yet: what pulls at them is given to their leaders, with the weights that lead them, so that
-/// forces which keep the body's momentum still do.
+/// forces which keep the body's momentum still do. Where it was forgotten under way, as a cut has changed forces at
+/// once, it is what the step resolves of that balance, with the stiffness K at x_0:
+///
+///     (M + beta dt^2 K) a_0 = f(x_0) + M g + loads.
+///
+/// A vibration of frequency w gets 1 / (1 + beta (w dt)^2) of its acceleration. Where the step resolves it, that is an
+/// error of second order, whose power averages out over a period. Where it does not, M a_0 = f itself would throw what the
+/// cut lets go at a distance d from its balance to the other side in the first step, with all its energy, for ever at
+/// rho_inf = 1; so it comes to its balance in the first step, and keeps a velocity of 2 d / dt, in that step and, times
+/// rho_inf in each, the next ones. That first step is one of average acceleration: any with alpha_f > 0 leaves
+/// -alpha_f / (1 - alpha_f) of a distance that it does not resolve. Rannacher (1984,
+/// Finite element solution of diffusion problems with irregular data, Numer. Math. 43) takes a few steps of implicit Euler
+/// after a jump: these take energy from what is resolved too, and with a blade that cuts in every step there are no others.
 
 #include "dynamics/newton_parameters.h"
 
@@ -36,17 +48,26 @@ class GeneralisedAlpha : public Stepper {
  public:
   /// The model must outlive the stepper.
   GeneralisedAlpha(ElasticModel& model, const AlphaCoefficients& coefficients, const NewtonOptions& options)
-    : model_(model), c_(coefficients), solver_(model, options) {}
+    : model_(model),
+      c_(coefficients),
+      after_jump_(c_.alpha_f == 0 ? c_ : AlphaCoefficients()),
+      solver_(model, options),
+      first_(model, one_solution(options)) {}
 
   StepReport step(State& state, const Loads& loads, double dt) override;
 
  private:
+  /// Newton's method of one correction, with a stiffness that is safe anywhere.
+  static NewtonOptions one_solution(NewtonOptions options);
   Points first_acceleration(const State& state, const Loads& loads, double dt);
-  Balance balance(const State& state, const Points& a, const Constraints& constraints, double dt) const;
+  /// Adds what it took to the report.
+  Loan<Vec3> resolved_acceleration(const State& state, const Loads& loads, double dt, StepReport& report);
+  Balance balance(const AlphaCoefficients& c, const State& state, const Points& a, const Constraints& constraints,
+                  double dt) const;
 
   ElasticModel& model_;
-  AlphaCoefficients c_;
-  BalanceSolver solver_;
+  AlphaCoefficients c_, after_jump_; // of a step, and of the first one after a jump of forces
+  BalanceSolver solver_, first_;
 };
 
 struct GeneralisedAlphaParameters {

@@ -2,8 +2,8 @@
 
 #include "grid/carriers.h"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
-#include <Eigen/QR>
 
 #include <algorithm>
 #include <cmath>
@@ -20,6 +20,27 @@ std::vector<double> material_mass(const fem::Hexahedra& model) {
     for (const auto user : model.incidence().users(i))
       mass[i] += model.element(user / 8).mass[user % 8];
   return mass;
+}
+
+/// Of masses that have an inertia about their centre, and one about the origin, with an angular momentum. Axes about which
+/// they have hardly any but round-off are left out.
+Vec3 angular_velocity(const Mat3& inertia, const double about_origin, const Vec3& L) {
+  constexpr double of_places = 1e-18, of_axes = 1e-9; // squares of lengths
+  const Eigen::SelfAdjointEigenSolver<Mat3> eigen(inertia);
+  const Vec3 I = eigen.eigenvalues(), c = eigen.eigenvectors().transpose() * L;
+  Vec3 omega = Vec3::Zero();
+  for (int k = 0; k < 3; ++k)
+    if (I[k] > of_places * about_origin && I[k] > of_axes * I[2])
+      omega += c[k] / I[k] * eigen.eigenvectors().col(k);
+  return omega;
+}
+
+/// The largest t of 0 .. 1 up to which a t^2 + b t is no more than c, for a and c that are not negative.
+double part_within(const double a, const double b, const double c) {
+  if (a + b <= c)
+    return 1;
+  const double root = std::sqrt(b * b + 4 * a * c);
+  return b > 0 ? 2 * c / (b + root) : (root - b) / (2 * a);
 }
 
 } // namespace
@@ -61,6 +82,7 @@ void join_lapsed(const std::span<const grid::Lapse> lapsed, const std::function<
                  dynamics::State& state) {
   std::map<std::uint32_t, double> mass_of_heir;
   Vec3 L = Vec3::Zero(); // that they had more than the heirs have in the end
+  double taken = 0;      // twice the kinetic energy that the joining takes
   const auto turning = [&](const std::uint32_t corner) -> Vec3 { return state.x[corner].cross(state.v[corner]); };
   for (const auto& [corner, heir] : lapsed) {
     const auto [of_heir, is_new] = mass_of_heir.try_emplace(heir.value, mass(heir.value));
@@ -68,11 +90,13 @@ void join_lapsed(const std::span<const grid::Lapse> lapsed, const std::function<
     if (is_new)
       L += of_heir->second * turning(heir.value);
     L += more * turning(corner.value);
-    if (more > 0)
+    if (more > 0) {
+      taken += of_heir->second * more / all * (state.v[corner.value] - state.v[heir.value]).squaredNorm();
       for (Points* of_corners : {&state.x, &state.v}) {
         Vec3& value = (*of_corners)[heir.value];
         value += more / all * ((*of_corners)[corner.value] - value);
       }
+    }
     of_heir->second = all;
   }
   double all = 0;
@@ -86,13 +110,16 @@ void join_lapsed(const std::span<const grid::Lapse> lapsed, const std::function<
     return;
   centre /= all;
   Mat3 inertia = Mat3::Zero();
+  Vec3 spin = Vec3::Zero();
   for (const auto& [heir, m] : mass_of_heir) {
     const Vec3 r = state.x[heir] - centre;
     inertia += m * (r.squaredNorm() * Mat3::Identity() - r * r.transpose());
+    spin += m * r.cross(state.v[heir]);
   }
-  const Vec3 omega = inertia.completeOrthogonalDecomposition().solve(L);
+  const Vec3 omega = angular_velocity(inertia, all * centre.squaredNorm(), L);
+  const double part = part_within(omega.dot(inertia * omega), 2 * omega.dot(spin), taken);
   for (const auto& [heir, m] : mass_of_heir)
-    state.v[heir] += omega.cross(state.x[heir] - centre);
+    state.v[heir] += part * omega.cross(state.x[heir] - centre);
 }
 
 } // namespace kerf::physics

@@ -28,7 +28,9 @@ inline void damp_riders(const dynamics::ForceModel&, const lattice::Riders&, std
 void damp_riders(const fem::Hexahedra& model, const lattice::Riders& riders, std::span<const double> mass, double dt,
                  dynamics::State& state);
 
-/// Corners that lapse bring their heirs what they had of momentum, angular momentum and place, by mass as it was [kg].
+/// Corners that lapse bring their heirs what they had of momentum, angular momentum and place, by mass as it was [kg]. The
+/// heirs turn for that by what the joining has taken of the kinetic energy at most: one heir has no inertia but
+/// round-off, and a few that lie close together hardly any.
 void join_lapsed(std::span<const grid::Lapse> lapsed, const std::function<double(std::uint32_t)>& mass,
                  dynamics::State& state);
 

@@ -76,6 +76,55 @@ Eigen::Matrix3d amplification(const AlphaCoefficients& coefficients, const doubl
   return A;
 }
 
+/// One mass at rest in its well, under way, and then let go at a distance of 1 m from its balance by a cut.
+State let_go(Stepper& stepper, const Chain& model, const double dt) {
+  State state = model.state();
+  stepper.step(state, {}, dt);
+  state.x[0] += Vec3(1, 0, 0);
+  forget_forces(state);
+  return state;
+}
+
+/// What no step resolves comes to its balance and is as slow as steps let it be. With the acceleration of the balance of
+/// forces it swung by 1 m and ran at its own 1,000 m/s.
+TEST(Newmark, WhatACutLetsGoDoesNotRing) {
+  constexpr double frequency = 1e3, dt = 0.02;
+  for (const double rho : {-1.0, 0.8, 1.0}) { // -1: Newmark's
+    Chain model({1}, {.anchor = frequency * frequency});
+    GeneralisedAlpha stepper(model, rho < 0 ? newmark(0.25, 0.5) : generalised_alpha(rho), {.cg_tolerance = 1e-14});
+    State state = let_go(stepper, model, dt);
+    for (int i = 0; i < 200; ++i) {
+      stepper.step(state, {}, dt);
+      EXPECT_LT((state.x[0] - model.rest()[0]).norm(), 0.2) << rho << ", " << i;
+      EXPECT_LT(state.v[0].norm(), 2.1 / dt) << rho << ", " << i;
+    }
+  }
+}
+
+/// What steps resolve moves with an error of second order, and keeps its energy even if something is cut in each of them.
+TEST(Newmark, WhatACutLetsGoSwingsAsItShould) {
+  constexpr double frequency = 3, end = 2;
+  Chain model({1}, {.anchor = frequency * frequency});
+  GeneralisedAlpha stepper(model, newmark(0.25, 0.5), {.cg_tolerance = 1e-14});
+  std::vector<double> errors, lost;
+  for (const int n : {50, 100, 200}) {
+    const double dt = end / n;
+    State once = let_go(stepper, model, dt), ever = once;
+    const double before = energy(model, ever);
+    for (int i = 0; i < n; ++i) {
+      stepper.step(once, {}, dt);
+      forget_forces(ever);
+      stepper.step(ever, {}, dt);
+    }
+    errors.push_back(std::abs((once.x[0] - model.rest()[0])[0] - std::cos(frequency * end)));
+    lost.push_back(1 - energy(model, ever) / before);
+  }
+  for (int k = 0; k < 2; ++k)
+    EXPECT_NEAR(std::log2(errors[k] / errors[k + 1]), 2, 0.1);
+  EXPECT_LT(std::abs(lost[0]), 0.01); // implicit Euler: 0.5
+  EXPECT_LT(std::abs(lost[2]), 0.001);
+}
+
 TEST(GeneralisedAlpha, LeavesItsSpectralRadiusAtHighFrequency) {
   for (const double rho_inf : {0.0, 0.3, 0.5, 0.8, 1.0}) {
     const double rho = amplification(generalised_alpha(rho_inf), 1e5).eigenvalues().cwiseAbs().maxCoeff();
