@@ -149,6 +149,7 @@ class Grinder {
   /// How far crumbs, and the particles of other pieces, stray from where their velocities would take them.
   void fly(Ground& ground) {
     world_.blades.at(0).key_frames = {{0, Vec3(9, 9, 9)}};
+    step(ground); // where cuts cross, cells are parted once the blade has left them
     const auto piece = pieces();
     const auto [start, velocity] = centres(piece);
     const auto crumbs = body().state.crumbs;
