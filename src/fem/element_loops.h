@@ -5,6 +5,8 @@
 
 #include "fem/kernels.h"
 
+#include <utility>
+
 namespace kerf::fem {
 
 template <class T, int W>
@@ -26,60 +28,64 @@ struct ElementLoops {
   [[gnu::always_inline]] static Four row(const Row<T>* const p, const std::uint32_t i) {
     return *reinterpret_cast<const Four*>(p + i);
   }
-  template <int first>
-  [[gnu::always_inline]] static Four four_of(const V& v) {
-    return __builtin_shufflevector(v, v, first, first + 1, first + 2, first + 3);
-  }
-  [[gnu::always_inline]] static V joined(const Four (&f)[W / 4]) {
+  /// Rows of W / 4 corners beside each other, of each fourth one.
+  [[gnu::always_inline]] static V rows(const Row<T>* const p, const std::uint32_t* const corners) {
     if constexpr (W == 4) {
-      return f[0];
+      return row(p, corners[0]);
     } else {
-      const auto low = __builtin_shufflevector(f[0], f[1], 0, 1, 2, 3, 4, 5, 6, 7);
+      const auto low = __builtin_shufflevector(row(p, corners[0]), row(p, corners[4]), 0, 1, 2, 3, 4, 5, 6, 7);
       if constexpr (W == 8) {
         return low;
       } else {
-        const auto high = __builtin_shufflevector(f[2], f[3], 0, 1, 2, 3, 4, 5, 6, 7);
+        const auto high = __builtin_shufflevector(row(p, corners[8]), row(p, corners[12]), 0, 1, 2, 3, 4, 5, 6, 7);
         return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
       }
     }
   }
+  /// In each four numbers those named of a's (0 to 3) and of b's (4 to 7).
+  template <int i, int j, int k, int l>
+  [[gnu::always_inline]] static V in_fours(const V& a, const V& b) {
+    return in_fours<i, j, k, l>(a, b, std::make_integer_sequence<int, W>());
+  }
+  template <int i, int j, int k, int l, int... lanes>
+  [[gnu::always_inline]] static V in_fours(const V& a, const V& b, std::integer_sequence<int, lanes...>) {
+    constexpr int which[4] = {i, j, k, l};
+    return __builtin_shufflevector(
+      a, b, (lanes / 4 * 4 + which[lanes % 4] % 4 + (which[lanes % 4] < 4 ? 0 : W))...);
+  }
   /// Reads the rows of W corners.
   [[gnu::always_inline]] static void read(const std::uint32_t* const corners, const Row<T>* const p, V (&v)[3]) {
-    Four part[3][W / 4];
-    for (int g = 0; g < W / 4; ++g) {
-      const Four r0 = row(p, corners[4 * g]), r1 = row(p, corners[4 * g + 1]), r2 = row(p, corners[4 * g + 2]),
-                 r3 = row(p, corners[4 * g + 3]);
-      const Four low01 = __builtin_shufflevector(r0, r1, 0, 4, 1, 5),
-                 low23 = __builtin_shufflevector(r2, r3, 0, 4, 1, 5);
-      const Four high01 = __builtin_shufflevector(r0, r1, 2, 6, 3, 7),
-                 high23 = __builtin_shufflevector(r2, r3, 2, 6, 3, 7);
-      part[0][g] = __builtin_shufflevector(low01, low23, 0, 1, 4, 5);
-      part[1][g] = __builtin_shufflevector(low01, low23, 2, 3, 6, 7);
-      part[2][g] = __builtin_shufflevector(high01, high23, 0, 1, 4, 5);
-    }
-    for (int i = 0; i < 3; ++i)
-      v[i] = joined(part[i]);
+    const V r0 = rows(p, corners), r1 = rows(p, corners + 1), r2 = rows(p, corners + 2), r3 = rows(p, corners + 3);
+    const V xy01 = in_fours<0, 4, 1, 5>(r0, r1), xy23 = in_fours<0, 4, 1, 5>(r2, r3);
+    const V z01 = in_fours<2, 6, 3, 7>(r0, r1), z23 = in_fours<2, 6, 3, 7>(r2, r3);
+    v[0] = in_fours<0, 1, 4, 5>(xy01, xy23);
+    v[1] = in_fours<2, 3, 6, 7>(xy01, xy23);
+    v[2] = in_fours<0, 1, 4, 5>(z01, z23);
   }
-  /// Adds to the rows of 4 corners, one after the other.
-  [[gnu::always_inline]] static void add_four(const Four& x, const Four& y, const Four& z,
-                                              const std::uint32_t* const corners, Row<T>* const p, const int stride) {
-    const Four none = {};
-    const Four xy01 = __builtin_shufflevector(x, y, 0, 4, 1, 5), xy23 = __builtin_shufflevector(x, y, 2, 6, 3, 7);
-    const Four z01 = __builtin_shufflevector(z, none, 0, 4, 1, 5), z23 = __builtin_shufflevector(z, none, 2, 6, 3, 7);
-    *reinterpret_cast<Four*>(p + stride * corners[0]) += __builtin_shufflevector(xy01, z01, 0, 1, 4, 5);
-    *reinterpret_cast<Four*>(p + stride * corners[1]) += __builtin_shufflevector(xy01, z01, 2, 3, 6, 7);
-    *reinterpret_cast<Four*>(p + stride * corners[2]) += __builtin_shufflevector(xy23, z23, 0, 1, 4, 5);
-    *reinterpret_cast<Four*>(p + stride * corners[3]) += __builtin_shufflevector(xy23, z23, 2, 3, 6, 7);
-  }
+  /// Adds to the rows of W corners, one after the other.
   [[gnu::always_inline]] static void add(const V& x, const V& y, const V& z, const std::uint32_t* const corners,
                                          Row<T>* const p, const int stride = 1) {
-    add_four(four_of<0>(x), four_of<0>(y), four_of<0>(z), corners, p, stride);
-    if constexpr (W >= 8)
-      add_four(four_of<4>(x), four_of<4>(y), four_of<4>(z), corners + 4, p, stride);
-    if constexpr (W == 16) {
-      add_four(four_of<8>(x), four_of<8>(y), four_of<8>(z), corners + 8, p, stride);
-      add_four(four_of<12>(x), four_of<12>(y), four_of<12>(z), corners + 12, p, stride);
-    }
+    const V none = {};
+    const V xy01 = in_fours<0, 4, 1, 5>(x, y), xy23 = in_fours<2, 6, 3, 7>(x, y);
+    const V z01 = in_fours<0, 4, 1, 5>(z, none), z23 = in_fours<2, 6, 3, 7>(z, none);
+    const V of_rows[4] = {in_fours<0, 1, 4, 5>(xy01, z01), in_fours<2, 3, 6, 7>(xy01, z01),
+                          in_fours<0, 1, 4, 5>(xy23, z23), in_fours<2, 3, 6, 7>(xy23, z23)};
+#pragma GCC unroll 4
+    for (int g = 0; g < W / 4; ++g)
+#pragma GCC unroll 4
+      for (int k = 0; k < 4; ++k)
+        *reinterpret_cast<Four*>(p + stride * corners[4 * g + k]) += four_of(of_rows[k], g);
+  }
+  [[gnu::always_inline]] static Four four_of(const V& v, const int g) {
+    if constexpr (W == 4)
+      return v;
+    else if constexpr (W == 8)
+      return g == 0 ? __builtin_shufflevector(v, v, 0, 1, 2, 3) : __builtin_shufflevector(v, v, 4, 5, 6, 7);
+    else
+      return g == 0   ? __builtin_shufflevector(v, v, 0, 1, 2, 3)
+             : g == 1 ? __builtin_shufflevector(v, v, 4, 5, 6, 7)
+             : g == 2 ? __builtin_shufflevector(v, v, 8, 9, 10, 11)
+                      : __builtin_shufflevector(v, v, 12, 13, 14, 15);
   }
 
   // --- Modes -------------------------------------------------------------------------------------------------------
