@@ -219,7 +219,7 @@ void SoundSteps::add_checked(const State& state, const Loads& loads, const doubl
   constexpr double most_in_sum = 0.5;
   LentState lent = lend(state);
   State& after = *lent;
-  energies_.at(state.x); // before the step moves on, so that the model knows its forces here
+  energies_.at(state.x); // while the step asks for forces here too: the model knows them at one place alone
   const StepReport report = stepper_->step(after, loads, dt);
   keep_carried(loads, state, after);
   require_finite(after);

@@ -50,8 +50,7 @@ struct ElementLoops {
   template <int i, int j, int k, int l, int... lanes>
   [[gnu::always_inline]] static V in_fours(const V& a, const V& b, std::integer_sequence<int, lanes...>) {
     constexpr int which[4] = {i, j, k, l};
-    return __builtin_shufflevector(
-      a, b, (lanes / 4 * 4 + which[lanes % 4] % 4 + (which[lanes % 4] < 4 ? 0 : W))...);
+    return __builtin_shufflevector(a, b, (lanes / 4 * 4 + which[lanes % 4] % 4 + (which[lanes % 4] < 4 ? 0 : W))...);
   }
   /// Reads the rows of W corners.
   [[gnu::always_inline]] static void read(const std::uint32_t* const corners, const Row<T>* const p, V (&v)[3]) {
