@@ -106,22 +106,26 @@ CubeConstants<T> constants(const double h, const material::Elastic& material, co
 }
 
 template <class T>
-void put(const Element& element, const double bound, const std::size_t lane, PartialCubes<T>& cubes) {
+void put(const Element& element, const double bound, const std::size_t lane, PartialCubes<T>& cubes,
+         HourglassOfCubes& hourglass) {
   cubes.volume[lane] = T(element.volume);
   cubes.weight[lane] = T(std::max(1.0, element.bound / bound));
-  const auto gradients = mode_gradients(element);
   for (int i = 0; i < n_hourglass; ++i)
-    cubes.gradient[i][lane] = T(gradients[i]);
+    cubes.gradient[i][lane] = T(element.mode_gradient[i / 3][i % 3]);
   for (int i = 0; i < n_hourglass_pairs; ++i)
-    cubes.hourglass[i][lane] = T(element.hourglass[i]);
+    hourglass.pair[i][lane] = element.hourglass[i];
 }
 
 } // namespace
 
 template <class T>
 BatchedElements<T> batched(const Batching& batching, const double h, const material::Elastic& material,
-                           const Element& full, const PartialElements& partial) {
-  BatchedElements<T> all{constants<T>(h, material, full), {}, {}, {}};
+                           const Element& full, const PartialElements& partial, const SharedHourglass& hourglass) {
+  BatchedElements<T> all{constants<T>(h, material, full),
+                         {},
+                         hourglass ? hourglass : std::make_shared<std::vector<HourglassOfCubes>>(),
+                         {},
+                         {}};
   std::vector<std::uint32_t> all_partial;
   for (std::uint32_t i = 0; i < batching.batches().size(); ++i)
     if (batching.batches()[i].partial != BatchOfCopies::none)
@@ -137,16 +141,19 @@ template <class T>
 void follow(const Batching& batching, const std::span<const std::uint32_t> renewed, const PartialElements& partial,
             BatchedElements<T>& elements) {
   elements.partial.resize(batching.n_places());
+  elements.hourglass->resize(batching.n_places());
   elements.rotations.resize(batching.batches().size());
   parallel_for(
     renewed.size(),
     [&](const std::size_t i) {
       const BatchOfCopies& batch = batching.batches()[renewed[i]];
       PartialCubes<T>& cubes = elements.partial[batch.partial];
+      HourglassOfCubes& hourglass = (*elements.hourglass)[batch.partial];
       cubes = {};
+      hourglass = {};
       for (std::size_t lane = 0; lane < n_lanes; ++lane)
         if (batch.copies[lane] != BatchOfCopies::none)
-          put(partial.of(batch.copies[lane]), partial.bound, lane, cubes);
+          put(partial.of(batch.copies[lane]), partial.bound, lane, cubes, hourglass);
     },
     16);
 }
@@ -165,9 +172,9 @@ void add_diagonal(const Batching& batching, const BatchedElements<T>& elements, 
 }
 
 template BatchedElements<double> batched(const Batching&, double, const material::Elastic&, const Element&,
-                                         const PartialElements&);
+                                         const PartialElements&, const SharedHourglass&);
 template BatchedElements<float> batched(const Batching&, double, const material::Elastic&, const Element&,
-                                        const PartialElements&);
+                                        const PartialElements&, const SharedHourglass&);
 template void follow(const Batching&, std::span<const std::uint32_t>, const PartialElements&, BatchedElements<double>&);
 template void follow(const Batching&, std::span<const std::uint32_t>, const PartialElements&, BatchedElements<float>&);
 template void add_product(const Batching&, const BatchedElements<double>&, const Row<double>*, Row<double>*);

@@ -14,6 +14,7 @@
 
 #include <functional>
 #include <limits>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -98,18 +99,22 @@ struct alignas(64) LanesOfTangent {
   T row[n_tangent_pairs][n_lanes];
 };
 
+using SharedHourglass = std::shared_ptr<std::vector<HourglassOfCubes>>;
+
 /// What elements are made of, in numbers T.
 template <class T>
 struct BatchedElements {
   CubeConstants<T> cube;
   std::vector<PartialCubes<T>> partial;    // by BatchOfCopies::partial
+  SharedHourglass hourglass;               // likewise; those in other numbers may have the same
   std::vector<Lanes9<T>> rotations;        // by batch
   std::vector<LanesOfTangent<T>> tangents; // by batch; none where the law is Hooke's
 
   Batch<T> batch(const Batching& batching, const std::size_t i) const {
     const BatchOfCopies& b = batching.batches()[i];
-    return {b.corners, rotations[i].row, b.partial == BatchOfCopies::none ? nullptr : &partial[b.partial],
-            tangents.empty() ? nullptr : tangents[i].row};
+    const bool is_full = b.partial == BatchOfCopies::none;
+    return {b.corners, rotations[i].row, is_full ? nullptr : &partial[b.partial],
+            is_full ? nullptr : &(*hourglass)[b.partial], tangents.empty() ? nullptr : tangents[i].row};
   }
 };
 
@@ -119,10 +124,10 @@ struct PartialElements {
   /// `diagonal` counts elements whose own bound (jacobi_bound) is more than this by as much more [1].
   double bound = std::numeric_limits<double>::infinity();
 };
-/// All rotations are the identity.
+/// All rotations are the identity. `hourglass`: where another one has it.
 template <class T>
 BatchedElements<T> batched(const Batching& batching, double h, const material::Elastic& material, const Element& full,
-                           const PartialElements& partial);
+                           const PartialElements& partial, const SharedHourglass& hourglass = nullptr);
 /// After a cut: `renewed` is what Batching::update() has returned. Rotations are lost.
 template <class T>
 void follow(const Batching& batching, std::span<const std::uint32_t> renewed, const PartialElements& partial,

@@ -53,28 +53,14 @@ void add_hourglass_part(const Child& child, MatrixOfModes& K) {
 }
 
 GradientsOfModes gradients_in(const Child& child, const double h) {
-  const auto own = mode_gradients(*child.element);
   GradientsOfModes g;
   for (int m = 0; m < 4; ++m) {
     for (int k = 0; k < 3; ++k)
       g[m][k] = part_of_mode(hourglass_modes[m], linear_modes[k], child.octant) / (4 * h);
     for (int n = 0; n < 4; ++n)
-      g[m] +=
-        part_of_mode(hourglass_modes[m], hourglass_modes[n], child.octant) * Eigen::Map<const Vec3>(own.data() + 3 * n);
+      g[m] += part_of_mode(hourglass_modes[m], hourglass_modes[n], child.octant) * child.element->mode_gradient[n];
   }
   return g;
-}
-
-/// Mean gradients of the vertices from those of the modes: (1 / 8) sum over modes would be their inverse, so b_a is the sum
-/// of s_m(a) b_m.
-void put_gradients(const GradientsOfModes& of_modes, const double h, Element& element) {
-  for (int a = 0; a < 8; ++a) {
-    Vec3& b = element.gradient[a];
-    for (int k = 0; k < 3; ++k)
-      b[k] = ((a >> k & 1) != 0 ? 1 : -1) / (4 * h);
-    for (int m = 0; m < 4; ++m)
-      b += (std::popcount(unsigned(hourglass_modes[m] & ~a)) % 2 != 0 ? -1 : 1) * of_modes[m];
-  }
 }
 
 } // namespace
@@ -95,10 +81,11 @@ Element coarse_element(const std::span<const Child> children, const double h, co
   for (Vec3& g : mean)
     g /= coarse.volume;
   add_mean_part(-coarse.volume, mean, material, K);
-  put_gradients(mean, 2 * h, coarse);
+  coarse.mode_gradient = mean;
+  coarse.slope = 1 / (8 * h);
   for (int p = 0; p < n_hourglass; ++p)
     for (int q = 0; q <= p; ++q)
-      coarse.hourglass[pair_index(p, q)] = 0.5 * (K(p, q) + K(q, p));
+      coarse.hourglass[pair_index(p, q)] = static_cast<float>(0.5 * (K(p, q) + K(q, p)));
   coarse.bound = jacobi_bound(coarse, material);
   return coarse;
 }

@@ -71,18 +71,31 @@ Element make_element(const Moments& moments, const double h, const material::Ela
 
   const Centred as_it_lies = centred(moments);
   element.centroid = as_it_lies.centroid;
-  element.gradient = mean_gradients(as_it_lies);
+  const std::array<Vec3, 8> gradients = mean_gradients(as_it_lies); // of a unit cube
+  for (int k = 0; k < 4; ++k) {
+    element.mode_gradient[k].setZero();
+    for (int a = 0; a < 8; ++a)
+      element.mode_gradient[k] += sign(hourglass_modes[k], a) / (8 * h) * gradients[a];
+  }
+  element.slope = 1 / (4 * h);
   // The mean gradient is that of the material as it is: so affine motions meet exact forces.
   const Matrix24 K = h * hourglass_stiffness(centred(positive), material, options.strain);
   const ToHourglass& S = to_hourglass(); // S S^T = 8
   const Eigen::Matrix<double, n_hourglass, n_hourglass> of_modes = S * K * S.transpose() / 64;
   for (int p = 0; p < n_hourglass; ++p)
     for (int q = 0; q <= p; ++q)
-      element.hourglass[pair_index(p, q)] = 0.5 * (of_modes(p, q) + of_modes(q, p));
-  for (Vec3& gradient : element.gradient)
-    gradient /= h;
+      element.hourglass[pair_index(p, q)] = static_cast<float>(0.5 * (of_modes(p, q) + of_modes(q, p)));
   element.bound = jacobi_bound(element, material);
   return element;
+}
+
+Vec3 Element::gradient(const int a) const {
+  Vec3 b;
+  for (int j = 0; j < 3; ++j)
+    b[j] = (a >> j & 1) != 0 ? slope : -slope;
+  for (int k = 0; k < 4; ++k)
+    b += sign(hourglass_modes[k], a) * mode_gradient[k];
+  return b;
 }
 
 Matrix24 stiffness(const Element& element, const material::Elastic& material, const Part part) {
@@ -91,8 +104,12 @@ Matrix24 stiffness(const Element& element, const material::Elastic& material, co
     for (int q = 0; q <= p; ++q)
       of_modes(p, q) = of_modes(q, p) = element.hourglass[pair_index(p, q)];
   Matrix24 K = to_hourglass().transpose() * of_modes * to_hourglass();
-  if (part == Part::whole)
-    K += mean_stiffness(element.volume, element.gradient, material);
+  if (part == Part::whole) {
+    std::array<Vec3, 8> gradients;
+    for (int a = 0; a < 8; ++a)
+      gradients[a] = element.gradient(a);
+    K += mean_stiffness(element.volume, gradients, material);
+  }
   return 0.5 * (K + K.transpose());
 }
 
@@ -118,15 +135,6 @@ double jacobi_bound(const Element& element, const material::Elastic& material) {
     v = w;
   }
   return std::isfinite(bound) ? std::min(most, unseen * bound) : most;
-}
-
-std::array<double, n_hourglass> mode_gradients(const Element& element) {
-  std::array<double, n_hourglass> all{};
-  for (int k = 0; k < 4; ++k)
-    for (int a = 0; a < 8; ++a)
-      for (int j = 0; j < 3; ++j)
-        all[3 * k + j] += sign(hourglass_modes[k], a) * element.gradient[a][j] / 8;
-  return all;
 }
 
 Eigen::Matrix<double, 8, 8> consistent_mass(const Moments& moments, const double mass_of_cube) {

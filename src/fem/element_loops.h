@@ -235,6 +235,15 @@ struct ElementLoops {
           P[j] += A * G[i];
       }
   }
+  template <bool is_partial>
+  [[gnu::always_inline]] static V hourglass_pair(const CubeConstants<T>& cube, const Batch<T>& batch, const int lane,
+                                                 const int pair) {
+    typedef float Floats __attribute__((vector_size(sizeof(float) * W)));
+    if constexpr (is_partial)
+      return __builtin_convertvector(*reinterpret_cast<const Floats*>(batch.hourglass->pair[pair] + lane), V);
+    else
+      return cube.hourglass[pair] - V{};
+  }
   /// f of the hourglass modes, from zero.
   template <bool is_partial>
   [[gnu::always_inline]] static void hourglass(const CubeConstants<T>& cube, const Batch<T>& batch, const int lane,
@@ -248,8 +257,7 @@ struct ElementLoops {
       for (int q = 0; q <= p; ++q) {
         if (!is_partial && !is_coupled(p, q))
           continue;
-        const V K =
-          is_partial ? load(batch.partial->hourglass[pair_index(p, q)] + lane) : cube.hourglass[pair_index(p, q)] - V{};
+        const V K = hourglass_pair<is_partial>(cube, batch, lane, pair_index(p, q));
         const int m = hourglass_modes[p / 3], n = hourglass_modes[q / 3];
         f[m][p % 3] += K * c[n][q % 3];
         if (p != q)
@@ -332,8 +340,7 @@ struct ElementLoops {
         for (int ij = 0; ij < 6; ++ij) {
           const int p = 3 * k + block_row[ij], q = 3 * l + block_column[ij],
                     pair = p > q ? pair_index(p, q) : pair_index(q, p);
-          D[hourglass_modes[k] ^ hourglass_modes[l]][ij] +=
-            is_partial ? load(batch.partial->hourglass[pair] + lane) : cube.hourglass[pair] - V{};
+          D[hourglass_modes[k] ^ hourglass_modes[l]][ij] += hourglass_pair<is_partial>(cube, batch, lane, pair);
         }
     to_nodes(D);
   }

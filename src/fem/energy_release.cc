@@ -57,7 +57,7 @@ std::vector<Piece> domain(const Hexahedra& model, const Points& rest, const Poin
     for (int a = 0; a < 8; ++a) {
       const Vec3& X = rest[model.incidence().corners(copy)[a]];
       const auto [direction, distance] = growth_at(front, X);
-      growth += part(tubes, distance) * direction * element.gradient[a].transpose();
+      growth += part(tubes, distance) * direction * element.gradient(a).transpose();
     }
     if (!growth.isZero(1e-12 / tubes.outer))
       pieces.push_back({element.volume, model.deformation_gradient(copy, x), growth});

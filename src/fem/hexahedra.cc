@@ -199,7 +199,7 @@ Mat3 Hexahedra::deformation_gradient(const std::size_t copy, const Points& x) co
   const std::uint32_t* const c = incidence_.corners(copy);
   Mat3 F = Mat3::Zero();
   for (int a = 1; a < 8; ++a)
-    F += (x[c[a]] - x[c[0]]) * elements_[copy].gradient[a].transpose();
+    F += (x[c[a]] - x[c[0]]) * elements_[copy].gradient(a).transpose();
   return F;
 }
 
@@ -383,9 +383,9 @@ void Hexahedra::make_multigrid() {
                 kinds_,
                 [this](const std::uint32_t copy) -> const Element& { return elements_[copy]; },
                 batching_,
-                former_levels_.coarse.empty()
-                  ? batched<float>(*batching_, h_, material_, elements_.full(), partial_elements(bound))
-                  : std::move(former_levels_.finest),
+                former_levels_.coarse.empty() ? batched<float>(*batching_, h_, material_, elements_.full(),
+                                                               partial_elements(bound), batched_.hourglass)
+                                              : std::move(former_levels_.finest),
                 ghost_penalty_.faces(),
                 ties_.all()},
     former_levels_);
@@ -422,7 +422,7 @@ Matrix24 Hexahedra::element_matrix(const std::size_t copy, const Points& x, cons
     [&](const auto& law) { return Tangent(is_exact ? law.tangent(state.F) : law.positive_tangent(state.F)); }, law_);
   for (int a = 0; a < 8; ++a)
     for (int c = 0; c < 8; ++c)
-      K.block<3, 3>(3 * a, 3 * c) += element.volume * tangent_block(A, element.gradient[a], element.gradient[c]);
+      K.block<3, 3>(3 * a, 3 * c) += element.volume * tangent_block(A, element.gradient(a), element.gradient(c));
   return K;
 }
 

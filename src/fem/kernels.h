@@ -31,13 +31,18 @@ struct alignas(4 * sizeof(T)) Row {
 /// Index of a pair i >= j in a symmetric matrix that is kept row by row up to its diagonal.
 constexpr int pair_index(const int i, const int j) { return i * (i + 1) / 2 + j; }
 
-/// Of a partial cube. Hourglass unknowns are 3 k + i for mode k of 3, 5, 6, 7 and direction i.
+/// Of a partial cube.
 template <class T>
 struct alignas(64) PartialCubes {
   T volume[n_lanes];
-  T weight[n_lanes];                       ///< of its diagonal blocks in `diagonal` [1]
-  T gradient[n_hourglass][n_lanes];        ///< b_m, at 3 k + j [1/m]
-  T hourglass[n_hourglass_pairs][n_lanes]; ///< against modes in the turned frame [N/m]
+  T weight[n_lanes];                ///< of its diagonal blocks in `diagonal` [1]
+  T gradient[n_hourglass][n_lanes]; ///< b_m, at 3 k + j [1/m]
+};
+
+/// Of a partial cube, what hourglass modes meet in the turned frame [N/m]. Unknowns are 3 k + i for mode k of 3, 5, 6, 7 and
+/// direction i. In single precision for both: it is most of what a product reads.
+struct alignas(64) HourglassOfCubes {
+  float pair[n_hourglass_pairs][n_lanes];
 };
 
 /// What all elements of a body share.
@@ -53,6 +58,7 @@ struct Batch {
   const std::uint32_t (*corners)[n_lanes]; ///< 8 rows; lanes that are not used have a corner of their own
   const T (*rotation)[n_lanes];            ///< 9 rows, 3 x 3 column by column
   const PartialCubes<T>* partial;          ///< null: full cubes
+  const HourglassOfCubes* hourglass;       ///< of partial ones
   const T (*tangent)[n_lanes];             ///< 45 rows, pairs of the law's tangent times the volume; null: Hooke's
 };
 

@@ -31,7 +31,7 @@ Vec3 torque(const Vector24& p, const Vector24& q) {
 Vector24 local_gradient(const Element& element, const Vector24& Ku, const Vec3& z) {
   Vector24 g;
   for (int a = 0; a < 8; ++a)
-    g.segment<3>(3 * a) = Ku.segment<3>(3 * a) - z.cross(element.gradient[a]);
+    g.segment<3>(3 * a) = Ku.segment<3>(3 * a) - z.cross(element.gradient(a));
   return g;
 }
 
@@ -41,7 +41,7 @@ Turned turned(const Element& element, const double h, const std::array<Vec3, 8>&
   Turned state;
   state.F.setZero();
   for (int a = 1; a < 8; ++a)
-    state.F += (x[a] - x[0]) * element.gradient[a].transpose();
+    state.F += (x[a] - x[0]) * element.gradient(a).transpose();
   state.R = frame == Frame::turning ? material::rotation_of(state.F) : Mat3(Mat3::Identity());
   for (int a = 0; a < 8; ++a) {
     state.y.segment<3>(3 * a) = state.R.transpose() * (x[a] - x[0]);
@@ -68,13 +68,13 @@ Matrix24 hessian(const Element& element, const Matrix24& K, const Turned& state,
   Matrix24 local;
   for (int b = 0; b < 8; ++b)
     for (int i = 0; i < 3; ++i) {
-      const Vec3 p = Vec3::Unit(i), w = inverse * element.gradient[b].cross(p);
+      const Vec3 p = Vec3::Unit(i), w = inverse * element.gradient(b).cross(p);
       Vector24 du = Vector24::Zero();
       du.segment<3>(3 * b) = p;
       for (int a = 0; a < 8; ++a)
         du.segment<3>(3 * a) -= w.cross(state.y.segment<3>(3 * a));
       const Vector24 Kdu = K * du;
-      Mat3 dS = p * element.gradient[b].transpose();
+      Mat3 dS = p * element.gradient(b).transpose();
       for (int j = 0; j < 3; ++j)
         dS.col(j) -= w.cross(S.col(j));
       const Vec3 dt = torque(du, Ku) + torque(state.y, Kdu);

@@ -20,6 +20,12 @@ Matrix24 by_quadrature(const std::vector<WeightedPoint<Vec3>>& rule, const doubl
   return K;
 }
 
+/// Both parts before they are kept in single precision.
+Matrix24 in_double(const Moments& moments, const double h, const Strain strain = Strain::trilinear) {
+  const Centred positive = centred(without_negative_squares(moments));
+  return h * (hourglass_stiffness(positive, rubber, strain) + mean_stiffness(moments[0], mean_gradients(centred(moments)), rubber));
+}
+
 const std::vector<Sample>& samples() {
   static const std::vector<Sample> all = make_samples();
   return all;
@@ -27,16 +33,14 @@ const std::vector<Sample>& samples() {
 
 TEST(Element, FullCubeAgreesWithGaussPoints) {
   const Matrix24 K = by_quadrature(cube_rule(2), 0.3, rubber);
-  const Matrix24 found = stiffness(make_element(full_cube_moments(), 0.3, rubber, {}), rubber);
-  EXPECT_LT((K - found).norm(), 1e-14 * K.norm());
+  EXPECT_LT((K - in_double(full_cube_moments(), 0.3)).norm(), 1e-14 * K.norm());
 }
 
 TEST(Element, PartialCubeAgreesWithQuadratureInItsTetrahedra) {
   double worst = 0;
   for (const Sample& sample : samples()) {
     const Matrix24 K = by_quadrature(sample.rule, 0.3, rubber);
-    worst = std::max(
-      worst, (K - stiffness(make_element(sample.moments, 0.3, rubber, {}), rubber)).norm() / K.norm());
+    worst = std::max(worst, (K - in_double(sample.moments, 0.3)).norm() / K.norm());
   }
   EXPECT_LT(worst, 3e-13);
 }
@@ -53,15 +57,19 @@ TEST(Element, IsSymmetricAndHasSixRigidModes) {
   }
 }
 
-/// Both parts of an element together, for both kinds of strain.
+/// Both parts of an element together, for both kinds of strain; the hourglass part in single precision.
 TEST(Element, IsItsMeanAndItsHourglassPart) {
   for (const Sample& sample : samples())
     for (const Strain strain : {Strain::trilinear, Strain::enhanced}) {
       const Element one = make_element(sample.moments, 0.3, rubber, {.strain = strain});
-      const Matrix24 mean = mean_stiffness(one.volume, one.gradient, rubber),
+      std::array<Vec3, 8> gradients;
+      for (int a = 0; a < 8; ++a)
+        gradients[a] = one.gradient(a);
+      const Matrix24 mean = mean_stiffness(one.volume, gradients, rubber), found = stiffness(one, rubber, Part::hourglass),
                      rest = 0.3 * hourglass_stiffness(centred(without_negative_squares(sample.moments)), rubber, strain);
-      EXPECT_LT((stiffness(one, rubber) - rest - mean).norm(), 1e-14 * mean.norm());
-      EXPECT_LT((stiffness(one, rubber, Part::hourglass) - rest).norm(), 1e-14 * mean.norm());
+      EXPECT_LT((in_double(sample.moments, 0.3, strain) - rest - mean).norm(), 1e-14 * mean.norm());
+      EXPECT_LT((stiffness(one, rubber) - found - mean).norm(), 1e-14 * mean.norm());
+      EXPECT_LT((found - rest).norm(), 1e-7 * rest.norm());
     }
 }
 
@@ -94,8 +102,8 @@ TEST(Element, GradientIsTheMeanOverTheMaterial) {
         integral += weight * shape_gradient(a, x) / h;
         volume += weight;
       }
-      EXPECT_LT((element.gradient[a] - integral / volume).norm(), 1e-12);
-      sum += element.gradient[a];
+      EXPECT_LT((element.gradient(a) - integral / volume).norm(), 1e-12);
+      sum += element.gradient(a);
     }
     EXPECT_LT(sum.norm(), 1e-12);
   }
@@ -105,10 +113,10 @@ TEST(Element, ScalesWithTheCube) {
   const Sample& sample = samples().front();
   const Element one = make_element(sample.moments, 1, rubber, {}),
                 small = make_element(sample.moments, 0.01, rubber, {});
-  EXPECT_LT((0.01 * stiffness(one, rubber) - stiffness(small, rubber)).norm(), 1e-15 * stiffness(one, rubber).norm());
+  EXPECT_LT((0.01 * stiffness(one, rubber) - stiffness(small, rubber)).norm(), 1e-9 * stiffness(one, rubber).norm());
   for (int a = 0; a < 8; ++a) {
     EXPECT_NEAR(small.mass[a], 1e-6 * one.mass[a], 1e-15);
-    EXPECT_LT((0.01 * small.gradient[a] - one.gradient[a]).norm(), 1e-13);
+    EXPECT_LT((0.01 * small.gradient(a) - one.gradient(a)).norm(), 1e-13);
   }
 }
 

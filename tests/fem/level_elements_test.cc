@@ -57,7 +57,7 @@ TEST(LevelElements, TakeOverWhatHasNotChanged) {
   EXPECT_EQ(after.same_as[coarsening.parent[100]], CellsOfLevel::unused);
   for (std::size_t c = 0; c < 64; ++c) {
     EXPECT_EQ(after[c].hourglass, anew[c].hourglass) << c;
-    EXPECT_EQ(after[c].gradient, anew[c].gradient) << c;
+    EXPECT_EQ(after[c].mode_gradient, anew[c].mode_gradient) << c;
     EXPECT_EQ(after[c].bound, anew[c].bound) << c;
     EXPECT_EQ(after[c].hourglass == before[c].hourglass, c != coarsening.parent[100]) << c;
   }

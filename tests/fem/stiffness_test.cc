@@ -202,7 +202,9 @@ struct AnyElements {
   Matrix expected() const {
     Matrix K = Matrix::Zero(3 * n_corners, 3 * n_corners);
     for (std::uint32_t e = 0; e < n; ++e) {
-      const auto& b = elements[e].gradient;
+      std::array<Vec3, 8> b;
+      for (int a = 0; a < 8; ++a)
+        b[a] = elements[e].gradient(a);
       const Matrix24 k = stiffness(elements[e], rubber, batched.tangents.empty() ? Part::whole : Part::hourglass);
       for (int r = 0; r < 8; ++r)
         for (int c = 0; c < 8; ++c) {
@@ -250,7 +252,7 @@ void expect_kernels_are_the_matrices(const double tolerance) {
         const Matrix24 k = stiffness(all.elements[e], rubber, has_tangents ? Part::hourglass : Part::whole);
         for (int a = 0; a < 8; ++a) {
           Mat3 block = all.rotations[e] * k.block<3, 3>(3 * a, 3 * a) * all.rotations[e].transpose();
-          const Vec3& b = all.elements[e].gradient[a];
+          const Vec3 b = all.elements[e].gradient(a);
           for (int j = 0; j < 3 && has_tangents; ++j)
             for (int l = 0; l < 3; ++l)
               block += b[j] * b[l] * all.tangents[e].template block<3, 3>(3 * j, 3 * l);
