@@ -17,8 +17,6 @@ Balance on_the_way(const double s, const double time, const Points& start, const
   const std::size_t n = x.size();
   Balance balance{.time = time,
                   .start = Loan<Vec3>(x),
-                  .velocity = Loan<Vec3>(n, Vec3::Zero()),
-                  .acceleration = Loan<Vec3>(n, Vec3::Zero()),
                   .offset = Loan<Vec3>(n),
                   .free = free};
   for (const auto& held : constraints.held()) {

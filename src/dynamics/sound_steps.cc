@@ -1,6 +1,7 @@
 #include "dynamics/sound_steps.h"
 
 #include "base/error.h"
+#include "base/fingerprint.h"
 #include "dynamics/constraints.h"
 #include "dynamics/followers.h"
 #include "dynamics/forces.h"
@@ -56,7 +57,7 @@ double work_of_driving_loads(const Loads& loads, const State& at, const State& b
 /// Work of supports along the step with what the balance of forces lacks at a state.
 double work_of_supports(const ForceModel& model, const Loads& loads, const Constraints& constraints, const State& at,
                         const State& before, const State& after) {
-  Loan<Vec3> forces;
+  Loan<Vec3> forces = Loan<Vec3>::with_room(at.x.size());
   model.force(at.x, forces);
   add_load_forces(loads, {at.time, at.x, at.v}, forces);
   const auto mass = model.lumped_mass();
@@ -173,13 +174,13 @@ void require_finite(const State& state) {
 }
 
 double ElasticEnergies::at(const Points& x) {
-  if (known_[0].x == x)
+  const std::uint64_t where = fingerprint(x);
+  if (known_[0].where == where)
     return known_[0].energy;
   std::swap(known_[0], known_[1]);
-  if (known_[0].x != x) {
+  if (known_[0].where != where) {
     const double energy = model_.energy_ahead(x); // which may fail: then nothing is known of x
-    known_[0].x = x;
-    known_[0].energy = energy;
+    known_[0] = {where, energy};
   }
   return known_[0].energy;
 }
