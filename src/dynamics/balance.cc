@@ -26,6 +26,7 @@ constexpr int most_where_not_taken = 30; // Newton iterations
 
 BalanceSolver::BalanceSolver(ElasticModel& model, const NewtonOptions& options)
   : model_(model), matrix_(dynamic_cast<const StiffnessMatrix*>(&model)), options_(options), pieces_(options.piece) {
+  options_.piece = {}; // pieces_ knows them
   if (options_.solver == LinearSolver::direct && !matrix_)
     throw ParameterError(Complaint{.rule = "a direct solver needs an assembled stiffness, which this model has not",
                                    .remedy = "Use conjugate gradients"});
@@ -104,13 +105,13 @@ double BalanceSolver::linearise_at(const Problem& problem, const Points& x) {
   return assemble_residual(problem, x);
 }
 
-double BalanceSolver::scaled_residual() const {
-  return std::sqrt(sum_of(residual_.size(), [&](const std::size_t begin, const std::size_t end) {
+double BalanceSolver::square_of_scaled_residual() const {
+  return sum_of(residual_.size(), [&](const std::size_t begin, const std::size_t end) {
     double sum = 0;
     for (std::size_t i = begin; i < end; ++i)
       sum += (scaling_[i] * residual_[i]).squaredNorm();
     return sum;
-  }));
+  });
 }
 
 Loan<Vec3> BalanceSolver::velocities(const Problem& problem, const Points& x) {
@@ -179,8 +180,7 @@ double BalanceSolver::assemble_residual(const Problem& problem, const Points& x)
   const double square_of_scale = sum_of(n, [&](const std::size_t begin, const std::size_t end) {
     double sum = 0;
     for (std::size_t i = begin; i < end; ++i) {
-      const Vec3 weight = mass[i] * loads.gravity,
-                 resistance = mass[i] * problem.resisted(x, i) + damping(problem, i);
+      const Vec3 weight = mass[i] * loads.gravity, resistance = mass[i] * problem.resisted(x, i) + damping(problem, i);
       residual_[i] = force[i] + weight + load_force(i) + problem.offset(i) - resistance;
       if (coupling)
         residual_[i] -= more[i];
@@ -220,13 +220,12 @@ double BalanceSolver::round_off_of_forces(const Points& x) const {
 double BalanceSolver::scaled_round_off_at(const Points& x) const {
   constexpr double round_off = 8 * std::numeric_limits<double>::epsilon(),
                    nothing = 1e-100; // squares of less underflow
-  return std::max(nothing,
-                  round_off * std::sqrt(sum_of(x.size(), [&](const std::size_t begin, const std::size_t end) {
-                    double sum = 0;
-                    for (std::size_t i = begin; i < end; ++i)
-                      sum += size_[i] * x[i].squaredNorm();
-                    return sum;
-                  })));
+  return std::max(nothing, round_off * std::sqrt(sum_of(x.size(), [&](const std::size_t begin, const std::size_t end) {
+                             double sum = 0;
+                             for (std::size_t i = begin; i < end; ++i)
+                               sum += size_[i] * x[i].squaredNorm();
+                             return sum;
+                           })));
 }
 
 void BalanceSolver::apply(const Problem& problem, const std::span<const double> p, const std::span<double> y) {
@@ -294,7 +293,8 @@ int BalanceSolver::correct_by_cg(const Problem& problem, Loan<Vec3> guess, const
     worth);
   guess = Loan<Vec3>::none();
   const double of_own = 0.5 * options_.step_tolerance; // the step's own error is half the way from free motion
-  const double left = options_.n_mixed > 0 ? 1e-3 * scaled_residual() : 0; // where other corrections follow
+  const double left =
+    options_.n_mixed > 0 ? 1e-3 * std::sqrt(square_of_scaled_residual()) : 0; // where other corrections follow
   CgStop stop{.residual = std::max({options_.cg_tolerance * scale, left, scaled_round_off_}),
               .error = of_own * way_,
               .of_way = has_guess ? of_own : 0};
@@ -392,8 +392,8 @@ BalanceSolver::Change BalanceSolver::change(const Problem& problem, const Points
   double linear = 0, quadratic = 0; // in the length, of all that is no energy of its own
   for (std::size_t i = 0; i < x.size(); ++i) {
     const Vec3& d = correction_[i];
-    linear += d.dot(problem.mass[i] * (problem.resisted(x, i) - loads.gravity) +
-                    damping(problem, i) - problem.offset(i));
+    linear +=
+      d.dot(problem.mass[i] * (problem.resisted(x, i) - loads.gravity) + damping(problem, i) - problem.offset(i));
     quadratic += 0.5 * problem.mass_factor * problem.mass[i] * d.squaredNorm() +
                  0.5 * loads.stiffness_damping * b.velocity_factor * d.dot(damped[i]);
   }

@@ -186,7 +186,7 @@ class BalanceSolver {
   Loan<double> most_work(const Problem& problem, const Points& x);
   /// Whether what is out of balance at x does less work than that in every piece.
   bool works_little(const Problem& problem, const Points& x, double scale) const;
-  double scaled_residual() const;
+  double square_of_scaled_residual() const;
   /// 1 for each piece in which more is out of balance than the linear solver is asked for.
   Loan<std::uint8_t> seen(double scale) const;
   /// That it may leave by the step's own error, in the energy norm; 0: unknown.

@@ -1,6 +1,7 @@
 /// What a correction must bear where it ends (balance.h). Nothing joins the pieces of a body, so each is asked by itself.
 
 #include "base/error.h"
+#include "base/parallel.h"
 #include "dynamics/balance.h"
 #include "dynamics/forces.h"
 #include "dynamics/points.h"
@@ -11,6 +12,12 @@
 #include <cmath>
 
 namespace kerf::dynamics {
+
+namespace {
+
+constexpr std::size_t worth = 4096; // corners from which on a second thread pays
+
+} // namespace
 
 Loan<std::uint8_t> BalanceSolver::flying(const Problem& problem) const {
   Loan<std::uint8_t> flies(pieces_.n(), problem.loads.acting.empty() ? 1 : 0);
@@ -29,7 +36,9 @@ double BalanceSolver::error_of_cg() const { return 0.5 * options_.step_tolerance
 
 Loan<std::uint8_t> BalanceSolver::seen(const double scale) const {
   Loan<double> squares(pieces_.n(), 0);
-  for (std::size_t i = 0; i < residual_.size(); ++i)
+  if (pieces_.n() == 1)
+    squares[0] = square_of_scaled_residual();
+  for (std::size_t i = 0; i < residual_.size() && pieces_.n() > 1; ++i)
     squares[pieces_.of(i)] += (scaling_[i] * residual_[i]).squaredNorm();
   const double least = std::max(options_.cg_tolerance * scale, scaled_round_off_);
   Loan<std::uint8_t> is_seen(squares.size());
@@ -75,8 +84,8 @@ Loan<double> BalanceSolver::most_work(const Problem& problem, const Points& x) {
   const auto with_inertia = [&](const Points& values) { return pieces_.products(values, momenta(model_, values)); };
   const Loan<double> of_change = [&] {
     Loan<Vec3> a(x.size());
-    for (std::size_t i = 0; i < a.size(); ++i)
-      a[i] = problem.acceleration(x, i);
+    parallel_for(
+      a.size(), [&](const std::size_t i) { a[i] = problem.acceleration(x, i); }, worth);
     return with_inertia(a);
   }();
   const Loan<Vec3> d = unlike_flight(problem, moved(x, -1, problem.balance.start));

@@ -60,14 +60,8 @@ class Estimate {
 } // namespace
 
 double sum_of(const std::size_t n, const FunctionRef<double(std::size_t, std::size_t)> of_range) {
-  Loan<double> parts((n + block - 1) / block);
-  parallel_for(
-    parts.size(), [&](const std::size_t b) { parts[b] = of_range(b * block, std::min(n, (b + 1) * block)); },
-    worth_blocks);
-  double sum = 0;
-  for (const double part : *parts)
-    sum += part;
-  return sum;
+  return sum_in_blocks(
+    n, 0.0, [&](const std::size_t begin, const std::size_t end, double& sum) { sum = of_range(begin, end); });
 }
 
 double dot(const std::span<const double> a, const std::span<const double> b) {
