@@ -2,12 +2,19 @@
 
 /// Vectors for intermediate values whose memory is borrowed: it goes back to the thread when they end, for those that come next.
 /// So a step allocates nothing once the steps before have made what it takes, and no object keeps what only its functions need.
+///
+/// Lent is the smallest memory that is large enough, and where none is, the largest: it grows. So who says at once how much he
+/// takes does not make small vectors large, and there are no more large ones than are in use at a time.
 
+#include <algorithm>
 #include <cstddef>
 #include <utility>
 #include <vector>
 
 namespace kerf {
+
+/// For vectors that are written before they are read.
+struct AnyValues {};
 
 template <class T>
 class Loan {
@@ -15,10 +22,19 @@ class Loan {
   using Vector = std::vector<T>;
 
   /// Empty.
-  Loan() : values_(taken()) {}
-  explicit Loan(const std::size_t n) : Loan() { values_.resize(n); }
-  Loan(const std::size_t n, const T& value) : Loan() { values_.assign(n, value); }
-  Loan(const Vector& values) : Loan() { values_ = values; } // NOLINT: a copy of one
+  Loan() : Loan(with_room(0)) {}
+  explicit Loan(const std::size_t n) : Loan(with_room(n)) { values_.resize(n); }
+  Loan(const std::size_t n, const T& value) : Loan(with_room(n)) { values_.assign(n, value); }
+  Loan(const std::size_t n, AnyValues) : values_(taken(n)) { values_.resize(n); }
+  Loan(const Vector& values) : Loan(with_room(values.size())) { values_ = values; } // NOLINT: a copy of one
+  /// Without memory, for what will have no values.
+  static Loan none() { return Loan(Vector()); }
+  /// Empty, but to be of n values later.
+  static Loan with_room(const std::size_t n) {
+    Vector values = taken(n);
+    values.clear();
+    return Loan(std::move(values));
+  }
   Loan(Loan&& other) noexcept : values_(std::exchange(other.values_, {})) {}
   Loan(const Loan&) = delete;
   Loan& operator=(const Loan&) = delete;
@@ -39,6 +55,8 @@ class Loan {
   operator const Vector&() const { return values_; } // NOLINT
   T& operator[](const std::size_t i) { return values_[i]; }
   const T& operator[](const std::size_t i) const { return values_[i]; }
+  T* data() { return values_.data(); }
+  const T* data() const { return values_.data(); }
   auto begin() { return values_.begin(); }
   auto end() { return values_.end(); }
   auto begin() const { return values_.begin(); }
@@ -47,17 +65,29 @@ class Loan {
   bool empty() const { return values_.empty(); }
 
  private:
+  explicit Loan(Vector&& values) : values_(std::move(values)) {}
+
   static std::vector<Vector>& idle() {
     static thread_local std::vector<Vector> vectors;
     return vectors;
   }
-  static Vector taken() {
+  /// With room for n values, and what was in it.
+  static Vector taken(const std::size_t n) {
     auto& all = idle();
     if (all.empty())
       return {};
-    Vector values = std::move(all.back());
+    const auto fits_better = [n](const Vector& a, const Vector& b) {
+      const bool a_fits = a.capacity() >= n, b_fits = b.capacity() >= n;
+      return a_fits != b_fits ? a_fits : a_fits ? a.capacity() < b.capacity() : a.capacity() > b.capacity();
+    };
+    const auto best = std::min_element(all.begin(), all.end(), fits_better);
+    Vector values = std::move(*best);
+    *best = std::move(all.back());
     all.pop_back();
-    values.clear();
+    if (values.capacity() < n) {
+      values = {}; // not both at a time
+      values.reserve(n);
+    }
     return values;
   }
 

@@ -1,6 +1,7 @@
 #include "cut/blade.h"
 
 #include "base/error.h"
+#include "base/loan.h"
 #include "base/parameters.h"
 
 #include <Eigen/Geometry>
@@ -47,11 +48,13 @@ double turn(const Blade& blade, const double t0, const double t1) {
 }
 
 /// The ends of a step and the key frames within, in order.
-std::vector<double> breaks(const Blade& blade, const double t0, const double t1) {
-  std::vector<double> times = {t0, t1};
+Loan<double> breaks(const Blade& blade, const double t0, const double t1) {
+  Loan<double> times =
+    Loan<double>::with_room(2 + blade.key_frames.size() + (blade.hinge ? blade.hinge->angles.size() : 0));
+  times->assign({t0, t1});
   const auto add = [&](const double t) {
     if (t0 < t && t < t1)
-      times.push_back(t);
+      times->push_back(t);
   };
   for (const KeyFrame& frame : blade.key_frames)
     add(frame.time);
@@ -59,13 +62,30 @@ std::vector<double> breaks(const Blade& blade, const double t0, const double t1)
     for (const AngleFrame& frame : blade.hinge->angles)
       add(frame.time);
   std::sort(times.begin(), times.end());
-  times.erase(std::unique(times.begin() + 1, times.end()), times.end()); // a step without length keeps both its ends
+  times->erase(std::unique(times.begin() + 1, times.end()), times.end()); // a step without length keeps both its ends
   return times;
 }
 
 /// Does the blade cut between two times without a key frame in between? On a hinge only while its angle falls.
 bool cuts_between(const Blade& blade, const double t0, const double t1) {
   return !blade.hinge || std::abs(hinge_angle(*blade.hinge, t1)) < std::abs(hinge_angle(*blade.hinge, t0));
+}
+
+/// Calls begin() for each path, and then add(time) for each of its moments.
+template <class Begin, class Add>
+void for_each_moment(const Blade& blade, const double t0, const double t1, const Begin& begin, const Add& add) {
+  if (!(t0 < t1))
+    return;
+  const Loan<double> times = breaks(blade, t0, t1);
+  for (std::size_t k = 0; k + 1 < times.size(); ++k) {
+    const double from = times[k], to = times[k + 1];
+    if (!cuts_between(blade, from, to))
+      continue;
+    const int n = std::max(1, static_cast<int>(std::ceil(turn(blade, from, to) / max_turn - 1e-9)));
+    begin();
+    for (int i = 0; i <= n; ++i)
+      add(i < n ? from + (to - from) * i / n : to);
+  }
 }
 
 void check_edge(const Blade& blade) {
@@ -118,34 +138,41 @@ Pose pose(const Blade& blade, const double t) {
   return {tool(within.position), tool.rotation * within.rotation};
 }
 
-Points world_points(const Blade& blade, const double t) {
+void put_world_points(const Blade& blade, const double t, Points& points) {
   const Pose placed = pose(blade, t);
+  points.resize(blade.edge.size());
+  std::ranges::transform(blade.edge, points.begin(), placed);
+}
+
+Points world_points(const Blade& blade, const double t) {
   Points points;
-  points.reserve(blade.edge.size());
-  for (const Vec3& p : blade.edge)
-    points.push_back(placed(p));
+  put_world_points(blade, t, points);
   return points;
 }
 
 std::vector<BladePath> paths(const Blade& blade, const double t0, const double t1) {
   std::vector<BladePath> result;
-  if (!(t0 < t1))
-    return result;
-  const auto times = breaks(blade, t0, t1);
-  for (std::size_t k = 0; k + 1 < times.size(); ++k) {
-    const double from = times[k], to = times[k + 1];
-    if (!cuts_between(blade, from, to))
-      continue;
-    const int n = std::max(1, static_cast<int>(std::ceil(turn(blade, from, to) / max_turn - 1e-9)));
-    BladePath path;
-    for (int i = 0; i <= n; ++i) {
-      const double t = i < n ? from + (to - from) * i / n : to;
-      path.fractions.push_back((t - t0) / (t1 - t0));
-      path.lines.push_back(world_points(blade, t));
-    }
-    result.push_back(std::move(path));
-  }
+  for_each_moment(
+    blade, t0, t1, [&] { result.emplace_back(); },
+    [&](const double t) {
+      result.back().fractions.push_back((t - t0) / (t1 - t0));
+      result.back().lines.push_back(world_points(blade, t));
+    });
   return result;
+}
+
+Box reach_of_paths(const Blade& blade, const double t0, const double t1) {
+  Box box{Vec3::Constant(1e300), Vec3::Constant(-1e300)};
+  for_each_moment(
+    blade, t0, t1, [] {},
+    [&](const double t) {
+      const Pose placed = pose(blade, t);
+      for (const Vec3& p : blade.edge) {
+        box.lower = box.lower.cwiseMin(placed(p));
+        box.upper = box.upper.cwiseMax(placed(p));
+      }
+    });
+  return box;
 }
 
 void add_strip(const Points& before, const Points& after, std::vector<std::array<Vec3, 3>>& strip) {

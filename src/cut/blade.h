@@ -51,6 +51,8 @@ Pose pose(const Blade& blade, double t);
 
 /// The cutting edge at time t [s], world frame [m].
 Points world_points(const Blade& blade, double t);
+/// The same, in the memory of `points`.
+void put_world_points(const Blade& blade, double t, Points& points);
 
 /// Where the cutting edge stands at successive moments of a step.
 struct BladePath {
@@ -61,6 +63,9 @@ struct BladePath {
 /// The paths on which the blade cuts in a step, in order: from key frame to key frame, so that a blade that turns back
 /// cuts on its way there; on a hinge, those on which it closes.
 std::vector<BladePath> paths(const Blade& blade, double t0, double t1);
+
+/// Around all of them; nothing overlaps it when there are none [m]. Allocates nothing once it has been asked.
+Box reach_of_paths(const Blade& blade, double t0, double t1);
 
 /// The triangles between two successive places of the cutting edge; none when they are the same.
 void add_strip(const Points& before, const Points& after, std::vector<std::array<Vec3, 3>>& strip);

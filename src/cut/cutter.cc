@@ -81,14 +81,18 @@ CutChange Cutter::step(Solid& solid, const std::span<const Blade> blades, const 
     boxes_->fit(x_before_, x);
   std::vector<Stroke> strokes;
   for (const Blade& blade : blades) {
+    if (!boxes_->may_be_in(reach_of_paths(blade, t0, t1)))
+      continue;
     strokes.push_back(stroke(solid, blade, t0, t1, x));
     if (fronts_ == Fronts::inside_cells)
       for (const BladePath& path : paths(blade, t0, t1))
         advance_.sweep(path, solid, x_before_, x, *boxes_, blade.label);
   }
-  edges_.clear();
-  for (const Blade& blade : blades)
-    edges_.push_back({blade.label, world_points(blade, t1)});
+  edges_.resize(blades.size());
+  for (std::size_t i = 0; i < blades.size(); ++i) {
+    edges_[i].label = blades[i].label;
+    put_world_points(blades[i], t1, edges_[i].line);
+  }
   return take(solid, strokes, x);
 }
 
@@ -184,6 +188,8 @@ void Cutter::join(Solid& solid, const Added& added, const Points& x, std::vector
   cells.insert(cells.end(), unsettled_.begin(), unsettled_.end());
   sort_unique(cells);
   unsettled_.clear();
+  if (cells.empty())
+    return;
   const Passage passage(edges_);
   for (const grid::CellId c : cells) {
     std::vector<grid::Joined> groups;

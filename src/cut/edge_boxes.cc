@@ -1,6 +1,7 @@
 #include "cut/edge_boxes.h"
 
 #include "base/error.h"
+#include "base/loan.h"
 #include "base/parallel.h"
 
 #include <algorithm>
@@ -299,7 +300,7 @@ std::size_t EdgeBoxes::n_bytes() const {
 
 void require_finite(const Points& x) {
   constexpr std::size_t chunk = 4096, worth = 2;
-  std::vector<std::uint8_t> is_finite((x.size() + chunk - 1) / chunk);
+  Loan<std::uint8_t> is_finite((x.size() + chunk - 1) / chunk);
   parallel_for(
     is_finite.size(),
     [&](const std::size_t k) {

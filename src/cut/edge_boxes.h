@@ -10,6 +10,7 @@
 ///
 /// Limit: where a brick's pieces have come apart, its box reaches from one to the other.
 
+#include "geometry/box_tree.h"
 #include "grid/solid.h"
 
 #include <functional>
@@ -80,6 +81,19 @@ class EdgeBoxes {
   void for_each_skin_cell(const std::uint32_t block, const Function& f) const {
     for (std::uint32_t i = starts_[block].skin_cell; i < starts_[block + 1].skin_cell; ++i)
       f(skin_cells_[i]);
+  }
+
+  /// The block's box holds edges between material nodes; edges of the skin begin at one of those. How far they reach, to
+  /// corners outside of the material, is not known: not farther than four times the longest edge of the body [m].
+  double reach_of_skin() const { return 4 * longest(); }
+  /// Holds all of a block: edges, edges of the skin, cells [m].
+  Box with_skin(const Block& block) const {
+    const Vec3 slack = Vec3::Constant(reach_of_skin());
+    return {block.box.lower - slack, block.box.upper + slack};
+  }
+  /// Whether anything of the body may be in a box [m]. Allocates nothing where nothing is.
+  bool may_be_in(const Box& box) const {
+    return !blocks([&](const Block& block) { return geometry::overlap(with_skin(block), box); }).empty();
   }
 
   /// Whether a corner has moved between what the boxes were fitted to.

@@ -45,15 +45,6 @@ grid::CellId cell_at(const grid::Grid& grid, const grid::EdgeId edge) {
   return *std::ranges::find_if(around, [](const grid::CellId cell) { return cell.valid(); });
 }
 
-/// The block's box holds edges between material nodes; edges of the skin begin at one of those. How far they reach, to
-/// corners outside of the material, is not known: not farther than so many times the longest edge of the body.
-constexpr double reach_of_skin = 4;
-
-Box with_skin(const EdgeBoxes::Block& block, const double longest) {
-  const Vec3 slack = Vec3::Constant(reach_of_skin * longest);
-  return {block.box.lower - slack, block.box.upper + slack};
-}
-
 } // namespace
 
 Target::Target(const grid::Solid& solid, const Points& x_before, const Points& x, const EdgeBoxes* boxes)
@@ -80,8 +71,7 @@ SweepCuts Target::cut_anywhere(const grid::CutLabel label, const Judge& judge) c
 
 SweepCuts Target::cut_near(const grid::CutLabel label, const Nearness& near, const Judge& judge) const {
   const auto is_near = [&](const Box& box) { return geometry::overlap(box, near.reach) && near.may_meet(box); };
-  const auto blocks =
-    boxes_->blocks([&](const EdgeBoxes::Block& block) { return is_near(with_skin(block, longest())); });
+  const auto blocks = boxes_->blocks([&](const EdgeBoxes::Block& block) { return is_near(boxes_->with_skin(block)); });
   const std::size_t n = (blocks.size() + blocks_per_chunk - 1) / blocks_per_chunk;
   return joined(n, [&](const std::size_t k, SweepCuts& part) {
     for (std::size_t b = k * blocks_per_chunk; b < std::min(blocks.size(), (k + 1) * blocks_per_chunk); ++b) {
@@ -107,7 +97,7 @@ void Target::judge_edges(const std::uint32_t block, const Nearness& near, const 
 
 void Target::judge_skin_edges(const std::uint32_t block, const Nearness& near, const grid::CutLabel label,
                               const Judge& judge, SweepCuts& result) const {
-  const double room_around = reach_of_skin * longest();
+  const double room_around = boxes_->reach_of_skin();
   const auto is_near = [&](const Vec3& before, const Vec3& now) {
     return ((near.reach.lower - before.cwiseMax(now)).array() <= room_around).all() &&
            ((before.cwiseMin(now) - near.reach.upper).array() <= room_around).all();

@@ -14,6 +14,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 namespace kerf::dynamics {
 namespace {
@@ -25,13 +26,13 @@ constexpr int most_where_not_taken = 30; // Newton iterations
 
 BalanceSolver::BalanceSolver(ElasticModel& model, const NewtonOptions& options)
   : model_(model), matrix_(dynamic_cast<const StiffnessMatrix*>(&model)), options_(options), pieces_(options.piece) {
+  options_.piece = {}; // pieces_ knows them
   if (options_.solver == LinearSolver::direct && !matrix_)
     throw ParameterError(Complaint{.rule = "a direct solver needs an assembled stiffness, which this model has not",
                                    .remedy = "Use conjugate gradients"});
 }
 
-NewtonReport BalanceSolver::solve(const Loads& loads, const Constraints& constraints, const Balance& balance,
-                                  Points& x) {
+NewtonReport BalanceSolver::solve(const Loads& loads, const Constraints& constraints, Balance balance, Points& x) {
   const double omega = balance.velocity_factor;
   const Problem problem{loads,
                         constraints,
@@ -50,13 +51,13 @@ NewtonReport BalanceSolver::solve(const Loads& loads, const Constraints& constra
   int most = options_.max_iterations;
   double first = 0;
   Verdict verdict = Verdict::taken;
-  const Points none;
+  Loan<Vec3> guess = std::move(balance.guess);
   for (;;) {
     double scale = linearise_at(problem, x);
     if (options_.tolerance > 0) {
       const double left = norm(residual_);
       first = std::max(first, left);
-      const double most_force = std::max(first, balanced_forces(problem));
+      const double most_force = std::max(first, balanced_forces_);
       report.residual = most_force > 0 ? left / most_force : 0;
       report.converged = left <= std::max(options_.tolerance * most_force, round_off_of_forces(x));
       if (report.converged)
@@ -65,17 +66,17 @@ NewtonReport BalanceSolver::solve(const Loads& loads, const Constraints& constra
     const bool is_enough = verdict == Verdict::goes_on && report.n_newton >= options_.max_iterations;
     if (report.n_newton == most || (is_enough && works_little(problem, x, scale)))
       break;
-    report.n_linear += correct(problem, report.n_newton == 0 ? *balance.guess : none, scale);
+    report.n_linear += correct(problem, x, std::exchange(guess, Loan<Vec3>::none()), scale);
     ++report.n_newton;
     if (report.n_newton == 1 && options_.trust == Trust::tested && line_search == LineSearch::none) {
-      const Loan<Vec3> end = moved(x, 1, correction_);
+      Loan<Vec3> end = moved(x, 1, correction_);
       verdict = judge(problem, end);
       if (verdict != Verdict::taken) {
         line_search = LineSearch::backtracking;
         most = std::max(most, most_where_not_taken);
       }
       if (verdict == Verdict::goes_on) {
-        x = *end;
+        x.swap(end);
         continue;
       }
       if (verdict == Verdict::refused) {
@@ -101,42 +102,37 @@ double BalanceSolver::linearise_at(const Problem& problem, const Points& x) {
   model_.linearise(x);
   move_to(problem, x);
   factorise(problem);
-  return assemble_residual(problem);
+  return assemble_residual(problem, x);
 }
 
-double BalanceSolver::scaled_residual() const {
-  return std::sqrt(sum_of(residual_.size(), [&](const std::size_t begin, const std::size_t end) {
+double BalanceSolver::square_of_scaled_residual() const {
+  return sum_of(residual_.size(), [&](const std::size_t begin, const std::size_t end) {
     double sum = 0;
     for (std::size_t i = begin; i < end; ++i)
       sum += (scaling_[i] * residual_[i]).squaredNorm();
     return sum;
-  }));
+  });
+}
+
+Loan<Vec3> BalanceSolver::velocities(const Problem& problem, const Points& x) {
+  Loan<Vec3> v(x.size());
+  parallel_for(
+    x.size(), [&](const std::size_t i) { v[i] = problem.velocity(x, i); }, worth);
+  return v;
 }
 
 void BalanceSolver::move_to(const Problem& problem, const Points& x) {
   const Balance& b = problem.balance;
-  position_ = x;
-  model_.force(x, force_);
-  velocity_.resize(x.size());
-  acceleration_.resize(x.size());
-  parallel_for(
-    x.size(),
-    [&](const std::size_t i) {
-      const Vec3 moved = x[i] - b.start[i];
-      velocity_[i] = b.velocity[i] + b.velocity_factor * moved;
-      acceleration_[i] = b.acceleration[i] + b.mass_factor * moved;
-    },
-    worth);
+  const bool is_damped = problem.loads.stiffness_damping > 0 && b.velocity_factor > 0;
   damping_.clear();
-  if (problem.loads.stiffness_damping > 0 && b.velocity_factor > 0) {
+  tangent_ = {};
+  if (!is_damped && problem.loads.acting.empty())
+    return;
+  const Loan<Vec3> v = velocities(problem, x);
+  tangent_ = load_tangent(problem.loads, Tangent::positive, {b.time, x, v}, b.velocity_factor);
+  if (is_damped) {
     damping_.resize(x.size());
-    model_.apply_stiffness(flat(velocity_), flat(damping_));
-  }
-  tangent_ = load_tangent(problem.loads, Tangent::positive, {b.time, x, velocity_}, b.velocity_factor);
-  load_force_.clear();
-  if (!problem.loads.acting.empty()) {
-    load_force_.assign(x.size(), Vec3::Zero());
-    add_load_forces(problem.loads, {b.time, x, velocity_}, load_force_);
+    model_.apply_stiffness(flat(*v), flat(damping_));
   }
 }
 
@@ -159,46 +155,56 @@ Vec3 BalanceSolver::damping(const Problem& problem, const std::size_t i) const {
   return damping_.empty() ? Vec3(Vec3::Zero()) : Vec3(problem.loads.stiffness_damping * damping_[i]);
 }
 
-Loan<Vec3> BalanceSolver::resisted(const Problem& problem) const {
-  return problem.coupling ? moved(acceleration_, problem.loads.mass_damping, velocity_) : Loan<Vec3>();
+Loan<Vec3> BalanceSolver::coupled_inertia(const Problem& problem, const Points& x) const {
+  if (!problem.coupling)
+    return Loan<Vec3>::none();
+  Loan<Vec3> a(x.size());
+  for (std::size_t i = 0; i < a.size(); ++i)
+    a[i] = problem.resisted(x, i);
+  return coupled(model_, a);
 }
 
-double BalanceSolver::assemble_residual(const Problem& problem) {
+double BalanceSolver::assemble_residual(const Problem& problem, const Points& x) {
   const auto& [loads, constraints, balance, mass, coupling, mass_factor, stiffness_factor] = problem;
-  const std::size_t n = force_.size();
+  const std::size_t n = x.size();
+  Loan<Vec3> force = Loan<Vec3>::with_room(n);
+  model_.force(x, force);
+  Loan<Vec3> of_loads = Loan<Vec3>::none();
+  if (!loads.acting.empty()) {
+    of_loads = Loan<Vec3>(n, Vec3::Zero());
+    add_load_forces(loads, {balance.time, x, velocities(problem, x)}, of_loads);
+  }
+  const auto load_force = [&](const std::size_t i) { return Problem::of_corner(of_loads, i); };
   residual_.resize(n);
-  const Loan<Vec3> more = coupled(model_, resisted(problem));
+  const Loan<Vec3> more = coupled_inertia(problem, x);
   const double square_of_scale = sum_of(n, [&](const std::size_t begin, const std::size_t end) {
     double sum = 0;
     for (std::size_t i = begin; i < end; ++i) {
-      const Vec3 weight = mass[i] * loads.gravity,
-                 resistance = mass[i] * (acceleration_[i] + loads.mass_damping * velocity_[i]) + damping(problem, i);
-      residual_[i] = force_[i] + weight + load_force(i) + problem.offset(i) - resistance;
+      const Vec3 weight = mass[i] * loads.gravity, resistance = mass[i] * problem.resisted(x, i) + damping(problem, i);
+      residual_[i] = force[i] + weight + load_force(i) + problem.offset(i) - resistance;
       if (coupling)
         residual_[i] -= more[i];
       if (!constraints.is_free(i))
         residual_[i] = constraints.freedom(i).project * residual_[i];
       const Mat3& S = scaling_[i];
-      sum += (S * force_[i]).squaredNorm() + (S * weight).squaredNorm() + (S * load_force(i)).squaredNorm() +
-             (S * (mass[i] * balance.acceleration[i])).squaredNorm();
+      sum += (S * force[i]).squaredNorm() + (S * weight).squaredNorm() + (S * load_force(i)).squaredNorm() +
+             (S * (mass[i] * problem.acceleration_at_start(i))).squaredNorm();
     }
     return sum;
   });
   balance.free.relieve_forces(flat(residual_));
   if (!std::isfinite(square_of_scale) || !std::isfinite(norm(residual_)))
     throw NumericalError("forces are not finite");
+  if (options_.tolerance > 0)
+    balanced_forces_ = std::sqrt(sum_of(n, [&](const std::size_t begin, const std::size_t end) {
+      double sum = 0;
+      for (std::size_t i = begin; i < end; ++i)
+        sum += force[i].squaredNorm() + load_force(i).squaredNorm() + (mass[i] * loads.gravity).squaredNorm() +
+               (mass[i] * problem.acceleration_at_start(i)).squaredNorm();
+      return sum;
+    }));
+  scaled_round_off_ = scaled_round_off_at(x);
   return std::sqrt(square_of_scale);
-}
-
-double BalanceSolver::balanced_forces(const Problem& problem) const {
-  return std::sqrt(sum_of(force_.size(), [&](const std::size_t begin, const std::size_t end) {
-    double sum = 0;
-    for (std::size_t i = begin; i < end; ++i)
-      sum += force_[i].squaredNorm() + load_force(i).squaredNorm() +
-             (problem.mass[i] * problem.loads.gravity).squaredNorm() +
-             (problem.mass[i] * problem.balance.acceleration[i]).squaredNorm();
-    return sum;
-  }));
 }
 
 double BalanceSolver::round_off_of_forces(const Points& x) const {
@@ -211,16 +217,15 @@ double BalanceSolver::round_off_of_forces(const Points& x) const {
          }));
 }
 
-double BalanceSolver::scaled_round_off() const {
+double BalanceSolver::scaled_round_off_at(const Points& x) const {
   constexpr double round_off = 8 * std::numeric_limits<double>::epsilon(),
                    nothing = 1e-100; // squares of less underflow
-  return std::max(nothing,
-                  round_off * std::sqrt(sum_of(position_.size(), [&](const std::size_t begin, const std::size_t end) {
-                    double sum = 0;
-                    for (std::size_t i = begin; i < end; ++i)
-                      sum += size_[i] * position_[i].squaredNorm();
-                    return sum;
-                  })));
+  return std::max(nothing, round_off * std::sqrt(sum_of(x.size(), [&](const std::size_t begin, const std::size_t end) {
+                             double sum = 0;
+                             for (std::size_t i = begin; i < end; ++i)
+                               sum += size_[i] * x[i].squaredNorm();
+                             return sum;
+                           })));
 }
 
 void BalanceSolver::apply(const Problem& problem, const std::span<const double> p, const std::span<double> y) {
@@ -234,7 +239,7 @@ void BalanceSolver::apply(const Problem& problem, const std::span<const double> 
     tangent_.add_product(p, load_product_);
   }
   parallel_for(
-    force_.size(),
+    residual_.size(),
     [&](const std::size_t i) {
       Vec3 Ap =
         problem.mass_factor * problem.mass[i] * at(p, i) + problem.stiffness_factor * at(std::span<const double>(y), i);
@@ -261,14 +266,14 @@ Preconditioner* BalanceSolver::preconditioner(const Problem& problem) {
     {problem.mass_factor, problem.stiffness_factor, problem.mass, trace, tangent_, problem.constraints});
 }
 
-int BalanceSolver::correct(const Problem& problem, const Points& guess, const double scale) {
+int BalanceSolver::correct(const Problem& problem, const Points& x, Loan<Vec3> guess, const double scale) {
   int n_iterations = 0;
   if (options_.solver == LinearSolver::conjugate_gradients) {
-    n_iterations = correct_by_cg(problem, guess, scale);
+    n_iterations = correct_by_cg(problem, std::move(guess), scale);
   } else {
-    correct_directly(problem, options_.tangent);
+    correct_directly(problem, x, options_.tangent);
     if (options_.tangent == Tangent::exact && !(product(residual_, correction_) > 0))
-      correct_directly(problem, Tangent::positive); // at a saddle the exact one leads uphill
+      correct_directly(problem, x, Tangent::positive); // at a saddle the exact one leads uphill
   }
   if (options_.line_search != LineSearch::none && !(product(residual_, correction_) > 0))
     for (std::size_t i = 0; i < correction_.size(); ++i) // the scaled force itself always leads downhill
@@ -277,16 +282,22 @@ int BalanceSolver::correct(const Problem& problem, const Points& guess, const do
   return n_iterations;
 }
 
-int BalanceSolver::correct_by_cg(const Problem& problem, const Points& guess, const double scale) {
-  const std::size_t n = force_.size();
-  correction_.assign(n, Vec3::Zero());
-  for (std::size_t i = 0; i < n && !guess.empty(); ++i)
-    correction_[i] = problem.constraints.freedom(i).project * guess[i];
+int BalanceSolver::correct_by_cg(const Problem& problem, Loan<Vec3> guess, const double scale) {
+  const bool has_guess = !guess.empty();
+  correction_.resize(residual_.size());
+  parallel_for(
+    residual_.size(),
+    [&](const std::size_t i) {
+      correction_[i] = has_guess ? Vec3(problem.constraints.freedom(i).project * guess[i]) : Vec3(Vec3::Zero());
+    },
+    worth);
+  guess = Loan<Vec3>::none();
   const double of_own = 0.5 * options_.step_tolerance; // the step's own error is half the way from free motion
-  const double left = options_.n_mixed > 0 ? 1e-3 * scaled_residual() : 0; // where other corrections follow
-  CgStop stop{.residual = std::max({options_.cg_tolerance * scale, left, scaled_round_off()}),
+  const double left =
+    options_.n_mixed > 0 ? 1e-3 * std::sqrt(square_of_scaled_residual()) : 0; // where other corrections follow
+  CgStop stop{.residual = std::max({options_.cg_tolerance * scale, left, scaled_round_off_}),
               .error = of_own * way_,
-              .of_way = guess.empty() ? 0 : of_own};
+              .of_way = has_guess ? of_own : 0};
   if (stop.of_way > 0)
     stop.from = potential_of_free_motion(problem);
   const Product A = [&](const auto p, const auto y) { apply(problem, p, y); }, J = [&](const auto r, const auto z) {
@@ -303,30 +314,33 @@ int BalanceSolver::correct_by_cg(const Problem& problem, const Points& guess, co
                          " after " + std::to_string(report.n_iterations) + " iterations. Use " +
                          (problem.mass_factor > 0 ? "a smaller time step, " : "") +
                          "more CG iterations or a larger CG tolerance");
-  if (!guess.empty())
+  if (has_guess)
     way_ = report.way;
   return report.n_iterations;
 }
 
 double BalanceSolver::potential_of_free_motion(const Problem& problem) {
-  const Balance& b = problem.balance;
-  Loan<Vec3> d(force_.size()), Ad(force_.size());
-  for (std::size_t i = 0; i < d.size(); ++i)
-    d[i] = problem.constraints.freedom(i).project * (-1 / b.mass_factor * b.acceleration[i]);
+  Loan<Vec3> d(residual_.size()), Ad(residual_.size());
+  const double factor = -1 / problem.balance.mass_factor;
+  parallel_for(
+    d.size(),
+    [&](const std::size_t i) {
+      d[i] = problem.constraints.freedom(i).project * (factor * problem.acceleration_at_start(i));
+    },
+    worth);
   apply(problem, flat(*d), flat(*Ad));
   return product(d, Ad) - 2 * product(residual_, d);
 }
 
-void BalanceSolver::correct_directly(const Problem& problem, const Tangent kind) {
+void BalanceSolver::correct_directly(const Problem& problem, const Points& x, const Tangent kind) {
   const Balance& b = problem.balance;
-  const Points& x = position_;
   std::vector<Eigen::Triplet<double>> entries;
   for (std::size_t i = 0; i < x.size(); ++i)
     for (int k = 0; k < 3; ++k)
       entries.emplace_back(3 * i + k, 3 * i + k, problem.mass_factor * problem.mass[i]);
   if (problem.coupling)
     problem.coupling->add_entries(problem.mass_factor, entries);
-  load_tangent(problem.loads, kind, {b.time, x, velocity_}, b.velocity_factor).add_entries(entries);
+  load_tangent(problem.loads, kind, {b.time, x, velocities(problem, x)}, b.velocity_factor).add_entries(entries);
   Eigen::SparseMatrix<double> A(3 * x.size(), 3 * x.size());
   A.setFromTriplets(entries.begin(), entries.end());
   A += problem.stiffness_factor * matrix_->stiffness_matrix(x, kind);
@@ -373,25 +387,31 @@ BalanceSolver::Change BalanceSolver::change(const Problem& problem, const Points
                                             const double length, const Points& damped) const {
   const Loads& loads = problem.loads;
   const Balance& b = problem.balance;
-  Loan<Vec3> force;
+  Loan<Vec3> force = Loan<Vec3>::with_room(x.size());
   model_.force(trial, force);
   double linear = 0, quadratic = 0; // in the length, of all that is no energy of its own
   for (std::size_t i = 0; i < x.size(); ++i) {
     const Vec3& d = correction_[i];
-    linear += d.dot(problem.mass[i] * (acceleration_[i] + loads.mass_damping * velocity_[i] - loads.gravity) +
-                    damping(problem, i) - problem.offset(i));
+    linear +=
+      d.dot(problem.mass[i] * (problem.resisted(x, i) - loads.gravity) + damping(problem, i) - problem.offset(i));
     quadratic += 0.5 * problem.mass_factor * problem.mass[i] * d.squaredNorm() +
                  0.5 * loads.stiffness_damping * b.velocity_factor * d.dot(damped[i]);
   }
   if (problem.coupling) {
     const Loan<Vec3> more = coupled(model_, correction_);
-    linear += product(resisted(problem), more);
+    Loan<Vec3> a(x.size());
+    for (std::size_t i = 0; i < a.size(); ++i)
+      a[i] = problem.resisted(x, i);
+    linear += product(a, more);
     quadratic += 0.5 * problem.mass_factor * product(correction_, more);
   }
   const auto [at_x, at_trial] = without_potential(problem, x, trial, length);
-  for (const auto& load : loads.acting)
-    if (load->nature() == Nature::conservative)
-      load->add_force({b.time, trial, velocity_}, force);
+  if (!loads.acting.empty()) {
+    const Loan<Vec3> v = velocities(problem, x);
+    for (const auto& load : loads.acting)
+      if (load->nature() == Nature::conservative)
+        load->add_force({b.time, trial, v}, force);
+  }
   const double before = model_.energy(x) + load_energy(loads, b.time, x),
                after = model_.energy(trial) + load_energy(loads, b.time, trial);
   return {after - before + length * (linear - 0.5 * (at_x + at_trial)) + length * length * quadratic,
@@ -400,8 +420,10 @@ BalanceSolver::Change BalanceSolver::change(const Problem& problem, const Points
 
 std::array<double, 2> BalanceSolver::without_potential(const Problem& problem, const Points& x, const Points& trial,
                                                        const double length) const {
+  if (problem.loads.acting.empty())
+    return {0, 0};
   const Balance& b = problem.balance;
-  Loan<Vec3> v(velocity_);
+  Loan<Vec3> v = velocities(problem, x);
   const auto times_correction = [&](const Points& where) {
     Loan<Vec3> forces(x.size(), Vec3::Zero());
     for (const auto& load : problem.loads.acting)

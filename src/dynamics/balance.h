@@ -99,10 +99,12 @@ struct Balance {
   double time = 0;            ///< at which loads act [s]
   double mass_factor = 0;     ///< kappa [1/s^2]
   double velocity_factor = 0; ///< omega [1/s]
-  Loan<Vec3> start, velocity, acceleration;
-  Loan<Vec3> guess = {};  ///< first guess of x - start [m]; empty: zero
-  Loan<Vec3> offset = {}; ///< a force on each corner [N]; empty: none
-  FreeMotions free = {};  ///< that A does not resist
+  Loan<Vec3> start;
+  Loan<Vec3> velocity = Loan<Vec3>::none();     ///< empty: zero
+  Loan<Vec3> acceleration = Loan<Vec3>::none(); ///< empty: zero
+  Loan<Vec3> guess = Loan<Vec3>::none();        ///< first guess of x - start [m]; empty: zero
+  Loan<Vec3> offset = Loan<Vec3>::none();       ///< a force on each corner [N]; empty: none
+  FreeMotions free = {};                        ///< that A does not resist
 };
 
 struct NewtonReport {
@@ -120,7 +122,7 @@ class BalanceSolver {
 
   /// Solves for x; on failure to converge says so in the report and leaves the last iterate. Throws NumericalError for
   /// forces that are not finite, and for linear equations that cannot be solved to tolerance.
-  NewtonReport solve(const Loads& loads, const Constraints& constraints, const Balance& balance, Points& x);
+  NewtonReport solve(const Loads& loads, const Constraints& constraints, Balance balance, Points& x);
 
  private:
   /// What stays the same during a solution.
@@ -132,7 +134,23 @@ class BalanceSolver {
     const MassCoupling* coupling;         ///< null where the mass is lumped
     double mass_factor, stiffness_factor; ///< of M and K in A
 
-    Vec3 offset(const std::size_t i) const { return balance.offset.empty() ? Vec3(Vec3::Zero()) : balance.offset[i]; }
+    static Vec3 of_corner(const Points& values, const std::size_t i) {
+      return values.empty() ? Vec3(Vec3::Zero()) : values[i];
+    }
+    Vec3 offset(const std::size_t i) const { return of_corner(balance.offset, i); }
+    Vec3 velocity_at_start(const std::size_t i) const { return of_corner(balance.velocity, i); }
+    Vec3 acceleration_at_start(const std::size_t i) const { return of_corner(balance.acceleration, i); }
+    /// Of a corner, with all at x.
+    Vec3 velocity(const Points& x, const std::size_t i) const {
+      return velocity_at_start(i) + balance.velocity_factor * (x[i] - balance.start[i]);
+    }
+    Vec3 acceleration(const Points& x, const std::size_t i) const {
+      return acceleration_at_start(i) + balance.mass_factor * (x[i] - balance.start[i]);
+    }
+    /// a + alpha v, which M resists.
+    Vec3 resisted(const Points& x, const std::size_t i) const {
+      return acceleration(x, i) + loads.mass_damping * velocity(x, i);
+    }
   };
   /// Of a first correction: taken, gone on from with a line search, or thrown away for a start with one.
   enum class Verdict { taken, goes_on, refused };
@@ -144,20 +162,19 @@ class BalanceSolver {
 
   /// Linearises at x; returns the scale of what balances there, in the scaled norm.
   double linearise_at(const Problem& problem, const Points& x);
-  /// Forces, velocities and accelerations at x; the linearisation stays.
+  /// What loads resist at x, and what damping there is; the linearisation stays.
   void move_to(const Problem& problem, const Points& x);
   void factorise(const Problem& problem);
-  Vec3 load_force(const std::size_t i) const { return load_force_.empty() ? Vec3(Vec3::Zero()) : load_force_[i]; }
+  static Loan<Vec3> velocities(const Problem& problem, const Points& x);
   /// beta K v of a corner [N].
   Vec3 damping(const Problem& problem, std::size_t i) const;
-  /// a + alpha v, which M resists; nothing where the mass is lumped.
-  Loan<Vec3> resisted(const Problem& problem) const;
-  /// Returns the scale of what balances, in the scaled norm.
-  double assemble_residual(const Problem& problem);
-  double balanced_forces(const Problem& problem) const;
+  /// What the masses of different corners resist together; nothing where the mass is lumped.
+  Loan<Vec3> coupled_inertia(const Problem& problem, const Points& x) const;
+  /// What is out of balance at x, by the linearisation at hand; returns the scale of what balances, in the scaled norm.
+  double assemble_residual(const Problem& problem, const Points& x);
   double round_off_of_forces(const Points& x) const;
   /// The same in the scaled norm.
-  double scaled_round_off() const;
+  double scaled_round_off_at(const Points& x) const;
   /// y = A p among the free directions, for p among them.
   void apply(const Problem& problem, std::span<const double> p, std::span<double> y);
   /// Tests the first correction where it ends, and moves there.
@@ -169,7 +186,7 @@ class BalanceSolver {
   Loan<double> most_work(const Problem& problem, const Points& x);
   /// Whether what is out of balance at x does less work than that in every piece.
   bool works_little(const Problem& problem, const Points& x, double scale) const;
-  double scaled_residual() const;
+  double square_of_scaled_residual() const;
   /// 1 for each piece in which more is out of balance than the linear solver is asked for.
   Loan<std::uint8_t> seen(double scale) const;
   /// That it may leave by the step's own error, in the energy norm; 0: unknown.
@@ -184,15 +201,15 @@ class BalanceSolver {
   /// Whether what is left to correct is small beside the way from free motion, in every piece.
   bool is_small();
   /// Returns the iterations of the linear solver.
-  int correct(const Problem& problem, const Points& guess, double scale);
-  int correct_by_cg(const Problem& problem, const Points& guess, double scale);
+  int correct(const Problem& problem, const Points& x, Loan<Vec3> guess, double scale);
+  int correct_by_cg(const Problem& problem, Loan<Vec3> guess, double scale);
   /// z = S^T S r.
   void apply_inverse_blocks(std::span<const double> r, std::span<double> z) const;
   /// The model's, for A; null: none.
   Preconditioner* preconditioner(const Problem& problem);
   /// d.Ad - 2 r.d of the displacement d with which nothing accelerates.
   double potential_of_free_motion(const Problem& problem);
-  void correct_directly(const Problem& problem, Tangent kind);
+  void correct_directly(const Problem& problem, const Points& x, Tangent kind);
   /// Mixes the correction with those before, where that leads downhill and far; returns how much of it to take.
   double mixed_search(const Problem& problem, const Points& x, Mixing& mixing);
   /// How much of the correction to take; 0 when nothing of it helps.
@@ -206,10 +223,10 @@ class BalanceSolver {
   ElasticModel& model_;
   const StiffnessMatrix* matrix_; // null: the model offers none
   NewtonOptions options_;
-  Points position_, velocity_, acceleration_; // where move_to() was last
-  Points force_;                              // there
-  Points load_force_, damping_;               // there; empty: none
+  Points damping_; // where the residual is; empty: none
   Points residual_, correction_;
+  double balanced_forces_ = 0;  // their norm, where a tolerance asks for it [N]
+  double scaled_round_off_ = 0; // where the residual is
   LoadTangent tangent_;
   std::vector<double> size_;  // of A's diagonal blocks: their traces [N/m]
   std::vector<Mat3> scaling_; // L^-1 of them from the free directions' basis, a row of zeros for each that is held

@@ -1,6 +1,7 @@
 /// What a correction must bear where it ends (balance.h). Nothing joins the pieces of a body, so each is asked by itself.
 
 #include "base/error.h"
+#include "base/parallel.h"
 #include "dynamics/balance.h"
 #include "dynamics/forces.h"
 #include "dynamics/points.h"
@@ -11,6 +12,12 @@
 #include <cmath>
 
 namespace kerf::dynamics {
+
+namespace {
+
+constexpr std::size_t worth = 4096; // corners from which on a second thread pays
+
+} // namespace
 
 Loan<std::uint8_t> BalanceSolver::flying(const Problem& problem) const {
   Loan<std::uint8_t> flies(pieces_.n(), problem.loads.acting.empty() ? 1 : 0);
@@ -29,9 +36,11 @@ double BalanceSolver::error_of_cg() const { return 0.5 * options_.step_tolerance
 
 Loan<std::uint8_t> BalanceSolver::seen(const double scale) const {
   Loan<double> squares(pieces_.n(), 0);
-  for (std::size_t i = 0; i < residual_.size(); ++i)
+  if (pieces_.n() == 1)
+    squares[0] = square_of_scaled_residual();
+  for (std::size_t i = 0; i < residual_.size() && pieces_.n() > 1; ++i)
     squares[pieces_.of(i)] += (scaling_[i] * residual_[i]).squaredNorm();
-  const double least = std::max(options_.cg_tolerance * scale, scaled_round_off());
+  const double least = std::max(options_.cg_tolerance * scale, scaled_round_off_);
   Loan<std::uint8_t> is_seen(squares.size());
   std::ranges::transform(*squares, is_seen->begin(),
                          [&](const double square) { return square > least * least ? 1 : 0; });
@@ -51,31 +60,41 @@ bool BalanceSolver::slopes_little(const Points& d, const std::vector<double>& at
 }
 
 BalanceSolver::Verdict BalanceSolver::judge(const Problem& problem, const Points& end) {
-  const Loan<Vec3> d = unlike_flight(problem, correction_);
-  const Loan<double> at_start = pieces_.products(residual_, d);
   double scale = 0;
-  try {
-    move_to(problem, end);
-    scale = assemble_residual(problem);
-  } catch (const NumericalError&) { // no forces there
-    return Verdict::refused;
+  {
+    const Loan<Vec3> d = unlike_flight(problem, correction_);
+    const Loan<double> at_start = pieces_.products(residual_, d);
+    try {
+      move_to(problem, end);
+      scale = assemble_residual(problem, end);
+    } catch (const NumericalError&) { // no forces there
+      return Verdict::refused;
+    }
+    if (!slopes_little(d, at_start, scale))
+      return Verdict::refused;
   }
-  if (!slopes_little(d, at_start, scale) || !turns_little(problem, end))
+  if (!turns_little(problem, end))
     return Verdict::refused;
   most_work_ = *most_work(problem, end);
   return works_little(problem, end, scale) ? Verdict::taken : Verdict::goes_on;
 }
 
 Loan<double> BalanceSolver::most_work(const Problem& problem, const Points& x) {
+  const double dt = 1 / problem.balance.velocity_factor;
+  const auto with_inertia = [&](const Points& values) { return pieces_.products(values, momenta(model_, values)); };
+  const Loan<double> of_change = [&] {
+    Loan<Vec3> a(x.size());
+    parallel_for(
+      a.size(), [&](const std::size_t i) { a[i] = problem.acceleration(x, i); }, worth);
+    return with_inertia(a);
+  }();
   const Loan<Vec3> d = unlike_flight(problem, moved(x, -1, problem.balance.start));
-  const Points& a = acceleration_;
+  const Loan<double> of_way = with_inertia(d);
   Loan<Vec3> Kd(x.size(), Vec3::Zero());
   model_.apply_stiffness(flat(d), flat(*Kd));
   if (!tangent_.empty())
     tangent_.add_product(flat(d), flat(*Kd));
-  const double dt = 1 / problem.balance.velocity_factor;
-  const Loan<double> elastic = pieces_.products(d, Kd), of_change = pieces_.products(a, momenta(model_, a)),
-                     of_way = pieces_.products(d, momenta(model_, d));
+  const Loan<double> elastic = pieces_.products(d, Kd);
   Loan<double> most(pieces_.n());
   for (std::size_t p = 0; p < most.size(); ++p)
     most[p] = 0.5 * (dt * dt * of_change[p] + elastic[p]) +
@@ -101,8 +120,11 @@ bool BalanceSolver::turns_little(const Problem& problem, const Points& x) const 
   if (b.velocity_factor == 0 || std::ranges::count(flies_, 0) == std::ssize(flies_))
     return true;
   const double dt = 1 / b.velocity_factor;
-  const Loan<Vec3> r = unlike_flight(problem, x), v = unlike_flight(problem, velocity_),
-                   v_0 = unlike_flight(problem, moved(b.velocity, -dt, b.acceleration)), p_0 = momenta(model_, v_0);
+  Loan<Vec3> at_start(x.size());
+  for (std::size_t i = 0; i < at_start.size(); ++i)
+    at_start[i] = problem.velocity_at_start(i) - dt * problem.acceleration_at_start(i);
+  const Loan<Vec3> r = unlike_flight(problem, x), v = unlike_flight(problem, velocities(problem, x)),
+                   v_0 = unlike_flight(problem, std::move(at_start)), p_0 = momenta(model_, v_0);
   Loan<Turning> all(pieces_.n());
   for (std::size_t i = 0; i < x.size(); ++i) {
     Turning& piece = all[pieces_.of(i)];
@@ -125,7 +147,7 @@ Loan<double> BalanceSolver::ways_from_free_motion(const Problem& problem) {
   Loan<Vec3> way(correction_.size()), A_way(correction_.size());
   for (std::size_t i = 0; i < way.size(); ++i)
     way[i] = correction_[i] +
-             problem.constraints.freedom(i).project * (1 / problem.mass_factor * problem.balance.acceleration[i]);
+             problem.constraints.freedom(i).project * (1 / problem.mass_factor * problem.acceleration_at_start(i));
   apply(problem, flat(*way), flat(*A_way));
   return pieces_.products(way, A_way);
 }

@@ -51,12 +51,13 @@ StepReport Bdf2::step(State& state, const Loads& loads, const double dt) {
       (past.c_1 * balance.velocity[i] + past.c_0 * state.v[i] + past.c_m * past.v_before[i]) / dt;
     balance.guess[i] = dt * state.v[i];
   }
-  Loan<Vec3> x;
-  const StepReport report = accepted(solver_.solve(loads, constraints, balance, x));
+  const double end = balance.time;
+  Loan<Vec3> x = Loan<Vec3>::with_room(n);
+  const StepReport report = accepted(solver_.solve(loads, constraints, std::move(balance), x));
   Loan<Vec3> v(n);
   for (std::size_t i = 0; i < n; ++i)
     v[i] = velocity(i, x[i]);
-  constraints.place_velocity(balance.time, part_of_step * dt, v);
+  constraints.place_velocity(end, part_of_step * dt, v);
   state.x.swap(x);
   state.v.swap(v);
   state.history["position before"].swap(x);

@@ -2,6 +2,7 @@
 
 #include "base/loan.h"
 #include "base/parallel.h"
+#include "dynamics/state.h"
 
 #include <algorithm>
 #include <array>
@@ -59,14 +60,8 @@ class Estimate {
 } // namespace
 
 double sum_of(const std::size_t n, const FunctionRef<double(std::size_t, std::size_t)> of_range) {
-  Loan<double> parts((n + block - 1) / block);
-  parallel_for(
-    parts.size(), [&](const std::size_t b) { parts[b] = of_range(b * block, std::min(n, (b + 1) * block)); },
-    worth_blocks);
-  double sum = 0;
-  for (const double part : *parts)
-    sum += part;
-  return sum;
+  return sum_in_blocks(
+    n, 0.0, [&](const std::size_t begin, const std::size_t end, double& sum) { sum = of_range(begin, end); });
 }
 
 double dot(const std::span<const double> a, const std::span<const double> b) {
@@ -85,8 +80,10 @@ double dot(const std::span<const double> a, const std::span<const double> b) {
 CgReport conjugate_gradients(const CgEquation& equation, const std::span<const double> b, const CgStop& stop,
                              const int max_iterations, const std::span<double> x) {
   const std::size_t n = b.size();
-  Loan<double> lent_r(n), lent_z(n), lent_p(n), lent_Ap(n);
-  std::vector<double>&r = lent_r, &z = lent_z, &p = lent_p, &Ap = lent_Ap;
+  const std::size_t n_triples = (n + 2) / 3; // in the memory that steps have for vectors of corners
+  Loan<Vec3> lent_r(n_triples), lent_z(n_triples), lent_p(n_triples, Vec3::Zero()), lent_Ap(n_triples, Vec3::Zero());
+  const std::span<double> r = flat(*lent_r).first(n), z = flat(*lent_z).first(n), p = flat(*lent_p).first(n),
+                          Ap = flat(*lent_Ap).first(n);
   Estimate estimate(stop, equation.J ? 3 : 8); // one iteration with more than block Jacobi is worth many
   const auto is_zero = [](const double value) { return value == 0; };
   double excess = 0; // of the error's square over that of zero

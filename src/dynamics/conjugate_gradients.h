@@ -6,7 +6,10 @@
 /// number of threads gives the same bits.
 
 #include "base/function_ref.h"
+#include "base/loan.h"
+#include "base/parallel.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <functional>
 #include <optional>
@@ -15,7 +18,19 @@
 
 namespace kerf::dynamics {
 
-/// Sum of term(i) for i < n, the same for any number of threads.
+/// Sum over ranges of fixed size that cover 0 .. n - 1, the same for any number of threads; `of_range` adds to its sum.
+template <class T, class OfRange>
+T sum_in_blocks(const std::size_t n, const T& zero, const OfRange& of_range) {
+  constexpr std::size_t block = 4096, worth_blocks = 3; // from which on a second thread pays
+  Loan<T> parts((n + block - 1) / block, zero);
+  parallel_for(
+    parts.size(), [&](const std::size_t b) { of_range(b * block, std::min(n, (b + 1) * block), parts[b]); },
+    worth_blocks);
+  T sum = zero;
+  for (const T& part : *parts)
+    sum += part;
+  return sum;
+}
 double sum_of(std::size_t n, FunctionRef<double(std::size_t begin, std::size_t end)> of_range);
 double dot(std::span<const double> a, std::span<const double> b);
 

@@ -120,7 +120,10 @@ void Constraints::impose(const Points& wanted, Points& values) const {
 }
 
 Loan<Vec3> Constraints::places(const double time) const {
-  Loan<Vec3> all;
+  std::size_t n = 0;
+  for (const Support& support : loads_.supports)
+    n += support.rest.size();
+  Loan<Vec3> all = Loan<Vec3>::with_room(n);
   for (const Support& support : loads_.supports) {
     const Support::Places place = support.places(time);
     for (const Vec3& rest : support.rest)

@@ -1,6 +1,7 @@
 #include "dynamics/forces.h"
 
 #include "base/parallel.h"
+#include "dynamics/conjugate_gradients.h"
 #include "dynamics/state.h"
 
 namespace kerf::dynamics {
@@ -60,26 +61,35 @@ void total_force(ForceModel& model, const Loads& loads, const Moment& moment, co
 
 Loan<Vec3> coupled(const ForceModel& model, const Points& v) {
   const MassCoupling* const coupling = model.mass_coupling();
-  Loan<Vec3> product(coupling ? v.size() : 0, Vec3::Zero());
-  if (coupling)
-    coupling->add_product(flat(v), flat(*product));
+  if (!coupling)
+    return Loan<Vec3>::none();
+  Loan<Vec3> product(v.size(), Vec3::Zero());
+  coupling->add_product(flat(v), flat(*product));
   return product;
 }
 
 Loan<Vec3> momenta(const ForceModel& model, const Points& v) {
   const auto mass = model.lumped_mass();
   Loan<Vec3> sum = coupled(model, v);
-  sum->resize(v.size(), Vec3::Zero());
-  for (std::size_t i = 0; i < v.size(); ++i)
-    sum[i] += mass[i] * v[i];
+  const bool is_lumped = sum.empty();
+  if (is_lumped)
+    sum = Loan<Vec3>(v.size());
+  parallel_for(
+    v.size(),
+    [&](const std::size_t i) {
+      const Vec3 more = is_lumped ? Vec3(Vec3::Zero()) : sum[i];
+      sum[i] = more + mass[i] * v[i];
+    },
+    worth);
   return sum;
 }
 
 double kinetic_energy(const ForceModel& model, const Points& v) {
   const auto mass = model.lumped_mass();
-  double sum = 0;
-  for (std::size_t i = 0; i < v.size(); ++i)
-    sum += 0.5 * mass[i] * v[i].squaredNorm();
+  double sum = sum_in_blocks(v.size(), 0.0, [&](const std::size_t begin, const std::size_t end, double& part) {
+    for (std::size_t i = begin; i < end; ++i)
+      part += 0.5 * mass[i] * v[i].squaredNorm();
+  });
   const Loan<Vec3> more = coupled(model, v);
   for (std::size_t i = 0; i < more.size(); ++i)
     sum += 0.5 * v[i].dot(more[i]);
@@ -88,10 +98,10 @@ double kinetic_energy(const ForceModel& model, const Points& v) {
 
 double gravity_energy(const ForceModel& model, const Loads& loads, const Points& x) {
   const auto mass = model.lumped_mass();
-  double sum = 0;
-  for (std::size_t i = 0; i < x.size(); ++i)
-    sum -= mass[i] * loads.gravity.dot(x[i]);
-  return sum;
+  return sum_in_blocks(x.size(), 0.0, [&](const std::size_t begin, const std::size_t end, double& part) {
+    for (std::size_t i = begin; i < end; ++i)
+      part -= mass[i] * loads.gravity.dot(x[i]);
+  });
 }
 
 } // namespace kerf::dynamics

@@ -99,11 +99,10 @@ Loan<Vec3> GeneralisedAlpha::resolved_acceleration(const State& state, const Loa
             .mass_factor = kappa,
             .velocity_factor = c.gamma / (c.beta * dt),
             .start = Loan<Vec3>(state.x),
-            .velocity = Loan<Vec3>(state.v),
-            .acceleration = Loan<Vec3>(state.x.size(), Vec3::Zero())};
+            .velocity = Loan<Vec3>(state.v)};
   constraints.place_velocity(state.time, part_of_step * dt, b.velocity);
-  Loan<Vec3> a;
-  report.n_iterations += first_.solve(loads, constraints, b, a).n_linear;
+  Loan<Vec3> a = Loan<Vec3>::with_room(state.x.size());
+  report.n_iterations += first_.solve(loads, constraints, std::move(b), a).n_linear;
   for (std::size_t i = 0; i < a.size(); ++i)
     a[i] = kappa * (a[i] - state.x[i]);
   constraints.project(a);
@@ -149,7 +148,7 @@ StepReport GeneralisedAlpha::step(State& state, const Loads& loads, const double
   const Points* const known = remembered(state, "acceleration");
   const bool has_jumped = !known && state.numbers.count(under_way) > 0;
   const AlphaCoefficients& c = has_jumped ? after_jump_ : c_;
-  Loan<Vec3> a, x;
+  Loan<Vec3> a = Loan<Vec3>::with_room(state.x.size()), x = Loan<Vec3>::with_room(state.x.size());
   StepReport begun;
   if (known)
     *a = *known;

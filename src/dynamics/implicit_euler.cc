@@ -1,6 +1,17 @@
 #include "dynamics/implicit_euler.h"
 
+#include "base/parallel.h"
+
+#include <algorithm>
+#include <utility>
+
 namespace kerf::dynamics {
+
+namespace {
+
+constexpr std::size_t worth = 4096; // corners from which on a second thread pays
+
+} // namespace
 
 ImplicitEulerOptions implicit_euler_options(const NewtonParameters& parameters) {
   const NewtonOptions o = parameters.options();
@@ -35,25 +46,34 @@ StepReport ImplicitEuler::step(State& state, const Loads& loads, const double dt
                   .mass_factor = 1 / (dt * dt),
                   .velocity_factor = 1 / dt,
                   .start = Loan<Vec3>(state.x),
-                  .velocity = Loan<Vec3>(n),
                   .acceleration = Loan<Vec3>(n),
                   .guess = Loan<Vec3>(n)};
   constraints.place(balance.time, balance.start);
+  if (!std::ranges::equal(*balance.start, state.x))
+    balance.velocity = Loan<Vec3>(n);
   const Points* const change = remembered(state, change_of_velocity);
-  for (std::size_t i = 0; i < n; ++i) {
-    balance.velocity[i] = (balance.start[i] - state.x[i]) / dt; // zero but where supports move
-    balance.acceleration[i] = (balance.velocity[i] - state.v[i]) / dt;
-    balance.guess[i] = dt * (state.v[i] + (change ? (*change)[i] : Vec3(Vec3::Zero())));
-  }
-  Loan<Vec3> x;
-  const StepReport report = accepted(solver_.solve(loads, constraints, balance, x));
+  parallel_for(
+    n,
+    [&](const std::size_t i) {
+      const Vec3 v = (balance.start[i] - state.x[i]) / dt; // zero but where supports move
+      if (!balance.velocity.empty())
+        balance.velocity[i] = v;
+      balance.acceleration[i] = (v - state.v[i]) / dt;
+      balance.guess[i] = dt * (state.v[i] + (change ? (*change)[i] : Vec3(Vec3::Zero())));
+    },
+    worth);
+  Loan<Vec3> x = Loan<Vec3>::with_room(n);
+  const StepReport report = accepted(solver_.solve(loads, constraints, std::move(balance), x));
   Points& changed = state.history[change_of_velocity];
   changed.resize(n);
-  for (std::size_t i = 0; i < n; ++i) {
-    const Vec3 v = (x[i] - state.x[i]) / dt;
-    changed[i] = v - state.v[i];
-    state.v[i] = v;
-  }
+  parallel_for(
+    n,
+    [&](const std::size_t i) {
+      const Vec3 v = (x[i] - state.x[i]) / dt;
+      changed[i] = v - state.v[i];
+      state.v[i] = v;
+    },
+    worth);
   state.x.swap(x);
   state.time += dt;
   return report;

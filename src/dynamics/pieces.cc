@@ -1,5 +1,7 @@
 #include "dynamics/pieces.h"
 
+#include "dynamics/points.h"
+
 #include <algorithm>
 
 namespace kerf::dynamics {
@@ -10,6 +12,8 @@ Pieces::Pieces(std::vector<std::uint32_t> piece_of_corner) : piece_(std::move(pi
 }
 
 Loan<double> Pieces::products(const Points& a, const Points& b) const {
+  if (n_ == 1)
+    return Loan<double>(1, product(a, b));
   Loan<double> sum(n_, 0);
   for (std::size_t i = 0; i < a.size(); ++i)
     sum[of(i)] += a[i].dot(b[i]);

@@ -15,12 +15,7 @@ namespace {
 Balance on_the_way(const double s, const double time, const Points& start, const Points& end, const Points& x,
                    const Points& out_of_balance, const Constraints& constraints, const FreeMotions& free) {
   const std::size_t n = x.size();
-  Balance balance{.time = time,
-                  .start = Loan<Vec3>(x),
-                  .velocity = Loan<Vec3>(n, Vec3::Zero()),
-                  .acceleration = Loan<Vec3>(n, Vec3::Zero()),
-                  .offset = Loan<Vec3>(n),
-                  .free = free};
+  Balance balance{.time = time, .start = Loan<Vec3>(x), .offset = Loan<Vec3>(n), .free = free};
   for (const auto& held : constraints.held()) {
     const auto c = held.corner;
     const Vec3 wanted = start[c] + s * (end[c] - start[c]); // differs from x only along held directions

@@ -1,6 +1,8 @@
 #include "dynamics/sound_steps.h"
 
 #include "base/error.h"
+#include "base/fingerprint.h"
+#include "dynamics/conjugate_gradients.h"
 #include "dynamics/constraints.h"
 #include "dynamics/followers.h"
 #include "dynamics/forces.h"
@@ -24,15 +26,29 @@ void add(StepReport& sum, const StepReport& part) {
   sum.residual = std::max(sum.residual, part.residual);
 }
 
+/// Of corners, with a value of each.
+struct MassAndMoment {
+  double mass = 0;
+  Vec3 moment = Vec3::Zero(); ///< mass times value
+  double square = 0;          ///< mass times the value's square
+
+  MassAndMoment& operator+=(const MassAndMoment& more) {
+    mass += more.mass;
+    moment += more.moment;
+    square += more.square;
+    return *this;
+  }
+};
+
 /// Of the motion beside the mean one [J].
 double inner_kinetic_energy(const ForceModel& model, const Points& v) {
-  Vec3 momentum = Vec3::Zero();
-  double mass = 0;
   const auto masses = model.lumped_mass();
-  for (std::size_t i = 0; i < v.size(); ++i) {
-    momentum += masses[i] * v[i];
-    mass += masses[i];
-  }
+  const MassAndMoment all =
+    sum_in_blocks(v.size(), MassAndMoment(), [&](const std::size_t begin, const std::size_t end, MassAndMoment& part) {
+      for (std::size_t i = begin; i < end; ++i)
+        part += {masses[i], masses[i] * v[i]};
+    });
+  const auto& [mass, momentum, square] = all;
   return std::max(0.0, kinetic_energy(model, v) - (mass > 0 ? 0.5 * momentum.squaredNorm() / mass : 0));
 }
 
@@ -56,7 +72,7 @@ double work_of_driving_loads(const Loads& loads, const State& at, const State& b
 /// Work of supports along the step with what the balance of forces lacks at a state.
 double work_of_supports(const ForceModel& model, const Loads& loads, const Constraints& constraints, const State& at,
                         const State& before, const State& after) {
-  Loan<Vec3> forces;
+  Loan<Vec3> forces = Loan<Vec3>::with_room(at.x.size());
   model.force(at.x, forces);
   add_load_forces(loads, {at.time, at.x, at.v}, forces);
   const auto mass = model.lumped_mass();
@@ -101,22 +117,22 @@ double work_on(const ForceModel& model, const Loads& loads, const State& before,
 }
 
 double mass_of(const ForceModel& model) {
-  double sum = 0;
-  for (const double m : model.lumped_mass())
-    sum += m;
-  return sum;
+  const auto mass = model.lumped_mass();
+  return sum_in_blocks(mass.size(), 0.0, [&](const std::size_t begin, const std::size_t end, double& part) {
+    for (std::size_t i = begin; i < end; ++i)
+      part += mass[i];
+  });
 }
 
 /// Kinetic energy of a motion by a millionth of the body's size in a step: it is as good as at rest [J].
 double unseen(const ForceModel& model, const State& state, const double dt) {
   const auto mass = model.lumped_mass();
-  double all = 0, square = 0;
-  Vec3 centre = Vec3::Zero();
-  for (std::size_t i = 0; i < mass.size(); ++i) {
-    all += mass[i];
-    centre += mass[i] * state.x[i];
-    square += mass[i] * state.x[i].squaredNorm();
-  }
+  const MassAndMoment sum = sum_in_blocks(
+    mass.size(), MassAndMoment(), [&](const std::size_t begin, const std::size_t end, MassAndMoment& part) {
+      for (std::size_t i = begin; i < end; ++i)
+        part += {mass[i], mass[i] * state.x[i], mass[i] * state.x[i].squaredNorm()};
+    });
+  const auto& [all, centre, square] = sum;
   return all > 0 ? 1e-12 * std::max(0.0, square - centre.squaredNorm() / all) / (dt * dt) : 0;
 }
 
@@ -173,13 +189,13 @@ void require_finite(const State& state) {
 }
 
 double ElasticEnergies::at(const Points& x) {
-  if (known_[0].x == x)
+  const std::uint64_t where = fingerprint(x);
+  if (known_[0].where == where)
     return known_[0].energy;
   std::swap(known_[0], known_[1]);
-  if (known_[0].x != x) {
+  if (known_[0].where != where) {
     const double energy = model_.energy_ahead(x); // which may fail: then nothing is known of x
-    known_[0].x = x;
-    known_[0].energy = energy;
+    known_[0] = {where, energy};
   }
   return known_[0].energy;
 }

@@ -27,8 +27,10 @@
 #include "dynamics/stepper.h"
 
 #include <array>
+#include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 
 namespace kerf::dynamics {
 
@@ -59,7 +61,7 @@ class ElasticEnergies {
 
  private:
   struct Known {
-    Points x;
+    std::optional<std::uint64_t> where = {}; ///< fingerprint of the positions
     double energy = 0;
   };
 

@@ -43,6 +43,14 @@ Mat3 gradient_of(const Turns& turns, const std::size_t lane) {
   return F;
 }
 
+/// Room for two rows a corner, one vector after the other, of any values.
+struct TwoRows {
+  explicit TwoRows(const std::size_t n) : lent(2 * n, AnyValues()), first(lent.data()), second(first + n) {}
+
+  Loan<Row<double>> lent;
+  Row<double>*first, *second;
+};
+
 void clear(Row<double>* const rows, const std::size_t n) {
   parallel_for(
     n, [&](const std::size_t i) { rows[i] = {}; }, worth);
@@ -207,12 +215,12 @@ Turned Hexahedra::turned_element(const std::size_t copy, const Points& x) const 
   return turned(elements_[copy], h_, corners_of(copy, x), frame_);
 }
 
-void Hexahedra::put_rows(const std::span<const double> values, Rows& rows) const {
+void Hexahedra::put_rows(const std::span<const double> values, Row<double>* const rows) const {
   const std::size_t n = numbers_.size();
   parallel_for(
     batching_->n_rows(),
     [&](const std::size_t i) {
-      rows.data()[i] = i < n ? Row<double>{values[3 * i], values[3 * i + 1], values[3 * i + 2]} : Row<double>{};
+      rows[i] = i < n ? Row<double>{values[3 * i], values[3 * i + 1], values[3 * i + 2]} : Row<double>{};
     },
     worth);
 }
@@ -261,13 +269,14 @@ void Hexahedra::add_energies(const std::size_t batch, const Turns& turns, const 
 double Hexahedra::energy(const Points& x) const {
   if (const auto known = known_.energy(x))
     return *known;
-  Rows rows = scratch_.borrow(batching_->n_rows());
+  const TwoRows lent(batching_->n_rows());
+  Row<double>* const rows = lent.first;
   put_rows(dynamics::flat(x), rows);
   Loan<double> energies(batching_->batches().size());
   batching_->for_each([&](const std::size_t i) {
-    const Turns turns = this->turns(i, rows.data());
+    const Turns turns = this->turns(i, rows);
     alignas(64) double of_lanes[n_lanes];
-    force_kernels().energy(batched_.cube, batched_.batch(*batching_, i), turns, mean_part(), rows.data(), of_lanes);
+    force_kernels().energy(batched_.cube, batched_.batch(*batching_, i), turns, mean_part(), rows, of_lanes);
     add_energies(i, turns, of_lanes, energies[i]);
   });
   return sum_energies(x, energies);
@@ -279,7 +288,7 @@ double Hexahedra::energy_ahead(const Points& x) const {
     known_.put_energy(x, energy);
     return energy;
   }
-  Loan<Vec3> forces;
+  Loan<Vec3> forces = Loan<Vec3>::with_room(x.size());
   const double energy = *force(x, forces, WithEnergy::always);
   known_.put(x, forces, energy);
   return energy;
@@ -293,14 +302,14 @@ void Hexahedra::force(const Points& x, Points& forces) const {
 }
 
 std::optional<double> Hexahedra::force(const Points& x, Points& forces, const WithEnergy with_energy) const {
-  Rows rows = scratch_.borrow(batching_->n_rows());
+  const TwoRows lent(batching_->n_rows());
+  Row<double>*const rows = lent.first, *const sums = lent.second;
   put_rows(dynamics::flat(x), rows);
-  Rows sums = scratch_.borrow(batching_->n_rows());
-  clear(sums.data(), batching_->n_rows());
+  clear(sums, batching_->n_rows());
   const double spins = frame_ == Frame::turning ? 1 : 0;
   Loan<double> energies(with_energy == WithEnergy::always || is_hookean() ? batching_->batches().size() : 0);
   batching_->for_each_in_order([&](const std::size_t i) {
-    const Turns turns = this->turns(i, rows.data());
+    const Turns turns = this->turns(i, rows);
     Lanes9<double> stress{};
     if (!is_hookean())
       for_each_lane(i, [&](const std::size_t lane, const std::uint32_t copy) {
@@ -311,13 +320,13 @@ std::optional<double> Hexahedra::force(const Points& x, Points& forces, const Wi
       });
     alignas(64) double of_lanes[n_lanes];
     force_kernels().force(batched_.cube, batched_.batch(*batching_, i), turns, mean_part(),
-                          is_hookean() ? nullptr : stress.row, spins, rows.data(), sums.data(),
+                          is_hookean() ? nullptr : stress.row, spins, rows, sums,
                           energies.empty() ? nullptr : of_lanes);
     if (!energies.empty())
       add_energies(i, turns, of_lanes, energies[i]);
   });
   forces.resize(numbers_.size());
-  write(sums.data(), dynamics::flat(forces));
+  write(sums, dynamics::flat(forces));
   ghost_penalty_.add_force(x, forces);
   ties_.add_force(x, forces);
   if (energies.empty() && !batching_->batches().empty())
@@ -326,12 +335,13 @@ std::optional<double> Hexahedra::force(const Points& x, Points& forces, const Wi
 }
 
 void Hexahedra::linearise(const Points& x) {
-  Rows rows = scratch_.borrow(batching_->n_rows());
+  const TwoRows lent(batching_->n_rows());
+  Row<double>* const rows = lent.first;
   put_rows(dynamics::flat(x), rows);
   const std::size_t n = batching_->batches().size();
   batched_.tangents.resize(is_hookean() ? 0 : n);
   batching_->for_each([&](const std::size_t i) {
-    const Turns turns = this->turns(i, rows.data());
+    const Turns turns = this->turns(i, rows);
     std::copy_n(turns.R[0], 9 * n_lanes, batched_.rotations[i].row[0]);
     if (is_hookean())
       return;
@@ -347,12 +357,11 @@ void Hexahedra::linearise(const Points& x) {
 }
 
 void Hexahedra::apply_stiffness(const std::span<const double> p, const std::span<double> y) const {
-  Rows rows = scratch_.borrow(batching_->n_rows());
-  put_rows(p, rows);
-  Rows sums = scratch_.borrow(batching_->n_rows());
-  clear(sums.data(), batching_->n_rows());
-  add_product(*batching_, batched_, rows.data(), sums.data());
-  write(sums.data(), y);
+  const TwoRows lent(batching_->n_rows());
+  put_rows(p, lent.first);
+  clear(lent.second, batching_->n_rows());
+  add_product(*batching_, batched_, lent.first, lent.second);
+  write(lent.second, y);
   ghost_penalty_.add_product(p, y);
   ties_.add_product(p, y);
 }
@@ -361,13 +370,14 @@ void Hexahedra::stiffness_diagonal(std::vector<Mat3>& blocks) const {
   blocks.resize(numbers_.size());
   Loan<double> penalty = ghost_penalty_.diagonal(blocks.size());
   ties_.add_diagonal(penalty);
-  Rows sums = scratch_.borrow(2 * batching_->n_rows());
-  clear(sums.data(), 2 * batching_->n_rows());
-  add_diagonal(*batching_, batched_, sums.data());
+  const TwoRows lent(batching_->n_rows());
+  Row<double>* const sums = lent.first; // two a corner
+  clear(sums, 2 * batching_->n_rows());
+  add_diagonal(*batching_, batched_, sums);
   parallel_for(
     blocks.size(),
     [&](const std::size_t i) {
-      const Row<double>&d = sums.data()[2 * i], &s = sums.data()[2 * i + 1];
+      const Row<double>&d = sums[2 * i], &s = sums[2 * i + 1];
       blocks[i] << d.x + penalty[i], s.x, s.z, s.x, d.y + penalty[i], s.y, s.z, s.y, d.z + penalty[i];
     },
     worth);

@@ -33,7 +33,6 @@
 #include "fem/incidence.h"
 #include "fem/known_forces.h"
 #include "fem/multigrid.h"
-#include "fem/scratch.h"
 #include "fem/ties.h"
 #include "fem/turned.h"
 #include "grid/corner_numbers.h"
@@ -131,9 +130,8 @@ class Hexahedra : public dynamics::ElasticModel, public dynamics::StiffnessMatri
   Turned turned_element(std::size_t copy, const Points& x) const;
   Matrix24 element_matrix(std::size_t copy, const Points& x, dynamics::Tangent kind) const;
 
-  using Rows = Scratch<Row<double>>::Loan;
   /// A row for each corner, and zeros after them.
-  void put_rows(std::span<const double> values, Rows& rows) const;
+  void put_rows(std::span<const double> values, Row<double>* rows) const;
   /// F and R of a batch.
   Turns turns(std::size_t batch, const Row<double>* x) const;
   /// Calls f(lane, copy) for each lane of a batch that is used.
@@ -169,7 +167,6 @@ class Hexahedra : public dynamics::ElasticModel, public dynamics::StiffnessMatri
   std::unique_ptr<ConsistentMass> consistent_mass_; // none where mass is lumped
   std::unique_ptr<Multigrid> multigrid_;            // none until it is asked for
   FormerLevels former_levels_;                      // when it was asked for last, if a cut came since
-  mutable Scratch<Row<double>> scratch_;
   mutable KnownForces known_;
 };
 

@@ -133,7 +133,7 @@ bool can_go_on(const std::filesystem::path& folder, const World& world, const So
   return true;
 }
 
-/// What a step's record refers to, as it was then.
+/// What a step's record refers to, as it was then; where nothing is written beside the steps, no more than is made for it.
 struct BodyEntry {
   Points positions, velocities;
   std::vector<output::Field> fields;
@@ -381,10 +381,13 @@ void Recorder::append_step(const World& world, const int step, const Timings& se
   for (std::size_t b = 0; b < world.bodies.size() && fields; ++b) {
     const Body& body = world.bodies[b];
     BodyEntry& of_body = entry->bodies.emplace_back();
-    of_body.positions = corners(body);
-    of_body.velocities.assign(velocities(body).begin(), velocities(body).end());
-    of_body.fields = (*fields)[b];
-    output::BodyStep body_step{body.name, of_body.positions, of_body.velocities, of_body.fields};
+    output::BodyStep body_step{body.name, corners(body), velocities(body), (*fields)[b]};
+    if (file_thread_) { // the body moves on meanwhile
+      of_body.positions.assign(body_step.positions.begin(), body_step.positions.end());
+      of_body.velocities.assign(body_step.velocities.begin(), body_step.velocities.end());
+      of_body.fields = (*fields)[b];
+      body_step = {body.name, of_body.positions, of_body.velocities, of_body.fields};
+    }
     if (bodies_[b].complex_written != body.n_recuts) {
       of_body.complex = to_record(body);
       of_body.surface = to_record(body.surface);

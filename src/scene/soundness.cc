@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/loan.h"
 #include "base/parallel.h"
+#include "dynamics/conjugate_gradients.h"
 #include "dynamics/forces.h"
 #include "physics/on_corners.h"
 
@@ -29,6 +30,24 @@ std::string in_short(const double value) {
 std::string place(const Vec3& p) {
   return "(" + in_short(p[0]) + ", " + in_short(p[1]) + ", " + in_short(p[2]) + ") m";
 }
+
+constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
+
+/// Of particles in a row.
+struct Motion {
+  std::size_t lost = none; ///< the first one without a finite place
+  std::size_t fastest = 0; ///< against the mean motion
+  double speed = 0;        ///< of that [m/s]
+
+  Motion& operator+=(const Motion& next) {
+    lost = std::min(lost, next.lost);
+    if (next.speed > speed) {
+      speed = next.speed;
+      fastest = next.fastest;
+    }
+    return *this;
+  }
+};
 
 Vec3 mean_velocity(const dynamics::ForceModel& model, const Points& v) {
   const auto mass = model.lumped_mass();
@@ -217,19 +236,19 @@ void require_sound_motion(const Body& body, const Points& before, const double d
   const dynamics::ForceModel& model = body.physics->model();
   const Vec3 mean = mean_velocity(model, body.state.v);
   const auto held = dynamics::held_corners(body.loads, body.state.x.size());
-  std::size_t fastest = 0;
-  double speed = 0;
-  for (std::size_t i = 0; i < body.state.x.size(); ++i) {
-    if (!body.state.x[i].allFinite() || !body.state.v[i].allFinite())
-      throw NumericalError("the motion has diverged: " + particle_at(body, i) + ", has no finite place any more");
-    if (held[i])
-      continue;
-    const double own = std::min((body.state.v[i] - mean).norm(), ((body.state.x[i] - before[i]) / dt - mean).norm());
-    if (own > speed) {
-      speed = own;
-      fastest = i;
-    }
-  }
+  const Motion all = dynamics::sum_in_blocks(
+    body.state.x.size(), Motion(), [&](const std::size_t begin, const std::size_t end, Motion& part) {
+      for (std::size_t i = begin; i < end; ++i) {
+        if (!body.state.x[i].allFinite() || !body.state.v[i].allFinite())
+          part += {i, 0, 0};
+        else if (!held[i])
+          part +=
+            {none, i, std::min((body.state.v[i] - mean).norm(), ((body.state.x[i] - before[i]) / dt - mean).norm())};
+      }
+    });
+  if (all.lost != none)
+    throw NumericalError("the motion has diverged: " + particle_at(body, all.lost) + ", has no finite place any more");
+  const auto [lost, fastest, speed] = all;
   if (speed * dt <= body.solid.grid.h())
     return;
   const double eighth = body.density * std::pow(body.solid.grid.h(), 3) / 8,

@@ -132,7 +132,7 @@ TEST(Newton, LineSearchLowersTheEnergyAtEveryIteration) {
     for (Vec3& a : balance.acceleration)
       a /= -dt;
     Points x;
-    solver.solve(loads, Constraints(loads, 4), balance, x);
+    solver.solve(loads, Constraints(loads, 4), std::move(balance), x);
     double sum = truss.energy(x) + gravity_energy(truss, loads, x);
     for (int i = 0; i < 4; ++i)
       sum += 0.5 / (dt * dt) * (x[i] - state.x[i] - dt * state.v[i]).squaredNorm() +
