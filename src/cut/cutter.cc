@@ -72,13 +72,13 @@ Cutter::Cutter(const std::size_t n_labels, const Release release, const Fronts f
 void Cutter::begin(const Solid& solid, const Points& x) {
   boxes_.emplace(solid);
   x_before_.reserve(x.size() + x.size() / 8); // some room for new corners
-  x_before_ = x;
+  stand(x);
 }
 
 CutChange Cutter::step(Solid& solid, const std::span<const Blade> blades, const double t0, const double t1,
                        const Points& x) {
   if (!blades.empty())
-    boxes_->fit(x_before_, x);
+    fit_boxes(x);
   std::vector<Stroke> strokes;
   for (const Blade& blade : blades) {
     if (!boxes_->may_be_in(reach_of_paths(blade, t0, t1)))
@@ -98,8 +98,15 @@ CutChange Cutter::step(Solid& solid, const std::span<const Blade> blades, const 
 
 CutChange Cutter::step(Solid& solid, const std::span<const Stroke> strokes, const Points& x) {
   if (!strokes.empty())
-    boxes_->fit(x_before_, x);
+    fit_boxes(x);
   return take(solid, strokes, x);
+}
+
+void Cutter::fit_boxes(const Points& x) {
+  if (boxes_stand_there_)
+    boxes_->move_on(x_before_, x);
+  else
+    boxes_->fit(x_before_, x);
 }
 
 /// `boxes_` are fitted.
@@ -107,6 +114,7 @@ CutChange Cutter::take(Solid& solid, const std::span<const Stroke> strokes, cons
   SweepCuts cuts = queue(solid, strokes, x);
   if (release_ == Release::queued)
     cuts.cuts = pending_.release(solid);
+  boxes_stand_there_ = !strokes.empty();
   if (strokes.empty() || boxes_->moves())
     x_before_ = x; // not after the cut: where corners jump then, the blade meets them on their way
   const Added added = add(solid, cuts);
@@ -115,6 +123,7 @@ CutChange Cutter::take(Solid& solid, const std::span<const Stroke> strokes, cons
 
 CutChange Cutter::at_once(Solid& solid, const CutSurface& surface, const Points& x) {
   boxes_->fit(x);
+  boxes_stand_there_ = false;
   const SweepCuts found = cut_edges(surface, solid, x, &*boxes_);
   counts_.n_double_crossings += found.n_double_crossings;
   const Added added = add(solid, found);

@@ -65,7 +65,10 @@ class Cutter {
   /// Before the first cut, with the corners at x [m, world frame; so below].
   void begin(const grid::Solid& solid, const Points& x);
   /// Blades take it that the corners have been at x until now.
-  void stand(const Points& x) { x_before_ = x; }
+  void stand(const Points& x) {
+    x_before_ = x;
+    boxes_stand_there_ = false;
+  }
   const Points& stands_at() const { return x_before_; }
 
   /// Cuts with what the blades sweep between two times [s] while the corners go to x from where they were in the step
@@ -106,6 +109,7 @@ class Cutter {
   Added add(grid::Solid& solid, const SweepCuts& cuts);
   grid::CutChange part(grid::Solid& solid, const Added& added, std::span<const grid::Front> fronts, const Points& x);
   void join(grid::Solid& solid, const Added& added, const Points& x, std::vector<grid::CellId>& anew);
+  void fit_boxes(const Points& x);
   SweepCuts queue(const grid::Solid& solid, std::span<const Stroke> strokes, const Points& x);
 
   Release release_;
@@ -117,6 +121,7 @@ class Cutter {
   std::vector<StandingEdge> edges_; // after the last step
   std::set<grid::CellId> unsettled_;
   Points x_before_; // where the corners were when the blades were met last [m]
+  bool boxes_stand_there_ = false;
   CutCounts counts_;
 };
 

@@ -198,23 +198,53 @@ void EdgeBoxes::list_skin(const grid::Solid& solid, const Nodes& nodes) {
 }
 
 void EdgeBoxes::fit(const Points& x_before, const Points& x) {
-  constexpr std::size_t worth = 64; // blocks
   require_finite(x);
   moves_ = x_before != x;
+  if (moves_) {
+    take_in(x_before);
+    now_.swap(before_);
+  }
+  take_in(x);
+  join();
+}
+
+void EdgeBoxes::move_on(const Points& x_before, const Points& x) {
+  const bool moved = moves_;
+  moves_ = x_before != x;
+  if (moves_) {
+    require_finite(x);
+    now_.swap(before_);
+    take_in(x);
+  }
+  if (moves_ || moved)
+    join();
+}
+
+/// Fits now_.
+void EdgeBoxes::take_in(const Points& x) {
+  constexpr std::size_t worth = 64; // blocks
   constexpr double inf = std::numeric_limits<double>::infinity();
-  std::fill(levels_[0].begin(), levels_[0].end(), Block{{Vec3::Constant(inf), Vec3::Constant(-inf)}, 0});
+  now_.assign(n_blocks(), Block{{Vec3::Constant(inf), Vec3::Constant(-inf)}, 0});
   parallel_for(
     slabs_.size() - 1,
     [&](const std::size_t slab) {
       for (std::uint32_t i = slabs_[slab]; i < slabs_[slab + 1]; ++i)
         if (const Row& row = rows_[i]; row.n == row_nodes)
-          take_in(row, std::integral_constant<unsigned, row_nodes>(), x_before, x);
+          take_in(row, std::integral_constant<unsigned, row_nodes>(), x);
         else
-          take_in(row, unsigned(row.n), x_before, x);
+          take_in(row, unsigned(row.n), x);
     },
     n_blocks() < worth ? slabs_.size() : 2);
-  for (Block& block : levels_[0])
+  for (Block& block : now_)
     block.longest = std::sqrt(block.longest);
+}
+
+/// All levels, of now_ and, where corners move, of before_.
+void EdgeBoxes::join() {
+  levels_[0] = now_;
+  if (moves_)
+    for (std::size_t i = 0; i < n_blocks(); ++i)
+      enlarge(levels_[0][i].box, before_[i].box);
   for (std::size_t level = 1; level < levels_.size(); ++level)
     for (std::size_t i = 0; i < levels_[level].size(); ++i) {
       const auto& below = levels_[level - 1];
@@ -230,27 +260,22 @@ void EdgeBoxes::fit(const Points& x_before, const Points& x) {
 /// Takes a row of n nodes into its block; `longest` is squared meanwhile. Most rows have as many nodes as a brick: a
 /// constant, and all in registers.
 template <class N>
-void EdgeBoxes::take_in(const Row& row, const N n, const Points& x_before, const Points& x) {
-  Block& block = levels_[0][row.block];
+void EdgeBoxes::take_in(const Row& row, const N n, const Points& x) {
+  Block& block = now_[row.block];
   Vec3 lower = block.box.lower, upper = block.box.upper;
-  const auto enlarge = [&](const Vec3* const places, const auto n_places) __attribute__((always_inline)) {
+  const auto enlarge = [&](const std::uint32_t corner, const auto n_places) __attribute__((always_inline)) {
+    const Vec3* const places = x.data() + corner;
     for (unsigned k = 0; k < n_places; ++k) {
       lower = lower.cwiseMin(places[k]);
       upper = upper.cwiseMax(places[k]);
     }
   };
-  const auto enlarge_by_ends = [&](const Vec3* const places) __attribute__((always_inline)) {
-    enlarge(places + row.first, n);
-    if (row.x_end != none)
-      enlarge(places + row.x_end, 1u);
-    if (row.leaves[0])
-      enlarge(places + row.upper[0], n);
-    if (row.leaves[1])
-      enlarge(places + row.upper[1], n);
-  };
-  enlarge_by_ends(x.data());
-  if (moves_)
-    enlarge_by_ends(x_before.data());
+  enlarge(row.first, n);
+  if (row.x_end != none)
+    enlarge(row.x_end, 1u);
+  for (int i = 0; i < 2; ++i)
+    if (row.leaves[i])
+      enlarge(row.upper[i], n);
   block.box = {lower, upper};
 
   double squared = block.longest;
@@ -289,10 +314,10 @@ void EdgeBoxes::visit(const std::size_t level, const std::size_t i, const std::f
 }
 
 std::size_t EdgeBoxes::n_bytes() const {
-  std::size_t n = starts_.capacity() * sizeof(Start) + rows_.capacity() * sizeof(Row) +
-                  (slabs_.capacity() + rows_of_blocks_.capacity()) * sizeof(std::uint32_t) +
-                  (cells_.capacity() + skin_cells_.capacity()) * sizeof(grid::CellId) +
-                  skin_.capacity() * sizeof(SkinEdge);
+  std::size_t n =
+    starts_.capacity() * sizeof(Start) + (now_.capacity() + before_.capacity()) * sizeof(Block) +
+    rows_.capacity() * sizeof(Row) + (slabs_.capacity() + rows_of_blocks_.capacity()) * sizeof(std::uint32_t) +
+    (cells_.capacity() + skin_cells_.capacity()) * sizeof(grid::CellId) + skin_.capacity() * sizeof(SkinEdge);
   for (const auto& level : levels_)
     n += level.capacity() * sizeof(Block);
   return n;

@@ -37,6 +37,9 @@ class EdgeBoxes {
   void fit(const Points& x) { fit(x, x); }
   /// For corners that have moved from `x_before` to `x` [m].
   void fit(const Points& x_before, const Points& x);
+  /// The same where `x_before` is what it was fitted to last, but for corners that are new: these positions are not read
+  /// once more.
+  void move_on(const Points& x_before, const Points& x);
 
   /// Numbers of the blocks that `may_meet` does not turn down, ascending. It may not turn a block down unless all parts
   /// of the block would be.
@@ -140,8 +143,10 @@ class EdgeBoxes {
   void list_cells(const grid::Grid& grid, const Nodes& nodes);
   void list_skin(const grid::Solid& solid, const Nodes& nodes);
   void sort_rows(const std::vector<std::uint32_t>& slabs);
+  void take_in(const Points& x);
   template <class N>
-  void take_in(const Row& row, N n, const Points& x_before, const Points& x);
+  void take_in(const Row& row, N n, const Points& x);
+  void join();
   void visit(std::size_t level, std::size_t i, const std::function<bool(const Block&)>& may_meet,
              std::vector<std::uint32_t>& found) const;
 
@@ -153,6 +158,7 @@ class EdgeBoxes {
   std::vector<grid::CellId> skin_cells_;      // by block
   std::vector<SkinEdge> skin_;                // by block
   bool moves_ = false;
+  std::vector<Block> now_, before_;        // as the corners stand now, and as they stood before
   std::vector<std::vector<Block>> levels_; // the blocks, eights of them, ... one
 };
 

@@ -1,6 +1,7 @@
 #include "cut/shreds.h"
 
 #include "base/sort_unique.h"
+#include "cut/sides.h"
 #include "grid/material.h"
 #include "grid/touched.h"
 
@@ -199,6 +200,16 @@ std::size_t take_back(grid::Cuts& cuts, std::vector<Key>& from, std::vector<Key>
   return back.size();
 }
 
+/// Does it lie on the same side of all cuts as something beside it? Then it hangs on that.
+bool is_on_same_sides(const grid::Solid& solid, const Shred& shred) {
+  return std::ranges::any_of(shred.items, [&](const auto& of_cell) {
+    const auto& [c, items] = of_cell;
+    return std::ranges::any_of(on_same_sides(solid, c), [&, known = items](const grid::Joined& group) {
+      return (group.items & known) != 0 && (group.items & ~known) != 0;
+    });
+  });
+}
+
 /// Of all shreds at the new cuts.
 TakenBack cuts_to_leave(const grid::Solid& solid, const NewCuts& new_cuts) {
   TakenBack back;
@@ -210,7 +221,8 @@ TakenBack cuts_to_leave(const grid::Solid& solid, const NewCuts& new_cuts) {
       if (const auto shred = shred_at(solid, c, std::countr_zero(part.items()), large,
                                       [&](const CellId cell) { return grid::cuts_of(solid, cell); })) {
         add(seen, shred->items);
-        leave(solid, *shred, new_cuts, back);
+        if (!is_on_same_sides(solid, *shred))
+          leave(solid, *shred, new_cuts, back);
       }
     }
   return back;

@@ -14,7 +14,9 @@
 /// that meet a segment lies on known sides of all, and belongs in each cell around to the part that lies so. Copies that
 /// have an interval in common are glued as those are that have a node in common (grid/parts.h). Three cuts leave two
 /// intervals of a line; a half of an arc that three meet, or a line that four meet, is not asked. Where the wedge passes
-/// through a cell that has no node in it, nothing leads on: at five degrees half the bodies of seven cubes keep splinters.
+/// through a cell in which it has neither a node nor a point of the skin, nothing leads on: at five degrees half the bodies
+/// of seven cubes keep splinters, 54 of 88 of which have more of their wedge in a cell with which they share an edge or a
+/// node alone, the others nowhere around.
 
 #include "grid/solid.h"
 

@@ -190,6 +190,11 @@ Box Target::box_around_copies(const grid::CellId cell) const {
       box.lower = box.lower.cwiseMin(before).cwiseMin(now);
       box.upper = box.upper.cwiseMax(before).cwiseMax(now);
     }
+  // What lies between the corners is found but for round-off.
+  const Vec3 slack =
+    Vec3::Constant(1e-14 * std::max(box.lower.lpNorm<Eigen::Infinity>(), box.upper.lpNorm<Eigen::Infinity>()));
+  box.lower -= slack;
+  box.upper += slack;
   return box;
 }
 

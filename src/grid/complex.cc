@@ -217,7 +217,7 @@ class Update {
           continue;
         if ((part.items() & ~was.items) != 0 && !std::ranges::binary_search(may_join, cell))
           throw std::logic_error("a cut has joined what was parted");
-        is_glued_anew |= part.items() != was.items || part.intervals != copies[was.copy].intervals;
+        is_glued_anew |= part != copies[was.copy].part();
         if (is_taken)
           change_.copies.push_back(was.copy);
         now[i] = is_taken ? copies.push_back(Copy(copies[was.copy])) : was.copy;

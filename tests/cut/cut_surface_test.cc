@@ -76,6 +76,33 @@ void expect_same(const std::vector<EdgeCut>& a, const std::vector<EdgeCut>& b) {
   }
 }
 
+/// A side of a box in a layer of nodes, or off it by round-off: points of the skin that are interpolated there may lie
+/// beyond it, and beyond all corners of their cells, by as much. With boxes around edges they are cut as without.
+TEST(CutSurface, BoxesMissNothingByRoundoff) {
+  Random random(17);
+  std::size_t n_cuts = 0;
+  for (int i = 0; i < 12; ++i) {
+    Resting ball(support::with_placed_skin(support::ball(1, 0.41, random_offset(random))));
+    EdgeBoxes boxes(ball.body);
+    boxes.fit(ball.x);
+    for (int axis = 0; axis < 3; ++axis)
+      for (int ulps = -4; ulps <= 4; ++ulps) {
+        double side = ball.body.grid.position(*ball.body.grid.find_node(Index3{5, 5, 5}))[axis];
+        for (int k = 0; k != ulps; k += ulps > 0 ? 1 : -1)
+          side = std::nextafter(side, ulps * 1e300);
+        Vec3 upper = Vec3::Constant(2);
+        upper[axis] = side;
+        const CutSurface surface{"", geometry::box_mesh(Vec3::Constant(-2), upper), 1};
+        const SweepCuts found = cut_edges(surface, ball.body, ball.x, &boxes),
+                        all = cut_edges(surface, ball.body, ball.x);
+        ASSERT_EQ(found.cuts.size(), all.cuts.size());
+        ASSERT_EQ(found.of_skin.size(), all.of_skin.size()) << i << ' ' << axis << ' ' << ulps;
+        n_cuts += all.of_skin.size();
+      }
+  }
+  EXPECT_GT(n_cuts, 1000u);
+}
+
 /// The nodes stand so close to the skin that no plane passes between, so that every plane is resolved.
 TEST(CutSurface, PlanesGiveExactPieces) {
   constexpr int n = 9;

@@ -118,6 +118,43 @@ TEST(EdgeBoxes, FitTightly) {
   }
 }
 
+/// Moved on from where they were fitted last, boxes are those that are fitted to both places: of a body that moves,
+/// rests, is cut and moves again.
+TEST(EdgeBoxes, MovedOnAreThoseFittedAnew) {
+  Random random(66);
+  Placed placed{support::block({9, 5, 9})};
+  EdgeBoxes& moved = placed.boxes;
+  EdgeBoxes anew = moved;
+  moved.fit(placed.x_before, placed.x);
+  for (int step = 0; step < 30; ++step) {
+    placed.x_before = placed.x;
+    if (step % 4 < 2)
+      scramble(placed.x, random, 0.5);
+    moved.move_on(placed.x_before, placed.x);
+    anew.fit(placed.x_before, placed.x);
+    ASSERT_EQ(moved.moves(), anew.moves());
+    for (std::uint32_t block = 0; block < moved.n_blocks(); ++block) {
+      ASSERT_EQ(moved.block(block).box.lower, anew.block(block).box.lower) << step;
+      ASSERT_EQ(moved.block(block).box.upper, anew.block(block).box.upper);
+      ASSERT_EQ(moved.block(block).longest, anew.block(block).longest);
+    }
+    ASSERT_EQ(moved.longest(), anew.longest());
+    const auto all = [](const EdgeBoxes& boxes) {
+      std::vector<Vec3> corners;
+      boxes.blocks([&](const EdgeBoxes::Block& b) {
+        corners.insert(corners.end(), {b.box.lower, b.box.upper});
+        return true;
+      });
+      return corners;
+    };
+    ASSERT_EQ(all(moved), all(anew));
+    if (step % 8 == 5)
+      placed.cut(support::random_cuts(random, placed.body, 0.05));
+  }
+  placed.x[3][1] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(moved.move_on(placed.x_before, placed.x), NumericalError);
+}
+
 void expect_same(const SweepCuts& a, const SweepCuts& b) {
   ASSERT_EQ(a.cuts.size(), b.cuts.size());
   ASSERT_EQ(a.n_double_crossings, b.n_double_crossings);

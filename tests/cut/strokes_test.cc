@@ -122,19 +122,18 @@ void pass_all(Patient& patient, const std::vector<Blade>& blades, const double s
 
 enum class Tool { blades, scissors, bent_blade };
 
-/// Bodies of 8 to 14 cubes, blades that advance by .05 to 10 cubes a step, one to three at once. One leaves all pieces
-/// from 1e-3 cubes on, and so do scissors; a bent one those from a tenth of a cube on, as its bend may pass between two
-/// smaller ones within a cell. Several, in planes that cross, may leave a splinter more or less where a cell is in all of
-/// them, since a segment keeps its first cut, and more than one where a wedge is thinner than a cube: they leave all
-/// pieces from half a cube on, and seldom another one.
-void stroke(const geometry::TriangleMesh& mesh, const std::string& name, const Tool tool, const unsigned seed,
-            Counted& counted) {
+/// A body and what passes through it, by how much of a cube a step.
+struct Case {
+  Patient patient;
+  std::size_t n_planes;
+  Stroking stroking;
+  double speed;
+};
+
+Case make_case(const geometry::TriangleMesh& mesh, const Tool tool, const unsigned seed) {
   Random random(seed);
   const double h = 1 / uniform(random, 8, 14);
   Patient patient(support::embedded(mesh, h, support::random_offset(random)));
-  if (grid::n_pieces(patient.body.complex) != 1)
-    return;
-  const geometry::TriangleMesh skin = skin_of(patient);
   Planes planes;
   for (int i = 0; i <= (tool == Tool::blades ? static_cast<int>(seed % 3) : 0); ++i) {
     const Vec3 normal = random_direction(random);
@@ -143,11 +142,28 @@ void stroke(const geometry::TriangleMesh& mesh, const std::string& name, const T
   }
   const Vec3 middle = Vec3::Constant(0.5);
   const double speed = std::array{0.05, 0.7, 10.0}[seed / 3 % 3];
-  const Stroking stroking = tool == Tool::blades     ? straight_blades(planes, middle, random)
-                            : tool == Tool::scissors ? closing_scissors(planes[0], middle, random)
-                                                     : bent_blade(planes[0], middle, random);
+  return {std::move(patient), planes.size(),
+          tool == Tool::blades     ? straight_blades(planes, middle, random)
+          : tool == Tool::scissors ? closing_scissors(planes[0], middle, random)
+                                   : bent_blade(planes[0], middle, random),
+          speed};
+}
+
+/// Bodies of 8 to 14 cubes, blades that advance by .05 to 10 cubes a step, one to three at once. One leaves all pieces
+/// from 1e-3 cubes on, and so do scissors; a bent one those from a tenth of a cube on, as its bend may pass between two
+/// smaller ones within a cell. Several, in planes that cross, may leave a splinter more or less where a cell is in all of
+/// them, since a segment keeps its first cut, and more than one where a wedge is thinner than a cube: they leave all
+/// pieces from half a cube on, and seldom another one.
+void stroke(const geometry::TriangleMesh& mesh, const std::string& name, const Tool tool, const unsigned seed,
+            Counted& counted) {
+  Case of_seed = make_case(mesh, tool, seed);
+  auto& [patient, n_planes, stroking, speed] = of_seed;
+  const double h = patient.body.grid.h();
+  if (grid::n_pieces(patient.body.complex) != 1)
+    return;
+  const geometry::TriangleMesh skin = skin_of(patient);
   pass_all(patient, stroking.blades, speed);
-  const double cube = h * h * h, least = (planes.size() > 1 ? 0.5 : tool == Tool::bent_blade ? 0.1 : 1e-3) * cube;
+  const double cube = h * h * h, least = (n_planes > 1 ? 0.5 : tool == Tool::bent_blade ? 0.1 : 1e-3) * cube;
   const auto ours = patient.volumes();
   const auto theirs = stroking.leaves(skin);
   if (!theirs) {
@@ -168,6 +184,16 @@ void stroke(const geometry::TriangleMesh& mesh, const std::string& name, const T
     for (std::size_t i = 0; i < std::min<std::size_t>(4, volumes->size()); ++i)
       std::cout << (i == 0 ? " | " : " ") << (*volumes)[i] / cube;
   std::cout << std::endl;
+}
+
+/// A tip of the wedge between two of three blades, without material, is parted from the wedge by one of them and from the
+/// next piece by the other: it hangs on the wedge, on whose side of all cuts it lies, and not on both.
+TEST(ThreeBlades, LeaveNoBridgeAtATip) {
+  const auto liver = unit_mesh(support::checkout() + "/params/meshes/liver_25k.off");
+  ASSERT_TRUE(liver);
+  auto [patient, n_planes, stroking, speed] = make_case(*liver, Tool::blades, 173);
+  pass_all(patient, stroking.blades, 0.35);
+  EXPECT_EQ(patient.volumes().size(), 6u);
 }
 
 Counted strokes(const std::filesystem::path& folder, const Tool tool, const unsigned n) {

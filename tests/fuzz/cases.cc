@@ -107,7 +107,8 @@ void require_on_plane(const Subject& subject, const cut::Plane& plane, const std
   }
 }
 
-/// Where nothing had been cut before, a plane leaves no nodes joined across it: not by edges, nor by the skin.
+/// Where nothing had been cut before, and no shaving stays where a folded body lets the plane pass twice (cut/shreds.h), a
+/// plane leaves no nodes joined across it: not by edges, nor by the skin.
 void require_parted(const Subject& subject, const cut::Plane& plane) {
   const Items& items = subject.specimen.items;
   constexpr std::int8_t unknown = 0, above = 1, below = 2, both = 3;
@@ -190,7 +191,7 @@ class Run {
     last_ = swept;
     if (const auto* const surface = std::get_if<cut::CutSurface>(&swept.sweep)) {
       cut_at_once(*surface, label);
-      if (plane && is_first)
+      if (plane && is_first && subject_.cutter.counts().n_left_whole == 0)
         require_parted(subject_, *plane);
     } else {
       const Soup strip = strip_of(swept.sweep);

@@ -103,5 +103,54 @@ TEST(Complex, AgreesWithItsDefinitionOnEmbeddedBodies) {
   }
 }
 
+/// A plane through a cell, and what of its segments that plane would part and no blade has.
+Front random_front(Random& random, const Body& body, const CellId c) {
+  Front front{.cell = c, .normal = support::random_direction(random), .passed = 0.5};
+  front.point = body.grid.origin(c) + body.grid.h() * (Vec3::Constant(0.5) + 0.3 * support::random_vector(random));
+  const CellCuts cuts = cuts_of(body, c);
+  for (Segments left = cuts.skeleton().segments & ~cuts.blades; left != 0; left &= left - 1) {
+    const auto& [a, b] = cuts.skeleton().segment[std::countr_zero(left)].ends;
+    const auto height = [&](const int item) { return front.normal.dot(item_point(body, c, item) - front.point); };
+    if ((height(a) < 0) != (height(b) < 0))
+      front.ahead |= left & -left;
+  }
+  return front;
+}
+
+/// Fronts come and are taken back here and there, while cells are cut with them and after them, in other ways than they
+/// said: the copies that they parted are glued as those of a body that has never had one.
+TEST(Complex, IsAsBuiltWhereFrontsAreTakenBack) {
+  Random random(7);
+  std::size_t n_taken_back = 0, n_lapsed = 0, n_tied = 0;
+  for (int i = 0; i < 60; ++i) {
+    Body body = support::with_copies(support::block({2 + i % 3, 2 + i / 3 % 2, 2}));
+    const Plan plan = histories::random_plan(random, body, uniform(random, 0, 0.7), 0, uniform(random, 0, 0.3));
+    for (const histories::Step& step : histories::dealt(random, plan, 6)) {
+      histories::apply(step, body);
+      std::vector<CellId> cells;
+      for (const auto c : ids<CellId>(body.grid.n_cells()))
+        if (random() % 3 == 0) {
+          if (body.cuts.front(c)) {
+            body.cuts.take_back_front(c);
+            ++n_taken_back;
+          } else
+            body.cuts.set(random_front(random, body, c));
+          cells.push_back(c);
+        }
+      update_complex(body, step.edges(), step.segments(), cells);
+      const CellComplex anew = build_complex(body);
+      expect_same(body.complex, anew);
+      ASSERT_EQ(body.complex.tied.size(), anew.tied.size());
+      ASSERT_EQ(grid::n_pieces(body.complex), grid::n_pieces(anew));
+      ASSERT_FALSE(HasFatalFailure()) << "body " << i;
+      n_tied += anew.tied.size();
+    }
+    n_lapsed += body.complex.lapsed.size();
+  }
+  EXPECT_GT(n_taken_back, 1000u);
+  EXPECT_GT(n_lapsed, 1000u);
+  EXPECT_GT(n_tied, 1000u);
+}
+
 } // namespace
 } // namespace kerf::grid
