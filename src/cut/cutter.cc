@@ -77,8 +77,7 @@ void Cutter::begin(const Solid& solid, const Points& x) {
 
 CutChange Cutter::step(Solid& solid, const std::span<const Blade> blades, const double t0, const double t1,
                        const Points& x) {
-  if (!blades.empty())
-    fit_boxes(x);
+  fit_boxes(!blades.empty(), x);
   std::vector<Stroke> strokes;
   for (const Blade& blade : blades) {
     if (!boxes_->may_be_in(reach_of_paths(blade, t0, t1)))
@@ -97,16 +96,16 @@ CutChange Cutter::step(Solid& solid, const std::span<const Blade> blades, const 
 }
 
 CutChange Cutter::step(Solid& solid, const std::span<const Stroke> strokes, const Points& x) {
-  if (!strokes.empty())
-    fit_boxes(x);
+  fit_boxes(!strokes.empty(), x);
   return take(solid, strokes, x);
 }
 
-void Cutter::fit_boxes(const Points& x) {
-  if (boxes_stand_there_)
+void Cutter::fit_boxes(const bool is_asked, const Points& x) {
+  if (is_asked && boxes_stand_there_)
     boxes_->move_on(x_before_, x);
-  else
+  else if (is_asked)
     boxes_->fit(x_before_, x);
+  boxes_stand_there_ = is_asked;
 }
 
 /// `boxes_` are fitted.
@@ -114,7 +113,6 @@ CutChange Cutter::take(Solid& solid, const std::span<const Stroke> strokes, cons
   SweepCuts cuts = queue(solid, strokes, x);
   if (release_ == Release::queued)
     cuts.cuts = pending_.release(solid);
-  boxes_stand_there_ = !strokes.empty();
   if (strokes.empty() || boxes_->moves())
     x_before_ = x; // not after the cut: where corners jump then, the blade meets them on their way
   const Added added = add(solid, cuts);

@@ -109,7 +109,8 @@ class Cutter {
   Added add(grid::Solid& solid, const SweepCuts& cuts);
   grid::CutChange part(grid::Solid& solid, const Added& added, std::span<const grid::Front> fronts, const Points& x);
   void join(grid::Solid& solid, const Added& added, const Points& x, std::vector<grid::CellId>& anew);
-  void fit_boxes(const Points& x);
+  /// To the way from x_before_ to x, where that is asked for.
+  void fit_boxes(bool is_asked, const Points& x);
   SweepCuts queue(const grid::Solid& solid, std::span<const Stroke> strokes, const Points& x);
 
   Release release_;
@@ -120,8 +121,8 @@ class Cutter {
   Advance advance_;
   std::vector<StandingEdge> edges_; // after the last step
   std::set<grid::CellId> unsettled_;
-  Points x_before_; // where the corners were when the blades were met last [m]
-  bool boxes_stand_there_ = false;
+  Points x_before_;                // where the corners were when the blades were met last [m]
+  bool boxes_stand_there_ = false; // fitted to them
   CutCounts counts_;
 };
 
