@@ -99,5 +99,14 @@ TEST(Batches, OfOtherChunksStayWhereTheyAre) {
       EXPECT_EQ(batch.corners[0][lane] >= row.n_corners, batch.copies[lane] == BatchOfCopies::none);
 }
 
+/// Its element, and what products read of it in both precisions.
+TEST(Batches, OfAPartialCellAreAKilobyte) {
+  const std::size_t of_lanes = sizeof(PartialCubes<double>) + sizeof(PartialCubes<float>) + sizeof(HourglassOfCubes);
+  EXPECT_LE(sizeof(Element) + of_lanes / n_lanes, 1024u);
+  const auto shared = std::make_shared<std::vector<HourglassOfCubes>>();
+  const BatchedElements<double> model = batched<double>({}, 0.1, {}, {}, {}, shared);
+  EXPECT_EQ(batched<float>({}, 0.1, {}, {}, {}, model.hourglass).hourglass, shared);
+}
+
 } // namespace
 } // namespace kerf::fem
