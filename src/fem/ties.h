@@ -21,7 +21,7 @@ class Ties {
  public:
   /// Takes over all of them.
   void update(const grid::Solid& solid, const material::Elastic& material);
-  /// Counts corners by these numbers from now on. No tie is at a corner that has none.
+  /// Counts corners by these numbers from now on. No tie is at a corner that has none: crumbs have no ties.
   void count_by(const grid::CornerNumbers& numbers);
 
   std::span<const Tie> all() const { return ties_; }

@@ -46,6 +46,8 @@ std::vector<Tie> ties(const Solid& solid) {
   const auto& copies = solid.complex.copies;
   std::vector<Tie> ties;
   for (const auto& [c, d] : solid.complex.tied) {
+    if (solid.crumbs.holds(c))
+      continue;
     const Front& front = *solid.cuts.front(copies[c].cell);
     const std::size_t first = ties.size();
     add_pairs(copies[c], copies[d], ties);

@@ -47,7 +47,7 @@ struct Tie {
 std::vector<std::array<CopyId, 2>> tied_copies(const Solid& solid, const CellComplex& complex,
                                                std::span<const CellId> cells);
 
-/// Between them, in their order.
+/// Between them, in their order; none in crumbs, which are rigid (crumbs.h).
 std::vector<Tie> ties(const Solid& solid);
 
 } // namespace kerf::grid

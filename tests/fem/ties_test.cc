@@ -66,6 +66,39 @@ TEST(Ties, PullByTheGradientOfTheirEnergy) {
   EXPECT_NEAR(sum, 0, 1e-12 * trace); // rigid translations cost nothing
 }
 
+/// What is tied hangs together, so all of it is in a crumb or nothing: and a crumb is rigid. Its corners have no number.
+TEST(Ties, OfACrumbAreNone) {
+  support::Body body = support::with_copies(support::with_placed_skin(support::block({12, 6, 6})));
+  cut::Cutter cutter(2, cut::Release::queued, cut::Fronts::inside_cells);
+  const Points rest = grid::rest_positions(body);
+  cutter.begin(body, rest);
+  surface::place(body, cutter.at_once(body, {"through", cut::Disc{Vec3(6.4, 3, 3), Vec3::UnitX(), 100}, 1}, rest), {});
+  const Points x = grid::rest_positions(body);
+  const cut::Disc crack{Vec3(2.6, 3.4, 3.3), Vec3(0.1, 0.2, 1).normalized(), 1.4};
+  surface::place(body, cutter.at_once(body, {"crack", crack, 2}, x), {});
+  ASSERT_GT(grid::ties(body).size(), 8u);
+  const grid::Pieces pieces = grid::pieces(body.complex);
+  ASSERT_EQ(pieces.n_pieces, 2u);
+  // As if the piece with the crack were one.
+  grid::Crumbs& crumbs = body.crumbs;
+  crumbs.all.push_back({1, {}});
+  crumbs.of_corner.assign(body.complex.n_corners(), 0);
+  for (const auto c : ids<grid::CopyId>(body.complex.n_copies()))
+    if (pieces.piece[c] == pieces.piece[body.complex.tied[0][0]]) {
+      crumbs.all[0].copies.push_back(c);
+      crumbs.set(c, 1);
+      for (const grid::CornerId corner : body.complex.copies[c].corners)
+        crumbs.of_corner[corner.value] = 1;
+    }
+  EXPECT_TRUE(grid::ties(body).empty());
+  const Hexahedra model(body, {.material = {}, .counted = grid::Counted::deforming});
+  ASSERT_LT(model.numbers().size(), body.complex.n_corners());
+  Points of_numbers;
+  model.numbers().gather(moved(grid::rest_positions(body), 0.1), of_numbers);
+  EXPECT_GT(model.energy(of_numbers), 0);
+  EXPECT_TRUE(std::isfinite(model.energy(of_numbers)));
+}
+
 /// A body that has not opened exerts no force, and neither does one that was moved affinely and as one.
 TEST(Ties, RestWhereTheCutIsClosed) {
   const support::Body body = cracked(1.9);
