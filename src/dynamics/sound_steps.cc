@@ -40,18 +40,6 @@ struct MassAndMoment {
   }
 };
 
-/// Of the motion beside the mean one [J].
-double inner_kinetic_energy(const ForceModel& model, const Points& v) {
-  const auto masses = model.lumped_mass();
-  const MassAndMoment all =
-    sum_in_blocks(v.size(), MassAndMoment(), [&](const std::size_t begin, const std::size_t end, MassAndMoment& part) {
-      for (std::size_t i = begin; i < end; ++i)
-        part += {masses[i], masses[i] * v[i]};
-    });
-  const auto& [mass, momentum, square] = all;
-  return std::max(0.0, kinetic_energy(model, v) - (mass > 0 ? 0.5 * momentum.squaredNorm() / mass : 0));
-}
-
 bool drives(const Loads& loads) {
   return std::any_of(loads.acting.begin(), loads.acting.end(),
                      [](const auto& load) { return load->nature() == Nature::driving; });
@@ -182,6 +170,17 @@ std::string per_cent(const double part) { return in_short(100 * part) + " %"; }
 
 } // namespace
 
+double inner_kinetic_energy(const ForceModel& model, const Points& v) {
+  const auto masses = model.lumped_mass();
+  const MassAndMoment all =
+    sum_in_blocks(v.size(), MassAndMoment(), [&](const std::size_t begin, const std::size_t end, MassAndMoment& part) {
+      for (std::size_t i = begin; i < end; ++i)
+        part += {masses[i], masses[i] * v[i]};
+    });
+  const auto& [mass, momentum, square] = all;
+  return std::max(0.0, kinetic_energy(model, v) - (mass > 0 ? 0.5 * momentum.squaredNorm() / mass : 0));
+}
+
 void require_finite(const State& state) {
   for (std::size_t i = 0; i < state.x.size(); ++i)
     if (!state.x[i].allFinite() || !state.v[i].allFinite())
@@ -232,7 +231,6 @@ SoundSteps::LentState SoundSteps::lend(const State& like) {
 }
 
 void SoundSteps::add_checked(const State& state, const Loads& loads, const double dt, Tried& tried) {
-  constexpr double most_in_sum = 0.5;
   LentState lent = lend(state);
   State& after = *lent;
   energies_.at(state.x); // while the step asks for forces here too: the model knows them at one place alone
@@ -240,14 +238,14 @@ void SoundSteps::add_checked(const State& state, const Loads& loads, const doubl
   keep_carried(loads, state, after);
   require_finite(after);
   const EnergyChange change = energy_change(model_, energies_, loads, state, after);
-  const double shift = change.kick + change.unseen;
+  const double shift = options_.kick * change.kick + change.unseen;
   if (!(change.gained <= options_.most_gain * change.dealt + shift) && change.gained > round_off(model_, after.x))
     throw StepError("the step gained " + in_short(change.gained) + " J that no load and no support gave, " +
                       per_cent(change.gained / change.dealt) + " of the energy that it dealt with",
                     most_thrown(state, after));
   double& sum = after.numbers[energy_gained];
   sum = std::max(0.0, sum + change.gained);
-  if (change.gained > 0 && !(sum <= most_in_sum * change.inner + shift) && sum > many * round_off(model_, after.x))
+  if (change.gained > 0 && !(sum <= options_.most_sum * change.inner + shift) && sum > many * round_off(model_, after.x))
     throw StepError("the integrator has gained " + per_cent(sum / change.inner) +
                       " of the body's kinetic and elastic energy, step by step: the motion is no more the body's",
                     most_thrown(state, after));

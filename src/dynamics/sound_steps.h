@@ -14,8 +14,8 @@
 /// substeps, which remove any error of second order. A method that takes energy and gives none is held to less
 /// (SoundOptions::wanted_gain); steps of it that gain more, as Newton's method has not come to an end, are tried again in 2
 /// and 4 substeps, of which the first that gains no more is taken, or else what gained least. And an integrator that gains a little in each step is watched by
-/// the sum (Page 1954, Continuous inspection schemes, Biometrika 41: S = max(0, S + gain)): once half of all kinetic and
-/// elastic energy is gained that way, the motion is no more the body's.
+/// the sum (Page 1954, Continuous inspection schemes, Biometrika 41: S = max(0, S + gain)): once a part of all kinetic and
+/// elastic energy is gained that way, half where nothing else is said, the motion is no more the body's.
 ///
 /// An integrator that takes no energy may have another for the last resort, which does: a step that nothing mends is
 /// then taken by that one, and the next starts anew.
@@ -47,6 +47,8 @@ class StepError : public NumericalError {
 struct SoundOptions {
   int most_substeps = 64;  ///< a power of 2; 1: no step is taken again
   double most_gain = 0.25; ///< in a step, of the energy that it deals with [1]
+  double most_sum = 0.5;   ///< of what steps gained, over all kinetic and elastic energy [1]
+  double kick = 1;         ///< part that is granted of what first order may misplace of gravity in a step [1]
   /// The same, above which a step is better taken in substeps; gravity's kick is not granted. Infinity: no such limit [1].
   double wanted_gain = std::numeric_limits<double>::infinity();
 };
@@ -130,6 +132,9 @@ struct EnergyChange {
 };
 EnergyChange energy_change(const ForceModel& model, ElasticEnergies& energies, const Loads& loads, const State& before,
                            const State& after);
+
+/// Of the motion beside the mean one [J].
+double inner_kinetic_energy(const ForceModel& model, const Points& v);
 
 /// Throws StepError when a position or a velocity is not finite.
 void require_finite(const State& state);

@@ -30,8 +30,7 @@ struct State {
 };
 
 /// Names that are looked for in every step: longer than what a string holds in itself.
-inline const std::string change_of_velocity = "change of velocity", energy_gained = "energy gained [J]",
-                         settled_corners = "settled corners [1]";
+inline const std::string change_of_velocity = "change of velocity", energy_gained = "energy gained [J]";
 
 /// Makes one state the other, in the memory that it has.
 inline void assign(State& to, const State& from) {
@@ -61,7 +60,6 @@ inline const Points* remembered(const State& state, const std::string& name) {
 inline void forget_forces(State& state) {
   state.history.erase("acceleration");
   state.history.erase(change_of_velocity);
-  state.numbers.erase(settled_corners);
 }
 
 /// Of what integrators remember beside x and v, nothing: the next step starts anew.

@@ -63,17 +63,6 @@ ShapeMatching::ShapeMatching(const Matching& model, const double region_damping)
   check({.region_damping = region_damping});
 }
 
-void ShapeMatching::settle(const dynamics::Loads& loads, const dynamics::Constraints& constraints, Points& x,
-                           Points& v) {
-  model_.goals(x, goals_);
-  for (std::size_t c = 0; c < x.size(); ++c)
-    if (dynamics::is_carried(loads, c))
-      goals_[c] = x[c];
-  for (const auto& held : constraints.held())
-    goals_[held.corner] = x[held.corner];
-  model_.riders().settle(goals_, model_.lumped_mass(), x, v);
-}
-
 void ShapeMatching::add_loads(const dynamics::Moment& now, const dynamics::Loads& loads, const double dt, Points& v) {
   if (loads.acting.empty())
     return;
@@ -103,9 +92,6 @@ dynamics::StepReport ShapeMatching::step(dynamics::State& state, const dynamics:
   const dynamics::Constraints constraints(loads, state.x.size());
   Loan<Vec3> lent_x(state.x), lent_v(state.v);
   Points &x = lent_x, &v = lent_v;
-  const auto n_settled = state.numbers.find(dynamics::settled_corners);
-  if (n_settled == state.numbers.end() || n_settled->second != static_cast<double>(x.size()))
-    settle(loads, constraints, x, v);
   model_.goals(x, goals_);
   model_.riders().damp(x, model_.lumped_mass(), alpha, v);
   parallel_for(
@@ -124,7 +110,6 @@ dynamics::StepReport ShapeMatching::step(dynamics::State& state, const dynamics:
   state.x.swap(x);
   state.v.swap(v);
   state.time += dt;
-  state.numbers[dynamics::settled_corners] = static_cast<double>(state.x.size());
   return {};
 }
 

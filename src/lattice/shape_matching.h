@@ -3,8 +3,7 @@
 /// Lattice shape matching as a stepper (Rivers and James 2007; thesis §5.1). With the goals g of Matching, in a step
 /// dt:
 ///
-///     after a cut: corners of hardly any mass put to their goals (riders.h),
-///     their v damped against what carries them,
+///     v of corners of hardly any mass damped against what carries them (riders.h),
 ///     v += alpha (g - x) / dt + dt gravity,    alpha = k dt^2,
 ///     v += kappa (u - v)                       u: the regions' mean rigid velocities (their region damping),
 ///     x += dt v.
@@ -53,7 +52,6 @@ class ShapeMatching : public dynamics::Stepper {
   dynamics::StepReport step(dynamics::State& state, const dynamics::Loads& loads, double dt) override;
 
  private:
-  void settle(const dynamics::Loads& loads, const dynamics::Constraints& constraints, Points& x, Points& v);
   void add_loads(const dynamics::Moment& now, const dynamics::Loads& loads, double dt, Points& v);
   void damp(const Points& x, const dynamics::Loads& loads, double dt, Points& v);
 

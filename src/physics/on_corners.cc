@@ -63,6 +63,14 @@ void damp_riders(const fem::Hexahedra& model, const lattice::Riders& riders, con
     riders.damp(state.x, mass, alpha, state.v);
 }
 
+std::vector<std::uint8_t> touched_corners(const grid::CellComplex& complex, const grid::CutChange& change) {
+  std::vector<std::uint8_t> is_touched(complex.n_corners(), 0);
+  for (const grid::CopyId c : change.reshaped)
+    for (const grid::CornerId corner : complex.copies[c].corners)
+      is_touched[corner.value] = 1;
+  return is_touched;
+}
+
 std::vector<std::uint32_t> counted_pieces(std::vector<std::uint32_t> of_corners, const grid::CornerNumbers& numbers) {
   if (numbers.are_all())
     return of_corners;

@@ -3,7 +3,9 @@
 /// Backends whose particles are the corners of the copies: elements, springs, lattice shape matching. New corners take
 /// position, velocity and history from the corner they come from.
 
+#include "dynamics/relief.h"
 #include "fem/hexahedra.h"
+#include "lattice/relief.h"
 #include "lattice/shape_matching.h"
 #include "physics/carry_all.h"
 #include "physics/narrowed.h"
@@ -33,6 +35,17 @@ void damp_riders(const fem::Hexahedra& model, const lattice::Riders& riders, std
 /// round-off, and a few that lie close together hardly any.
 void join_lapsed(std::span<const grid::Lapse> lapsed, const std::function<double(std::uint32_t)>& mass,
                  dynamics::State& state);
+
+/// What lets out of the corners that a cut has touched what it gave.
+inline std::unique_ptr<dynamics::Stepper> relief_of(dynamics::ElasticModel& model, dynamics::Excess excess) {
+  return std::make_unique<dynamics::Relief>(model, std::move(excess));
+}
+inline std::unique_ptr<dynamics::Stepper> relief_of(const lattice::Matching& model, dynamics::Excess excess) {
+  return std::make_unique<lattice::Relief>(model, std::move(excess));
+}
+
+/// 1 for each corner of copies that a cut has reshaped.
+std::vector<std::uint8_t> touched_corners(const grid::CellComplex& complex, const grid::CutChange& change);
 
 /// Of the corners that are counted, by number: pieces without one are left out.
 std::vector<std::uint32_t> counted_pieces(std::vector<std::uint32_t> of_corners, const grid::CornerNumbers& numbers);
@@ -105,9 +118,28 @@ class OnCorners : public Physics {
     follow_cut_with_model(body, change);
     widen(body);
     follow_crumbs(body, state);
-    if (const auto freed = freed_corners(change, carried); !freed.empty())
+    const auto freed = freed_corners(change, carried);
+    gives_back_ = !freed.empty();
+    if (gives_back_)
       restore_momentum(had, freed, model().lumped_mass(), crumbs_, state);
     make_stepper(body);
+    follow_heirs(state);
+  }
+
+  void let_out(const CutBody& body, const grid::CutChange& change, const double had, const dynamics::Loads& loads,
+               dynamics::State& state) override {
+    if (stepper_->motion() != dynamics::MotionKind::dynamic || gives_back_ || carry_all(crumbs_))
+      return;
+    const grid::CornerNumbers& numbers = model_->numbers();
+    dynamics::Excess excess{.most = dynamics::most_after_cut(model(), had, state.v),
+                            .touched = {},
+                            .piece = [&] { return counted_pieces(corner_pieces(body.solid.complex), numbers); }};
+    numbers.gather(touched_corners(body.solid.complex, change), excess.touched);
+    const auto relief = relief_of(*model_, std::move(excess));
+    if (widened_)
+      narrowed_step(*relief, numbers, state, loads, 0);
+    else
+      relief->step(state, loads, 0);
     follow_heirs(state);
   }
 
@@ -179,6 +211,7 @@ class OnCorners : public Physics {
   std::unique_ptr<dynamics::Stepper> stepper_;
   lattice::Riders riders_;
   std::vector<grid::Lapse> lapsed_;
+  bool gives_back_ = false; // the last cut, what crumbs took when they came to be
 };
 
 /// Elements are brought up to date where the cut is, and stay elsewhere.

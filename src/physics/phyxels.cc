@@ -1,6 +1,7 @@
 #include "physics/phyxels.h"
 
 #include "base/union_find.h"
+#include "dynamics/relief.h"
 #include "grid/locate.h"
 #include "physics/carry_all.h"
 
@@ -228,15 +229,38 @@ void Phyxels::follow_cut(const CutBody& body, const grid::CutChange& change, dyn
   for (std::uint32_t i = 0; i < carried.size(); ++i)
     if (carried[i] != 0 && !crumbs_.carries(i))
       freed.push_back(i);
-  if (!freed.empty())
+  gives_back_ = !freed.empty();
+  if (gives_back_)
     restore_momentum(had, freed, model_.lumped_mass(), crumbs_, state);
   is_stale_ = true;
+  const std::vector<double> weights(model_.weights().begin(), model_.weights().end());
   if (options_.visibility.budget == 0)
     catch_up(body);
   else
     build_map(body); // pieces part at once; what the step may look at, it looks at in its own catch_up()
+  find_touched(weights);
   dynamics::forget_forces(state);
   stepper_ = make_stepper_(model_, [this] { return phyxel_pieces_; });
+  follow(state);
+}
+
+void Phyxels::find_touched(const std::vector<double>& weights_before) {
+  touched_.assign(rest().size(), 0);
+  const auto& pairs = model_.neighbours().pairs;
+  for (std::size_t p = 0; p < pairs.size(); ++p)
+    if (model_.weights()[p] != weights_before[p])
+      for (const auto i : pairs[p])
+        touched_[i] = 1;
+}
+
+void Phyxels::let_out(const CutBody&, const grid::CutChange&, const double had, const dynamics::Loads& loads,
+                      dynamics::State& state) {
+  if (stepper_->motion() != dynamics::MotionKind::dynamic || gives_back_ || carry_all(crumbs_))
+    return;
+  dynamics::Relief relief(model_, {.most = dynamics::most_after_cut(model_, had, state.v),
+                                   .touched = touched_,
+                                   .piece = [this] { return phyxel_pieces_; }});
+  relief.step(state, loads, 0);
   follow(state);
 }
 

@@ -56,6 +56,8 @@ class Phyxels : public Physics {
   const Crumbs& crumbs() const override { return crumbs_; }
   dynamics::StepReport step(dynamics::State& state, const dynamics::Loads& loads, double dt) override;
   void follow_cut(const CutBody& body, const grid::CutChange& change, dynamics::State& state) override;
+  void let_out(const CutBody& body, const grid::CutChange& change, double had, const dynamics::Loads& loads,
+               dynamics::State& state) override;
   bool catch_up(const CutBody& body) override;
   void archive(Archive& a, const CutBody& body) override;
   void follow(const dynamics::State& state) override;
@@ -83,6 +85,7 @@ class Phyxels : public Physics {
   /// Those that are new come between the pairs.
   void add_faces(const std::vector<Face>& faces);
   void find_pieces(const CutBody& body);
+  void find_touched(const std::vector<double>& weights_before);
   /// Between parts of a piece that no bond joins.
   std::vector<pba::Link> missing_links(const CutBody& body) const;
   void build_map(const CutBody& body);
@@ -108,6 +111,8 @@ class Phyxels : public Physics {
   std::vector<grid::CopyId> copies_;                            ///< of each phyxel
   pba::CornerMap map_;
   bool is_stale_ = false; ///< sights or pieces are newer than model and map
+  std::vector<std::uint8_t> touched_; ///< 1 for each phyxel that sees another one otherwise since follow_cut()
+  bool gives_back_ = false;           ///< the last cut, what crumbs took when they came to be
 
   std::optional<visibility::PairSights> sights_;
   std::set<Face, ByCoordinates> faces_;

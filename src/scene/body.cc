@@ -35,8 +35,10 @@ void follow_cut(Body& body, grid::CutChange change, Timings& timings) {
     ++body.n_recuts;
   }
   const ScopedTimer timer(timings, "assemble");
+  const double had = body.physics->model().energy(body.state.x);
   body.physics->follow_cut(seen(body), change, body.state);
   make_loads(body);
+  body.physics->let_out(seen(body), change, had, body.loads, body.state);
 }
 
 /// Cuts, and lets all of the body follow.

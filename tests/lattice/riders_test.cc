@@ -121,7 +121,6 @@ TEST(Riders, ComeBackWithoutSwinging) {
   EXPECT_EQ(model.riders().n_riders(), 6u * 5u * 5u - 4u * 3u * 3u) << "all but the nodes";
   ShapeMatching stepper(model, 0);
   dynamics::State state{grid::rest_positions(body), Points(body.complex.n_corners(), Vec3::Zero()), 0};
-  state.numbers[dynamics::settled_corners] = static_cast<double>(body.complex.n_corners());
   const auto mass = model.lumped_mass();
   const auto lightest = static_cast<std::size_t>(std::min_element(mass.begin(), mass.end()) - mass.begin());
   const Vec3 goal = state.x[lightest];

@@ -1,0 +1,145 @@
+#include "dynamics/relief.h"
+
+#include "base/error.h"
+#include "dynamics/balance.h"
+#include "dynamics/forces.h"
+#include "dynamics/sound_steps.h"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+
+#include <cmath>
+
+namespace kerf::dynamics {
+
+namespace {
+
+/// Mass, its centre, what turns it: of one piece.
+struct Moments {
+  double mass = 0;
+  Vec3 moment = Vec3::Zero(), angular = Vec3::Zero(); // sums of m x, of m x x v
+};
+
+Loan<Moments> moments(const Pieces& pieces, const std::span<const double> mass, const State& state) {
+  Loan<Moments> all(pieces.n(), Moments());
+  for (std::size_t i = 0; i < mass.size(); ++i) {
+    Moments& of = all[pieces.of(i)];
+    of.mass += mass[i];
+    of.moment += mass[i] * state.x[i];
+    of.angular += mass[i] * state.x[i].cross(state.v[i]);
+  }
+  return all;
+}
+
+/// I^-1 L, but about axes that have hardly any inertia.
+Vec3 spin_of(const Mat3& inertia, const Vec3& L) {
+  constexpr double hardly_any = 1e-6;
+  const Eigen::SelfAdjointEigenSolver<Mat3> eigen(inertia);
+  Vec3 spin = Vec3::Zero();
+  for (int k = 0; k < 3; ++k)
+    if (const double I = eigen.eigenvalues()[k]; I > hardly_any * eigen.eigenvalues()[2])
+      spin += eigen.eigenvectors().col(k).dot(L) / I * eigen.eigenvectors().col(k);
+  return spin;
+}
+
+double slope_squared(const std::span<const double> mass, const Constraints& constraints, const Points& forces) {
+  double sum = 0;
+  for (std::size_t i = 0; i < forces.size(); ++i)
+    if (constraints.is_free(i) && mass[i] > 0)
+      sum += forces[i].squaredNorm() / mass[i];
+  return sum;
+}
+
+/// Loads under which nothing moves but what is marked (1), and neither held by supports nor carried by crumbs.
+Loads held_but(const std::span<const std::uint8_t> is_marked, const State& state, const Loads& loads) {
+  const auto is_held = held_corners(loads, state.x.size());
+  Support rest{{}, {}, [](double) { return Vec3(Vec3::Zero()); }};
+  for (std::uint32_t i = 0; i < state.x.size(); ++i)
+    if (is_marked[i] == 0 || is_held[i] != 0) {
+      rest.corners.push_back(i);
+      rest.rest.push_back(state.x[i]);
+    }
+  Loads held;
+  held.supports.push_back(std::move(rest));
+  held.carried = loads.carried;
+  return held;
+}
+
+} // namespace
+
+double most_after_cut(const ForceModel& model, const double had, const Points& v) {
+  constexpr double little = 1e-3;
+  return had + little * (had + inner_kinetic_energy(model, v));
+}
+
+void keep_moments(const Pieces& pieces, const std::span<const double> mass, const Loads& loads, const State& before,
+                  State& after) {
+  const Constraints constraints(loads, after.x.size());
+  Loan<std::uint8_t> is_free(pieces.n(), 1);
+  for (const auto& held : constraints.held())
+    if (!is_carried(loads, held.corner))
+      is_free[pieces.of(held.corner)] = 0;
+  const Loan<Moments> had = moments(pieces, mass, before);
+  {
+    const Loan<Moments> has = moments(pieces, mass, after);
+    for (std::size_t i = 0; i < mass.size(); ++i)
+      if (const auto p = pieces.of(i); is_free[p] != 0 && has[p].mass > 0 && !is_carried(loads, i))
+        after.x[i] += (had[p].moment - has[p].moment) / has[p].mass;
+  }
+  const Loan<Moments> has = moments(pieces, mass, after);
+  Loan<Mat3> inertia(pieces.n(), Mat3::Zero());
+  const auto arm = [&](const std::size_t i) {
+    const Moments& of = has[pieces.of(i)];
+    return of.mass > 0 ? Vec3(after.x[i] - of.moment / of.mass) : Vec3(Vec3::Zero());
+  };
+  for (std::size_t i = 0; i < mass.size(); ++i) {
+    const Vec3 r = arm(i);
+    inertia[pieces.of(i)] += mass[i] * (r.squaredNorm() * Mat3::Identity() - r * r.transpose());
+  }
+  Loan<Vec3> spin(pieces.n());
+  for (std::size_t p = 0; p < pieces.n(); ++p)
+    spin[p] = is_free[p] != 0 ? spin_of(inertia[p], had[p].angular - has[p].angular) : Vec3(Vec3::Zero());
+  for (std::size_t i = 0; i < mass.size(); ++i)
+    if (!is_carried(loads, i))
+      after.v[i] += spin[pieces.of(i)].cross(arm(i));
+}
+
+StepReport Relief::step(State& state, const Loads& loads, double) {
+  constexpr int most_steps = 8;
+  StepReport report;
+  double excess = model_.energy(state.x) - excess_.most;
+  if (!(excess > 0))
+    return report;
+  const Loads held = held_but(excess_.touched, state, loads);
+  const Constraints constraints(held, state.x.size());
+  Loan<Vec3> forces = Loan<Vec3>::with_room(state.x.size());
+  model_.force(state.x, forces);
+  const double slope = slope_squared(model_.lumped_mass(), constraints, forces);
+  if (!(slope > 0))
+    return report;
+  BalanceSolver solver(model_, {.max_iterations = 10,
+                                .tolerance = 1e-2,
+                                .line_search = LineSearch::backtracking,
+                                .cg_tolerance = 1e-3});
+  State after = state;
+  double tau = std::sqrt(excess / slope);
+  for (int k = 0; k < most_steps && excess > 0; ++k, tau *= 4) {
+    Loan<Vec3> x(state.x.size());
+    try {
+      Balance flow{.mass_factor = 1 / (tau * tau), .start = Loan<Vec3>(after.x)};
+      report.n_iterations += solver.solve(held, constraints, std::move(flow), x).n_linear;
+    } catch (const NumericalError&) { // no further
+      break;
+    }
+    const double left = model_.energy(x) - excess_.most;
+    if (!(left < excess))
+      break;
+    excess = left;
+    after.x.swap(x);
+  }
+  keep_moments(Pieces(excess_.piece()), model_.lumped_mass(), loads, state, after);
+  state = std::move(after);
+  return report;
+}
+
+} // namespace kerf::dynamics

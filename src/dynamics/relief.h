@@ -1,0 +1,56 @@
+#pragma once
+
+/// What a cut gave is let out.
+///
+/// The problem: a cut makes energy another function of the positions. Near-empty copies are held by a penalty that was not there,
+/// partial elements condense other modes, phyxels lose neighbours that their gradients were fitted to. So at the same positions
+/// there may be more elastic energy than before, which nobody gave, and which would throw what the cut has touched.
+///
+/// The method: what the cut has touched goes towards its balance, all else held, by implicit steps of the gradient flow
+///
+///     M (x' - x) / tau^2 = f(x'),
+///
+/// each of which takes energy, until there is no more than there was. With e the excess, the first has tau^2 = e / f.M^-1 f, the
+/// way down the slope that would take it; each further one four times that tau. Then every piece that nothing holds is shifted,
+/// and its velocities are turned, so that its masses' centre and its angular momentum are what they were.
+///
+/// Limits: what touched particles cannot let out by themselves stays.
+
+#include "dynamics/model.h"
+#include "dynamics/pieces.h"
+#include "dynamics/stepper.h"
+
+#include <functional>
+
+namespace kerf::dynamics {
+
+/// What is to be let out of a body, and where.
+struct Excess {
+  double most = 0;                   ///< energy that there may be [J]
+  std::vector<std::uint8_t> touched; ///< 1 for each particle that the cut has touched
+  std::function<std::vector<std::uint32_t>()> piece; ///< of each particle, 0, 1, ...
+};
+
+/// Elastic energy that a cut may leave where there were `had` [J] before: a thousandth more, of it and of the motion against the
+/// mean one.
+double most_after_cut(const ForceModel& model, double had, const Points& v);
+
+/// Shifts pieces that loads hold nowhere, and turns their velocities, so that their masses' centres and their angular momenta are
+/// as before.
+void keep_moments(const Pieces& pieces, std::span<const double> mass, const Loads& loads, const State& before,
+                  State& after);
+
+/// A step lets out what it can; time stands still, dt is not asked for.
+class Relief : public Stepper {
+ public:
+  /// The model must outlive it.
+  Relief(ElasticModel& model, Excess excess) : model_(model), excess_(std::move(excess)) {}
+
+  StepReport step(State& state, const Loads& loads, double dt) override;
+
+ private:
+  ElasticModel& model_;
+  Excess excess_;
+};
+
+} // namespace kerf::dynamics

@@ -1,0 +1,36 @@
+#include "lattice/relief.h"
+
+#include "base/loan.h"
+
+namespace kerf::lattice {
+
+void Relief::settle(const std::span<const std::uint8_t> is_held, dynamics::State& state) const {
+  Loan<Vec3> goals = Loan<Vec3>::with_room(state.x.size());
+  model_.goals(state.x, goals);
+  for (std::size_t c = 0; c < goals.size(); ++c)
+    if (is_held[c] != 0)
+      goals[c] = state.x[c];
+  model_.riders().settle(goals, model_.lumped_mass(), state.x, state.v);
+}
+
+dynamics::StepReport Relief::step(dynamics::State& state, const dynamics::Loads& loads, double) {
+  constexpr int most_rounds = 40;
+  const auto is_held = dynamics::held_corners(loads, state.x.size());
+  settle(is_held, state);
+  double energy = model_.energy(state.x);
+  if (energy <= excess_.most)
+    return {};
+  const dynamics::State before = state;
+  Loan<Vec3> goals = Loan<Vec3>::with_room(state.x.size());
+  for (int round = 0; round < most_rounds && energy > excess_.most; ++round) {
+    model_.goals(state.x, goals);
+    for (std::size_t c = 0; c < goals.size(); ++c)
+      if (excess_.touched[c] != 0 && is_held[c] == 0)
+        state.x[c] = goals[c];
+    energy = model_.energy(state.x);
+  }
+  dynamics::keep_moments(dynamics::Pieces(excess_.piece()), model_.lumped_mass(), loads, before, state);
+  return {};
+}
+
+} // namespace kerf::lattice

@@ -1,0 +1,27 @@
+#pragma once
+
+/// After a cut: corners of hardly any mass go to their goals (riders.h). Where there is still more energy than before the
+/// cut, so do all corners that it has touched, again and again: with the regions' motions held, x = g is where the energy
+/// is least, and with positions held these motions are (matching.h), so it falls with each.
+
+#include "dynamics/relief.h"
+#include "lattice/matching.h"
+
+namespace kerf::lattice {
+
+/// A step lets out what it can; time stands still, dt is not asked for.
+class Relief : public dynamics::Stepper {
+ public:
+  /// The model must outlive it.
+  Relief(const Matching& model, dynamics::Excess excess) : model_(model), excess_(std::move(excess)) {}
+
+  dynamics::StepReport step(dynamics::State& state, const dynamics::Loads& loads, double dt) override;
+
+ private:
+  void settle(std::span<const std::uint8_t> is_held, dynamics::State& state) const;
+
+  const Matching& model_;
+  dynamics::Excess excess_;
+};
+
+} // namespace kerf::lattice

@@ -1,0 +1,133 @@
+// What a cut gives is let out: of bodies that are bent and crumpled, with every backend.
+
+#include "dynamics/quantities.h"
+#include "physics/on_corners.h"
+#include "physics/phyxels.h"
+#include "tests/physics/cut_bodies.h"
+
+#include <gtest/gtest.h>
+
+namespace kerf::physics {
+namespace {
+
+using MakePhysics = std::function<std::unique_ptr<Physics>(const CutBody&)>;
+
+const material::Elastic rubber{.density = 1000, .youngs_modulus = 1e4, .poissons_ratio = 0.4};
+
+MakePhysics elements(const fem::Strain strain) {
+  return [=](const CutBody& body) {
+    return std::make_unique<Elements>(
+      body,
+      [=](const CutBody& b) {
+        return std::make_unique<fem::Hexahedra>(b.solid, fem::HexahedraOptions{.material = rubber, .strain = strain});
+      },
+      verlet);
+  };
+}
+
+std::unique_ptr<Physics> springs(const CutBody& body) {
+  return std::make_unique<Springs>(
+    body, [](const CutBody& b) { return std::make_unique<spring::MassSpring>(b.solid, spring::MassSpringOptions{}); },
+    verlet);
+}
+
+std::unique_ptr<Physics> shape_matching(const CutBody& body) {
+  return std::make_unique<ShapeMatching>(
+    body, [](const CutBody& b) { return std::make_unique<lattice::Matching>(b.solid, lattice::MatchingOptions{}); },
+    [](lattice::Matching& model, const PiecesOfParticles&) {
+      return std::make_unique<lattice::ShapeMatching>(model, 0);
+    });
+}
+
+std::unique_ptr<Physics> points(const CutBody& body) {
+  PhyxelsOptions options;
+  options.phyxels = {.sampling = {.spacing = 0.07}, .n_neighbours = 24};
+  options.material = rubber;
+  return std::make_unique<Phyxels>(body, options, verlet);
+}
+
+const std::vector<std::pair<std::string, MakePhysics>>& backends() {
+  static const std::vector<std::pair<std::string, MakePhysics>> all = {{"trilinear", elements(fem::Strain::trilinear)},
+                                                                      {"enhanced", elements(fem::Strain::enhanced)},
+                                                                      {"springs", springs},
+                                                                      {"lattice", shape_matching},
+                                                                      {"points", points}};
+  return all;
+}
+
+/// Bent over its length by `bend` [1/m], and each particle off its place by about `noise` [m].
+void crumple(const Physics& physics, const double bend, const double noise, support::Random& random, dynamics::State& state) {
+  for (std::size_t i = 0; i < state.x.size(); ++i) {
+    const Vec3& X = physics.rest()[i];
+    state.x[i] = X + Vec3(0, 0, bend * X[0] * X[0]) + noise * support::random_vector(random);
+    state.v[i] = support::random_vector(random);
+  }
+}
+
+struct Moments {
+  double mass = 0;
+  Vec3 moment = Vec3::Zero(), momentum = Vec3::Zero(), angular = Vec3::Zero();
+};
+
+Moments moments(Physics& physics, const dynamics::State& state) {
+  Moments all;
+  const auto mass = physics.model().lumped_mass();
+  for (std::size_t i = 0; i < mass.size(); ++i) {
+    all.mass += mass[i];
+    all.moment += mass[i] * state.x[i];
+    all.momentum += mass[i] * state.v[i];
+    all.angular += mass[i] * state.x[i].cross(state.v[i]);
+  }
+  return all;
+}
+
+/// Where there is more energy than before, as much is let out as can be; where not, nothing happens to elements, points and springs.
+/// What is free keeps its momenta and its masses' centre.
+TEST(Relief, LetsOutWhatCutsGive) {
+  for (const auto& [name, make] : backends()) {
+    SCOPED_TRACE(name);
+    int n_given = 0, n_let_out = 0;
+    for (const unsigned seed : {1u, 2u, 3u}) {
+      support::Random random(seed);
+      GrowingCut block(support::block({5, 4, 4}, 0.1));
+      const auto physics = make(block.seen());
+      dynamics::State state = state_at_rest(*physics);
+      for (int batch = 0; batch < 9; ++batch) {
+        // Points give something where a bend is smooth, the lattice where it is steep, enhanced elements where noise is most.
+        const bool is_steep = batch % 3 != 2;
+        crumple(*physics, is_steep ? 2 : 0.6, batch % 3 == 0 ? 0 : 0.01, random, state);
+        const double had = physics->model().energy(state.x);
+        const double part = is_steep ? 0.02 : 0.08;
+        const auto change =
+          block.cut(support::with_skin(block.body, support::random_cuts(random, block.body, part)), *physics, state);
+        const double most = dynamics::most_after_cut(physics->model(), had, state.v),
+                     given = physics->model().energy(state.x);
+        const Moments before = moments(*physics, state);
+        const dynamics::State as_cut = state;
+        dynamics::Loads loads;
+        loads.carried = physics->crumbs().carried();
+        physics->let_out(block.seen(), change, had, loads, state);
+        const double left = physics->model().energy(state.x);
+        if (given > most) {
+          ++n_given;
+          n_let_out += left <= most ? 1 : 0;
+          EXPECT_LT(left, given);
+        } else if (name != "lattice") {
+          EXPECT_EQ(state.x, as_cut.x);
+          EXPECT_EQ(state.v, as_cut.v);
+        }
+        const Moments after = moments(*physics, state);
+        EXPECT_LT((after.moment - before.moment).norm(), 1e-12 * before.mass);
+        EXPECT_LT((after.momentum - before.momentum).norm(), 1e-12 * before.mass);
+        EXPECT_LT((after.angular - before.angular).norm(), 1e-10 * before.mass);
+        EXPECT_EQ(state.time, as_cut.time);
+      }
+    }
+    EXPECT_GE(n_let_out, name == "lattice" ? 0 : n_given); // whose regions change wherever they reach
+    const bool gives_none = name == "trilinear" || name == "springs"; // of these cuts
+    EXPECT_GE(n_given, gives_none ? 0 : 1);
+  }
+}
+
+} // namespace
+} // namespace kerf::physics
