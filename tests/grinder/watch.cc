@@ -20,7 +20,8 @@ constexpr double most_over_ordinary = 10;   // speed over the 99th percentile [1
 constexpr double most_volume_change = 0.3;  // [1]
 constexpr double most_reach = 3;            // over that at rest [1]
 constexpr double most_energy_gained = 0.01; // of what has been turned over [1]
-constexpr double most_energy_swing = 0.25;  // the same, of integrators that take none [1]
+constexpr double most_energy_swing = 0.25;  // the same, of shape matching [1]
+constexpr double most_energy_kept = 0.1;    // the same, of implicit integrators that take none or little [1]
 constexpr double most_cut_energy = 0.1;     // the same [1]
 
 /// Diagonal of its bounding box [m].
@@ -36,10 +37,19 @@ double wave_speed(const Scene& scene) {
                    number_of(scene, "Density [kg/m^3]").value_or(usual.density));
 }
 
+bool says(const Scene& scene, const char* const words) { return text(scene).find(words) != std::string::npos; }
+
 /// Shape matching is symplectic Euler.
+bool is_symplectic(const Scene& scene) { return says(scene, "Backend = lattice"); }
+
 bool keeps_energy(const Scene& scene) {
-  const auto says = [&](const char* const words) { return text(scene).find(words) != std::string::npos; };
-  return says("Backend = lattice") || says("Integrator = Newmark") || says("Integrator = generalised alpha");
+  return is_symplectic(scene) || says(scene, "Integrator = Newmark") || says(scene, "Integrator = generalised alpha");
+}
+
+double most_gained(const Scene& scene) {
+  return is_symplectic(scene)  ? most_energy_swing
+         : keeps_energy(scene) ? most_energy_kept
+                               : most_energy_gained;
 }
 
 std::string percent(const double part) { return to_text(std::round(1000 * part) / 10) + " %"; }
@@ -47,7 +57,8 @@ std::string percent(const double part) { return to_text(std::round(1000 * part) 
 } // namespace
 
 Watch::Watch(const Scene& scene, const scene::Body& body)
-  : keeps_energy_(keeps_energy(scene)),
+  : most_energy_gained_(most_gained(scene)),
+    keeps_energy_(keeps_energy(scene)),
     gravity_(body.loads.gravity.norm()),
     recoil_(gravity_ * extent(body) / wave_speed(scene)),
     mass_(scene::find_observable("mass")->value(body)),
@@ -114,7 +125,7 @@ std::optional<Failure> Watch::watch_energy(const Look& look, const int step, con
   gained_by_cuts_ += by_cut;
   const double least = mass_ * gravity_ * gravity_ * dt * dt; // what the first step of a fall turns over
   turnover_ = std::max({turnover_, least, look.kinetic + look.elastic, std::abs(look.gravity - start_gravity_)});
-  const double most = keeps_energy_ ? most_energy_swing : most_energy_gained;
+  const double most = most_energy_gained_;
   figures_.energy = std::max(figures_.energy, gained_ / turnover_ / most);
   figures_.cut_energy = std::max(figures_.cut_energy, gained_by_cuts_ / turnover_ / most_cut_energy);
   const std::string of = " of the " + to_text(turnover_) + " J that were turned over";
