@@ -25,11 +25,14 @@ std::array<grid::CellId, 2> cells_of(const grid::Grid& grid, const grid::SkinSeg
   return segment.face.valid() ? grid.cells(segment.face) : std::array{segment.cell, grid::CellId()};
 }
 
-/// Where blades are.
+/// Where blades are that come on: those that have moved, or have cut something.
 class Passage {
  public:
-  explicit Passage(const std::span<const StandingEdge> edges) {
-    for (const auto& [label, line] : edges) {
+  Passage(const std::span<const StandingEdge> edges, const std::set<grid::CutLabel>& have_cut) {
+    for (const StandingEdge& edge : edges) {
+      const auto& [label, line, before] = edge;
+      if (edge.rests() && !have_cut.contains(label))
+        continue;
       std::vector<Patch> pieces;
       for (std::size_t i = 1; i < line.size(); ++i)
         pieces.push_back({line[i - 1], line[i], line[i], line[i - 1]});
@@ -89,8 +92,10 @@ CutChange Cutter::step(Solid& solid, const std::span<const Blade> blades, const 
   }
   edges_.resize(blades.size());
   for (std::size_t i = 0; i < blades.size(); ++i) {
-    edges_[i].label = blades[i].label;
-    put_world_points(blades[i], t1, edges_[i].line);
+    auto& [label, line, before] = edges_[i];
+    label = blades[i].label;
+    std::swap(line, before);
+    put_world_points(blades[i], t1, line);
   }
   return take(solid, strokes, x);
 }
@@ -133,12 +138,16 @@ CutChange Cutter::cut(Solid& solid, const SweepCuts& cuts) { return part(solid, 
 
 Cutter::Added Cutter::add(Solid& solid, const SweepCuts& cuts) {
   Added added;
-  auto& [edges, segments, edges_met, segments_met] = added;
+  auto& [edges, segments, edges_met, segments_met, labels] = added;
   const auto meet = [&](const auto& cut, const auto& segment, auto& met) {
     if (const auto* const first = solid.cuts.find(segment); first && first->label == cut.label)
       return;
+    const auto known = solid.cuts.later_cuts(segment);
+    if (std::ranges::find(known, cut.label, &grid::LaterCut::label) != known.end())
+      return;
     solid.cuts.add(segment, grid::LaterCut{cut.t, cut.normal, cut.label});
     met.push_back(segment);
+    labels.insert(cut.label);
   };
   for (const EdgeCut& cut : cuts.later)
     meet(cut, cut.edge, edges_met);
@@ -148,6 +157,7 @@ Cutter::Added Cutter::add(Solid& solid, const SweepCuts& cuts) {
     if (solid.cuts.can_be_cut(solid.grid, cut.edge)) {
       solid.cuts.add(solid.grid, cut);
       edges.push_back(cut.edge);
+      labels.insert(cut.label);
       passed_[cut.label - 1].remove(solid.grid.cells(cut.edge));
     } else // by another of the same step
       meet(cut, cut.edge, edges_met);
@@ -155,6 +165,7 @@ Cutter::Added Cutter::add(Solid& solid, const SweepCuts& cuts) {
     if (!solid.cuts.is_cut(cut.segment)) {
       solid.cuts.add(cut);
       segments.push_back(cut.segment);
+      labels.insert(cut.label);
       passed_[cut.label - 1].remove(cells_of(solid.grid, cut.segment));
     } else
       meet(cut, cut.segment, segments_met);
@@ -197,7 +208,7 @@ void Cutter::join(Solid& solid, const Added& added, const Points& x, std::vector
   unsettled_.clear();
   if (cells.empty())
     return;
-  const Passage passage(edges_);
+  const Passage passage(edges_, added.labels);
   for (const grid::CellId c : cells) {
     std::vector<grid::Joined> groups;
     if (solid.cuts.front(c) == nullptr) {

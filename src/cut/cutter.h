@@ -6,7 +6,8 @@
 ///
 /// Where a blade crosses what others have cut, it parts a cell only once it has left the cell, and those beside it: what its
 /// cuts free before may belong to a part from which only later ones, or those of the next cell, tell that it does (sides.h).
-/// Such cells are *unsettled*: a blade that ends in them leaves them as others have cut them.
+/// Such cells are *unsettled*. They wait as long as the blade comes on: it has moved in the step, or has cut or met
+/// something that it had not before, as where material moves through a blade that rests.
 ///
 /// Labels: of blades and surfaces, from 1 on.
 
@@ -29,12 +30,13 @@ struct Stroke {
   Strip swept = {};     ///< triangles [m, world frame]
 };
 
-/// A blade's cutting edge where it stands, world frame [m].
+/// A blade's cutting edge where it stands after a step, and where it stood before, world frame [m].
 struct StandingEdge {
   grid::CutLabel label = 1;
-  Points line = {};
+  Points line = {}, before = {};
 
-  void archive(Archive& a) { a(label, line); }
+  bool rests() const { return line == before; }
+  void archive(Archive& a) { a(label, line, before); }
 };
 
 /// All so far.
@@ -103,8 +105,9 @@ class Cutter {
   struct Added {
     std::vector<grid::EdgeId> edges;
     std::vector<grid::SkinSegment> segments;
-    std::vector<grid::EdgeId> edges_met; // that were cut before
+    std::vector<grid::EdgeId> edges_met; // that were cut before, by others
     std::vector<grid::SkinSegment> segments_met;
+    std::set<grid::CutLabel> labels; // of all these
   };
   Added add(grid::Solid& solid, const SweepCuts& cuts);
   grid::CutChange part(grid::Solid& solid, const Added& added, std::span<const grid::Front> fronts, const Points& x);

@@ -83,7 +83,7 @@ struct Front {
   CellId cell;
   Segments ahead = 0; ///< of the cell's segments those that the plane meets, but not the cut
   Vec3 point = Vec3::Zero(), normal = Vec3::UnitX(); ///< of the plane, rest frame [m], unit
-  double area = 0;                                   ///< of the plane in the cell [m^2]
+  double area = 0;                                   ///< of the material in it, in the cell [m^2]
   double passed = 1;                                 ///< the part of it that the cut has come to, in (0, 1] [1]
   CutLabel label = 1;
 

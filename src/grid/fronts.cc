@@ -1,6 +1,7 @@
 #include "grid/fronts.h"
 
 #include "grid/material.h"
+#include "grid/shape.h"
 
 #include <algorithm>
 
@@ -8,13 +9,60 @@ namespace kerf::grid {
 
 namespace {
 
-constexpr double opening = 0.12; // c
+constexpr double stiffness = 0.5; // c
 
-/// The corners that two copies of a cell do not share.
-void add_pairs(const Copy& one, const Copy& other, std::vector<Tie>& ties) {
+/// The vertices at which two copies of a cell do not share a corner.
+std::vector<int> vertices_apart(const Copy& one, const Copy& other) {
+  std::vector<int> apart;
   for (int v = 0; v < cube::n_vertices; ++v)
     if (one.corners[v] != other.corners[v])
-      ties.push_back({one.corners[v], other.corners[v], 0});
+      apart.push_back(v);
+  return apart;
+}
+
+/// Of the vertices where copies are apart: means over the front's plane in its cell of N_v times the sum of their N.
+std::vector<double> shares(const Solid& solid, const Front& front, const std::vector<int>& apart) {
+  constexpr int n = 4; // points along a side
+  const Vec3 middle = (front.point - solid.grid.origin(front.cell)) / solid.grid.h();
+  std::vector<double> sums(apart.size(), 0.0);
+  int n_points = 0;
+  const auto add = [&](const Vec3& xi) {
+    double all = 0;
+    for (const int v : apart)
+      all += shape(v, xi);
+    for (std::size_t i = 0; i < apart.size(); ++i)
+      sums[i] += shape(apart[i], xi) * all;
+    ++n_points;
+  };
+  int steep = 0; // the axis that the plane is steepest to
+  front.normal.cwiseAbs().maxCoeff(&steep);
+  const int u = (steep + 1) % 3, v = (steep + 2) % 3;
+  for (int i = 0; i < n * n; ++i) {
+    Vec3 xi = middle;
+    xi[u] = (i % n + 0.5) / n;
+    xi[v] = (i / n + 0.5) / n;
+    xi[steep] -= front.normal.dot(xi - middle) / front.normal[steep];
+    if (xi[steep] >= 0 && xi[steep] <= 1)
+      add(xi);
+  }
+  if (n_points == 0) // it grazes the cell
+    add(middle);
+  for (double& sum : sums)
+    sum /= n_points;
+  return sums;
+}
+
+/// Of the ties at these vertices.
+std::vector<double> lengths(const Solid& solid, const Front& front, const Copy& one, const Copy& other,
+                            const std::vector<int>& apart) {
+  const double h = solid.grid.h();
+  if (one.nodes == 0 || other.nodes == 0) // skin alone
+    return std::vector<double>(apart.size(),
+                               std::min(fill(solid, one), fill(solid, other)) * h / static_cast<double>(apart.size()));
+  std::vector<double> lengths = shares(solid, front, apart);
+  for (double& length : lengths)
+    length *= stiffness * front.area / h * (1 - front.passed) / front.passed;
+  return lengths;
 }
 
 /// Do cuts leave two copies of a cell in one part?
@@ -49,13 +97,10 @@ std::vector<Tie> ties(const Solid& solid) {
     if (solid.crumbs.holds(c))
       continue;
     const Front& front = *solid.cuts.front(copies[c].cell);
-    const std::size_t first = ties.size();
-    add_pairs(copies[c], copies[d], ties);
-    const double length = copies[c].nodes == 0 || copies[d].nodes == 0
-                            ? std::min(fill(solid, copies[c]), fill(solid, copies[d])) * solid.grid.h()
-                            : opening * front.area / solid.grid.h() * (1 - front.passed) / front.passed;
-    for (std::size_t i = first; i < ties.size(); ++i)
-      ties[i].length = length / static_cast<double>(ties.size() - first);
+    const std::vector<int> apart = vertices_apart(copies[c], copies[d]);
+    const std::vector<double> length = lengths(solid, front, copies[c], copies[d], apart);
+    for (std::size_t i = 0; i < apart.size(); ++i)
+      ties.push_back({copies[c].corners[apart[i]], copies[d].corners[apart[i]], length[i]});
   }
   return ties;
 }

@@ -5,15 +5,17 @@
 /// Copies are parted cell by cell, so a cut could only be some whole cubes long. Where it ends inside a cell its copies
 /// are parted all the same, as with phantom nodes (Rabczuk, Zi, Gerstenberger and Wall 2008, A new crack tip element for
 /// the phantom-node method, Int. J. Numer. Meth. Engng 75), and the jump ends at the next cell, which is whole. What the
-/// cut has not come to yet, a part 1 - f of the plane in the cell, is made up for by springs of no length between the
-/// corners of two copies at one node. Seen from the front the cell is one spring of stiffness k_0 against opening, and to open by a
-/// part f of what the open cell does, k_0 + k has to be k_0 / f. So
+/// cut has not come to yet, a part 1 - f of the plane in the cell, is made up for by an elastic layer in all of it:
 ///
-///     sum of k over the copies' n pairs = c E / (1 - nu^2)  A / h  (1 - f) / f,
+///     E = integral of kappa / 2 |jump|^2 dA,     kappa = c E / (1 - nu^2) / h  (1 - f) / f.
 ///
-/// A the area of the plane in the cell. The compliance of the body then grows linearly with what the cut passes, and a
-/// front that moves on gives and takes no energy at once. c is measured: at .12 the stiffness of a double cantilever
-/// tells where its front is to .07 h, wherever that is in a cell.
+/// Seen from the front the cell is one spring of stiffness k_0 against opening, and to open by a part f of what the
+/// open cell does, k_0 + k has to be k_0 / f. The compliance of the body then grows linearly with what the cut passes,
+/// and a front that moves on gives and takes no energy at once. The jump is the sum of N_v (x_v - y_v) over the vertices
+/// v at which the copies have corners x_v, y_v of their own. By rows, the layer is a spring of no length at each of these
+/// vertices, of stiffness kappa times the integral of N_v times the sum of their N: where the plane lies close to nodes,
+/// theirs alone hold it. c is measured: at .5 the compliance of a plate with an edge crack tells where its front is to
+/// .07 h, of elements of either kind, wherever the front and the plane lie in their cells.
 ///
 /// A front is provisional: when its blade cuts the cell, it is taken back, as far as it said otherwise (complex.h), and what
 /// the blade leaves is the same as without.

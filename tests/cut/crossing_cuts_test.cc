@@ -1,5 +1,7 @@
 /// Cuts that cross each other, where a segment keeps the first of them.
 
+#include "cut/may_meet.h"
+#include "cut/sides.h"
 #include "tests/cut/cutting.h"
 #include "tests/cut/patient.h"
 
@@ -306,16 +308,20 @@ struct Falling {
     walls = {low + 1.5 * h, high - 1.5 * h};
   }
 
-  /// By so much of a cube in each step.
-  void pass(const Blade& blade, const double step) {
-    const int n_steps = static_cast<int>(std::ceil(blade.key_frames[1].position.norm() / (step * h)));
+  /// By so much of a cube in each step, and then some steps of rest. `drawn`: how far the body is drawn along in each step
+  /// until then [m].
+  void pass(const Blade& blade, const int n_steps, const double step, int n_rest = 0,
+            const Vec3& drawn = Vec3::Zero()) {
     Cutter cutter = patient.cutter(blade.label);
-    for (int k = 0; k <= n_steps || cutter.n_waiting() > 0; ++k) {
+    for (int k = 0; k <= n_steps || cutter.n_waiting() > 0 || n_rest-- > 0; ++k) {
       const auto change =
         cutter.step(patient.body, std::span(&blade, 1), double(k) / n_steps, double(k + 1) / n_steps, patient.x);
       patient.follow(change);
       grid::inherit(change, speed);
       move(step);
+      if (k < n_steps)
+        for (Vec3& p : patient.x)
+          p += drawn;
     }
   }
 
@@ -342,21 +348,42 @@ struct Falling {
   std::array<double, 2> walls{};
 };
 
+/// A box that one of two planes has cut, which cross in it at a small angle, in a level line; the other is for a blade.
+struct HalfCrossed {
+  HalfCrossed(Random& random, const int i) : patient(box_body(random)) {
+    const double angle = (i % 3 == 0 ? 30 : 15) * std::numbers::pi / 180;
+    through = 0.5 * (box.lower + box.upper) + 0.05 * support::random_vector(random);
+    const Vec3 first = Vec3(1, uniform(random, -0.2, 0.2), uniform(random, -0.1, 0.1)).normalized();
+    line = first.cross(Vec3::UnitZ()).normalized();
+    const Vec3 second = std::cos(angle) * first + std::sin(angle) * first.cross(line);
+    ahead = (i % 2 ? 1 : -1) * second.cross(line);
+    planes = {{first, first.dot(through)}, {second, second.dot(through)}};
+    patient.cut_through(Plane{through, first}, 1);
+  }
+
+  Blade blade(const double stop) const { return straight(through, line, ahead, 0.7, stop, 2); }
+  /// How far the box reaches along the blade's way, from where the planes cross [m].
+  double reach() const { return Interval(box, ahead).high - ahead.dot(through); }
+
+  Patient patient;
+  Vec3 through, line, ahead;
+  std::vector<support::Plane> planes;
+};
+
+int n_steps_of(const Blade& blade, const double step) {
+  return static_cast<int>(std::ceil(blade.key_frames[1].position.norm() / (step * h)));
+}
+
 /// What a slow blade frees before it has passed a cell may have fallen by some cubes when that tells what it belongs to.
 TEST_P(SmallAngle, LeavesFourPiecesThoughTheyFallMeanwhile) {
   Random random(113);
   int n_bodies = 0, n_of_four = 0, n_as_built = 0;
   for (int i = 0; i < GetParam(); ++i) {
-    const double angle = (i % 3 == 0 ? 30 : 15) * std::numbers::pi / 180;
-    Patient patient{box_body(random)};
-    const Vec3 through = 0.5 * (box.lower + box.upper) + 0.05 * support::random_vector(random);
-    const Vec3 first = Vec3(1, uniform(random, -0.2, 0.2), uniform(random, -0.1, 0.1)).normalized(),
-               line = first.cross(Vec3::UnitZ()).normalized(),
-               second = std::cos(angle) * first + std::sin(angle) * first.cross(line);
-    patient.cut_through(Plane{through, first}, 1);
+    const HalfCrossed half(random, i);
+    const Blade blade = half.blade(0.7);
     for (const double fall : {0.5, 2.0}) {
-      Falling falling(patient, fall);
-      falling.pass(straight(through, line, (i % 2 ? 1 : -1) * second.cross(line), 0.7, 0.7, 2), 0.2);
+      Falling falling(half.patient, fall);
+      falling.pass(blade, n_steps_of(blade, 0.2), 0.2);
       n_of_four += falling.patient.volumes().size() == 4;
       n_as_built += falling.patient.is_as_built();
       ++n_bodies;
@@ -369,6 +396,57 @@ TEST_P(SmallAngle, LeavesFourPiecesThoughTheyFallMeanwhile) {
 
 INSTANTIATE_TEST_SUITE_P(Short, SmallAngle, testing::Values(8));
 INSTANTIATE_TEST_SUITE_P(Long, SmallAngle, testing::Values(80));
+
+/// A blade that rests has come as far as it does: no cell waits for it, whether it is still in the body or just beside it.
+TEST(RestingBlades, LeaveNoCellWaiting) {
+  Random random(114);
+  for (int i = 0; i < 4; ++i)
+    for (const bool is_beside : {false, true}) {
+      const HalfCrossed half(random, i);
+      Falling still(half.patient, 0);
+      still.pass(half.blade(is_beside ? half.reach() + 0.3 * h : 0.2 * h), 40, 0, 2);
+      const Patient& patient = still.patient;
+      for (const auto c : ids<grid::CellId>(patient.body.grid.n_cells())) {
+        const auto* const joined = patient.body.cuts.joined(c);
+        EXPECT_EQ(joined ? *joined : std::vector<grid::Joined>(), on_same_sides(patient.body, c));
+      }
+      EXPECT_EQ(patient.volumes().size(), is_beside ? 4u : 3u);
+      EXPECT_TRUE(patient.is_as_built());
+    }
+}
+
+class RestingBlade : public testing::TestWithParam<int> {};
+
+/// A blade stops less than a cube beside the body, whose pieces then fall past it; or it rests all the time, and the body
+/// is drawn over it.
+TEST_P(RestingBlade, LeavesFourPieces) {
+  constexpr double step = 0.2;
+  Random random(115);
+  int n_bodies = 0, n_of_four = 0, n_bridged = 0;
+  for (int i = 0; i < GetParam(); ++i) {
+    const HalfCrossed half(random, i);
+    const Blade moving = half.blade(half.reach() + uniform(random, 0, h));
+    Blade resting = moving;
+    resting.key_frames[1].position = Vec3::Zero();
+    const int n_steps = n_steps_of(moving, step);
+    for (const double fall : {0.5, 2.0})
+      for (const Blade& blade : {moving, resting}) {
+        const Vec3 way = moving.key_frames[1].position - blade.key_frames[1].position;
+        Falling falling(half.patient, fall);
+        falling.pass(blade, n_steps, step, 20, -way / n_steps);
+        n_of_four += falling.patient.volumes().size() == 4;
+        n_bridged += n_bridges(falling.patient, half.planes) > 0;
+        ++n_bodies;
+      }
+  }
+  std::cout << "four pieces in " << n_of_four << " of " << n_bodies << " bodies, " << n_bridged
+            << " joined across a plane\n";
+  EXPECT_EQ(n_bridged, 0);
+  EXPECT_GE(n_of_four, 0.98 * n_bodies);
+}
+
+INSTANTIATE_TEST_SUITE_P(Short, RestingBlade, testing::Values(8));
+INSTANTIATE_TEST_SUITE_P(Long, RestingBlade, testing::Values(1000));
 
 } // namespace
 } // namespace kerf::cut

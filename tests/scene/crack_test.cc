@@ -133,14 +133,14 @@ void penny(const int n) {
     say(name + " " + std::to_string(n), error);
     EXPECT_LT(std::abs(error), tolerance) << name;
   };
-  expect("energy release rate rim", 4 * k * sigma / pi, 1.94, 0.05);
+  expect("energy release rate rim", 4 * k * sigma / pi, 1.32, 0.065);
   expect("cut opening crack", 8 * k / pi, 0.54, 0.04);
-  expect("cut volume crack", 16 * k / 3, 0.96, 0.04);
+  expect("cut volume crack", 16 * k / 3, 0.65, 0.04);
   expect("cut area crack", pi, 0, 0.03);
   EXPECT_NEAR(block.last("cut extent crack y"), 2, 2 * h);
 }
 
-/// The block is three radii wide on each side, which lets the crack open further: the volume and G as measured in
+/// The block is three radii wide on each side, which lets the crack open further: the volume and G as in
 /// tests/verification/plates_test.cc, the opening as with 14 cubes a radius in params/compare/penny.prm.
 TEST(Crack, APennyHasItsEnergyReleaseRateAndOpening) { penny(5); }
 

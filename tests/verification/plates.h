@@ -38,11 +38,21 @@ struct Penny {
 struct PennyResult {
   double opening_error = 0; ///< root mean square over the cut edges in the disc, over that of the exact opening [1]
   double volume = 0;        ///< of the gap, over the exact one, 16 (1 - nu^2) sigma r^3 / (3 E) [1]
+  double work = 0;          ///< of the tension, beyond that on a block without a cut, over sigma times that volume [1]
   double release_rate = 0;  ///< of the elements, in tubes of r / 2 and .95 r, over 4 (1 - nu^2) sigma^2 r / (pi E) [1]
   std::size_t n_cells = 0;
   Cost cost;
 };
 PennyResult penny(const Penny& problem, const fem::HexahedraOptions& options);
+
+/// A plate of 1 x 2 m in plane strain (E = 1 Pa, nu = 0.3), in cubes of which n are 1 m, with a crack of .4 m from its
+/// side under a tension of 1 Pa: where its front and its plane lie between nodes.
+struct EdgeCrack {
+  double along = 0.5, across = 0.5; ///< of a cube [1]
+  int n = 20;
+};
+/// How far the front lies too far, as the work of the tension tells it [cubes].
+double front_error(const EdgeCrack& crack, fem::Strain strain);
 
 /// Condition numbers [1] of the stiffness of a small clamped block whose outer layers of cells, on two sides, are
 /// filled
