@@ -15,9 +15,12 @@ class UnionFind {
   explicit UnionFind(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0u); }
 
   std::uint32_t root(std::uint32_t i) {
-    while (parent_[i] != i)
-      i = parent_[i] = parent_[parent_[i]];
-    return i;
+    for (;;) {
+      const std::uint32_t up = parent_[i], next = parent_[up];
+      if (up == next)
+        return up;
+      i = parent_[i] = next;
+    }
   }
 
   /// Returns the root of both.

@@ -90,7 +90,7 @@ NewtonReport BalanceSolver::solve(const Loads& loads, const Constraints& constra
       report.failure = "no step along the correction lowers the energy";
       break;
     }
-    x = *moved(x, length, correction_);
+    x.swap(moved(x, length, correction_));
     if (is_last || (options_.tolerance == 0 && report.n_newton == most))
       return report;
   }

@@ -97,8 +97,10 @@ CgReport conjugate_gradients(const CgEquation& equation, const std::span<const d
     }
   }
   estimate.start_at(excess);
-  for (std::size_t i = 0; i < n; ++i)
-    r[i] = b[i] - Ap[i];
+  parallel_ranges(n, worth_blocks * block, [&](const std::size_t begin, const std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      r[i] = b[i] - Ap[i];
+  });
   CgReport report{.way = estimate.way()};
   double rz = 0; // r.Br
   const auto measure = [&] {

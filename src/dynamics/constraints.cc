@@ -4,6 +4,8 @@
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
+#include <cmath>
+#include <optional>
 #include <tuple>
 
 namespace kerf::dynamics {
@@ -37,6 +39,19 @@ std::span<const Constraints::Hold> those_that_count(const Loads& loads,
     if (holds_all(loads.supports[holds[i].support].held))
       return holds.subspan(i, 1);
   return holds;
+}
+
+/// Of a positive block alone, entry by entry.
+std::optional<Mat3> inverse_factor(const Mat3& block) {
+  const double d0 = block(0, 0), l10 = block(1, 0) / d0, l20 = block(2, 0) / d0, // L D L^T
+    d1 = block(1, 1) - l10 * block(1, 0), below = block(2, 1) - l20 * block(1, 0), l21 = below / d1,
+               d2 = block(2, 2) - l20 * block(2, 0) - l21 * below;
+  if (!(d0 > 0 && d1 > 0 && d2 > 0))
+    return std::nullopt;
+  const double s0 = 1 / std::sqrt(d0), s1 = 1 / std::sqrt(d1), s2 = 1 / std::sqrt(d2);
+  Mat3 inverse;
+  inverse << s0, 0, 0, -s1 * l10, s1, 0, s2 * (l21 * l10 - l20), -s2 * l21, s2;
+  return inverse;
 }
 
 } // namespace
@@ -161,11 +176,9 @@ Mat3 inverse_factor(const Mat3& block, const Constraints::Freedom& freedom) {
   Mat3 inverse = Mat3::Zero();
   if (n == 0)
     return inverse;
-  if (n == 3 && freedom.sum.isZero()) { // nearly all are free in all directions, in the basis of the axes
-    const Eigen::LLT<Mat3> factor(block);
-    if (factor.info() == Eigen::Success)
-      return factor.matrixL().solve(Mat3::Identity());
-  }
+  if (n == 3 && freedom.sum.isZero()) // nearly all are free in all directions, in the basis of the axes
+    if (const auto of_block = inverse_factor(block))
+      return *of_block;
   const Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 3> Q = freedom.basis.leftCols(n);
   const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 3> reduced = Q.transpose() * block * Q;
   const Eigen::LLT<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 3>> factor(reduced);

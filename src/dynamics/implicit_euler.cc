@@ -49,7 +49,10 @@ StepReport ImplicitEuler::step(State& state, const Loads& loads, const double dt
                   .acceleration = Loan<Vec3>(n),
                   .guess = Loan<Vec3>(n)};
   constraints.place(balance.time, balance.start);
-  if (!std::ranges::equal(*balance.start, state.x))
+  const auto has_moved = [&](const Constraints::Held& held) {
+    return balance.start[held.corner] != state.x[held.corner];
+  };
+  if (std::ranges::any_of(constraints.held(), has_moved))
     balance.velocity = Loan<Vec3>(n);
   const Points* const change = remembered(state, change_of_velocity);
   parallel_for(

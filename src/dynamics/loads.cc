@@ -5,6 +5,7 @@
 
 #include <Eigen/QR>
 
+#include <algorithm>
 #include <cmath>
 
 namespace kerf::dynamics {
@@ -56,7 +57,7 @@ Loan<std::uint8_t> held_corners(const Loads& loads, const std::size_t n_corners)
   const Constraints constraints(loads, n_corners);
   for (const auto& one : constraints.held())
     held[one.corner] = constraints.freedom(one.corner).n_free == 0;
-  for (std::size_t i = 0; i < n_corners; ++i)
+  for (std::size_t i = 0; i < std::min(n_corners, loads.carried.size()); ++i)
     held[i] |= is_carried(loads, i) ? 1 : 0;
   return held;
 }

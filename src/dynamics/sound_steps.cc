@@ -40,6 +40,16 @@ struct MassAndMoment {
   }
 };
 
+/// The first particle that is not at a finite place, or has no finite velocity.
+struct FirstLost {
+  std::size_t particle = std::numeric_limits<std::size_t>::max();
+
+  FirstLost& operator+=(const FirstLost& next) {
+    particle = std::min(particle, next.particle);
+    return *this;
+  }
+};
+
 bool drives(const Loads& loads) {
   return std::any_of(loads.acting.begin(), loads.acting.end(),
                      [](const auto& load) { return load->nature() == Nature::driving; });
@@ -182,9 +192,14 @@ double inner_kinetic_energy(const ForceModel& model, const Points& v) {
 }
 
 void require_finite(const State& state) {
-  for (std::size_t i = 0; i < state.x.size(); ++i)
-    if (!state.x[i].allFinite() || !state.v[i].allFinite())
-      throw StepError("a position or a velocity is no longer finite", i);
+  const FirstLost all = sum_in_blocks(
+    state.x.size(), FirstLost(), [&](const std::size_t begin, const std::size_t end, FirstLost& part) {
+      for (std::size_t i = begin; i < end; ++i)
+        if (!state.x[i].allFinite() || !state.v[i].allFinite())
+          part += {i};
+    });
+  if (all.particle != FirstLost().particle)
+    throw StepError("a position or a velocity is no longer finite", all.particle);
 }
 
 double ElasticEnergies::at(const Points& x) {

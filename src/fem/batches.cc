@@ -1,45 +1,78 @@
 #include "fem/batches.h"
 
 #include <algorithm>
+#include <bit>
 #include <utility>
 
 namespace kerf::fem {
 
-std::vector<std::uint32_t> Batching::update(const CopiesInOrder& copies, const std::span<const std::uint8_t> is_same) {
-  const std::vector<BatchOfCopies> batches_before = std::exchange(batches_, {});
-  const std::vector<Chunk> chunks_before = std::exchange(chunks_, {});
-  const auto n_used =
-    static_cast<std::size_t>(std::ranges::count_if(copies.kind, [](const Kind kind) { return kind != Kind::unused; }));
-  batches_.reserve(n_used / n_lanes + 2 * copies.chunk_ends.size());
+std::vector<std::uint32_t> colours_of_chunks(const std::span<const std::uint32_t> chunk_ends,
+                                             const std::span<const std::uint32_t> vertices,
+                                             const std::size_t n_vertices) {
+  std::vector<std::uint64_t> taken(n_vertices, 0); // bits of the colours that hold a vertex
+  std::vector<std::uint32_t> colours;
+  std::uint32_t n_colours = 64;
+  std::uint32_t begin = 0;
+  for (const std::uint32_t end : chunk_ends) {
+    const auto of_chunk = vertices.subspan(8 * std::size_t(begin), 8 * std::size_t(end - begin));
+    begin = end;
+    std::uint64_t met = 0;
+    for (const std::uint32_t v : of_chunk)
+      met |= v != no_vertex ? taken[v] : 0;
+    // With all 64 taken, which a chunk's neighbours never do, a chunk would stand alone in a colour of its own.
+    const bool is_alone = met == ~std::uint64_t(0);
+    colours.push_back(is_alone ? n_colours++ : static_cast<std::uint32_t>(std::countr_one(met)));
+    for (const std::uint32_t v : of_chunk)
+      if (v != no_vertex && !is_alone)
+        taken[v] |= std::uint64_t(1) << colours.back();
+  }
+  return colours;
+}
+
+Batching::Batching(const CopiesInOrder& copies) {
+  std::vector<std::uint32_t> corners;
+  corners.reserve(8 * copies.order.size());
+  for (const std::uint32_t copy : copies.order)
+    for (std::size_t a = 0; a < 8; ++a)
+      corners.push_back(copies.kind[copy] != Kind::unused ? copies.corners[8 * std::size_t(copy) + a] : no_vertex);
+  colour_of_chunk_ = colours_of_chunks(copies.chunk_ends, corners, copies.n_corners);
+  update(copies, {});
+}
+
+std::vector<std::uint32_t> Batching::update(const CopiesInOrder& copies, const std::span<const std::uint8_t> is_same,
+                                            const CornersOfSame corners) {
+  const Before before{std::exchange(batches_, {}), std::exchange(chunks_, {})};
+  batches_.reserve(copies.order.size() / n_lanes + 2 * copies.chunk_ends.size());
   std::vector<std::uint8_t> is_taken(n_places_, 0);
-  std::vector<std::uint32_t> full, partial, renewed;
-  const auto stays = [&](const BatchOfCopies& batch, const BatchOfCopies& before) {
-    return !is_same.empty() && std::equal(std::begin(batch.copies), std::end(batch.copies), before.copies) &&
-           std::ranges::all_of(
-             batch.copies, [&](const std::uint32_t copy) { return copy == BatchOfCopies::none || is_same[copy] != 0; });
+  std::vector<std::uint32_t> renewed;
+  const auto all_same = [&](const std::span<const std::uint32_t> some) {
+    return !is_same.empty() && std::ranges::all_of(some, [&](const std::uint32_t copy) {
+      return copy == BatchOfCopies::none || is_same[copy] != 0;
+    });
+  };
+  const auto stays = [&](const BatchOfCopies& batch, const BatchOfCopies& was) {
+    return std::ranges::equal(batch.copies, was.copies) && all_same(batch.copies);
   };
   std::uint32_t begin = 0;
   for (std::size_t k = 0; k < copies.chunk_ends.size(); begin = copies.chunk_ends[k++]) {
-    full.clear();
-    partial.clear();
-    for (const std::uint32_t copy : copies.order.subspan(begin, copies.chunk_ends[k] - begin))
-      if (const Kind kind = copies.kind[copy]; kind != Kind::unused)
-        (kind == Kind::full ? full : partial).push_back(copy);
-    const auto first = static_cast<std::uint32_t>(batches_.size()),
-               row = static_cast<std::uint32_t>(copies.n_corners + k);
-    add_batches(full, copies.corners, row);
-    const auto first_partial = static_cast<std::uint32_t>(batches_.size());
-    add_batches(partial, copies.corners, row);
-    const auto end = static_cast<std::uint32_t>(batches_.size());
-    const Chunk before = k < chunks_before.size() ? chunks_before[k] : Chunk{0, 0, 0};
-    for (std::uint32_t i = first_partial, was = before.first + before.n_full; i < end; ++i, ++was)
-      if (was < before.first + before.n && stays(batches_[i], batches_before[was])) {
-        batches_[i].partial = batches_before[was].partial;
-        is_taken[batches_[i].partial] = 1;
+    const auto of_chunk = copies.order.subspan(begin, copies.chunk_ends[k] - begin);
+    const auto row = static_cast<std::uint32_t>(copies.n_corners + k);
+    const Chunk was = k < before.chunks.size() ? before.chunks[k] : Chunk{};
+    if (corners == CornersOfSame::kept && was.n_copies == of_chunk.size() && all_same(of_chunk))
+      keep_chunk(before, was, row);
+    else
+      add_chunk(copies, of_chunk, row);
+    const Chunk& now = chunks_.back();
+    for (std::uint32_t i = now.n_full; i < now.n; ++i) {
+      BatchOfCopies& batch = batches_[now.first + i];
+      const std::uint32_t at = was.first + was.n_full + (i - now.n_full);
+      if (at < was.first + was.n && stays(batch, before.batches[at])) {
+        batch.partial = before.batches[at].partial;
+        is_taken[batch.partial] = 1;
       } else {
-        renewed.push_back(i);
+        renewed.push_back(now.first + i);
       }
-    chunks_.push_back({first, first_partial - first, end - first});
+    }
   }
   std::size_t place = 0;
   for (const std::uint32_t i : renewed) {
@@ -49,8 +82,34 @@ std::vector<std::uint32_t> Batching::update(const CopiesInOrder& copies, const s
   }
   n_places_ = std::max(n_places_, place);
   n_rows_ = copies.n_corners + chunks_.size();
-  colour(copies.n_corners);
+  sort_by_colour();
   return renewed;
+}
+
+void Batching::add_chunk(const CopiesInOrder& copies, const std::span<const std::uint32_t> of_chunk,
+                         const std::uint32_t row) {
+  std::vector<std::uint32_t> full, partial;
+  for (const std::uint32_t copy : of_chunk)
+    if (const Kind kind = copies.kind[copy]; kind != Kind::unused)
+      (kind == Kind::full ? full : partial).push_back(copy);
+  const auto first = static_cast<std::uint32_t>(batches_.size());
+  add_batches(full, copies.corners, row);
+  const auto first_partial = static_cast<std::uint32_t>(batches_.size());
+  add_batches(partial, copies.corners, row);
+  chunks_.push_back({first, first_partial - first, static_cast<std::uint32_t>(batches_.size()) - first,
+                     static_cast<std::uint32_t>(of_chunk.size())});
+}
+
+/// But for the row of lanes that are not used.
+void Batching::keep_chunk(const Before& before, const Chunk& chunk, const std::uint32_t row) {
+  const auto first = static_cast<std::uint32_t>(batches_.size());
+  const auto begin = before.batches.begin() + chunk.first;
+  batches_.insert(batches_.end(), begin, begin + chunk.n);
+  for (std::uint32_t i = first; i < first + chunk.n; ++i)
+    for (std::size_t lane = n_lanes; lane-- > 0 && batches_[i].copies[lane] == BatchOfCopies::none;)
+      for (auto& corners : batches_[i].corners)
+        corners[lane] = row;
+  chunks_.push_back({first, chunk.n_full, chunk.n, chunk.n_copies});
 }
 
 /// As if of full cubes.
@@ -69,31 +128,11 @@ void Batching::add_batches(const std::span<const std::uint32_t> copies, const st
   }
 }
 
-/// Each chunk the first colour that no chunk before it has that shares a corner.
-void Batching::colour(const std::size_t n_corners) {
+void Batching::sort_by_colour() {
   colours_.clear();
-  std::vector<std::uint64_t> taken(n_corners, 0); // bits of the colours that hold a corner
-  for (const Chunk& chunk : chunks_) {
-    std::uint64_t met = 0;
-    const auto for_each_corner = [&](const auto& f) {
-      for (std::uint32_t i = chunk.first; i < chunk.first + chunk.n; ++i)
-        for (const auto& row : batches_[i].corners)
-          for (const std::uint32_t corner : row)
-            if (corner < n_corners)
-              f(taken[corner]);
-    };
-    for_each_corner([&](const std::uint64_t colours) { met |= colours; });
-    // With all 64 taken, which a chunk's neighbours never do, a chunk would stand alone in a colour of its own.
-    const auto colour = static_cast<std::size_t>(std::min(63, std::countr_one(met)));
-    const bool is_alone = met == ~std::uint64_t(0);
-    if (is_alone)
-      colours_.push_back({chunk});
-    else {
-      colours_.resize(std::max(colours_.size(), colour + 1));
-      colours_[colour].push_back(chunk);
-      for_each_corner([&](std::uint64_t& colours) { colours |= std::uint64_t(1) << colour; });
-    }
-  }
+  colours_.resize(chunks_.empty() ? 0 : 1 + std::ranges::max(colour_of_chunk_));
+  for (std::size_t k = 0; k < chunks_.size(); ++k)
+    colours_[colour_of_chunk_[k]].push_back(chunks_[k]);
 }
 
 namespace {

@@ -7,7 +7,8 @@
 /// have different colours. One colour after the other, and a chunk's batches in their order, is the order of all sums: the
 /// same for any number of threads, as it depends on the copies and their corners alone.
 ///
-/// A cut changes the batches of the chunks that it meets. What partial cubes are made of stays where it is for all others.
+/// A cut changes the batches of the chunks that it meets, and all others stay as they are, with what their partial cubes are
+/// made of. Chunks of cells are coloured by the grid's nodes, which no cut changes.
 
 #include "base/parallel.h"
 #include "fem/element.h"
@@ -16,6 +17,7 @@
 #include <limits>
 #include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace kerf::fem {
@@ -43,16 +45,29 @@ struct CopiesInOrder {
   std::size_t n_corners;
 };
 
+/// A colour of each chunk of cubes, given by their 8 vertices: the first that no chunk before it has that shares a vertex.
+/// Cubes without use have the vertex `no_vertex`.
+std::vector<std::uint32_t> colours_of_chunks(std::span<const std::uint32_t> chunk_ends,
+                                             std::span<const std::uint32_t> vertices, std::size_t n_vertices);
+constexpr std::uint32_t no_vertex = 0xffffffff;
+
+/// Do copies that are the same have the corners of the same numbers?
+enum class CornersOfSame { kept, renumbered };
+
 class Batching {
  public:
   static constexpr std::size_t chunk_size = 512; ///< cells
 
-  explicit Batching(const CopiesInOrder& copies) { update(copies, {}); }
+  /// Coloured by the copies' corners.
+  explicit Batching(const CopiesInOrder& copies);
+  /// Without copies as yet. Chunks whose copies share a corner must have different colours after any update.
+  explicit Batching(std::vector<std::uint32_t> colour_of_chunk) : colour_of_chunk_(std::move(colour_of_chunk)) {}
   Batching() = default;
 
-  /// Takes over copies after a cut; is_same: of each, whether it has the corners and the material that it had. Returns the
-  /// batches of partial cubes of which one is not what it was, or was elsewhere.
-  std::vector<std::uint32_t> update(const CopiesInOrder& copies, std::span<const std::uint8_t> is_same);
+  /// Takes over copies after a cut; is_same: of each, whether it is in the cell that it was in, with the material that it had.
+  /// Returns the batches of partial cubes of which one is not what it was, or was elsewhere.
+  std::vector<std::uint32_t> update(const CopiesInOrder& copies, std::span<const std::uint8_t> is_same,
+                                    CornersOfSame corners = CornersOfSame::kept);
 
   std::span<const BatchOfCopies> batches() const { return batches_; }
   /// Places for what partial cubes are made of, some of them empty.
@@ -79,11 +94,19 @@ class Batching {
   static constexpr std::size_t worth_ = 32; // batches from which on a second thread pays
   struct Chunk {
     std::uint32_t first, n_full, n; // batches: full ones come first
+    std::uint32_t n_copies;
+  };
+  struct Before {
+    std::vector<BatchOfCopies> batches;
+    std::vector<Chunk> chunks;
   };
 
   void add_batches(std::span<const std::uint32_t> copies, const std::uint32_t* corners, std::uint32_t row);
-  void colour(std::size_t n_corners);
+  void add_chunk(const CopiesInOrder& copies, std::span<const std::uint32_t> of_chunk, std::uint32_t row);
+  void keep_chunk(const Before& before, const Chunk& chunk, std::uint32_t row);
+  void sort_by_colour();
 
+  std::vector<std::uint32_t> colour_of_chunk_;
   std::vector<BatchOfCopies> batches_;
   std::vector<Chunk> chunks_;
   std::vector<std::vector<Chunk>> colours_;

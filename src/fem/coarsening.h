@@ -49,9 +49,21 @@ struct Weights {
 };
 Weights transposed(const Weights& weights, std::size_t n_columns);
 
+/// Fine copies by their parents, ascending.
+struct Children {
+  std::vector<std::uint32_t> begin = {0}, all = {};
+
+  Children() = default;
+  Children(std::span<const std::uint32_t> parent, std::size_t n_coarse);
+  std::span<const std::uint32_t> of(const std::size_t coarse) const {
+    return std::span(all).subspan(begin[coarse], begin[coarse + 1] - begin[coarse]);
+  }
+};
+
 struct Coarsening {
   CellsOfLevel coarse;
   std::vector<std::uint32_t> parent; ///< the coarse copy of each fine one; `unused` of those that are not used
+  Children children;                 ///< of each coarse copy
   std::vector<std::uint8_t> octant;  ///< in which part of it: bits of the axes
   Weights prolongation, restriction; ///< trilinear: a row for each fine corner; its transpose
 };

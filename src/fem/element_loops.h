@@ -402,8 +402,68 @@ struct ElementLoops {
       add(D[a][3], D[a][4], D[a][5], batch.corners[a] + lane, blocks + 1, 2);
     }
   }
+  /// Of a full cube that meets Hooke's law the block of a node with the signs s is R (diag(d) + sum over pairs i, j of
+  /// s_i s_j o_ij (e_i e_j^T + e_j e_i^T)) R^T: two opposite nodes have the same.
+  struct FullBlocks {
+    T d[3], o[3]; ///< o of the pairs 01, 12, 20
+  };
+  [[gnu::always_inline]] static FullBlocks full_blocks(const CubeConstants<T>& cube) {
+    const T mean = cube.volume / (16 * cube.h * cube.h);
+    FullBlocks blocks;
+    for (int i = 0; i < 3; ++i) {
+      const int j = (i + 1) % 3;
+      blocks.d[i] = mean * (cube.lambda + 4 * cube.mu);
+      blocks.o[i] = mean * (cube.lambda + cube.mu);
+      for (int k = 0; k < 4; ++k)
+        for (int l = 0; l < 4; ++l) {
+          const int p = 3 * k + i, q = 3 * l + j;
+          if (k == l)
+            blocks.d[i] += cube.hourglass[pair_index(p, p)];
+          if (is_coupled(p, q))
+            blocks.o[i] += cube.hourglass[p > q ? pair_index(p, q) : pair_index(q, p)];
+        }
+    }
+    return blocks;
+  }
+  [[gnu::always_inline]] static void diagonal_of_full(const FullBlocks& of, const Batch<T>& batch, const int lane,
+                                                      Row<T>* const blocks) {
+    V R[9], same[6], pair[3][6];
+    load_nine(batch.rotation, lane, R);
+#pragma GCC unroll 6
+    for (int ij = 0; ij < 6; ++ij) {
+      const int i = block_row[ij], j = block_column[ij];
+      same[ij] = of.d[0] * R[i] * R[j] + of.d[1] * R[3 + i] * R[3 + j] + of.d[2] * R[6 + i] * R[6 + j];
+#pragma GCC unroll 3
+      for (int p = 0; p < 3; ++p) {
+        const int q = (p + 1) % 3;
+        pair[p][ij] = of.o[p] * (R[3 * p + i] * R[3 * q + j] + R[3 * q + i] * R[3 * p + j]);
+      }
+    }
+#pragma GCC unroll 4
+    for (int a = 0; a < 4; ++a) {
+      V D[6];
+#pragma GCC unroll 6
+      for (int ij = 0; ij < 6; ++ij) {
+        D[ij] = same[ij];
+#pragma GCC unroll 3
+        for (int p = 0; p < 3; ++p)
+          D[ij] += (a >> p & 1) == (a >> (p + 1) % 3 & 1) ? pair[p][ij] : -pair[p][ij];
+      }
+#pragma GCC unroll 2
+      for (const int node : {a, 7 - a}) {
+        add(D[0], D[1], D[2], batch.corners[node] + lane, blocks, 2);
+        add(D[3], D[4], D[5], batch.corners[node] + lane, blocks + 1, 2);
+      }
+    }
+  }
   [[gnu::always_inline]] static void diagonal(const CubeConstants<T>& cube, const Batch<T>& batch,
                                               Row<T>* const blocks) {
+    if (!batch.partial && !batch.tangent) {
+      const FullBlocks of = full_blocks(cube);
+      for (int lane = 0; lane < int(n_lanes); lane += W)
+        diagonal_of_full(of, batch, lane, blocks);
+      return;
+    }
     for (int lane = 0; lane < int(n_lanes); lane += W)
       if (batch.partial)
         diagonal_of<true>(cube, batch, lane, blocks);

@@ -131,26 +131,36 @@ void GhostPenalty::choose_faces(const std::size_t n_copies) {
 
 /// From the well-filled copies outwards: what a corner was given at one distance it passes on at the next.
 void GhostPenalty::extend_mass() {
+  std::array<std::vector<const GhostFace*>, far + 1> at_distance;
+  for (const GhostFace& face : faces_)
+    at_distance[face.distance].push_back(&face);
+  std::vector<double> shares(extended_mass_.size(), 0.0);
   for (int distance = 1; distance <= far; ++distance)
-    extend_mass_across(distance);
+    extend_mass_across(at_distance[static_cast<std::size_t>(distance)], shares);
 }
 
-void GhostPenalty::extend_mass_across(const int distance) {
+/// `shares`: zeros, of all corners, before and after.
+void GhostPenalty::extend_mass_across(const std::span<const GhostFace* const> faces, std::vector<double>& shares) {
   constexpr double theta = 1.0 / 16, most_shares = 6; // 12 theta < 1: something is left of every mass
-  const auto mass = extended_mass_;
-  std::vector<double> shares(mass.size(), 0.0);
-  for (const GhostFace& face : faces_)
-    if (face.distance == distance)
-      for (const auto b : face.b)
-        shares[b] += 0.5 * face.need; // a quarter of it for each of the line's two ends
-  for (const GhostFace& face : faces_)
-    for (int i = 0; i < 4 && face.distance == distance; ++i) {
-      const auto a = face.a[i], b = face.b[i], c = face.c[i];
-      const double part = 0.25 * face.need * theta * std::min(1.0, most_shares / shares[b]);
-      const double shift = part * (std::max(0.0, mass[b] - 4 * mass[a]) + std::max(0.0, mass[b] - 4 * mass[c]));
-      extended_mass_[a] += shift;
-      extended_mass_[b] -= 2 * shift;
-      extended_mass_[c] += shift;
+  for (const GhostFace* const face : faces)
+    for (const auto b : face->b)
+      shares[b] += 0.5 * face->need; // a quarter of it for each of the line's two ends
+  std::vector<double> shifts;
+  shifts.reserve(4 * faces.size());
+  const std::vector<double>& mass = extended_mass_;
+  for (const GhostFace* const face : faces)
+    for (int i = 0; i < 4; ++i) {
+      const auto a = face->a[i], b = face->b[i], c = face->c[i];
+      const double part = 0.25 * face->need * theta * std::min(1.0, most_shares / shares[b]);
+      shifts.push_back(part * (std::max(0.0, mass[b] - 4 * mass[a]) + std::max(0.0, mass[b] - 4 * mass[c])));
+    }
+  auto shift = shifts.begin();
+  for (const GhostFace* const face : faces)
+    for (int i = 0; i < 4; ++i, ++shift) {
+      extended_mass_[face->a[i]] += *shift;
+      extended_mass_[face->b[i]] -= 2 * *shift;
+      extended_mass_[face->c[i]] += *shift;
+      shares[face->b[i]] = 0;
     }
 }
 

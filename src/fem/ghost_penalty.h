@@ -106,7 +106,7 @@ class GhostPenalty {
 
   void choose_faces(std::size_t n_copies);
   void extend_mass();
-  void extend_mass_across(int distance);
+  void extend_mass_across(std::span<const GhostFace* const> faces, std::vector<double>& shares);
   void weigh_faces();
 
   GhostPenaltyOptions options_;

@@ -111,8 +111,10 @@ void Hexahedra::follow(const grid::Solid& solid, const std::span<const grid::Cop
     for (const grid::CopyId c : changed)
       former_levels_.same_copy[c.value] = CellsOfLevel::unused;
   }
+  const bool were_all = numbers_.are_all();
   numbers_ = grid::CornerNumbers(solid, counted_);
-  batch(solid, changed);
+  batch(solid, changed,
+        were_all && numbers_.are_all() ? CornersOfSame::kept : CornersOfSame::renumbered);
   sum_mass(corners);
   ghost_penalty_.update( // to which a crumb's copies are as good as full
     solid, changed, [this](const std::size_t copy) { return incidence_.is_used(copy) ? fill(copy) : 1; }, mass_);
@@ -137,21 +139,40 @@ void Hexahedra::count() {
   }
 }
 
-void Hexahedra::batch(const grid::Solid& solid, const std::span<const grid::CopyId> changed) {
-  std::vector<std::uint32_t> order, chunk_ends; // by cell
-  order.reserve(n_elements());
+namespace {
+
+/// Cells go in chunks of so many.
+Batching batching_of(const grid::Grid& grid) {
+  std::vector<std::uint32_t> nodes, chunk_ends;
+  nodes.reserve(8 * grid.n_cells());
+  for (const auto cell : ids<grid::CellId>(grid.n_cells()))
+    for (const grid::NodeId node : grid.nodes(cell))
+      nodes.push_back(node.value);
+  for (std::size_t end = 0; end < grid.n_cells();)
+    chunk_ends.push_back(static_cast<std::uint32_t>(end = std::min(end + Batching::chunk_size, grid.n_cells())));
+  return Batching(colours_of_chunks(chunk_ends, nodes, grid.n_nodes()));
+}
+
+} // namespace
+
+void Hexahedra::batch(const grid::Solid& solid, const std::span<const grid::CopyId> changed,
+                      const CornersOfSame corners) {
   places_.resize(n_elements());
   kinds_.resize(n_elements());
+  std::vector<std::uint8_t> is_same(n_elements(), 1);
+  for (const grid::CopyId c : changed) {
+    is_same[c.value] = 0;
+    places_[c.value] = solid.grid.index(solid.grid.nodes(solid.complex.copies[c].cell)[0]);
+    kinds_[c.value] = !incidence_.is_used(c.value) ? Kind::unused
+                      : elements_.is_full(c.value) ? Kind::full
+                                                   : Kind::partial;
+  }
+  std::vector<std::uint32_t> order, chunk_ends; // by cell
+  order.reserve(n_elements());
   const std::size_t n_cells = solid.grid.n_cells();
   for (const auto cell : ids<grid::CellId>(n_cells)) {
-    const Index3 place = solid.grid.index(solid.grid.nodes(cell)[0]);
-    for (const grid::CopyId c : solid.complex.copies_of(cell)) {
+    for (const grid::CopyId c : solid.complex.copies_of(cell))
       order.push_back(c.value);
-      places_[c.value] = place;
-      kinds_[c.value] = !incidence_.is_used(c.value) ? Kind::unused
-                        : elements_.is_full(c.value) ? Kind::full
-                                                     : Kind::partial;
-    }
     if ((cell.value + 1) % Batching::chunk_size == 0 || cell.value + 1 == n_cells)
       chunk_ends.push_back(static_cast<std::uint32_t>(order.size()));
   }
@@ -163,12 +184,11 @@ void Hexahedra::batch(const grid::Solid& solid, const std::span<const grid::Copy
         numbers_of_copies_.push_back(incidence_.is_used(copy) ? numbers_[incidence_.corners(copy)[a]]
                                                               : CellsOfLevel::unused);
   }
-  std::vector<std::uint8_t> is_same(n_elements(), 1);
-  for (const grid::CopyId c : changed)
-    is_same[c.value] = 0;
-  const bool is_new = batching_->batches().empty();
+  const bool is_new = batching_ == nullptr;
+  if (is_new)
+    batching_ = std::make_shared<Batching>(batching_of(solid.grid));
   const std::vector<std::uint32_t> renewed =
-    batching_->update({order, chunk_ends, kinds_, corner_numbers(0), numbers_.size()}, is_same);
+    batching_->update({order, chunk_ends, kinds_, corner_numbers(0), numbers_.size()}, is_same, corners);
   if (is_new) {
     batched_ = batched<double>(*batching_, h_, material_, elements_.full(), partial_elements(no_bound));
     return;

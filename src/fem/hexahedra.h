@@ -123,7 +123,7 @@ class Hexahedra : public dynamics::ElasticModel, public dynamics::StiffnessMatri
   }
   /// Part of its cube that a copy's material is [1].
   double fill(const std::size_t copy) const { return elements_[copy].volume / (h_ * h_ * h_); }
-  void batch(const grid::Solid& solid, std::span<const grid::CopyId> changed);
+  void batch(const grid::Solid& solid, std::span<const grid::CopyId> changed, CornersOfSame corners);
   PartialElements partial_elements(double bound) const;
   void make_multigrid();
   std::array<Vec3, 8> corners_of(std::size_t copy, const Points& x) const; // x by number
@@ -157,7 +157,7 @@ class Hexahedra : public dynamics::ElasticModel, public dynamics::StiffnessMatri
   std::vector<std::uint32_t> numbers_of_copies_; // 8 a copy; none where all corners have their own
   std::vector<Index3> places_;                   // of the copies' cells
   std::vector<Kind> kinds_;                      // of the copies
-  std::shared_ptr<Batching> batching_ = std::make_shared<Batching>();
+  std::shared_ptr<Batching> batching_; // null until it is made
   BatchedElements<double> batched_; // rotations and tangents at the linearisation point
   GhostPenalty ghost_penalty_;
   Ties ties_;

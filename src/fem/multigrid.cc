@@ -53,6 +53,27 @@ PointSprings point_springs(const dynamics::LinearEquation& equation) {
   return springs;
 }
 
+/// The largest absolute value.
+double largest(const std::span<const double> values) {
+  constexpr std::size_t block = 8192, worth_blocks = 3; // from which on a second thread pays
+  Loan<double> parts((values.size() + block - 1) / block);
+  parallel_for(
+    parts.size(),
+    [&](const std::size_t b) {
+      const auto of_block = values.subspan(b * block, std::min(block, values.size() - b * block));
+      double most[8] = {}; // eight at a time: comparisons do not wait for each other
+      std::size_t i = 0;
+      for (; i + 8 <= of_block.size(); i += 8)
+        for (int k = 0; k < 8; ++k)
+          most[k] = std::max(most[k], std::abs(of_block[i + k]));
+      for (; i < of_block.size(); ++i)
+        most[0] = std::max(most[0], std::abs(of_block[i]));
+      parts[b] = *std::max_element(most, most + 8);
+    },
+    worth_blocks);
+  return parts.empty() ? 0 : *std::ranges::max_element(*parts);
+}
+
 } // namespace
 
 /// A factorisation of the coarsest level, shifted by what single precision does not see: a free body's motion is singular.
@@ -266,55 +287,77 @@ void Multigrid::prepare(const dynamics::LinearEquation& equation, const std::spa
 }
 
 void Multigrid::put_rotations(const std::span<const Lanes9<double>> finest) {
-  for (std::size_t l = 0; l < levels_.size(); ++l) {
+  const auto in_single = [](const double value) { return static_cast<float>(value); };
+  Level& fine = levels_[0];
+  fine.batching->for_each([&](const std::size_t i) {
+    std::transform(finest[i].row[0], finest[i].row[0] + 9 * n_lanes, fine.elements.rotations[i].row[0], in_single);
+  });
+  for (std::size_t l = 1; l < levels_.size(); ++l) {
+    put_coarse_rotations(l, finest);
     Level& level = levels_[l];
-    const bool is_last = l + 1 == levels_.size();
-    Loan<Mat3> sums(is_last ? 0 : levels_[l + 1].cells.n_copies(), Mat3::Zero());
-    for (std::size_t i = 0; i < level.batching->batches().size(); ++i) {
-      const BatchOfCopies& batch = level.batching->batches()[i];
-      const float* const volume =
-        batch.partial != BatchOfCopies::none ? level.elements.partial[batch.partial].volume : nullptr;
-      for (std::size_t lane = 0; lane < n_lanes; ++lane) {
-        const std::uint32_t c = batch.copies[lane];
-        if (c == BatchOfCopies::none)
-          continue;
-        Mat3 R;
-        if (l > 0)
-          R = level.rotations[c];
-        for (int k = 0; k < 9 && l == 0; ++k)
-          R.data()[k] = finest[i].row[k][lane];
-        for (int k = 0; k < 9; ++k)
-          level.elements.rotations[i].row[k][lane] = float(R.data()[k]);
-        if (!is_last)
-          sums[level.to_coarse.parent[c]] += double(volume ? volume[lane] : level.elements.cube.volume) * R;
-      }
-    }
-    if (is_last)
-      break;
-    std::vector<Mat3>& coarse = levels_[l + 1].rotations;
-    coarse.resize(sums.size());
-    parallel_for(
-      sums.size(),
-      [&](const std::size_t c) {
-        const double volume = levels_[l + 1].made_of[c].volume;
-        coarse[c] = volume > 0 ? material::rotation_of(sums[c] / volume) : Mat3(Mat3::Identity());
-      },
-      256);
+    level.batching->for_each([&](const std::size_t i) {
+      for (std::size_t lane = 0; lane < n_lanes; ++lane)
+        if (const std::uint32_t c = level.batching->batches()[i].copies[lane]; c != BatchOfCopies::none)
+          for (int k = 0; k < 9; ++k)
+            level.elements.rotations[i].row[k][lane] = in_single(level.rotations[c].data()[k]);
+    });
   }
+}
+
+/// The rotations of means over children by volume.
+void Multigrid::put_coarse_rotations(const std::size_t l, const std::span<const Lanes9<double>> finest) {
+  const Level& fine = levels_[l - 1];
+  const Batching& batching = *fine.batching;
+  const BatchedElements<float>& elements = fine.elements;
+  Loan<std::uint32_t> places(fine.to_coarse.parent.size(), AnyValues()); // of copies: batch and lane
+  batching.for_each([&](const std::size_t i) {
+    for (std::uint32_t lane = 0; lane < n_lanes; ++lane)
+      if (const std::uint32_t c = batching.batches()[i].copies[lane]; c != BatchOfCopies::none)
+        places[c] = static_cast<std::uint32_t>(n_lanes * i + lane);
+  });
+  const auto rotation = [&](const std::uint32_t c) {
+    if (l > 1)
+      return fine.rotations[c];
+    Mat3 R;
+    for (int k = 0; k < 9; ++k)
+      R.data()[k] = finest[places[c] / n_lanes].row[k][places[c] % n_lanes];
+    return R;
+  };
+  const auto volume = [&](const std::uint32_t c) -> double {
+    const std::uint32_t partial = batching.batches()[places[c] / n_lanes].partial;
+    return partial == BatchOfCopies::none ? elements.cube.volume
+                                          : elements.partial[partial].volume[places[c] % n_lanes];
+  };
+  Level& coarse = levels_[l];
+  coarse.rotations.resize(coarse.cells.n_copies());
+  parallel_for(
+    coarse.rotations.size(),
+    [&](const std::size_t c) {
+      Mat3 sum = Mat3::Zero();
+      for (const std::uint32_t child : fine.to_coarse.children.of(c))
+        sum += volume(child) * rotation(child);
+      const double all = coarse.made_of[c].volume;
+      coarse.rotations[c] = all > 0 ? material::rotation_of(sum / all) : Mat3(Mat3::Identity());
+    },
+    256);
 }
 
 void Multigrid::put_masses(const dynamics::LinearEquation& equation) {
   const double factor = equation.mass_factor / equation.stiffness_factor;
-  for (std::size_t i = 0; i < levels_[0].n_corners; ++i)
-    levels_[0].mass[i] = float(factor * equation.mass[i]);
+  Level& finest = levels_[0];
+  parallel_for(
+    finest.n_corners, [&](const std::size_t i) { finest.mass[i] = float(factor * equation.mass[i]); }, worth);
   for (std::size_t l = 0; l + 1 < levels_.size(); ++l) {
     const Weights& restriction = levels_[l].to_coarse.restriction;
-    for (std::size_t j = 0; j < levels_[l + 1].n_corners; ++j) {
-      float sum = 0;
-      for (std::uint32_t k = restriction.begin[j]; k < restriction.begin[j + 1]; ++k)
-        sum += restriction.weight[k] * levels_[l].mass[restriction.column[k]];
-      levels_[l + 1].mass[j] = sum;
-    }
+    parallel_for(
+      levels_[l + 1].n_corners,
+      [&](const std::size_t j) {
+        float sum = 0;
+        for (std::uint32_t k = restriction.begin[j]; k < restriction.begin[j + 1]; ++k)
+          sum += restriction.weight[k] * levels_[l].mass[restriction.column[k]];
+        levels_[l + 1].mass[j] = sum;
+      },
+      worth);
   }
 }
 
@@ -355,9 +398,7 @@ void Multigrid::hold(const dynamics::LinearEquation& equation) {
 
 void Multigrid::apply(const std::span<const double> r, const std::span<double> z) {
   const std::size_t n = levels_[0].n_corners;
-  double most = 0;
-  for (const double value : r)
-    most = std::max(most, std::abs(value));
+  const double most = largest(r);
   const double scale = most > 0 ? most : 1; // single precision has a short range
   Row<float>* const b = cycle_->right_side();
   parallel_for(

@@ -82,6 +82,7 @@ class Multigrid : public dynamics::Preconditioner {
 
   static void put_batches(double h, const material::Elastic& material, Level& coarse);
   void put_rotations(std::span<const Lanes9<double>> finest);
+  void put_coarse_rotations(std::size_t l, std::span<const Lanes9<double>> finest);
   void put_masses(const dynamics::LinearEquation& equation);
   void hold(const dynamics::LinearEquation& equation);
 

@@ -2,7 +2,7 @@
 
 #include "base/parallel.h"
 #include "base/sort_unique.h"
-#include "base/union_find.h"
+#include "base/shared_union_find.h"
 #include "grid/corner_classes.h"
 #include "grid/cube.h"
 #include "grid/fronts.h"
@@ -396,13 +396,18 @@ CutChange update_complex(Solid& solid, std::vector<EdgeId> new_edges, std::vecto
 }
 
 Pieces pieces(const CellComplex& complex) {
-  UnionFind corners(complex.n_corners());
+  constexpr std::size_t worth = 4096; // copies from which on a second thread pays
+  SharedUnionFind corners(complex.n_corners());
   const auto first = [](const Copy& copy) { return copy.corners[0].value; };
-  for (const Copy& copy : complex.copies) {
-    std::uint32_t root = first(copy);
-    for (const CornerId corner : copy.corners) // that others have too where they are glued, and only there
-      root = corners.unite(root, corner.value);
-  }
+  parallel_for(
+    complex.n_copies(),
+    [&](const std::size_t c) {
+      const Copy& copy = complex.copies[CopyId(c)];
+      std::uint32_t root = first(copy);
+      for (const CornerId corner : copy.corners) // that others have too where they are glued, and only there
+        root = corners.unite(root, corner.value);
+    },
+    worth);
   for (const auto& [c, d] : complex.tied)
     corners.unite(first(complex.copies[c]), first(complex.copies[d]));
   Pieces result;

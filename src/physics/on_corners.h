@@ -197,8 +197,11 @@ class OnCorners : public Physics {
   void make_stepper(const CutBody& body) {
     lapsed_ = body.solid.complex.lapsed;
     // The complex outlives the call, as the stepper asks at once.
-    stepper_ =
-      make_integrator_(*model_, [&] { return counted_pieces(corner_pieces(body.solid.complex), model_->numbers()); });
+    stepper_ = make_integrator_(*model_, [&] {
+      const grid::CellComplex& complex = body.solid.complex;
+      return counted_pieces(body.pieces ? corner_pieces(complex, *body.pieces) : corner_pieces(complex),
+                            model_->numbers());
+    });
     riders_ = riders_of(*model_, body);
   }
 

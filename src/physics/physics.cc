@@ -12,8 +12,13 @@ dynamics::State state_at_rest(const Physics& physics) {
 }
 
 std::vector<std::uint32_t> corner_pieces(const grid::CellComplex& complex) {
-  const grid::Pieces all = grid::pieces(complex);
+  return corner_pieces(complex, grid::pieces(complex));
+}
+
+std::vector<std::uint32_t> corner_pieces(const grid::CellComplex& complex, const grid::Pieces& all) {
   std::vector<std::uint32_t> pieces(complex.n_corners());
+  if (all.n_pieces == 1)
+    return pieces;
   for (const auto c : ids<grid::CopyId>(complex.n_copies()))
     for (const grid::CornerId corner : complex.copies[c].corners)
       pieces[corner.value] = all.piece[c];

@@ -20,6 +20,7 @@ struct CutBody {
   const grid::Solid& solid;
   const surface::Surface& surface;
   double density; ///< of its material [kg/m^3]
+  const grid::Pieces* pieces = nullptr; ///< of its copies; null: not known
 };
 
 /// The piece of each particle, 0, 1, ...: asked for by those who need it.
@@ -70,6 +71,8 @@ dynamics::State state_at_rest(const Physics& physics);
 
 /// The piece of each corner.
 std::vector<std::uint32_t> corner_pieces(const grid::CellComplex& complex);
+/// The same of pieces that are known.
+std::vector<std::uint32_t> corner_pieces(const grid::CellComplex& complex, const grid::Pieces& all);
 
 /// A rest point [m] as a point that follows corners; no point where the body has no material.
 Interpolation body_point(const CutBody& body, const Vec3& rest);

@@ -32,6 +32,7 @@ void follow_cut(Body& body, grid::CutChange change, Timings& timings) {
     body.placed.n_clamped += placed.n_clamped;
     surface::update_surface(body.solid, change, body.surface, body.surface_index);
     grid::update_crumbs(body.solid, change, body.physics->particles_are_corners() ? nullptr : &body.physics->rest());
+    body.pieces = grid::pieces(body.solid.complex);
     ++body.n_recuts;
   }
   const ScopedTimer timer(timings, "assemble");
@@ -75,6 +76,8 @@ void archive(Archive& a, Body& body) {
   a(body.solid, body.placed, body.surface, body.surface_index, body.n_recuts);
   if (body.cutter)
     a(*body.cutter);
+  if (a.reads())
+    body.pieces = grid::pieces(body.solid.complex);
   body.physics->archive(a, seen(body));
   a(body.state, body.report, body.n_divided);
   if (body.initial)
@@ -97,6 +100,7 @@ void start(Body& body, const geometry::TriangleMesh& mesh, const PhysicsMaker& m
     cut::fit_skin(mesh, solid);
     solid.complex = grid::build_complex(solid);
     grid::find_crumbs(solid);
+    body.pieces = grid::pieces(solid.complex);
     body.surface = body.cutter ? surface::build_surface(solid, body.surface_index) : surface::build_surface(solid);
   }
   body.first_volume = surface::enclosed_volume(body.surface.rest, body.surface.triangles);

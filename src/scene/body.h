@@ -89,6 +89,7 @@ struct Body {
 
   std::unique_ptr<cut::Cutter> cutter = nullptr; ///< null in a scene that cuts nothing; labels: blades, then surfaces
   int n_recuts = 0;                              ///< how often the complex has changed
+  grid::Pieces pieces = {};                      ///< of its copies
   double mesh_volume = 0;                        ///< of the input mesh [m^3]
   double first_volume = 0;                       ///< rest volume of the surface before any cut [m^3]
   std::size_t n_lost_shells = 0;                 ///< shells of the input mesh that hold no grid node
@@ -98,7 +99,7 @@ struct Body {
 };
 
 /// What the physics sees of a body.
-inline physics::CutBody seen(const Body& body) { return {body.solid, body.surface, body.density}; }
+inline physics::CutBody seen(const Body& body) { return {body.solid, body.surface, body.density, &body.pieces}; }
 
 /// Where the corners are now [m].
 inline const Points& corners(const Body& body) { return body.physics->corners(body.state); }

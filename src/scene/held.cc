@@ -1,8 +1,10 @@
 #include "scene/held.h"
 
+#include "base/parallel.h"
 #include "grid/material.h"
 
 #include <algorithm>
+#include <atomic>
 
 namespace kerf::scene {
 
@@ -30,23 +32,27 @@ std::vector<std::uint32_t> particles_in(const Body& body, const Region& region) 
   if (!body.physics->particles_are_corners() || inside.empty())
     return inside;
 
-  enum class Corner : std::uint8_t { outside, asks, held };
-  std::vector<Corner> corners(rest.size(), Corner::outside);
+  std::vector<std::uint8_t> asks(rest.size(), 0), is_held(rest.size(), 0);
   for (const auto i : inside)
-    corners[i] = Corner::asks;
-  for (const auto c : ids<grid::CopyId>(body.solid.complex.n_copies())) {
-    const grid::Copy& copy = body.solid.complex.copies[c];
-    unsigned asking = 0;
-    for (int v = 0; v < grid::cube::n_vertices; ++v)
-      if (corners[copy.corners[v].value] == Corner::asks)
-        asking |= 1u << v;
-    const unsigned held = asking & copy.nodes; // where a corner rests there is material, or the copy is looked at
-    const bool holds_all = asking != held && has_material_in(region, body.solid, copy);
-    for (int v = 0; v < grid::cube::n_vertices; ++v)
-      if ((holds_all ? asking : held) >> v & 1)
-        corners[copy.corners[v].value] = Corner::held;
-  }
-  std::erase_if(inside, [&](const auto i) { return corners[i] != Corner::held; });
+    asks[i] = 1;
+  constexpr std::size_t worth = 4096; // copies from which on a second thread pays
+  parallel_for(
+    body.solid.complex.n_copies(),
+    [&](const std::size_t c) {
+      const grid::Copy& copy = body.solid.complex.copies[grid::CopyId(c)];
+      unsigned asking = 0;
+      for (int v = 0; v < grid::cube::n_vertices; ++v)
+        asking |= unsigned(asks[copy.corners[v].value]) << v;
+      if (asking == 0)
+        return;
+      const unsigned held = asking & copy.nodes; // where a corner rests there is material, or the copy is looked at
+      const bool holds_all = asking != held && has_material_in(region, body.solid, copy);
+      for (int v = 0; v < grid::cube::n_vertices; ++v)
+        if ((holds_all ? asking : held) >> v & 1) // of several copies at once
+          std::atomic_ref(is_held[copy.corners[v].value]).store(1, std::memory_order_relaxed);
+    },
+    worth);
+  std::erase_if(inside, [&](const auto i) { return is_held[i] == 0; });
   return inside;
 }
 

@@ -293,7 +293,7 @@ const std::vector<Observable>& body_observables() {
     {"largest stretch", "1", "longest edge of a copy's cube over that at rest",
      [](const Body& b) { return largest_stretch(b).factor; }},
     {"pieces", "1", "connected components of the copies",
-     [](const Body& b) { return count(grid::n_pieces(b.solid.complex)); }},
+     [](const Body& b) { return count(b.pieces.n_pieces); }},
     {"crumbs", "1", "pieces too small for the grid to deform, which move as rigid bodies (grid/crumbs.h)",
      [](const Body& b) { return count(b.physics->crumbs().size()); }},
     {"copies", "1", "cells, once per connected component",

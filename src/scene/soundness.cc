@@ -49,31 +49,48 @@ struct Motion {
   }
 };
 
+struct Momentum {
+  Vec3 momentum = Vec3::Zero();
+  double mass = 0;
+
+  Momentum& operator+=(const Momentum& more) {
+    momentum += more.momentum;
+    mass += more.mass;
+    return *this;
+  }
+};
+
 Vec3 mean_velocity(const dynamics::ForceModel& model, const Points& v) {
   const auto mass = model.lumped_mass();
-  Vec3 momentum = Vec3::Zero();
-  double all = 0;
-  for (std::size_t i = 0; i < v.size(); ++i) {
-    momentum += mass[i] * v[i];
-    all += mass[i];
-  }
-  return all > 0 ? Vec3(momentum / all) : Vec3(Vec3::Zero());
+  const Momentum all = dynamics::sum_in_blocks(
+    v.size(), Momentum(), [&](const std::size_t begin, const std::size_t end, Momentum& part) {
+      for (std::size_t i = begin; i < end; ++i)
+        part += {mass[i] * v[i], mass[i]};
+    });
+  return all.mass > 0 ? Vec3(all.momentum / all.mass) : Vec3(Vec3::Zero());
 }
 
 const grid::Copy& copy_of(const Body& body, const std::size_t c) {
   return body.solid.complex.copies[grid::CopyId(static_cast<std::uint32_t>(c))];
 }
 
+constexpr std::uint32_t of_no_piece = 0xffffffff;
+constexpr std::size_t worth_triangles = 4096; // from which on a second thread pays
+
 /// Signed volume of each piece that the surface bounds, with its vertices at `points`; none of crumbs, which are rigid.
 Loan<double> piece_volumes(const Body& body, const Watch& watch, const Points& points) {
-  Loan<double> volumes(watch.rest_volumes.size(), 0);
-  for (std::size_t t = 0; t < body.surface.triangles.size(); ++t) {
-    if (body.solid.crumbs.holds(body.surface.copies[t]))
-      continue;
-    const Triangle& v = body.surface.triangles[t];
-    volumes[watch.piece_of_copy[body.surface.copies[t].value]] +=
-      points[v[0]].dot(points[v[1]].cross(points[v[2]])) / 6;
-  }
+  const auto& triangles = body.surface.triangles;
+  Loan<double> of_triangles(triangles.size(), AnyValues()), volumes(watch.rest_volumes.size(), 0);
+  parallel_for(
+    triangles.size(),
+    [&](const std::size_t t) {
+      const auto& [a, b, c] = triangles[t];
+      of_triangles[t] = points[a].dot(points[b].cross(points[c])) / 6;
+    },
+    worth_triangles);
+  for (std::size_t t = 0; t < triangles.size(); ++t)
+    if (const std::uint32_t piece = watch.piece_of_triangle[t]; piece != of_no_piece)
+      volumes[piece] += of_triangles[t];
   return volumes;
 }
 
@@ -81,9 +98,16 @@ void bring_up_to_date(const Body& body, Watch& watch) {
   if (watch.n_recuts == body.n_recuts)
     return;
   watch.n_recuts = body.n_recuts;
-  grid::Pieces pieces = grid::pieces(body.solid.complex);
-  watch.piece_of_copy = std::move(pieces.piece.items());
-  watch.rest_volumes.assign(pieces.n_pieces, 0);
+  const auto& [piece_of_copy, n_pieces] = body.pieces;
+  const auto& copies = body.surface.copies;
+  watch.piece_of_triangle.resize(copies.size());
+  parallel_for(
+    copies.size(),
+    [&](const std::size_t t) {
+      watch.piece_of_triangle[t] = body.solid.crumbs.holds(copies[t]) ? of_no_piece : piece_of_copy[copies[t]];
+    },
+    worth_triangles);
+  watch.rest_volumes.assign(n_pieces, 0);
   watch.rest_volumes = *piece_volumes(body, watch, body.surface.rest);
 }
 
@@ -211,7 +235,7 @@ std::string unsound_volume(const Body& body, const Watch& watch) {
             : ratio > 0 ? "crushed"
                         : "inside out") +
            ": its volume is " + in_short(100 * ratio) + " % of that at rest. Worst is " +
-           worst_copy(body, [&](const std::size_t c) { return watch.piece_of_copy[c] == p; }) + remedy;
+           worst_copy(body, [&](const std::size_t c) { return body.pieces.piece[grid::CopyId(c)] == p; }) + remedy;
   }
   const Cubes all = cubes(body);
   // Nodes count, so near-empty copies hardly do.

@@ -17,7 +17,7 @@ namespace kerf::scene {
 /// What is known of the pieces of a body's surface; brought up to date after cuts.
 struct Watch {
   int n_recuts = -1;
-  std::vector<std::uint32_t> piece_of_copy;
+  std::vector<std::uint32_t> piece_of_triangle; ///< of the surface; the largest number: of none, as it bounds a crumb
   std::vector<double> rest_volumes; ///< of each piece [m^3]
   bool is_sound = true;             ///< what was found last
 

@@ -1,6 +1,8 @@
 #include "base/id.h"
 #include "base/parallel.h"
 #include "base/timer.h"
+#include "base/parallel.h"
+#include "base/shared_union_find.h"
 #include "base/union_find.h"
 #include "base/vec.h"
 
@@ -73,6 +75,35 @@ TEST(UnionFind, NumbersSetsByTheirSmallestMember) {
     std::vector<std::uint32_t> set_of;
     EXPECT_EQ(sets.number(set_of), 3u);
     EXPECT_EQ(set_of, std::vector<std::uint32_t>({0, 1, 2, 1, 1, 1}));
+  }
+}
+
+/// Whatever threads unite, sets are the same, and so are their numbers; those who do not count have none.
+TEST(UnionFind, IsTheSameWhenThreadsShareIt) {
+  constexpr std::uint32_t n = 50000, none = 0xffffffff;
+  const auto partner = [](const std::uint32_t i) { return i * 2654435761u % n / 7 * 7 + i % 7; };
+  const auto counts = [](const std::uint32_t i) { return i % 7 != 3; };
+  UnionFind alone(n);
+  for (std::uint32_t i = 0; i < n; ++i)
+    if (partner(i) < n)
+      alone.unite(i, partner(i));
+  std::vector<std::uint32_t> expected, number(n, none), set_of;
+  alone.number(expected);
+  std::uint32_t n_counted = 0;
+  for (std::uint32_t i = 0; i < n; ++i)
+    if (counts(i))
+      number[i] = alone.root(i) == i ? n_counted++ : number[alone.root(i)];
+  for (const int threads : {1, 2, 4}) {
+    set_n_threads(threads);
+    SharedUnionFind shared(n);
+    parallel_for(n, [&](const std::size_t i) {
+      if (const auto c = static_cast<std::uint32_t>(i); partner(c) < n)
+        shared.unite(c, partner(c));
+    });
+    shared.number(set_of);
+    EXPECT_EQ(set_of, expected) << threads;
+    EXPECT_EQ(shared.number(set_of, none, counts), n_counted);
+    EXPECT_EQ(set_of, number) << threads;
   }
 }
 

@@ -1,6 +1,7 @@
 #include "fem/batches.h"
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <numeric>
 
 namespace kerf::fem {
@@ -97,6 +98,35 @@ TEST(Batches, OfOtherChunksStayWhereTheyAre) {
   for (const BatchOfCopies& batch : batching.batches()) // lanes that are not used have rows of their own
     for (std::size_t lane = 0; lane < n_lanes; ++lane)
       EXPECT_EQ(batch.corners[0][lane] >= row.n_corners, batch.copies[lane] == BatchOfCopies::none);
+}
+
+/// After any changes the batches are those of copies that come anew; all that a cut has not met is taken over.
+TEST(Batches, AreThoseThatAreMadeAnew) {
+  RowOfCubes row;
+  Batching batching(row.copies());
+  const auto expect_as_anew = [&] {
+    const Batching anew(row.copies());
+    ASSERT_EQ(batching.batches().size(), anew.batches().size());
+    for (std::size_t i = 0; i < anew.batches().size(); ++i) {
+      const BatchOfCopies &a = batching.batches()[i], &b = anew.batches()[i];
+      EXPECT_TRUE(std::ranges::equal(a.copies, b.copies)) << i;
+      EXPECT_EQ(a.partial == BatchOfCopies::none, b.partial == BatchOfCopies::none) << i;
+      for (std::size_t v = 0; v < 8; ++v)
+        EXPECT_TRUE(std::ranges::equal(a.corners[v], b.corners[v])) << i;
+    }
+  };
+  row.split(); // and all lanes that are not used have another row, in the other chunks too
+  row.kinds[102] = Kind::full;
+  std::vector<std::uint8_t> is_same(row.kinds.size(), 1);
+  is_same[102] = is_same[300] = 0;
+  batching.update(row.copies(), is_same);
+  expect_as_anew();
+  is_same.assign(row.kinds.size(), 1);
+  for (std::uint32_t& corner : row.corners)
+    ++corner;
+  ++row.n_corners;
+  batching.update(row.copies(), is_same, CornersOfSame::renumbered);
+  expect_as_anew();
 }
 
 /// Its element, and what products read of it in both precisions.
