@@ -107,7 +107,7 @@ void keep_moments(const Pieces& pieces, const std::span<const double> mass, cons
 StepReport Relief::step(State& state, const Loads& loads, double) {
   constexpr int most_steps = 8;
   StepReport report;
-  double excess = model_.energy(state.x) - excess_.most;
+  double excess = model_.energy_ahead(state.x) - excess_.most; // the next step asks for forces here
   if (!(excess > 0))
     return report;
   const Loads held = held_but(excess_.touched, state, loads);

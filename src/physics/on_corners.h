@@ -133,7 +133,7 @@ class OnCorners : public Physics {
     const grid::CornerNumbers& numbers = model_->numbers();
     dynamics::Excess excess{.most = dynamics::most_after_cut(model(), had, state.v),
                             .touched = {},
-                            .piece = [&] { return counted_pieces(corner_pieces(body.solid.complex), numbers); }};
+                            .piece = [&] { return own_pieces(body); }};
     numbers.gather(touched_corners(body.solid.complex, change), excess.touched);
     const auto relief = relief_of(*model_, std::move(excess));
     if (widened_)
@@ -193,15 +193,17 @@ class OnCorners : public Physics {
     if (!numbers.are_all())
       widened_ = std::make_unique<Widened>(*model_, numbers, body.solid.complex.n_corners());
   }
+  /// The piece of each corner that the model counts.
+  std::vector<std::uint32_t> own_pieces(const CutBody& body) const {
+    const grid::CellComplex& complex = body.solid.complex;
+    return counted_pieces(body.pieces ? corner_pieces(complex, *body.pieces) : corner_pieces(complex),
+                          model_->numbers());
+  }
   /// All that is made again from what the body is now.
   void make_stepper(const CutBody& body) {
     lapsed_ = body.solid.complex.lapsed;
     // The complex outlives the call, as the stepper asks at once.
-    stepper_ = make_integrator_(*model_, [&] {
-      const grid::CellComplex& complex = body.solid.complex;
-      return counted_pieces(body.pieces ? corner_pieces(complex, *body.pieces) : corner_pieces(complex),
-                            model_->numbers());
-    });
+    stepper_ = make_integrator_(*model_, [&] { return own_pieces(body); });
     riders_ = riders_of(*model_, body);
   }
 
