@@ -125,6 +125,9 @@ void Batching::add_batches(const std::span<const std::uint32_t> copies, const st
       for (std::size_t a = 0; a < 8; ++a)
         batch.corners[a][lane] = is_used ? corners[8 * std::size_t(copy) + a] : row;
     }
+    batch.is_row = begin + n_lanes <= copies.size();
+    for (std::size_t a = 0; a < 8; a += 2)
+      batch.is_row &= std::equal(batch.corners[a] + 1, batch.corners[a] + n_lanes, batch.corners[a + 1]);
   }
 }
 

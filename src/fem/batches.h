@@ -34,6 +34,7 @@ struct BatchOfCopies {
   alignas(64) std::uint32_t corners[8][n_lanes];
   std::uint32_t copies[n_lanes]; ///< `none` in lanes that are not used
   std::uint32_t partial;         ///< the place of what its cubes are made of; `none` for full ones
+  bool is_row;                   ///< Batch::is_row
 };
 
 /// All copies, side by side what is near.
@@ -137,7 +138,7 @@ struct BatchedElements {
     const BatchOfCopies& b = batching.batches()[i];
     const bool is_full = b.partial == BatchOfCopies::none;
     return {b.corners, rotations[i].row, is_full ? nullptr : &partial[b.partial],
-            is_full ? nullptr : &(*hourglass)[b.partial], tangents.empty() ? nullptr : tangents[i].row};
+            is_full ? nullptr : &(*hourglass)[b.partial], tangents.empty() ? nullptr : tangents[i].row, b.is_row};
   }
 };
 

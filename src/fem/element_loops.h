@@ -87,6 +87,61 @@ struct ElementLoops {
                       : __builtin_shufflevector(v, v, 12, 13, 14, 15);
   }
 
+  // Of cubes in a row along x: one has the nodes 1, 3, 5, 7 that the next one has as 0, 2, 4, 6.
+
+  /// Lanes 1, 2, ... of v, and then `last`.
+  [[gnu::always_inline]] static V moved_down(const V& v, const T last) {
+    return moved_down(v, last - V{}, std::make_integer_sequence<int, W>());
+  }
+  template <int... lanes>
+  [[gnu::always_inline]] static V moved_down(const V& v, const V& last, std::integer_sequence<int, lanes...>) {
+    return __builtin_shufflevector(v, last, (lanes + 1)...);
+  }
+  /// 0, and then lanes 0, 1, ... of v but the last.
+  [[gnu::always_inline]] static V moved_up(const V& v) {
+    return moved_up(v, V{}, std::make_integer_sequence<int, W>());
+  }
+  template <int... lanes>
+  [[gnu::always_inline]] static V moved_up(const V& v, const V& none, std::integer_sequence<int, lanes...>) {
+    return __builtin_shufflevector(none, v, (lanes == 0 ? 0 : W + lanes - 1)...);
+  }
+  /// Reads the rows of all nodes.
+  [[gnu::always_inline]] static void read_nodes(const Batch<T>& batch, const int lane, const Row<T>* const p,
+                                                V (&c)[8][3]) {
+    if (!batch.is_row) {
+#pragma GCC unroll 8
+      for (int a = 0; a < 8; ++a)
+        read(batch.corners[a] + lane, p, c[a]);
+      return;
+    }
+#pragma GCC unroll 4
+    for (int a = 0; a < 8; a += 2) {
+      read(batch.corners[a] + lane, p, c[a]);
+      const Row<T>& last = p[batch.corners[a + 1][lane + W - 1]];
+      c[a + 1][0] = moved_down(c[a][0], last.x);
+      c[a + 1][1] = moved_down(c[a][1], last.y);
+      c[a + 1][2] = moved_down(c[a][2], last.z);
+    }
+  }
+  /// Adds to the rows of all nodes.
+  [[gnu::always_inline]] static void add_nodes(const Batch<T>& batch, const int lane, const V (&f)[8][3],
+                                               Row<T>* const y) {
+    if (!batch.is_row) {
+#pragma GCC unroll 8
+      for (int a = 0; a < 8; ++a)
+        add(f[a][0], f[a][1], f[a][2], batch.corners[a] + lane, y);
+      return;
+    }
+#pragma GCC unroll 4
+    for (int a = 0; a < 8; a += 2) {
+      const V(&next)[3] = f[a + 1];
+      add(f[a][0] + moved_up(next[0]), f[a][1] + moved_up(next[1]), f[a][2] + moved_up(next[2]),
+          batch.corners[a] + lane, y);
+      const Four last = {next[0][W - 1], next[1][W - 1], next[2][W - 1], 0};
+      *reinterpret_cast<Four*>(y + batch.corners[a + 1][lane + W - 1]) += last;
+    }
+  }
+
   // --- Modes -------------------------------------------------------------------------------------------------------
 
   /// Nodes to modes, in place.
@@ -118,19 +173,15 @@ struct ElementLoops {
             c[a | bit][i] = even + odd;
           }
   }
-  [[gnu::always_inline]] static void read_modes(const std::uint32_t (*const corners)[n_lanes], const int lane,
-                                                const Row<T>* const p, V (&c)[8][3]) {
-#pragma GCC unroll 8
-    for (int a = 0; a < 8; ++a)
-      read(corners[a] + lane, p, c[a]);
+  [[gnu::always_inline]] static void read_modes(const Batch<T>& batch, const int lane, const Row<T>* const p,
+                                                V (&c)[8][3]) {
+    read_nodes(batch, lane, p, c);
     to_modes(c);
   }
   /// The same of positions: differences first, so that the distance from the origin is not rounded.
-  [[gnu::always_inline]] static void read_shape(const std::uint32_t (*const corners)[n_lanes], const int lane,
-                                                const Row<T>* const x, V (&c)[8][3]) {
-#pragma GCC unroll 8
-    for (int a = 0; a < 8; ++a)
-      read(corners[a] + lane, x, c[a]);
+  [[gnu::always_inline]] static void read_shape(const Batch<T>& batch, const int lane, const Row<T>* const x,
+                                                V (&c)[8][3]) {
+    read_nodes(batch, lane, x, c);
 #pragma GCC unroll 7
     for (int a = 7; a >= 0; --a)
 #pragma GCC unroll 3
@@ -138,12 +189,9 @@ struct ElementLoops {
         c[a][i] -= c[0][i];
     to_modes(c);
   }
-  [[gnu::always_inline]] static void add_modes(V (&f)[8][3], const std::uint32_t (*const corners)[n_lanes],
-                                               const int lane, Row<T>* const y) {
+  [[gnu::always_inline]] static void add_modes(V (&f)[8][3], const Batch<T>& batch, const int lane, Row<T>* const y) {
     to_nodes(f);
-#pragma GCC unroll 8
-    for (int a = 0; a < 8; ++a)
-      add(f[a][0], f[a][1], f[a][2], corners[a] + lane, y);
+    add_nodes(batch, lane, f, y);
   }
   /// v = R^T v.
   [[gnu::always_inline]] static void turn_back(const V (&R)[9], V (&v)[3]) {
@@ -271,7 +319,7 @@ struct ElementLoops {
   [[gnu::always_inline]] static void product_hooke(const CubeConstants<T>& cube, const Batch<T>& batch, const int lane,
                                                    const Row<T>* const p, Row<T>* const y) {
     V c[8][3], R[9], G[9], P[9], f[8][3];
-    read_modes(batch.corners, lane, p, c);
+    read_modes(batch, lane, p, c);
     load_nine(batch.rotation, lane, R);
 #pragma GCC unroll 7
     for (int m = 1; m < 8; ++m)
@@ -286,14 +334,14 @@ struct ElementLoops {
 #pragma GCC unroll 3
     for (int i = 0; i < 3; ++i)
       f[0][i] = V{};
-    add_modes(f, batch.corners, lane, y);
+    add_modes(f, batch, lane, y);
   }
   /// The law's tangent is not turned, the hourglass modes are.
   template <bool is_partial>
   [[gnu::always_inline]] static void product_law(const CubeConstants<T>& cube, const Batch<T>& batch, const int lane,
                                                  const Row<T>* const p, Row<T>* const y) {
     V c[8][3], R[9], G[9], P[9], f[8][3];
-    read_modes(batch.corners, lane, p, c);
+    read_modes(batch, lane, p, c);
     load_nine(batch.rotation, lane, R);
     mean_gradient<is_partial>(cube, batch, lane, c, G);
     law_tangent(batch, lane, G, P);
@@ -308,7 +356,7 @@ struct ElementLoops {
 #pragma GCC unroll 3
     for (int i = 0; i < 3; ++i)
       f[0][i] = V{};
-    add_modes(f, batch.corners, lane, y);
+    add_modes(f, batch, lane, y);
   }
   [[gnu::always_inline]] static void product(const CubeConstants<T>& cube, const Batch<T>& batch, const Row<T>* const p,
                                              Row<T>* const y) {

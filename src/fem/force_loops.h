@@ -72,7 +72,7 @@ struct ForceLoops : ElementLoops<T, W> {
   [[gnu::always_inline]] static unsigned turn_of(const CubeConstants<T>& cube, const Batch<T>& batch, const int lane,
                                                  const Row<T>* const x, Turns& turns) {
     V c[8][3], F[9], R[9];
-    read_shape(batch.corners, lane, x, c);
+    read_shape(batch, lane, x, c);
     Loops::template mean_gradient<is_partial>(cube, batch, lane, c, F);
     const unsigned unknown = nearest_rotation(F, R);
 #pragma GCC unroll 9
@@ -99,7 +99,7 @@ struct ForceLoops : ElementLoops<T, W> {
                                             const V (&R)[9], const MeanPart mean, const Row<T>* const x, V (&u)[8][3],
                                             V (&f)[8][3]) {
     V G[9], P[9];
-    read_shape(batch.corners, lane, x, u);
+    read_shape(batch, lane, x, u);
 #pragma GCC unroll 7
     for (int m = 1; m < 8; ++m)
       turn_back(R, u[m]);
@@ -221,7 +221,7 @@ struct ForceLoops : ElementLoops<T, W> {
 #pragma GCC unroll 3
       for (int i = 0; i < 3; ++i)
         f[m][i] = -f[m][i];
-    add_modes(f, batch.corners, lane, forces);
+    add_modes(f, batch, lane, forces);
   }
   [[gnu::always_inline]] static void force(const CubeConstants<T>& cube, const Batch<T>& batch, const Turns& turns,
                                            const MeanPart mean, const T (*const stress)[n_lanes], const T spins,

@@ -60,6 +60,7 @@ struct Batch {
   const PartialCubes<T>* partial;          ///< null: full cubes
   const HourglassOfCubes* hourglass;       ///< of partial ones
   const T (*tangent)[n_lanes];             ///< 45 rows, pairs of the law's tangent times the volume; null: Hooke's
+  bool is_row; ///< each lane's cube stands on the one before it along x: they share the corners between them
 };
 
 /// F and its rotation for each lane, 3 x 3 column by column.
