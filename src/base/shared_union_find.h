@@ -53,7 +53,7 @@ class SharedUnionFind {
   std::uint32_t number(std::vector<std::uint32_t>& set_of, const std::uint32_t otherwise, const Counts& counts) {
     set_of.resize(parent_.size());
     Loan<std::uint32_t> first(n_blocks() + 1, 0); // number of each block
-    const auto is_first = [&](const std::uint32_t i) { return parent_[i] == i && counts(i); };
+    const auto is_first = [&](const std::uint32_t i) { return load(i) == i && counts(i); };
     for_each_block([&](const std::uint32_t i, const std::size_t block) { first[block + 1] += is_first(i) ? 1 : 0; });
     for (std::size_t block = 0; block < n_blocks(); ++block)
       first[block + 1] += first[block];
@@ -62,7 +62,7 @@ class SharedUnionFind {
       set_of[i] = is_first(i) ? first[block]++ : otherwise;
     });
     for_each_block([&](const std::uint32_t i, std::size_t) {
-      if (parent_[i] != i && counts(i))
+      if (load(i) != i && counts(i))
         set_of[i] = set_of[root(i)];
     });
     return n_sets;
