@@ -40,16 +40,26 @@ class Passage {
     }
   }
 
-  /// What blades that are in a cell or beside it have cut there, if others have cut it too.
-  grid::Segments cuts_in(const Solid& solid, const grid::CellId c, const Points& x) const {
+  /// What blades that are in a cell or beside it, and have not left it before, have cut there, if others have cut it too. Which
+  /// have left it is noted.
+  grid::Segments cuts_in(const Solid& solid, const grid::CellId c, const Points& x, const std::size_t n_labels,
+                         std::set<LeftCell>& left) const {
     grid::Segments cuts = 0;
-    for (const auto& [label, near] : edges_)
-      if (is_near(near, solid, c, x))
-        cuts |= grid::cut_by(solid, c, label);
+    for (grid::CutLabel label = 1; label <= n_labels; ++label)
+      if (const grid::Segments own = grid::cut_by(solid, c, label); own != 0 && !left.contains({c, label})) {
+        if (holds(label, solid, c, x))
+          cuts |= own;
+        else
+          left.insert({c, label});
+      }
     return (grid::cuts_of(solid, c).blades & ~cuts) != 0 ? cuts : 0;
   }
 
  private:
+  bool holds(const grid::CutLabel label, const Solid& solid, const grid::CellId c, const Points& x) const {
+    return std::ranges::any_of(edges_,
+                               [&](const Edge& edge) { return edge.label == label && is_near(edge.near, solid, c, x); });
+  }
   static bool is_near(const NearSweep& near, const Solid& solid, const grid::CellId c, const Points& x) {
     const Vec3 cube = Vec3::Constant(solid.grid.h());
     for (const grid::CopyId copy : solid.complex.copies_of(c)) {
@@ -212,7 +222,7 @@ void Cutter::join(Solid& solid, const Added& added, const Points& x, std::vector
   for (const grid::CellId c : cells) {
     std::vector<grid::Joined> groups;
     if (solid.cuts.front(c) == nullptr) {
-      const grid::Segments unsettled = passage.cuts_in(solid, c, x);
+      const grid::Segments unsettled = passage.cuts_in(solid, c, x, passed_.size(), left_);
       groups =
         near_each_other(solid, c, unsettled != 0 ? without_cuts(solid, c, unsettled) : on_same_sides(solid, c), x);
       if (unsettled != 0)

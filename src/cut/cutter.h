@@ -7,7 +7,8 @@
 /// Where a blade crosses what others have cut, it parts a cell only once it has left the cell, and those beside it: what its
 /// cuts free before may belong to a part from which only later ones, or those of the next cell, tell that it does (sides.h).
 /// Such cells are *unsettled*. They wait as long as the blade comes on: it has moved in the step, or has cut or met
-/// something that it had not before, as where material moves through a blade that rests.
+/// something that it had not before, as where material moves through a blade that rests. A blade that has left a cell, or come to rest in it, holds it no more,
+/// so that what it has parted is not joined when it comes by again.
 ///
 /// Labels: of blades and surfaces, from 1 on.
 
@@ -37,6 +38,17 @@ struct StandingEdge {
 
   bool rests() const { return line == before; }
   void archive(Archive& a) { a(label, line, before); }
+};
+
+/// A cell that a blade has cut, and then left, or come to rest in.
+struct LeftCell {
+  grid::CellId cell;
+  grid::CutLabel label = 1;
+
+  friend bool operator<(const LeftCell& a, const LeftCell& b) {
+    return a.cell != b.cell ? a.cell < b.cell : a.label < b.label;
+  }
+  void archive(Archive& a) { a(cell, label); }
 };
 
 /// All so far.
@@ -93,7 +105,7 @@ class Cutter {
   /// All but the boxes, which are made of the body before its first cut and fitted in each step.
   void archive(Archive& a) {
     a.name("cutter");
-    a(pending_, passed_, advance_, edges_, unsettled_, x_before_, counts_);
+    a(pending_, passed_, advance_, edges_, unsettled_, left_, x_before_, counts_);
   }
   /// Memory of what grows with the body [B].
   std::size_t n_bytes() const { return boxes_->n_bytes() + sizeof(Vec3) * x_before_.capacity(); }
@@ -124,6 +136,7 @@ class Cutter {
   Advance advance_;
   std::vector<StandingEdge> edges_; // after the last step
   std::set<grid::CellId> unsettled_;
+  std::set<LeftCell> left_; // blades hold these cells no more
   Points x_before_;                // where the corners were when the blades were met last [m]
   bool boxes_stand_there_ = false; // fitted to them
   CutCounts counts_;

@@ -118,9 +118,7 @@ class OnCorners : public Physics {
     follow_cut_with_model(body, change);
     widen(body);
     follow_crumbs(body, state);
-    const auto freed = freed_corners(change, carried);
-    gives_back_ = !freed.empty();
-    if (gives_back_)
+    if (const auto freed = freed_corners(change, carried); !freed.empty())
       restore_momentum(had, freed, model().lumped_mass(), crumbs_, state);
     make_stepper(body);
     follow_heirs(state);
@@ -128,7 +126,7 @@ class OnCorners : public Physics {
 
   void let_out(const CutBody& body, const grid::CutChange& change, const double had, const dynamics::Loads& loads,
                dynamics::State& state) override {
-    if (stepper_->motion() != dynamics::MotionKind::dynamic || gives_back_ || carry_all(crumbs_))
+    if (stepper_->motion() != dynamics::MotionKind::dynamic || carry_all(crumbs_))
       return;
     const grid::CornerNumbers& numbers = model_->numbers();
     dynamics::Excess excess{.most = dynamics::most_after_cut(model(), had, state.v),
@@ -216,7 +214,6 @@ class OnCorners : public Physics {
   std::unique_ptr<dynamics::Stepper> stepper_;
   lattice::Riders riders_;
   std::vector<grid::Lapse> lapsed_;
-  bool gives_back_ = false; // the last cut, what crumbs took when they came to be
 };
 
 /// Elements are brought up to date where the cut is, and stay elsewhere.

@@ -229,8 +229,7 @@ void Phyxels::follow_cut(const CutBody& body, const grid::CutChange& change, dyn
   for (std::uint32_t i = 0; i < carried.size(); ++i)
     if (carried[i] != 0 && !crumbs_.carries(i))
       freed.push_back(i);
-  gives_back_ = !freed.empty();
-  if (gives_back_)
+  if (!freed.empty())
     restore_momentum(had, freed, model_.lumped_mass(), crumbs_, state);
   is_stale_ = true;
   const std::vector<double> weights(model_.weights().begin(), model_.weights().end());
@@ -255,7 +254,7 @@ void Phyxels::find_touched(const std::vector<double>& weights_before) {
 
 void Phyxels::let_out(const CutBody&, const grid::CutChange&, const double had, const dynamics::Loads& loads,
                       dynamics::State& state) {
-  if (stepper_->motion() != dynamics::MotionKind::dynamic || gives_back_ || carry_all(crumbs_))
+  if (stepper_->motion() != dynamics::MotionKind::dynamic || carry_all(crumbs_))
     return;
   dynamics::Relief relief(model_, {.most = dynamics::most_after_cut(model_, had, state.v),
                                    .touched = touched_,

@@ -112,7 +112,6 @@ class Phyxels : public Physics {
   pba::CornerMap map_;
   bool is_stale_ = false; ///< sights or pieces are newer than model and map
   std::vector<std::uint8_t> touched_; ///< 1 for each phyxel that sees another one otherwise since follow_cut()
-  bool gives_back_ = false;           ///< the last cut, what crumbs took when they came to be
 
   std::optional<visibility::PairSights> sights_;
   std::set<Face, ByCoordinates> faces_;
