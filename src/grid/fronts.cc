@@ -57,8 +57,9 @@ std::vector<double> lengths(const Solid& solid, const Front& front, const Copy& 
                             const std::vector<int>& apart) {
   const double h = solid.grid.h();
   if (one.nodes == 0 || other.nodes == 0) // skin alone
-    return std::vector<double>(apart.size(),
-                               std::min(fill(solid, one), fill(solid, other)) * h / static_cast<double>(apart.size()));
+    // A hollow skin may leave a copy with less than nothing.
+    return std::vector<double>(apart.size(), std::max(0.0, std::min(fill(solid, one), fill(solid, other))) * h /
+                                               static_cast<double>(apart.size()));
   std::vector<double> lengths = shares(solid, front, apart);
   for (double& length : lengths)
     length *= stiffness * front.area / h * (1 - front.passed) / front.passed;

@@ -1,6 +1,7 @@
 #include "tests/fuzz/invariants.h"
 
 #include "grid/cube.h"
+#include "grid/fronts.h"
 #include "grid/in_use.h"
 #include "tests/support/placed.h"
 #include "tests/support/same.h"
@@ -263,6 +264,9 @@ std::vector<CopyId> origins_of(const CellComplex& before, const Copy& copy) {
 } // namespace
 
 void require_sound_complex(const grid::Solid& solid, const Items& items) {
+  for (const grid::Tie& tie : grid::ties(solid)) // one that pushes apart would have energy without end
+    if (!(tie.length >= 0))
+      complain("copies are tied by " + number(tie.length) + " m");
   const HeldByCell held = all_held(items, solid);
   require_sound_copies(items, solid, held);
   require_real_corners(solid);
