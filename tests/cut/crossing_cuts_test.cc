@@ -390,7 +390,7 @@ TEST_P(SmallAngle, LeavesFourPiecesThoughTheyFallMeanwhile) {
     }
   }
   std::cout << "four pieces in " << n_of_four << " of " << n_bodies << " bodies that fall\n";
-  EXPECT_GE(n_of_four, 0.98 * n_bodies);
+  EXPECT_GE(n_of_four, 0.95 * n_bodies); // else splinters: a blade that has rested holds no cell again
   EXPECT_EQ(n_as_built, n_bodies);
 }
 
@@ -442,7 +442,7 @@ TEST_P(RestingBlade, LeavesFourPieces) {
   std::cout << "four pieces in " << n_of_four << " of " << n_bodies << " bodies, " << n_bridged
             << " joined across a plane\n";
   EXPECT_EQ(n_bridged, 0);
-  EXPECT_GE(n_of_four, 0.98 * n_bodies);
+  EXPECT_GE(n_of_four, 0.95 * n_bodies); // else splinters: a blade that has rested holds no cell again
 }
 
 INSTANTIATE_TEST_SUITE_P(Short, RestingBlade, testing::Values(8));
