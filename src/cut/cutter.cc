@@ -45,13 +45,15 @@ class Passage {
   grid::Segments cuts_in(const Solid& solid, const grid::CellId c, const Points& x, const std::size_t n_labels,
                          std::set<LeftCell>& left) const {
     grid::Segments cuts = 0;
-    for (grid::CutLabel label = 1; label <= n_labels; ++label)
-      if (const grid::Segments own = grid::cut_by(solid, c, label); own != 0 && !left.contains({c, label})) {
-        if (holds(label, solid, c, x))
-          cuts |= own;
-        else
-          left.insert({c, label});
-      }
+    for (grid::CutLabel label = 1; label <= n_labels; ++label) {
+      const grid::Segments own = left.contains({c, label}) ? 0 : grid::cut_by(solid, c, label);
+      if (own == 0)
+        continue;
+      if (holds(label, solid, c, x))
+        cuts |= own;
+      else
+        left.insert({c, label});
+    }
     return (grid::cuts_of(solid, c).blades & ~cuts) != 0 ? cuts : 0;
   }
 

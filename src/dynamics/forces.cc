@@ -4,6 +4,8 @@
 #include "dynamics/conjugate_gradients.h"
 #include "dynamics/state.h"
 
+#include <algorithm>
+
 namespace kerf::dynamics {
 
 namespace {
@@ -94,6 +96,20 @@ double kinetic_energy(const ForceModel& model, const Points& v) {
   for (std::size_t i = 0; i < more.size(); ++i)
     sum += 0.5 * v[i].dot(more[i]);
   return sum;
+}
+
+MassAndMomentum mass_and_momentum(const ForceModel& model, const Points& v) {
+  const auto masses = model.lumped_mass();
+  return sum_in_blocks(v.size(), MassAndMomentum(),
+                       [&](const std::size_t begin, const std::size_t end, MassAndMomentum& part) {
+                         for (std::size_t i = begin; i < end; ++i)
+                           part += {masses[i], masses[i] * v[i]};
+                       });
+}
+
+double inner_kinetic_energy(const ForceModel& model, const Points& v) {
+  const auto [mass, momentum] = mass_and_momentum(model, v);
+  return std::max(0.0, kinetic_energy(model, v) - (mass > 0 ? 0.5 * momentum.squaredNorm() / mass : 0));
 }
 
 double gravity_energy(const ForceModel& model, const Loads& loads, const Points& x) {

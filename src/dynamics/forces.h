@@ -32,6 +32,20 @@ Loan<Vec3> coupled(const ForceModel& model, const Points& v);
 Loan<Vec3> momenta(const ForceModel& model, const Points& v);
 /// Kinetic energy [J].
 double kinetic_energy(const ForceModel& model, const Points& v);
+/// Mass [kg] and momentum by the lumped masses [kg m/s].
+struct MassAndMomentum {
+  double mass = 0;
+  Vec3 momentum = Vec3::Zero();
+
+  MassAndMomentum& operator+=(const MassAndMomentum& more) {
+    mass += more.mass;
+    momentum += more.momentum;
+    return *this;
+  }
+};
+MassAndMomentum mass_and_momentum(const ForceModel& model, const Points& v);
+/// Kinetic energy of the motion beside the mean one [J].
+double inner_kinetic_energy(const ForceModel& model, const Points& v);
 /// -sum of m g.x [J].
 double gravity_energy(const ForceModel& model, const Loads& loads, const Points& x);
 

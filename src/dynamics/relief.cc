@@ -3,9 +3,8 @@
 #include "base/error.h"
 #include "dynamics/balance.h"
 #include "dynamics/forces.h"
-#include "dynamics/sound_steps.h"
+#include "dynamics/rigid_body.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
 #include <cmath>
@@ -29,17 +28,6 @@ Loan<Moments> moments(const Pieces& pieces, const std::span<const double> mass, 
     of.angular += mass[i] * state.x[i].cross(state.v[i]);
   }
   return all;
-}
-
-/// I^-1 L, but about axes that have hardly any inertia.
-Vec3 spin_of(const Mat3& inertia, const Vec3& L) {
-  constexpr double hardly_any = 1e-6;
-  const Eigen::SelfAdjointEigenSolver<Mat3> eigen(inertia);
-  Vec3 spin = Vec3::Zero();
-  for (int k = 0; k < 3; ++k)
-    if (const double I = eigen.eigenvalues()[k]; I > hardly_any * eigen.eigenvalues()[2])
-      spin += eigen.eigenvectors().col(k).dot(L) / I * eigen.eigenvectors().col(k);
-  return spin;
 }
 
 double slope_squared(const std::span<const double> mass, const Constraints& constraints, const Points& forces) {
@@ -97,8 +85,11 @@ void keep_moments(const Pieces& pieces, const std::span<const double> mass, cons
     inertia[pieces.of(i)] += mass[i] * (r.squaredNorm() * Mat3::Identity() - r * r.transpose());
   }
   Loan<Vec3> spin(pieces.n());
-  for (std::size_t p = 0; p < pieces.n(); ++p)
-    spin[p] = is_free[p] != 0 ? spin_of(inertia[p], had[p].angular - has[p].angular) : Vec3(Vec3::Zero());
+  for (std::size_t p = 0; p < pieces.n(); ++p) {
+    const double about_origin = has[p].mass > 0 ? has[p].moment.squaredNorm() / has[p].mass : 0;
+    spin[p] = is_free[p] != 0 ? angular_velocity(inertia[p], about_origin, had[p].angular - has[p].angular)
+                              : Vec3(Vec3::Zero());
+  }
   for (std::size_t i = 0; i < mass.size(); ++i)
     if (!is_carried(loads, i))
       after.v[i] += spin[pieces.of(i)].cross(arm(i));

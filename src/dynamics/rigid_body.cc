@@ -1,6 +1,7 @@
 #include "dynamics/rigid_body.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
@@ -55,6 +56,17 @@ std::array<double, 2> decays(const double z) {
 
 Vec3 angular_velocity(const RigidBody& body, const RigidMotion& motion) {
   return motion.R * body.inertia.ldlt().solve(motion.R.transpose() * motion.spin);
+}
+
+Vec3 angular_velocity(const Mat3& inertia, const double about_origin, const Vec3& L) {
+  constexpr double of_places = 1e-18, of_axes = 1e-9; // squares of lengths
+  const Eigen::SelfAdjointEigenSolver<Mat3> eigen(inertia);
+  const Vec3 I = eigen.eigenvalues(), c = eigen.eigenvectors().transpose() * L;
+  Vec3 omega = Vec3::Zero();
+  for (int k = 0; k < 3; ++k)
+    if (I[k] > of_places * about_origin && I[k] > of_axes * I[2])
+      omega += c[k] / I[k] * eigen.eigenvectors().col(k);
+  return omega;
 }
 
 double kinetic_energy(const RigidBody& body, const RigidMotion& motion) {

@@ -36,6 +36,9 @@ struct RigidMotion {
 
 /// World frame [rad/s].
 Vec3 angular_velocity(const RigidBody& body, const RigidMotion& motion);
+/// Of masses that have an inertia about their centre and, were they all there, another one about the origin [kg m^2], with an angular
+/// momentum L. Axes about which they have hardly any but round-off are left out: one mass has no other.
+Vec3 angular_velocity(const Mat3& inertia, double about_origin, const Vec3& L);
 /// Where a point of the body is that rests at X [m].
 inline Vec3 place(const RigidBody& body, const RigidMotion& motion, const Vec3& X) {
   return motion.x + motion.R * (X - body.centre);

@@ -180,17 +180,6 @@ std::string per_cent(const double part) { return in_short(100 * part) + " %"; }
 
 } // namespace
 
-double inner_kinetic_energy(const ForceModel& model, const Points& v) {
-  const auto masses = model.lumped_mass();
-  const MassAndMoment all =
-    sum_in_blocks(v.size(), MassAndMoment(), [&](const std::size_t begin, const std::size_t end, MassAndMoment& part) {
-      for (std::size_t i = begin; i < end; ++i)
-        part += {masses[i], masses[i] * v[i]};
-    });
-  const auto& [mass, momentum, square] = all;
-  return std::max(0.0, kinetic_energy(model, v) - (mass > 0 ? 0.5 * momentum.squaredNorm() / mass : 0));
-}
-
 void require_finite(const State& state) {
   const FirstLost all = sum_in_blocks(
     state.x.size(), FirstLost(), [&](const std::size_t begin, const std::size_t end, FirstLost& part) {

@@ -133,9 +133,6 @@ struct EnergyChange {
 EnergyChange energy_change(const ForceModel& model, ElasticEnergies& energies, const Loads& loads, const State& before,
                            const State& after);
 
-/// Of the motion beside the mean one [J].
-double inner_kinetic_energy(const ForceModel& model, const Points& v);
-
 /// Throws StepError when a position or a velocity is not finite.
 void require_finite(const State& state);
 

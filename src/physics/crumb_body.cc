@@ -42,17 +42,6 @@ Mat3 at_least(const Mat3& A, const double least) {
 
 Mat3 inertia_of(const Mat3& second_moment) { return second_moment.trace() * Mat3::Identity() - second_moment; }
 
-/// Angular velocity of masses whose angular momentum is L; none about a line on which they all lie.
-Vec3 angular_velocity(const Mat3& inertia, const Vec3& L) {
-  constexpr double nothing = 1e-12;
-  const Eigen::SelfAdjointEigenSolver<Mat3> eigen(inertia);
-  Vec3 omega = Vec3::Zero();
-  for (int k = 0; k < 3; ++k)
-    if (eigen.eigenvalues()[k] > nothing * eigen.eigenvalues()[2])
-      omega += eigen.eigenvectors().col(k).dot(L) / eigen.eigenvalues()[k] * eigen.eigenvectors().col(k);
-  return omega;
-}
-
 /// The material of a crumb, lengths in cube edges from `origin` [m].
 struct Material {
   Vec3 origin;
@@ -127,7 +116,7 @@ dynamics::RigidMotion motion_of(const CrumbBody& crumb, const Motion& now) {
     L += mass[i] * r.cross(now.v[corners[i]] - motion.v);
   }
   motion.R = material::rotation_of(A);
-  const Vec3 omega = angular_velocity(inertia_of(second), L), to_centre = motion.R * (body.centre - X);
+  const Vec3 omega = dynamics::angular_velocity(inertia_of(second), all * motion.x.squaredNorm(), L), to_centre = motion.R * (body.centre - X);
   motion.x += to_centre;
   motion.v += omega.cross(to_centre);
   motion.spin = motion.R * body.inertia * motion.R.transpose() * omega;

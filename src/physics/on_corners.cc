@@ -1,8 +1,8 @@
 #include "physics/on_corners.h"
 
+#include "dynamics/rigid_body.h"
 #include "grid/carriers.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
 #include <algorithm>
@@ -20,19 +20,6 @@ std::vector<double> material_mass(const fem::Hexahedra& model) {
     for (const auto user : model.incidence().users(i))
       mass[i] += model.element(user / 8).mass[user % 8];
   return mass;
-}
-
-/// Of masses that have an inertia about their centre, and one about the origin, with an angular momentum. Axes about which
-/// they have hardly any but round-off are left out.
-Vec3 angular_velocity(const Mat3& inertia, const double about_origin, const Vec3& L) {
-  constexpr double of_places = 1e-18, of_axes = 1e-9; // squares of lengths
-  const Eigen::SelfAdjointEigenSolver<Mat3> eigen(inertia);
-  const Vec3 I = eigen.eigenvalues(), c = eigen.eigenvectors().transpose() * L;
-  Vec3 omega = Vec3::Zero();
-  for (int k = 0; k < 3; ++k)
-    if (I[k] > of_places * about_origin && I[k] > of_axes * I[2])
-      omega += c[k] / I[k] * eigen.eigenvectors().col(k);
-  return omega;
 }
 
 /// The largest t of 0 .. 1 up to which a t^2 + b t is no more than c, for a and c that are not negative.
@@ -124,7 +111,7 @@ void join_lapsed(const std::span<const grid::Lapse> lapsed, const std::function<
     inertia += m * (r.squaredNorm() * Mat3::Identity() - r * r.transpose());
     spin += m * r.cross(state.v[heir]);
   }
-  const Vec3 omega = angular_velocity(inertia, all * centre.squaredNorm(), L);
+  const Vec3 omega = dynamics::angular_velocity(inertia, all * centre.squaredNorm(), L);
   const double part = part_within(omega.dot(inertia * omega), 2 * omega.dot(spin), taken);
   for (const auto& [heir, m] : mass_of_heir)
     state.v[heir] += part * omega.cross(state.x[heir] - centre);

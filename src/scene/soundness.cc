@@ -49,25 +49,9 @@ struct Motion {
   }
 };
 
-struct Momentum {
-  Vec3 momentum = Vec3::Zero();
-  double mass = 0;
-
-  Momentum& operator+=(const Momentum& more) {
-    momentum += more.momentum;
-    mass += more.mass;
-    return *this;
-  }
-};
-
 Vec3 mean_velocity(const dynamics::ForceModel& model, const Points& v) {
-  const auto mass = model.lumped_mass();
-  const Momentum all = dynamics::sum_in_blocks(
-    v.size(), Momentum(), [&](const std::size_t begin, const std::size_t end, Momentum& part) {
-      for (std::size_t i = begin; i < end; ++i)
-        part += {mass[i] * v[i], mass[i]};
-    });
-  return all.mass > 0 ? Vec3(all.momentum / all.mass) : Vec3(Vec3::Zero());
+  const auto [mass, momentum] = dynamics::mass_and_momentum(model, v);
+  return mass > 0 ? Vec3(momentum / mass) : Vec3(Vec3::Zero());
 }
 
 const grid::Copy& copy_of(const Body& body, const std::size_t c) {

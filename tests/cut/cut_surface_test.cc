@@ -1,9 +1,8 @@
 #include "cut/cut_surface.h"
 
-#include "cut/cutter.h"
-
 #include "base/error.h"
 #include "cut/blade.h"
+#include "cut/cutter.h"
 #include "tests/support/clipped_box.h"
 #include "tests/support/placed.h"
 
