@@ -112,6 +112,7 @@ StepReport Relief::step(State& state, const Loads& loads, double) {
                                 .tolerance = 1e-2,
                                 .line_search = LineSearch::backtracking,
                                 .cg_tolerance = 1e-3});
+  const double first = excess;
   State after = state;
   double tau = std::sqrt(excess / slope);
   for (int k = 0; k < most_steps && excess > 0; ++k, tau *= 4) {
@@ -129,7 +130,9 @@ StepReport Relief::step(State& state, const Loads& loads, double) {
     after.x.swap(x);
   }
   keep_moments(Pieces(excess_.piece()), model_.lumped_mass(), loads, state, after);
-  state = std::move(after);
+  const double taken = first - excess, turned = kinetic_energy(model_, after.v) - kinetic_energy(model_, state.v);
+  if (turned <= taken) // else it has hardly any inertia, and turns by more than was let out
+    state = std::move(after);
   return report;
 }
 

@@ -1,6 +1,7 @@
 #include "lattice/relief.h"
 
 #include "base/loan.h"
+#include "dynamics/forces.h"
 
 namespace kerf::lattice {
 
@@ -20,6 +21,7 @@ dynamics::StepReport Relief::step(dynamics::State& state, const dynamics::Loads&
   double energy = model_.energy(state.x);
   if (energy <= excess_.most)
     return {};
+  const double first = energy;
   const dynamics::State before = state;
   Loan<Vec3> goals = Loan<Vec3>::with_room(state.x.size());
   for (int round = 0; round < most_rounds && energy > excess_.most; ++round) {
@@ -30,6 +32,8 @@ dynamics::StepReport Relief::step(dynamics::State& state, const dynamics::Loads&
     energy = model_.energy(state.x);
   }
   dynamics::keep_moments(dynamics::Pieces(excess_.piece()), model_.lumped_mass(), loads, before, state);
+  if (kinetic_energy(model_, state.v) - kinetic_energy(model_, before.v) > first - energy) // see dynamics::Relief
+    state = before;
   return {};
 }
 

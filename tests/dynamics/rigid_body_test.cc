@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
 
+#include <array>
 #include <cmath>
 
 namespace kerf::dynamics {
@@ -96,6 +97,34 @@ TEST(RigidBody, FliesByTheClosedForm) {
                                   : Vec3(start.x + (start.v - v + t * g) / alpha);
       EXPECT_LT((motion.x - x).norm(), alpha == 1e-6 ? 2e-6 : 1e-11) << alpha << ", " << n;
     }
+}
+
+/// Masses in one place have an inertia of round-off about their mean, and turn about nothing; those in a row not about it.
+TEST(AngularVelocity, KnowsNoAxisWithoutInertia) {
+  const Vec3 place(0.1, 0.7, 0.3), along = Vec3(1, 2, -2) / 3, L(1e-3, -2e-3, 5e-4);
+  for (const double length : {0.0, 0.2}) {
+    double mass = 0;
+    Vec3 moment = Vec3::Zero();
+    std::array<Vec3, 3> places;
+    for (int k = 0; k < 3; ++k) {
+      places[k] = place + length * k * along;
+      mass += 0.1 * (k + 1);
+      moment += 0.1 * (k + 1) * places[k];
+    }
+    const Vec3 centre = moment / mass;
+    Mat3 inertia = Mat3::Zero();
+    for (int k = 0; k < 3; ++k) {
+      const Vec3 r = places[k] - centre;
+      inertia += 0.1 * (k + 1) * (r.squaredNorm() * Mat3::Identity() - r * r.transpose());
+    }
+    const Vec3 omega = angular_velocity(inertia, mass * centre.squaredNorm(), L);
+    if (length == 0) {
+      EXPECT_EQ(omega, Vec3(Vec3::Zero()));
+    } else {
+      EXPECT_LT(std::abs(omega.dot(along)), 1e-12 * omega.norm());
+      EXPECT_LT((inertia * omega - (L - along.dot(L) * along)).norm(), 1e-12);
+    }
+  }
 }
 
 } // namespace
