@@ -224,6 +224,16 @@ void Matching::force(const Points& x, Points& forces) const {
     x.size(), [&](const std::size_t c) { forces[c] = stiffness_ * mass_[c] * (forces[c] - x[c]); }, worth_items);
 }
 
+void Matching::spread_over_regions(std::vector<std::uint8_t>& is_marked) const {
+  corner_field_.assign(6 * mass_.size(), 0.0);
+  for (std::size_t c = 0; c < mass_.size(); ++c)
+    corner_field_[6 * c] = is_marked[c];
+  sum_over_regions();
+  average_over_regions();
+  for (std::size_t c = 0; c < mass_.size(); ++c)
+    is_marked[c] = corner_field_[6 * c] > 0 ? 1 : is_marked[c];
+}
+
 void Matching::sum_moments(const Points& x, const Points& v, const Vec3& centre) const {
   corner_field_.resize(12 * x.size());
   parallel_for(

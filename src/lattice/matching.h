@@ -58,6 +58,9 @@ class Matching : public dynamics::ForceModel {
   /// both over the corners are those of v, kinetic energy is not more [m/s].
   void rigid_velocities(const Points& x, const Points& v, Points& u) const;
 
+  /// Marks all corners of regions that hold a marked one.
+  void spread_over_regions(std::vector<std::uint8_t>& is_marked) const;
+
   double stiffness() const { return stiffness_; }
   const Lines& lines() const { return lines_; }
   const Riders& riders() const { return riders_; }

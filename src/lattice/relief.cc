@@ -23,6 +23,7 @@ dynamics::StepReport Relief::step(dynamics::State& state, const dynamics::Loads&
     return {};
   const double first = energy;
   const dynamics::State before = state;
+  model_.spread_over_regions(excess_.touched);
   Loan<Vec3> goals = Loan<Vec3>::with_room(state.x.size());
   for (int round = 0; round < most_rounds && energy > excess_.most; ++round) {
     model_.goals(state.x, goals);
