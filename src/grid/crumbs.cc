@@ -72,7 +72,7 @@ class Spread {
     moment_ += from_mean * (p - mean_).transpose();
   }
   bool spans_volume(const double h) const {
-    constexpr double least = 1.0 / 8; // of h^2
+    constexpr double least = 1.0 / 2; // of h^2
     return n_ > 3 &&
            Eigen::SelfAdjointEigenSolver<Mat3>(moment_, Eigen::EigenvaluesOnly).eigenvalues()[0] >= least * h * h;
   }

@@ -8,7 +8,7 @@
 /// piece the grid knows hardly more than one deformation gradient, and spends up to 27 copies on it. What a cut leaves
 /// of a crumb stays one. A piece that a cut has left is one too where the physics knows the body by *samples*, points of its
 /// own, and those of the piece span no volume: they are none, up to three, or all near one plane, with a second moment about
-/// their mean of less than h^2 / 8 along some direction. What they do tells no deformation gradient. Where copies are joined (complex.h), and not all of a piece comes from one crumb, it is looked at as
+/// their mean of less than h^2 / 2 along some direction. What they do tells no deformation gradient. Where copies are joined (complex.h), and not all of a piece comes from one crumb, it is looked at as
 /// if it had been none: crumbs become material again.
 ///
 /// Found by walking from the copies that a cut has changed, over glued faces, for as long as it may be a crumb: what it

@@ -27,10 +27,19 @@ dynamics::StepReport Relief::step(dynamics::State& state, const dynamics::Loads&
   Loan<Vec3> goals = Loan<Vec3>::with_room(state.x.size());
   for (int round = 0; round < most_rounds && energy > excess_.most; ++round) {
     model_.goals(state.x, goals);
-    for (std::size_t c = 0; c < goals.size(); ++c)
-      if (excess_.touched[c] != 0 && is_held[c] == 0)
-        state.x[c] = goals[c];
-    energy = model_.energy(state.x);
+    const auto go = [&](const double part) {
+      for (std::size_t c = 0; c < goals.size(); ++c)
+        if (excess_.touched[c] != 0 && is_held[c] == 0)
+          state.x[c] += part * (goals[c] - state.x[c]);
+      energy = model_.energy(state.x);
+    };
+    const double had = energy;
+    const Points start = state.x;
+    go(1);
+    if (energy < excess_.most) { // no more than must be: along this way energy is convex
+      state.x = start;
+      go((had - excess_.most) / (had - energy));
+    }
   }
   dynamics::keep_moments(dynamics::Pieces(excess_.piece()), model_.lumped_mass(), loads, before, state);
   if (kinetic_energy(model_, state.v) - kinetic_energy(model_, before.v) > first - energy) // see dynamics::Relief
