@@ -95,40 +95,50 @@ void keep_moments(const Pieces& pieces, const std::span<const double> mass, cons
       after.v[i] += spin[pieces.of(i)].cross(arm(i));
 }
 
-StepReport Relief::step(State& state, const Loads& loads, double) {
+double Relief::flow(const std::span<const std::uint8_t> is_marked, const Loads& loads, double excess, State& state,
+                    StepReport& report) const {
   constexpr int most_steps = 8;
-  StepReport report;
-  double excess = model_.energy_ahead(state.x) - excess_.most; // the next step asks for forces here
-  if (!(excess > 0))
-    return report;
-  const Loads held = held_but(excess_.touched, state, loads);
+  constexpr double worth_a_step = 1e-3; // of the excess
+  const Loads held = held_but(is_marked, state, loads);
   const Constraints constraints(held, state.x.size());
   Loan<Vec3> forces = Loan<Vec3>::with_room(state.x.size());
   model_.force(state.x, forces);
   const double slope = slope_squared(model_.lumped_mass(), constraints, forces);
   if (!(slope > 0))
-    return report;
+    return excess;
   BalanceSolver solver(model_, {.max_iterations = 10,
                                 .tolerance = 1e-2,
                                 .line_search = LineSearch::backtracking,
                                 .cg_tolerance = 1e-3});
-  const double first = excess;
-  State after = state;
   double tau = std::sqrt(excess / slope);
   for (int k = 0; k < most_steps && excess > 0; ++k, tau *= 4) {
     Loan<Vec3> x(state.x.size());
     try {
-      Balance flow{.mass_factor = 1 / (tau * tau), .start = Loan<Vec3>(after.x)};
+      Balance flow{.mass_factor = 1 / (tau * tau), .start = Loan<Vec3>(state.x)};
       report.n_iterations += solver.solve(held, constraints, std::move(flow), x).n_linear;
     } catch (const NumericalError&) { // no further
       break;
     }
-    const double left = model_.energy(x) - excess_.most;
-    if (!(left < excess))
+    const double had = excess, left = model_.energy(x) - excess_.most;
+    if (!(left < had))
       break;
     excess = left;
-    after.x.swap(x);
+    state.x.swap(x);
+    if (had - left < worth_a_step * had)
+      break;
   }
+  return excess;
+}
+
+StepReport Relief::step(State& state, const Loads& loads, double) {
+  StepReport report;
+  const double first = model_.energy_ahead(state.x) - excess_.most; // the next step asks for forces here
+  if (!(first > 0))
+    return report;
+  State after = state;
+  double excess = flow(excess_.touched, loads, first, after, report);
+  if (excess > 0)
+    excess = flow(std::vector<std::uint8_t>(state.x.size(), 1), loads, excess, after, report);
   keep_moments(Pieces(excess_.piece()), model_.lumped_mass(), loads, state, after);
   const double taken = first - excess, turned = kinetic_energy(model_, after.v) - kinetic_energy(model_, state.v);
   if (turned <= taken) // else it has hardly any inertia, and turns by more than was let out

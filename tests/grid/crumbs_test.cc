@@ -276,7 +276,8 @@ TEST(Crumbs, AreThoseWhoseSamplesSpanNoVolume) {
   const std::vector<std::pair<Points, bool>> cases = {{{}, true},
                                                       {corner, true},
                                                       {with({Vec3(0.2, 0.2, 0.1), Vec3(0.3, 0.3, 0.11)}), true},
-                                                      {with({Vec3(0.1, 0.1, 0.2)}), false}};
+                                                      {with({Vec3(0.1, 0.1, 0.2)}), true},
+                                                      {with({Vec3(0.1, 0.1, 0.2), Vec3(0.2, 0.2, 0.2)}), false}};
   for (const auto& [above, is_crumb] : cases) {
     Body body = support::with_copies(support::with_placed_skin(support::block({4, 4, 6}, 0.1)));
     find_crumbs(body);
