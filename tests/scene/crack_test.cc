@@ -76,7 +76,7 @@ double edge_crack(const int n, const double inner, const double outer) {
   return plate.last("stress intensity tip") / K - 1;
 }
 
-/// -1.0, -.5 % with 4, 8 cubes along the crack. Which tubes are taken makes no difference.
+/// -.1 % with 4 and 8 cubes along the crack. Which tubes are taken makes no difference.
 TEST(Crack, AnEdgeCrackHasItsStressIntensity) {
   const double coarse = edge_crack(10, 2, 4), fine = edge_crack(20, 2, 4);
   say("edge_crack_4", coarse);
