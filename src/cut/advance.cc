@@ -69,7 +69,7 @@ Raster section_of(const Solid& solid, const Front& front, const InPlane& in_plan
 
 /// A cell's cube at rest, and around it what a front in another cell may reach over by its lag.
 Box reach_of(const Solid& solid, const CellId c) {
-  const double h = solid.grid.h(), lag = grid::front_lag * std::sqrt(3.0) * h;
+  const double h = solid.grid.h(), lag = grid::most_front_lag * h;
   const Vec3 origin = solid.grid.origin(c);
   return {origin - Vec3::Constant(lag), origin + Vec3::Constant(h + lag)};
 }
@@ -102,7 +102,7 @@ class Sweep {
       corners[8 + v] = x_before_[copy.corners[v].value];
     }
     Box box = geometry::box_around(corners);
-    const Vec3 lag = Vec3::Constant(grid::front_lag * (box.upper - box.lower).sum());
+    const Vec3 lag = Vec3::Constant(grid::most_front_lag * (box.upper - box.lower).maxCoeff());
     return near_.may_be_in({box.lower - lag, box.upper + lag});
   }
 
@@ -144,7 +144,7 @@ bool is_cut_beside(const Solid& solid, const CellId c) {
 
 /// The part of a section that what is drawn covers, with its lag.
 double passed(const Front& front, const Raster& section, const Raster& swept) {
-  const Raster come = section & swept.grown(grid::front_lag * front.normal.lpNorm<1>());
+  const Raster come = section & swept.grown(grid::front_lag(front.normal));
   return section.any() ? std::min(most_passed, double(come.count()) / section.count()) : 0;
 }
 

@@ -40,6 +40,7 @@ class ElementTable {
 
   bool is_full(const std::size_t copy) const { return element_of_[copy] == 0; }
   const Element& full() const { return elements_[0]; }
+  Strain strain() const { return options_.element.strain; }
 
  private:
   bool is_partial(const grid::Solid& solid, const grid::Copy& copy) const;

@@ -100,6 +100,8 @@ class Hexahedra : public dynamics::ElasticModel, public dynamics::StiffnessMatri
   const material::AnyLaw& law() const { return law_; }
   const material::Elastic& material() const { return material_; }
   const Element& element(const std::size_t copy) const { return elements_[copy]; }
+  Frame frame() const { return frame_; }
+  const ElementTable& elements() const { return elements_; }
   const Incidence& incidence() const { return incidence_; }
   Inertia inertia() const { return inertia_; }
   const GhostPenalty& ghost_penalty() const { return ghost_penalty_; }

@@ -139,28 +139,66 @@ Strains<n> weighted(const Matrix6& L, const Matrix6& root, const Strains<n>& S) 
   return result;
 }
 
-/// What of Y is orthogonal to the columns of Z, in the coordinates of an orthonormal basis; the first rows are zero.
+/// Least squares for the modes: |Y u + Z a|^2 is least over a, and what is left of Y u is the element's strain.
+struct OwnModes {
+  Strains<24> Y;
+  Eigen::Matrix<double, 12, 1> scale; ///< of the columns of Z to those of unit length
+  Eigen::ColPivHouseholderQR<Strains<12>> qr;
+
+  OwnModes(const Centred& moments, const material::Elastic& material);
+  /// What of Y is orthogonal to the columns of Z, in the coordinates of an orthonormal basis; the first rows are zero.
+  Strains<24> remainder() const;
+};
+
 /// Columns of hardly any length are round-off, and left out; so are those that the others span.
-Strains<24> remainder(const Strains<24>& Y, Strains<12> Z) {
+OwnModes::OwnModes(const Centred& moments, const material::Elastic& material) {
   constexpr double vanishing = 1e-6, dependent = 1e-8;
+  const Matrix6 L = factor_of(moments.gram), root = root_of_elasticity(material);
+  Y = weighted(L, root, displacement_strains(moments.centroid));
+  Strains<12> Z = weighted(L, root, enhanced_strains());
   const double longest = Z.colwise().norm().maxCoeff();
   for (int i = 0; i < 12; ++i) {
     const double length = Z.col(i).norm();
-    Z.col(i) *= length > vanishing * longest ? 1 / length : 0;
+    scale[i] = length > vanishing * longest ? 1 / length : 0;
+    Z.col(i) *= scale[i];
   }
-  Eigen::ColPivHouseholderQR<Strains<12>> qr;
   qr.setThreshold(dependent);
   qr.compute(Z);
+}
+
+Strains<24> OwnModes::remainder() const {
   Strains<24> turned = qr.householderQ().adjoint() * Y;
   turned.topRows(qr.rank()).setZero();
   return turned;
 }
 
 Matrix24 enhanced_stiffness(const Centred& moments, const material::Elastic& material) {
-  const Matrix6 L = factor_of(moments.gram), root = root_of_elasticity(material);
-  const auto Y =
-    remainder(weighted(L, root, displacement_strains(moments.centroid)), weighted(L, root, enhanced_strains()));
+  const auto Y = OwnModes(moments, material).remainder();
   return Y.transpose() * Y;
+}
+
+/// Of displacements.
+Gradients displacement_gradients(const Vec3& centroid) {
+  const auto gradient = gradients(centroid);
+  Gradients H = Gradients::Zero();
+  for (int a = 0; a < 8; ++a)
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j)
+        for (int q = 0; q < 6; ++q)
+          H(9 * q + 3 * j + i, 3 * a + i) = gradient[a](q, j);
+  return H;
+}
+
+/// Of the modes of an element's own (enhanced_strains()).
+Eigen::Matrix<double, 54, 12> enhanced_gradients() {
+  Eigen::Matrix<double, 54, 12> M = Eigen::Matrix<double, 54, 12>::Zero();
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      M(9 * j + 3 * j + i, 3 * i + j) = 1;
+  for (int q = 0; q < 3; ++q)
+    for (int i = 0; i < 3; ++i)
+      M(9 * (3 + q) + 3 * i + i, 9 + q) = 1;
+  return M;
 }
 
 } // namespace
@@ -194,6 +232,16 @@ std::array<Vec3, 8> mean_gradients(const Centred& moments) {
 
 Matrix24 hourglass_stiffness(const Centred& moments, const material::Elastic& material, const Strain strain) {
   return strain == Strain::enhanced ? enhanced_stiffness(moments, material) : trilinear_stiffness(moments, material);
+}
+
+Gradients hourglass_gradients(const Centred& moments, const material::Elastic& material, const Strain strain) {
+  Gradients H = displacement_gradients(moments.centroid);
+  if (strain == Strain::enhanced) {
+    const OwnModes own(moments, material);
+    const Eigen::Matrix<double, 12, 24> a = own.qr.solve(own.Y);
+    H -= enhanced_gradients() * own.scale.asDiagonal() * a;
+  }
+  return H;
 }
 
 Matrix24 mean_stiffness(const double volume, const std::array<Vec3, 8>& gradient, const material::Elastic& material) {

@@ -4,12 +4,13 @@
 #include "grid/shape.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace kerf::grid {
 
 namespace {
 
-constexpr double stiffness = 0.5; // c
+constexpr double stiffness = 0.6; // c
 
 /// The vertices at which two copies of a cell do not share a corner.
 std::vector<int> vertices_apart(const Copy& one, const Copy& other) {
@@ -74,6 +75,8 @@ bool hang_together(const Parts& parts, const Copy& one, const Copy& other) {
 }
 
 } // namespace
+
+double front_lag(const Vec3& normal) { return 0.25 * std::sqrt(normal.lpNorm<1>()); }
 
 std::vector<std::array<CopyId, 2>> tied_copies(const Solid& solid, const CellComplex& complex,
                                                const std::span<const CellId> cells) {

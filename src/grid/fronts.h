@@ -14,8 +14,13 @@
 /// and a front that moves on gives and takes no energy at once. The jump is the sum of N_v (x_v - y_v) over the vertices
 /// v at which the copies have corners x_v, y_v of their own. By rows, the layer is a spring of no length at each of these
 /// vertices, of stiffness kappa times the integral of N_v times the sum of their N: where the plane lies close to nodes,
-/// theirs alone hold it. c is measured: at .5 the compliance of a plate with an edge crack tells where its front is to
-/// .07 h, of elements of either kind, wherever the front and the plane lie in their cells.
+/// theirs alone hold it.
+///
+/// Elements cannot follow the root in which displacement ends at a front, and so are too stiff there, as if the cut were
+/// shorter by a part of a cube. At f = 0 and f = 1 the layer plays no part in that; c is such that it is as much between:
+/// .6 for elements of either kind, any Poisson's ratio, a plane that lies anywhere and a front along the grid, for which it
+/// is the same to .01 to .03 cubes, and to .09 for a front across the diagonals of faces. Who finds fronts lets the cut go
+/// on by that much (front_lag, cut/fronts.h).
 ///
 /// A front is provisional: when its blade cuts the cell, it is taken back, as far as it said otherwise (complex.h), and what
 /// the blade leaves is the same as without.
@@ -26,17 +31,16 @@
 ///
 /// Departs from the source, in which the jump vanishes at the front by the shape functions of the element: these need the
 /// front's shape in the cell, and another integration for each.
-///
-/// Elements cannot follow the root in which displacement ends at a front, and so are too stiff there, as if the cut were
-/// shorter: by `lag` times the 1-norm of the plane's normal in cubes, measured on discs of any tilt. Who finds fronts lets
-/// the cut go on by that (cut/fronts.h).
 
 #include "grid/solid.h"
 
 namespace kerf::grid {
 
-/// [1]
-constexpr double front_lag = 0.2;
+/// By how much a cut in a plane of this unit normal seems too short to elements [cubes]: .25 along the grid, more across it,
+/// as measured on discs of any tilt.
+double front_lag(const Vec3& normal);
+/// The most that it can be.
+constexpr double most_front_lag = 0.33;
 
 /// Between two corners at one node.
 struct Tie {

@@ -130,8 +130,8 @@ bool ends_on_skin(const Reach& reach, const NamedFront& front, const double cube
 /// Whether a support holds something in the outer tube against what the growth of the crack shifts.
 bool resists(const dynamics::Support& support, const NamedFront& front, const Points& rest) {
   return std::any_of(support.corners.begin(), support.corners.end(), [&](const std::uint32_t i) {
-    const auto [direction, distance] = fem::growth_at(front.front, rest[i]);
-    return distance < front.tubes.outer && (support.held * direction).norm() > 1e-6;
+    const fem::Growth growth = fem::growth_at(front.front, rest[i]);
+    return growth.distance < front.tubes.outer && (support.held * growth.direction).norm() > 1e-6;
   });
 }
 
@@ -162,7 +162,7 @@ std::vector<std::string> check_crack_fronts(const Section& section, const Body& 
 
 double energy_release_rate(const Body& body, const NamedFront& front) {
   const auto& elements = dynamic_cast<const physics::Elements&>(*body.physics);
-  return fem::energy_release_rate(elements.own_model(), elements.rest(), body.state.x, front.front, front.tubes);
+  return fem::energy_release_rate(body.solid, elements.own_model(), body.state.x, front.front, front.tubes);
 }
 
 double stress_intensity(const Body& body, const NamedFront& front) {

@@ -68,6 +68,29 @@ Matrix24 by_quadrature(const std::vector<WeightedPoint<Vec3>>& rule, const mater
   return uu - au.transpose() * aa.llt().solve(au);
 }
 
+/// Gradients beside the mean have the energy that the stiffness says.
+TEST(Enhanced, GradientsHaveTheEnergyOfTheStiffness) {
+  auto all = make_samples();
+  all.push_back({full_cube_moments(), cube_rule(4)});
+  Draw draw(8);
+  const auto D = elasticity(rubber);
+  for (const Strain strain : {Strain::trilinear, Strain::enhanced})
+    for (const Sample& sample : all) {
+      const Centred about = centred(without_negative_squares(sample.moments));
+      Vector24 u;
+      for (int i = 0; i < 24; ++i)
+        u[i] = draw.normal();
+      const Eigen::Matrix<double, 54, 1> gradients = hourglass_gradients(about, rubber, strain) * u;
+      const auto strain_of = [&](const int p) { return engineering_strain(Eigen::Map<const Mat3>(gradients.data() + 9 * p)); };
+      double energy = 0;
+      for (int p = 0; p < 6; ++p)
+        for (int q = 0; q < 6; ++q)
+          energy += about.gram(p, q) * strain_of(p).dot(D * strain_of(q));
+      const double expected = u.dot(hourglass_stiffness(about, rubber, strain) * u);
+      EXPECT_NEAR(energy, expected, 1e-9 * expected);
+    }
+}
+
 TEST(Enhanced, AgreesWithQuadratureInItsTetrahedra) {
   double worst = 0;
   auto all = make_samples();

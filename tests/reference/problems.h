@@ -42,8 +42,8 @@ inline Problem heavy_cantilever(const int n) {
   return p;
 }
 
-/// A penny of radius 1 in the middle of a cube of edge 2 R under a tension of 1 Pa: the quarter x, y > 0, in layers that shrink by
-/// 0.15 towards the front. E = 1 Pa, nu = 0.3.
+/// A penny of radius 1 in the middle of a cube of edge 2 R, both of whose ends are pulled by 1 Pa: the quarter x, y > 0, in layers
+/// that shrink by 0.15 towards the front. E = 1 Pa, nu = 0.3.
 inline Problem penny(const double R, const int n_layers) {
   const std::vector<double> near = graded(0, 0.6, n_layers, 0.15);
   std::vector<double> radii, z;
@@ -64,8 +64,10 @@ inline Problem penny(const double R, const int n_layers) {
   p.mesh = extruded(quarter_disc_in_square(radii, R), z);
   split(p.mesh, Vec3::Zero(), Vec3::UnitZ(), [](const Vec3& X) { return X.norm() < 1 + 1e-9; });
   p.poissons_ratio = 0.3;
-  p.supports = {{at(0, 0), {true, false, false}}, {at(1, 0), {false, true, false}}, {at(2, -R), {false, false, true}}};
-  p.tractions = {{at(2, R), [](const Vec3&, const Vec3& n) { return n; }}};
+  p.supports = {{at(0, 0), {true, false, false}}, {at(1, 0), {false, true, false}}};
+  p.pins = {{Vec3(R, R, -R), {false, false, true}}};
+  for (const double end : {-R, R})
+    p.tractions.push_back({at(2, end), [](const Vec3&, const Vec3& n) { return n; }});
   return p;
 }
 

@@ -76,7 +76,7 @@ double edge_crack(const int n, const double inner, const double outer) {
   return plate.last("stress intensity tip") / K - 1;
 }
 
-/// -1.0, -.5 % with 4, 8 cubes along the crack. Which tubes are taken makes no difference.
+/// -.1 % with 4 and 8 cubes along the crack. Which tubes are taken makes no difference.
 TEST(Crack, AnEdgeCrackHasItsStressIntensity) {
   const double coarse = edge_crack(10, 2, 4), fine = edge_crack(20, 2, 4);
   say("edge_crack_4", coarse);
@@ -133,15 +133,15 @@ void penny(const int n) {
     say(name + " " + std::to_string(n), error);
     EXPECT_LT(std::abs(error), tolerance) << name;
   };
-  expect("energy release rate rim", 4 * k * sigma / pi, 1.32, 0.065);
-  expect("cut opening crack", 8 * k / pi, 0.54, 0.04);
-  expect("cut volume crack", 16 * k / 3, 0.65, 0.04);
+  expect("energy release rate rim", 4 * k * sigma / pi, 1.96, 0.03);
+  expect("cut opening crack", 8 * k / pi, 1.03, 0.03);
+  expect("cut volume crack", 16 * k / 3, 1.01, 0.04);
   expect("cut area crack", pi, 0, 0.03);
   EXPECT_NEAR(block.last("cut extent crack y"), 2, 2 * h);
 }
 
 /// The block is three radii wide on each side, which lets the crack open further: the volume and G as in
-/// tests/verification/plates_test.cc, the opening as with 14 cubes a radius in params/compare/penny.prm.
+/// tests/verification/plates_test.cc, and so the opening.
 TEST(Crack, APennyHasItsEnergyReleaseRateAndOpening) { penny(5); }
 
 /// How far the mouth of a crack from the side of a plate opens by points that see each other by a criterion, with 14 cubes

@@ -268,10 +268,35 @@ BeamResult double_cantilever(const DoubleCantilever& beam, const BeamModel& mode
   const double h = beam.arm / beam.n_over_arm, b = 2 * h, c = length_of_cut(beam);
   SplitArms arms = split_arms(beam, by_rectangle(beam, cut::Fronts::inside_cells), pull(beam), model);
   const fem::LineFront front{Vec3(c, 0, beam.arm), Vec3(c, b, beam.arm), Vec3::UnitX()};
-  const double G = fem::energy_release_rate(*arms.built.model, arms.built.body.rest(),
-                                            deformed(arms.built.body, arms.u), front, {0.5 * beam.a, 0.9 * beam.a});
+  const double G = fem::energy_release_rate(arms.built.body, *arms.built.model, deformed(arms.built.body, arms.u), front,
+                                            {0.5 * beam.a, 0.9 * beam.a});
   arms.result.value = G / (12 * c * c / (b * b * std::pow(beam.arm, 3)) * std::pow(1 + 0.673 * beam.arm / c, 2));
   return arms.result;
+}
+
+namespace {
+
+double work(const SplitArms& arms, const DoubleCantilever& beam) {
+  const Points f = traction_forces(arms.built.body, pull(beam));
+  double sum = 0;
+  for (std::size_t i = 0; i < f.size(); ++i)
+    sum += f[i].dot(arms.u[i]);
+  return sum;
+}
+
+} // namespace
+
+BeamResult double_cantilever_by_work(const DoubleCantilever& beam, const BeamModel& model) {
+  const double b = 2 * beam.arm / beam.n_over_arm, c = length_of_cut(beam) / beam.arm;
+  const auto of = [&](const int n_more) {
+    DoubleCantilever other = beam;
+    other.front += n_more;
+    return split_arms(other, by_rectangle(other, cut::Fronts::inside_cells), pull(other), model);
+  };
+  SplitArms longer = of(beam.n_over_arm);
+  const double grown = work(longer, beam) - work(of(-beam.n_over_arm), beam);
+  longer.result.value = grown / (2 * b) / (4 / (b * b) * (std::pow(c + 1.673, 3) - std::pow(c - 0.327, 3)));
+  return longer.result;
 }
 
 BeamResult blade_over_rectangle(const DoubleCantilever& beam, const int n_steps, const BeamModel& model) {
@@ -280,17 +305,10 @@ BeamResult blade_over_rectangle(const DoubleCantilever& beam, const int n_steps,
     .name = "blade",
     .edge = {Vec3(0, -h, beam.arm), Vec3(0, 3 * h, beam.arm)},
     .key_frames = {{0, Vec3(-h, 0, 0), Vec3::Zero()}, {1, Vec3(length_of_cut(beam), 0, 0), Vec3::Zero()}}};
-  const auto work = [&](const SplitArms& arms) {
-    const Points f = traction_forces(arms.built.body, pull(beam));
-    double sum = 0;
-    for (std::size_t i = 0; i < f.size(); ++i)
-      sum += f[i].dot(arms.u[i]);
-    return sum;
-  };
   SplitArms arms = split_arms(
     beam, [&](Body& body) { cut_with_blade(body, blade, n_steps); }, pull(beam), model);
   arms.result.value =
-    work(arms) / work(split_arms(beam, by_rectangle(beam, cut::Fronts::inside_cells), pull(beam), model));
+    work(arms, beam) / work(split_arms(beam, by_rectangle(beam, cut::Fronts::inside_cells), pull(beam), model), beam);
   return arms.result;
 }
 

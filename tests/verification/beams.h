@@ -67,6 +67,8 @@ struct DoubleCantilever {
 /// 1985, Int. J. Fracture 29, 125-134; here without their terms for a force that acts at a point). Elements of degree
 /// 7, in layers that shrink by 0.3 towards the front, give 0.6732 for c / arm = 2 and 4: the formula is good to 2e-4.
 BeamResult double_cantilever(const DoubleCantilever& beam, const BeamModel& model);
+/// The same by work: half of what that of P grows by as c grows from an arm less to an arm more.
+BeamResult double_cantilever_by_work(const DoubleCantilever& beam, const BeamModel& model);
 /// The arms pulled apart likewise: the work of P after a blade has come from x = 0 to the front in so many steps, over that
 /// after a rectangle has cut as far at once.
 BeamResult blade_over_rectangle(const DoubleCantilever& beam, int n_steps, const BeamModel& model);

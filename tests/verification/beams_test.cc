@@ -126,9 +126,17 @@ TEST(DoubleCantilever, EnergyReleaseRateConvergesToFooteAndBuchwalds) {
     errors.push_back(double_cantilever({.n_over_arm = n}, {}).value - 1);
     record("n_" + std::to_string(n), errors.back());
   }
-  EXPECT_LT(std::abs(errors[2]), 0.0075);
+  EXPECT_LT(std::abs(errors[2]), 0.005);
   EXPECT_LT(std::abs(errors[1]), 0.35 * std::abs(errors[0]));
   EXPECT_LT(std::abs(errors[2]), 0.35 * std::abs(errors[1]));
+}
+
+/// The integral over a domain is what the energies of cracks of other lengths say: what it errs by is the elements' own.
+TEST(DoubleCantilever, EnergyReleaseRateIsThatByWork) {
+  for (const double front : {0.01, 0.5}) {
+    const DoubleCantilever beam{.n_over_arm = 4, .front = front};
+    EXPECT_NEAR(double_cantilever(beam, {}).value, double_cantilever_by_work(beam, {}).value, 0.003) << front;
+  }
 }
 
 /// Wherever a front lies in a cell, the energy release rate changes as it does with the length of the crack.
