@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 namespace kerf::dynamics {
 
@@ -37,12 +38,18 @@ class Estimate {
     constexpr double bound_is_low = 10; // squared: what these iterations left may be more than what they took
     return n_ >= delay_ && bound_is_low * std::accumulate(last_.begin(), last_.begin() + delay_, 0.0) <= most();
   }
-  /// By r.Br of the iterate at hand, to be called once for each, where B is more than J.
+  /// By r.Jr of the iterate at hand, to be called once for each before r.Br is known, where B is more than J.
+  bool foresees_enough(const double square) {
+    constexpr double bound_is_low = 16; // squared, see the header
+    const double factor = square / std::exchange(square_, square);
+    return n_ >= 1 && bound_is_low * largest_alpha_ * factor * rz_[1] <= most();
+  }
+  /// By r.Br, likewise.
   bool says_enough(const double rz) {
-    constexpr double bound_is_low = 4; // squared, see the header
-    const double factor = std::max(rz / rz_[1], rz_[1] / rz_[0]);
+    const double bound_is_low = n_ == 1 ? 10 : 4; // squared, see the header
+    const double factor = n_ == 1 ? rz / rz_[1] : std::max(rz / rz_[1], rz_[1] / rz_[0]);
     rz_ = {rz_[1], rz};
-    return n_ >= 2 && factor < 1 && bound_is_low * largest_alpha_ * rz <= (1 - factor) * most();
+    return n_ >= 1 && factor < 1 && bound_is_low * largest_alpha_ * rz <= (1 - factor) * most();
   }
 
  private:
@@ -53,6 +60,7 @@ class Estimate {
   std::size_t delay_;
   std::array<double, 8> last_ = {};
   std::array<double, 2> rz_ = {0, 0}; // of the last two iterates
+  double square_ = 0;                 // r.Jr of the last one
   std::size_t n_ = 0;
   double all_ = 0, farther_ = 0, largest_alpha_ = 0;
 };
@@ -107,7 +115,8 @@ CgReport conjugate_gradients(const CgEquation& equation, const std::span<const d
     (equation.J ? equation.J : equation.B)(r, z);
     const double square = dot(r, z);
     report.residual = std::sqrt(square);
-    report.converged = report.residual <= stop.residual || estimate.says_enough();
+    report.converged = report.residual <= stop.residual || estimate.says_enough() ||
+                       (equation.J && estimate.foresees_enough(square));
     if (report.converged)
       return;
     if (equation.J)
