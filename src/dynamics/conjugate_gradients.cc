@@ -86,12 +86,13 @@ double dot(const std::span<const double> a, const std::span<const double> b) {
 }
 
 CgReport conjugate_gradients(const CgEquation& equation, const std::span<const double> b, const CgStop& stop,
-                             const int max_iterations, const std::span<double> x) {
+                             const int max_iterations, const std::span<double> x, const std::span<double> left) {
   const std::size_t n = b.size();
   const std::size_t n_triples = (n + 2) / 3; // in the memory that steps have for vectors of corners
-  Loan<Vec3> lent_r(n_triples), lent_z(n_triples), lent_p(n_triples, Vec3::Zero()), lent_Ap(n_triples, Vec3::Zero());
-  const std::span<double> r = flat(*lent_r).first(n), z = flat(*lent_z).first(n), p = flat(*lent_p).first(n),
-                          Ap = flat(*lent_Ap).first(n);
+  Loan<Vec3> lent_r = left.empty() ? Loan<Vec3>(n_triples) : Loan<Vec3>::none();
+  Loan<Vec3> lent_z(n_triples), lent_p(n_triples, Vec3::Zero()), lent_Ap(n_triples, Vec3::Zero());
+  const std::span<double> r = left.empty() ? flat(*lent_r).first(n) : left, z = flat(*lent_z).first(n),
+                          p = flat(*lent_p).first(n), Ap = flat(*lent_Ap).first(n);
   Estimate estimate(stop, equation.J ? 3 : 8); // one iteration with more than block Jacobi is worth many
   const auto is_zero = [](const double value) { return value == 0; };
   double excess = 0; // of the error's square over that of zero
@@ -157,14 +158,16 @@ CgReport conjugate_gradients(const CgEquation& equation, const std::span<const d
 }
 
 CgReport patient_conjugate_gradients(const CgEquation& equation, const std::span<const double> b, const CgStop& stop,
-                                     const int max_iterations, const std::span<double> x) {
+                                     const int max_iterations, const std::span<double> x,
+                                     const std::span<double> left) {
   constexpr int patience = 100;
   if (!equation.J)
-    return conjugate_gradients(equation, b, stop, max_iterations, x);
-  const CgReport first = conjugate_gradients(equation, b, stop, std::min(patience, max_iterations), x);
+    return conjugate_gradients(equation, b, stop, max_iterations, x, left);
+  const CgReport first = conjugate_gradients(equation, b, stop, std::min(patience, max_iterations), x, left);
   if (first.converged || first.indefinite || first.n_iterations >= max_iterations)
     return first;
-  CgReport report = conjugate_gradients({equation.A, equation.J, {}}, b, stop, max_iterations - first.n_iterations, x);
+  CgReport report =
+    conjugate_gradients({equation.A, equation.J, {}}, b, stop, max_iterations - first.n_iterations, x, left);
   report.n_iterations += first.n_iterations;
   if (!stop.from)
     report.way = std::hypot(report.way, first.way);

@@ -60,7 +60,8 @@ struct CgEquation {
   Product J = {}; ///< empty: B
 };
 
-/// Solves A x = b from the x that is given, or from zero where that is nearer in the energy norm.
+/// Solves A x = b from the x that is given, or from zero where that is nearer in the energy norm. `left`: where b - A x is
+/// to be, but after a direction that the matrix does not resist; nowhere if empty.
 ///
 /// An iteration takes alpha r.Br off the error's square, exactly (Hestenes and Stiefel 1952, theorem 6:3), so what the
 /// last few took is a lower bound for the error before them that round-off does not spoil (Strakos and Tichy 2002, On
@@ -75,11 +76,11 @@ struct CgEquation {
 /// Br is had, r.Br is taken to fall as r.Jr does: the square of the error was .8 times what that says, 15 at most. So the
 /// application of B that would tell that the error is small, and do nothing else, is mostly spared.
 CgReport conjugate_gradients(const CgEquation& equation, std::span<const double> b, const CgStop& stop,
-                             int max_iterations, std::span<double> x);
+                             int max_iterations, std::span<double> x, std::span<double> left = {});
 
 /// The same, but for an equation with J of its own by B for at most 100 iterations, and from there by J: where B gets on
 /// badly, the blocks alone may do as well, at a fraction of its cost.
 CgReport patient_conjugate_gradients(const CgEquation& equation, std::span<const double> b, const CgStop& stop,
-                                     int max_iterations, std::span<double> x);
+                                     int max_iterations, std::span<double> x, std::span<double> left = {});
 
 } // namespace kerf::dynamics
