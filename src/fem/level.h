@@ -38,20 +38,11 @@ struct ChebyshevStep {
   float before, after;
 };
 
-/// By a Chebyshev polynomial.
-struct Smoothing {
-  static constexpr std::size_t most_steps = 3;
-  std::size_t n_steps; ///< each is a product, but for the first
-  double part;         ///< of the spectrum's range, below which the coarse level sees to it [1]
-};
-
 struct Level {
   std::size_t n_corners = 0;
   std::shared_ptr<const Batching> batching;
   BatchedElements<float> elements;
   double bound = 0; ///< of the eigenvalues of D^-1 A [1]
-  // Of 1/16, 1/30, 1/50, 1/80 that with the fewest iterations of a liver while it is cut: 6.6, 6.3, 6.3, 6.7 a step.
-  Smoothing smoothing = {3, 1.0 / 30};
   std::vector<GhostLine> lines;
   std::vector<Tie> ties;
   Coarsening to_coarse; ///< of no use on the coarsest

@@ -202,7 +202,6 @@ Multigrid::Multigrid(FinestLevel finest, const FormerLevels& former) {
   levels_[0].batching = finest.batching;
   levels_[0].elements = std::move(finest.elements);
   levels_[0].bound = finest.full.bound;
-  levels_[0].smoothing = {2, 1.0 / 25}; // most of a cycle's work: a tenth more iterations, each a fifth cheaper
   levels_[0].lines = lines_of(finest.faces);
   levels_[0].ties.assign(finest.ties.begin(), finest.ties.end());
   levels_[0].resize();
