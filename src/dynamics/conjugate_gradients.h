@@ -73,7 +73,7 @@ struct CgEquation {
 /// that is alpha r.Br / (1 - q). Multigrid's B is good for that: in 8,300 iterations of seven scenes, soft and stiff, cut
 /// and not, nu up to .49, the square of the error was more than four times that in six. After the first iteration there is
 /// one q: the square of the error was 1.2 times that in the middle and 3.8 at most, in 690 solutions of eight scenes. Before
-/// Br is had, r.Br is taken to fall as r.Jr does: the square of the error was .8 times what that says, 15 at most. So the
+/// Br is had, r.Br is taken to fall as r.Jr does: the square of the error was .9 times what that says, 15 at most. So the
 /// application of B that would tell that the error is small, and do nothing else, is mostly spared.
 CgReport conjugate_gradients(const CgEquation& equation, std::span<const double> b, const CgStop& stop,
                              int max_iterations, std::span<double> x, std::span<double> left = {});
