@@ -18,11 +18,14 @@ void Raster::draw(const std::array<Vec3, 3>& triangle, const double most) {
   for (int j = std::max(0, texel(lower[1])); j <= std::min(n - 1, texel(upper[1]) + 1); ++j)
     for (int i = std::max(0, texel(lower[0])); i <= std::min(n - 1, texel(upper[0]) + 1); ++i) {
       const double x = ((i + 0.5) / n - 0.5) * side, y = ((j + 0.5) / n - 0.5) * side;
-      const auto weight = [&](const Vec3& p, const Vec3& q) {
-        return ((q[0] - p[0]) * (y - p[1]) - (q[1] - p[1]) * (x - p[0])) / twice_area;
+      const auto area = [&](const Vec3& p, const Vec3& q) {
+        return (q[0] - p[0]) * (y - p[1]) - (q[1] - p[1]) * (x - p[0]);
       };
-      const double of_a = weight(b, c), of_b = weight(c, a), of_c = weight(a, b);
-      if (of_a >= 0 && of_b >= 0 && of_c >= 0 && std::abs(of_a * a[2] + of_b * b[2] + of_c * c[2]) <= most)
+      const double of_a = area(b, c), of_b = area(c, a), of_c = area(a, b);
+      const bool is_inside =
+        twice_area > 0 ? of_a >= 0 && of_b >= 0 && of_c >= 0 : of_a <= 0 && of_b <= 0 && of_c <= 0;
+      if (is_inside &&
+          std::abs(of_a / twice_area * a[2] + of_b / twice_area * b[2] + of_c / twice_area * c[2]) <= most)
         rows_[j] |= std::uint64_t(1) << i;
     }
 }

@@ -268,6 +268,7 @@ Preconditioner* BalanceSolver::preconditioner(const Problem& problem) {
 
 int BalanceSolver::correct(const Problem& problem, const Points& x, Loan<Vec3> guess, const double scale) {
   int n_iterations = 0;
+  elastic_.clear();
   if (options_.solver == LinearSolver::conjugate_gradients) {
     n_iterations = correct_by_cg(problem, std::move(guess), scale);
   } else {
@@ -298,7 +299,7 @@ int BalanceSolver::correct_by_cg(const Problem& problem, Loan<Vec3> guess, const
   CgStop stop{.residual = std::max({options_.cg_tolerance * scale, left, scaled_round_off_}),
               .error = of_own * way_,
               .of_way = has_guess ? of_own : 0};
-  if (stop.of_way > 0)
+  if (stop.of_way > 0 && !problem.balance.guess_is_free_motion)
     stop.from = potential_of_free_motion(problem);
   const Product A = [&](const auto p, const auto y) { apply(problem, p, y); }, J = [&](const auto r, const auto z) {
     apply_inverse_blocks(r, z);
@@ -307,8 +308,9 @@ int BalanceSolver::correct_by_cg(const Problem& problem, Loan<Vec3> guess, const
   Preconditioner* const own = options_.equation == Equation::regular ? preconditioner(problem) : nullptr;
   const CgEquation equation =
     own ? CgEquation{A, [own](const auto r, const auto z) { own->apply(r, z); }, J} : CgEquation{A, J, {}};
-  const CgReport report =
-    patient_conjugate_gradients(equation, flat(residual_), stop, options_.max_cg_iterations, flat(correction_));
+  Loan<Vec3> unsolved(residual_.size());
+  const CgReport report = patient_conjugate_gradients(equation, flat(residual_), stop, options_.max_cg_iterations,
+                                                      flat(correction_), flat(*unsolved));
   if (!report.converged && !report.indefinite)
     throw NumericalError("conjugate gradients left a relative residual of " + to_text(report.residual / scale) +
                          " after " + std::to_string(report.n_iterations) + " iterations. Use " +
@@ -316,7 +318,20 @@ int BalanceSolver::correct_by_cg(const Problem& problem, Loan<Vec3> guess, const
                          "more CG iterations or a larger CG tolerance");
   if (has_guess)
     way_ = report.way;
+  if (options_.trust == Trust::tested && tangent_.empty() && !report.indefinite)
+    put_elastic(problem, std::move(unsolved));
   return report.n_iterations;
+}
+
+/// Conjugate gradients have had A d = r - unsolved, so d.Kd takes no product.
+void BalanceSolver::put_elastic(const Problem& problem, Loan<Vec3> unsolved) {
+  parallel_for(
+    unsolved.size(), [&](const std::size_t i) { unsolved[i] = residual_[i] - unsolved[i]; }, worth);
+  const Loan<double> all = pieces_.products(correction_, unsolved),
+                     inertia = pieces_.products(correction_, momenta(model_, correction_));
+  elastic_.resize(all.size());
+  for (std::size_t p = 0; p < all.size(); ++p)
+    elastic_[p] = (all[p] - problem.mass_factor * inertia[p]) / problem.stiffness_factor;
 }
 
 double BalanceSolver::potential_of_free_motion(const Problem& problem) {

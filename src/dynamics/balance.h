@@ -103,6 +103,7 @@ struct Balance {
   Loan<Vec3> velocity = Loan<Vec3>::none();     ///< empty: zero
   Loan<Vec3> acceleration = Loan<Vec3>::none(); ///< empty: zero
   Loan<Vec3> guess = Loan<Vec3>::none();        ///< first guess of x - start [m]; empty: zero
+  bool guess_is_free_motion = false;            ///< of which nothing accelerates
   Loan<Vec3> offset = Loan<Vec3>::none();       ///< a force on each corner [N]; empty: none
   FreeMotions free = {};                        ///< that A does not resist
 };
@@ -203,6 +204,8 @@ class BalanceSolver {
   /// Returns the iterations of the linear solver.
   int correct(const Problem& problem, const Points& x, Loan<Vec3> guess, double scale);
   int correct_by_cg(const Problem& problem, Loan<Vec3> guess, double scale);
+  /// `unsolved`: what conjugate gradients left of the residual.
+  void put_elastic(const Problem& problem, Loan<Vec3> unsolved);
   /// z = S^T S r.
   void apply_inverse_blocks(std::span<const double> r, std::span<double> z) const;
   /// The model's, for A; null: none.
@@ -234,6 +237,7 @@ class BalanceSolver {
   double way_ = 0; // from free motion to the first iterate, in the energy norm; 0: unknown
   Pieces pieces_;
   std::vector<std::uint8_t> flies_;  // each piece
+  std::vector<double> elastic_;      // d.Kd of the correction d in each piece [J]; empty: unknown
   std::vector<double> most_work_;    // of what is out of balance in each piece, in the step at hand [J]
   std::vector<double> squared_ways_; // from free motion, of each piece, in the energy norm
 };

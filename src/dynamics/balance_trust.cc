@@ -90,11 +90,15 @@ Loan<double> BalanceSolver::most_work(const Problem& problem, const Points& x) {
   }();
   const Loan<Vec3> d = unlike_flight(problem, moved(x, -1, problem.balance.start));
   const Loan<double> of_way = with_inertia(d);
-  Loan<Vec3> Kd(x.size(), Vec3::Zero());
-  model_.apply_stiffness(flat(d), flat(*Kd));
-  if (!tangent_.empty())
-    tangent_.add_product(flat(d), flat(*Kd));
-  const Loan<double> elastic = pieces_.products(d, Kd);
+  const Loan<double> elastic = [&] { // mean motions have none
+    if (!elastic_.empty() && tangent_.empty())
+      return Loan<double>(elastic_);
+    Loan<Vec3> Kd(x.size(), Vec3::Zero());
+    model_.apply_stiffness(flat(d), flat(*Kd));
+    if (!tangent_.empty())
+      tangent_.add_product(flat(d), flat(*Kd));
+    return pieces_.products(d, Kd);
+  }();
   Loan<double> most(pieces_.n());
   for (std::size_t p = 0; p < most.size(); ++p)
     most[p] = 0.5 * (dt * dt * of_change[p] + elastic[p]) +

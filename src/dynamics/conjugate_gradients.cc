@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 namespace kerf::dynamics {
 
@@ -37,12 +38,18 @@ class Estimate {
     constexpr double bound_is_low = 10; // squared: what these iterations left may be more than what they took
     return n_ >= delay_ && bound_is_low * std::accumulate(last_.begin(), last_.begin() + delay_, 0.0) <= most();
   }
-  /// By r.Br of the iterate at hand, to be called once for each, where B is more than J.
+  /// By r.Jr of the iterate at hand, to be called once for each before r.Br is known, where B is more than J.
+  bool foresees_enough(const double square) {
+    constexpr double bound_is_low = 16; // squared, see the header
+    const double factor = square / std::exchange(square_, square);
+    return n_ >= 1 && bound_is_low * largest_alpha_ * factor * rz_[1] <= most();
+  }
+  /// By r.Br, likewise.
   bool says_enough(const double rz) {
-    constexpr double bound_is_low = 4; // squared, see the header
-    const double factor = std::max(rz / rz_[1], rz_[1] / rz_[0]);
+    const double bound_is_low = n_ == 1 ? 10 : 4; // squared, see the header
+    const double factor = n_ == 1 ? rz / rz_[1] : std::max(rz / rz_[1], rz_[1] / rz_[0]);
     rz_ = {rz_[1], rz};
-    return n_ >= 2 && factor < 1 && bound_is_low * largest_alpha_ * rz <= (1 - factor) * most();
+    return n_ >= 1 && factor < 1 && bound_is_low * largest_alpha_ * rz <= (1 - factor) * most();
   }
 
  private:
@@ -53,6 +60,7 @@ class Estimate {
   std::size_t delay_;
   std::array<double, 8> last_ = {};
   std::array<double, 2> rz_ = {0, 0}; // of the last two iterates
+  double square_ = 0;                 // r.Jr of the last one
   std::size_t n_ = 0;
   double all_ = 0, farther_ = 0, largest_alpha_ = 0;
 };
@@ -78,12 +86,13 @@ double dot(const std::span<const double> a, const std::span<const double> b) {
 }
 
 CgReport conjugate_gradients(const CgEquation& equation, const std::span<const double> b, const CgStop& stop,
-                             const int max_iterations, const std::span<double> x) {
+                             const int max_iterations, const std::span<double> x, const std::span<double> left) {
   const std::size_t n = b.size();
   const std::size_t n_triples = (n + 2) / 3; // in the memory that steps have for vectors of corners
-  Loan<Vec3> lent_r(n_triples), lent_z(n_triples), lent_p(n_triples, Vec3::Zero()), lent_Ap(n_triples, Vec3::Zero());
-  const std::span<double> r = flat(*lent_r).first(n), z = flat(*lent_z).first(n), p = flat(*lent_p).first(n),
-                          Ap = flat(*lent_Ap).first(n);
+  Loan<Vec3> lent_r = left.empty() ? Loan<Vec3>(n_triples) : Loan<Vec3>::none();
+  Loan<Vec3> lent_z(n_triples), lent_p(n_triples, Vec3::Zero()), lent_Ap(n_triples, Vec3::Zero());
+  const std::span<double> r = left.empty() ? flat(*lent_r).first(n) : left, z = flat(*lent_z).first(n),
+                          p = flat(*lent_p).first(n), Ap = flat(*lent_Ap).first(n);
   Estimate estimate(stop, equation.J ? 3 : 8); // one iteration with more than block Jacobi is worth many
   const auto is_zero = [](const double value) { return value == 0; };
   double excess = 0; // of the error's square over that of zero
@@ -107,7 +116,8 @@ CgReport conjugate_gradients(const CgEquation& equation, const std::span<const d
     (equation.J ? equation.J : equation.B)(r, z);
     const double square = dot(r, z);
     report.residual = std::sqrt(square);
-    report.converged = report.residual <= stop.residual || estimate.says_enough();
+    report.converged = report.residual <= stop.residual || estimate.says_enough() ||
+                       (equation.J && estimate.foresees_enough(square));
     if (report.converged)
       return;
     if (equation.J)
@@ -148,14 +158,16 @@ CgReport conjugate_gradients(const CgEquation& equation, const std::span<const d
 }
 
 CgReport patient_conjugate_gradients(const CgEquation& equation, const std::span<const double> b, const CgStop& stop,
-                                     const int max_iterations, const std::span<double> x) {
+                                     const int max_iterations, const std::span<double> x,
+                                     const std::span<double> left) {
   constexpr int patience = 100;
   if (!equation.J)
-    return conjugate_gradients(equation, b, stop, max_iterations, x);
-  const CgReport first = conjugate_gradients(equation, b, stop, std::min(patience, max_iterations), x);
+    return conjugate_gradients(equation, b, stop, max_iterations, x, left);
+  const CgReport first = conjugate_gradients(equation, b, stop, std::min(patience, max_iterations), x, left);
   if (first.converged || first.indefinite || first.n_iterations >= max_iterations)
     return first;
-  CgReport report = conjugate_gradients({equation.A, equation.J, {}}, b, stop, max_iterations - first.n_iterations, x);
+  CgReport report =
+    conjugate_gradients({equation.A, equation.J, {}}, b, stop, max_iterations - first.n_iterations, x, left);
   report.n_iterations += first.n_iterations;
   if (!stop.from)
     report.way = std::hypot(report.way, first.way);

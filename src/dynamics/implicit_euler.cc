@@ -55,6 +55,7 @@ StepReport ImplicitEuler::step(State& state, const Loads& loads, const double dt
   if (std::ranges::any_of(constraints.held(), has_moved))
     balance.velocity = Loan<Vec3>(n);
   const Points* const change = remembered(state, change_of_velocity);
+  balance.guess_is_free_motion = !change && balance.velocity.empty();
   parallel_for(
     n,
     [&](const std::size_t i) {

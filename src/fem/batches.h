@@ -85,14 +85,17 @@ class Batching {
   template <class Function>
   void for_each_in_order(const Function& f) const {
     for (const std::vector<Chunk>& chunks : colours_)
-      parallel_for(chunks.size(), [&](const std::size_t c) {
-        for (std::uint32_t i = chunks[c].first; i < chunks[c].first + chunks[c].n; ++i)
-          f(i);
-      });
+      parallel_for(
+        chunks.size(),
+        [&](const std::size_t c) {
+          for (std::uint32_t i = chunks[c].first; i < chunks[c].first + chunks[c].n; ++i)
+            f(i);
+        },
+        worth_chunks_);
   }
 
  private:
-  static constexpr std::size_t worth_ = 32; // batches from which on a second thread pays
+  static constexpr std::size_t worth_ = 256, worth_chunks_ = 4; // batches, chunks from which on a second thread pays
   struct Chunk {
     std::uint32_t first, n_full, n; // batches: full ones come first
     std::uint32_t n_copies;

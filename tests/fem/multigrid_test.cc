@@ -351,6 +351,24 @@ TEST(Multigrid, CountsTheWayFromWhereItIsTold) {
   EXPECT_LT(of_all.n_iterations, of_rest.n_iterations);
 }
 
+/// What is left of the right side is told, however many iterations there were.
+TEST(Multigrid, TellsWhatIsLeftOfTheRightSide) {
+  Draw draw(349);
+  Body body = make_block({7, 7, 7}, 0.1, draw, {0.3, 0.7});
+  Hexahedra model(body, {.material = rubber(0.3)});
+  Equation equation(model, clamped_below(body, 0.3), body.rest(), 36);
+  const Points b = equation.load(draw);
+  for (const int n_most : {0, 1, 5}) {
+    Points x(b.size(), Vec3::Zero()), left(b.size()), Ax(b.size());
+    dynamics::conjugate_gradients(equation.by_multigrid(), flat(b), {}, n_most, flat(x), flat(left));
+    equation.apply(flat(x), flat(Ax));
+    double most = 0;
+    for (std::size_t i = 0; i < b.size(); ++i)
+      most = std::max(most, (b[i] - Ax[i] - left[i]).norm());
+    EXPECT_LE(most, 1e-12 * std::sqrt(dynamics::dot(flat(b), flat(b)))) << n_most;
+  }
+}
+
 /// A plane that parts a body parts its coarse copies: two halves know nothing of each other, at any level.
 TEST(Multigrid, HalvesKnowNothingOfEachOther) {
   Draw draw(340);
