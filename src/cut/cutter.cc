@@ -25,13 +25,22 @@ std::array<grid::CellId, 2> cells_of(const grid::Grid& grid, const grid::SkinSeg
   return segment.face.valid() ? grid.cells(segment.face) : std::array{segment.cell, grid::CellId()};
 }
 
-/// Where blades are that come on: those that have moved, or have cut something.
+/// Of an edge, or a segment of the skin.
+template <class Segment>
+bool is_known(const Solid& solid, const Segment& segment, const grid::CutLabel label) {
+  if (const auto* const first = solid.cuts.find(segment); first && first->label == label)
+    return true;
+  const auto later = solid.cuts.later_cuts(segment);
+  return std::ranges::find(later, label, &grid::LaterCut::label) != later.end();
+}
+
+/// Where blades are that come on: those that have moved, or are `coming`.
 class Passage {
  public:
-  Passage(const std::span<const StandingEdge> edges, const std::set<grid::CutLabel>& have_cut) {
+  Passage(const std::span<const StandingEdge> edges, const std::set<grid::CutLabel>& coming) {
     for (const StandingEdge& edge : edges) {
       const auto& [label, line, before] = edge;
-      if (edge.rests() && !have_cut.contains(label))
+      if (edge.rests() && !coming.contains(label))
         continue;
       std::vector<Patch> pieces;
       for (std::size_t i = 1; i < line.size(); ++i)
@@ -127,12 +136,15 @@ void Cutter::fit_boxes(const bool is_asked, const Points& x) {
 
 /// `boxes_` are fitted.
 CutChange Cutter::take(Solid& solid, const std::span<const Stroke> strokes, const Points& x) {
+  std::set<grid::CutLabel> coming = labels_that_meet(solid, strokes);
   SweepCuts cuts = queue(solid, strokes, x);
   if (release_ == Release::queued)
     cuts.cuts = pending_.release(solid);
   if (strokes.empty() || boxes_->moves())
     x_before_ = x; // not after the cut: where corners jump then, the blade meets them on their way
-  const Added added = add(solid, cuts);
+  Added added = add(solid, cuts);
+  coming.merge(pending_.labels());
+  added.coming = std::move(coming);
   return part(solid, added, advance_.take(solid, pending_), x);
 }
 
@@ -148,18 +160,28 @@ CutChange Cutter::at_once(Solid& solid, const CutSurface& surface, const Points&
 
 CutChange Cutter::cut(Solid& solid, const SweepCuts& cuts) { return part(solid, add(solid, cuts), {}, x_before_); }
 
+std::set<grid::CutLabel> Cutter::labels_that_meet(const Solid& solid, const std::span<const Stroke> strokes) const {
+  std::set<grid::CutLabel> labels;
+  for (const auto& [label, found, swept] : strokes) {
+    const auto is_new = [&, label = label](const auto& segment) { return !is_known(solid, segment, label); };
+    const auto waits = [&](const EdgeCut& cut) { return pending_.waits(cut.edge); };
+    if (std::ranges::any_of(found.cuts, [&](const EdgeCut& cut) { return is_new(cut.edge) && !waits(cut); }) ||
+        std::ranges::any_of(found.later, is_new, &EdgeCut::edge) ||
+        std::ranges::any_of(found.of_skin, is_new, &grid::SkinCut::segment) ||
+        std::ranges::any_of(found.later_of_skin, is_new, &grid::SkinCut::segment))
+      labels.insert(label);
+  }
+  return labels;
+}
+
 Cutter::Added Cutter::add(Solid& solid, const SweepCuts& cuts) {
   Added added;
-  auto& [edges, segments, edges_met, segments_met, labels] = added;
+  auto& [edges, segments, edges_met, segments_met, coming] = added;
   const auto meet = [&](const auto& cut, const auto& segment, auto& met) {
-    if (const auto* const first = solid.cuts.find(segment); first && first->label == cut.label)
-      return;
-    const auto known = solid.cuts.later_cuts(segment);
-    if (std::ranges::find(known, cut.label, &grid::LaterCut::label) != known.end())
+    if (is_known(solid, segment, cut.label))
       return;
     solid.cuts.add(segment, grid::LaterCut{cut.t, cut.normal, cut.label});
     met.push_back(segment);
-    labels.insert(cut.label);
   };
   for (const EdgeCut& cut : cuts.later)
     meet(cut, cut.edge, edges_met);
@@ -169,7 +191,6 @@ Cutter::Added Cutter::add(Solid& solid, const SweepCuts& cuts) {
     if (solid.cuts.can_be_cut(solid.grid, cut.edge)) {
       solid.cuts.add(solid.grid, cut);
       edges.push_back(cut.edge);
-      labels.insert(cut.label);
       passed_[cut.label - 1].remove(solid.grid.cells(cut.edge));
     } else // by another of the same step
       meet(cut, cut.edge, edges_met);
@@ -177,7 +198,6 @@ Cutter::Added Cutter::add(Solid& solid, const SweepCuts& cuts) {
     if (!solid.cuts.is_cut(cut.segment)) {
       solid.cuts.add(cut);
       segments.push_back(cut.segment);
-      labels.insert(cut.label);
       passed_[cut.label - 1].remove(cells_of(solid.grid, cut.segment));
     } else
       meet(cut, cut.segment, segments_met);
@@ -220,7 +240,7 @@ void Cutter::join(Solid& solid, const Added& added, const Points& x, std::vector
   unsettled_.clear();
   if (cells.empty())
     return;
-  const Passage passage(edges_, added.labels);
+  const Passage passage(edges_, added.coming);
   for (const grid::CellId c : cells) {
     std::vector<grid::Joined> groups;
     if (solid.cuts.front(c) == nullptr) {

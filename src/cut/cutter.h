@@ -6,9 +6,9 @@
 ///
 /// Where a blade crosses what others have cut, it parts a cell only once it has left the cell, and those beside it: what its
 /// cuts free before may belong to a part from which only later ones, or those of the next cell, tell that it does (sides.h).
-/// Such cells are *unsettled*. They wait as long as the blade comes on: it has moved in the step, or has cut or met
-/// something that it had not before, as where material moves through a blade that rests. A blade that has left a cell, or come to rest in it, holds it no more,
-/// so that what it has parted is not joined when it comes by again.
+/// Such cells are *unsettled*. They wait as long as the blade comes on: it has moved in the step, or has met something that it
+/// had not before, as where material moves through a blade that rests, or cuts of it wait. A blade that has left
+/// a cell, or come to rest in it, holds it no more, so that what it has parted is not joined when it comes by again.
 ///
 /// Labels: of blades and surfaces, from 1 on.
 
@@ -119,9 +119,11 @@ class Cutter {
     std::vector<grid::SkinSegment> segments;
     std::vector<grid::EdgeId> edges_met; // that were cut before, by others
     std::vector<grid::SkinSegment> segments_met;
-    std::set<grid::CutLabel> labels; // of all these
+    std::set<grid::CutLabel> coming; // labels of blades that have met something that they had not before, or whose cuts wait
   };
   Added add(grid::Solid& solid, const SweepCuts& cuts);
+  /// Of blades that meet something that they have neither cut nor met before.
+  std::set<grid::CutLabel> labels_that_meet(const grid::Solid& solid, std::span<const Stroke> strokes) const;
   grid::CutChange part(grid::Solid& solid, const Added& added, std::span<const grid::Front> fronts, const Points& x);
   void join(grid::Solid& solid, const Added& added, const Points& x, std::vector<grid::CellId>& anew);
   /// To the way from x_before_ to x, where that is asked for.

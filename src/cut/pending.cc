@@ -37,6 +37,13 @@ std::vector<grid::EdgeCut> PendingCuts::push(const std::span<const grid::EdgeCut
   return later;
 }
 
+std::set<grid::CutLabel> PendingCuts::labels() const {
+  std::set<grid::CutLabel> labels;
+  for (const grid::EdgeCut& cut : queue_)
+    labels.insert(cut.label);
+  return labels;
+}
+
 std::vector<grid::EdgeCut> PendingCuts::release(const grid::Solid& solid) {
   std::vector<grid::EdgeCut> released;
   if (queue_.empty())

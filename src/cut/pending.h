@@ -8,6 +8,7 @@
 
 #include <deque>
 #include <map>
+#include <set>
 #include <span>
 #include <vector>
 
@@ -27,6 +28,7 @@ class PendingCuts {
 
   std::size_t size() const { return queue_.size(); }
   bool waits(grid::EdgeId e) const { return waiting_.contains(e); }
+  std::set<grid::CutLabel> labels() const; ///< of all that wait
   void archive(Archive& a) { a(queue_, waiting_); }
 
  private:

@@ -230,7 +230,7 @@ std::string name_of(const testing::TestParamInfo<Series>& series) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Short, Strokes,
-                         testing::Values(Series{Tool::blades, 8}, Series{Tool::scissors, 4},
+                         testing::Values(Series{Tool::blades, 8}, Series{Tool::scissors, 12},
                                          Series{Tool::bent_blade, 4}),
                          name_of);
 INSTANTIATE_TEST_SUITE_P(Long, Strokes,
