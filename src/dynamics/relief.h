@@ -10,10 +10,12 @@
 ///
 ///     M (x' - x) / tau^2 = f(x'),
 ///
-/// each of which takes energy, until there is no more than there was. With e the excess, the first has tau^2 = e / f.M^-1 f, the
-/// way down the slope that would take it; each further one four times that tau. What the touched cannot let out by themselves the
-/// whole body does, in the same way. Then every piece that nothing holds is shifted, and its velocities are turned, so that its
-/// masses' centre and its angular momentum are what they were.
+/// each of which takes energy, until there is no more than there was. With e the excess, the first has
+/// tau^2 = e / f.M^-1 f, the way down the slope that would take it; each further one four times that tau. What the
+/// touched cannot let out by themselves the whole body does, in the same way. Then every piece that nothing holds is
+/// shifted, and its velocities are turned, so that its masses' centre and its angular momentum are what they were.
+///
+/// Limits: a piece may hang in a balance of its own, as where phyxels are inside out; what that holds stays.
 
 #include "dynamics/model.h"
 #include "dynamics/pieces.h"
