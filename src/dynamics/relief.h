@@ -15,7 +15,7 @@
 /// touched cannot let out by themselves the whole body does, in the same way. Then every piece that nothing holds is
 /// shifted, and its velocities are turned, so that its masses' centre and its angular momentum are what they were.
 ///
-/// Limits: a piece may hang in a balance of its own, as where phyxels are inside out; what that holds stays.
+/// Limits: a piece may come to a balance of its own with energy left, as was seen of points; that stays.
 
 #include "dynamics/model.h"
 #include "dynamics/pieces.h"
