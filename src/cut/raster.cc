@@ -14,20 +14,28 @@ void Raster::draw(const std::array<Vec3, 3>& triangle, const double most) {
   const auto texel = [](const double at) {
     return static_cast<int>(std::clamp((at / side + 0.5) * n - 0.5, -1.0, double(n)));
   };
+  constexpr double on_an_edge = -1e-12; // of triangles that share one, both count it
+  const double over = 1 / twice_area;
+  /// s of s[0] + s[1] x + s[2] y, the share at a point of the corner opposite to the edge from p to q.
+  const auto share = [&](const Vec3& p, const Vec3& q) {
+    return Vec3(over * (q[1] * p[0] - q[0] * p[1]), over * (p[1] - q[1]), over * (q[0] - p[0]));
+  };
+  const std::array<Vec3, 3> shares = {share(b, c), share(c, a), share(a, b)};
   const Vec3 lower = a.cwiseMin(b).cwiseMin(c), upper = a.cwiseMax(b).cwiseMax(c);
-  for (int j = std::max(0, texel(lower[1])); j <= std::min(n - 1, texel(upper[1]) + 1); ++j)
-    for (int i = std::max(0, texel(lower[0])); i <= std::min(n - 1, texel(upper[0]) + 1); ++i) {
-      const double x = ((i + 0.5) / n - 0.5) * side, y = ((j + 0.5) / n - 0.5) * side;
-      const auto area = [&](const Vec3& p, const Vec3& q) {
-        return (q[0] - p[0]) * (y - p[1]) - (q[1] - p[1]) * (x - p[0]);
-      };
-      const double of_a = area(b, c), of_b = area(c, a), of_c = area(a, b);
-      const bool is_inside =
-        twice_area > 0 ? of_a >= 0 && of_b >= 0 && of_c >= 0 : of_a <= 0 && of_b <= 0 && of_c <= 0;
-      if (is_inside &&
-          std::abs(of_a / twice_area * a[2] + of_b / twice_area * b[2] + of_c / twice_area * c[2]) <= most)
-        rows_[j] |= std::uint64_t(1) << i;
+  const int first = std::max(0, texel(lower[0])), last = std::min(n - 1, texel(upper[0]) + 1);
+  const auto middle = [](const int i) { return ((i + 0.5) / n - 0.5) * side; };
+  for (int j = std::max(0, texel(lower[1])); j <= std::min(n - 1, texel(upper[1]) + 1); ++j) {
+    std::array<double, 3> of_row;
+    for (int k = 0; k < 3; ++k)
+      of_row[k] = shares[k][0] + shares[k][2] * middle(j);
+    for (int i = first; i <= last; ++i) {
+      const double x = middle(i), of_a = of_row[0] + shares[0][1] * x, of_b = of_row[1] + shares[1][1] * x,
+                   of_c = of_row[2] + shares[2][1] * x;
+      const bool is_set = (of_a >= on_an_edge) & (of_b >= on_an_edge) & (of_c >= on_an_edge) &
+                          (std::abs(of_a * a[2] + of_b * b[2] + of_c * c[2]) <= most);
+      rows_[j] |= std::uint64_t(is_set) << i;
     }
+  }
 }
 
 Raster Raster::grown(const double distance) const {
