@@ -366,13 +366,13 @@ double BalanceSolver::mixed_search(const Problem& problem, const Points& x, Mixi
   constexpr double far = 0.25; // a mixed correction that must be shorter knows nothing of what lies ahead
   if (options_.n_mixed == 0)
     return search(problem, x);
-  Points plain = correction_;
-  correction_ = mixing.mixed(x, plain, size_);
+  const Loan<Vec3> plain(correction_);
+  mixing.mix(x, size_, correction_);
   if (product(residual_, correction_) > 0)
     if (const double length = search(problem, x); length >= far)
       return length;
   mixing.forget();
-  correction_ = std::move(plain);
+  correction_ = *plain;
   return search(problem, x);
 }
 

@@ -5,31 +5,35 @@
 /// a tangent that is not the exact one converges linearly; mixed, it needs about as many iterations as its errors have
 /// slow directions.
 
+#include "base/loan.h"
 #include "base/vec.h"
 
+#include <array>
 #include <cstddef>
 #include <span>
-#include <vector>
 
 namespace kerf::dynamics {
 
 class Mixing {
  public:
+  static constexpr std::size_t most = 8;
+
+  /// `depth`: corrections before that count, `most` at most.
   explicit Mixing(const std::size_t depth) : depth_(depth) {}
 
-  /// The mixed correction at x, from the plain one d there and those before; least squares weigh corners by `weight`
-  /// [any unit]. The plain one as long as there are none before.
-  Points mixed(const Points& x, const Points& d, std::span<const double> weight);
-  void forget() { past_.clear(); }
+  /// Makes the plain correction d at x the mixed one, by those before; least squares weigh corners by `weight` [any unit].
+  /// Where there are none before, it stays.
+  void mix(const Points& x, std::span<const double> weight, Points& d);
+  void forget() { n_past_ = 0; }
 
  private:
   struct Change {
-    Points x, d; ///< between iterates
+    Loan<Vec3> x = Loan<Vec3>::none(), d = Loan<Vec3>::none(); ///< between iterates
   };
 
-  std::size_t depth_;
-  std::vector<Change> past_; // few
-  Points last_x_, last_d_;
+  std::size_t depth_, n_past_ = 0;
+  std::array<Change, most> past_;
+  Change last_; // iterate and its correction
 };
 
 } // namespace kerf::dynamics
