@@ -1,5 +1,6 @@
 /// Errors of the mechanics against closed forms and references, with the time of each, as tables in markdown. One
-/// thread; CPU seconds. Arguments: names of tables; none: all but the long ones (long, long-penny).
+/// thread; CPU seconds. Arguments: names of tables; none: all but the long ones (long, long-penny,
+/// penny-order).
 
 #include "base/parallel.h"
 #include "tests/verification/beams.h"
@@ -7,9 +8,12 @@
 #include "tests/verification/plates.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <functional>
+#include <numeric>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -193,6 +197,55 @@ void long_penny_table() {
   penny_row(12, 3);
 }
 
+/// The same twelve centres and tilts on each grid: the error of one of them hangs on where the front lies in its cells.
+void penny_order_table() {
+  constexpr double volume = 1.0373, rate = 1.0726; // of this width, see PennyShapedCut
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> part(0, 1);
+  std::normal_distribution<double> normal;
+  std::vector<Penny> places(12, {.half_width = 3});
+  for (Penny& one : places)
+    for (int axis = 0; axis < 3; ++axis) {
+      one.offset[axis] = part(random);
+      one.normal[axis] = normal(random);
+    }
+  std::printf("\n| cells a radius | of work, volume, energy release rate: mean error [%%] | least and largest [%%] | root mean "
+              "square [%%] | its order since the row above |\n|---|---|---|---|---|\n");
+  std::array<double, 3> before{};
+  int n_before = 0;
+  for (const int n : {3, 4, 6, 8}) {
+    std::array<std::vector<double>, 3> errors;
+    for (Penny one : places) {
+      one.n_over_radius = n;
+      const PennyResult r = penny(one, hooke(1, 0.3));
+      errors[0].push_back(percent(r.work / volume));
+      errors[1].push_back(percent(r.volume / volume));
+      errors[2].push_back(percent(r.release_rate / rate));
+    }
+    std::array<double, 3> squares{};
+    std::printf("| %d |", n);
+    for (const auto& of_one : errors)
+      std::printf(" %+.2f", std::accumulate(of_one.begin(), of_one.end(), 0.0) / double(of_one.size()));
+    std::printf(" |");
+    for (const auto& of_one : errors) {
+      const auto [least, most] = std::minmax_element(of_one.begin(), of_one.end());
+      std::printf(" %+.2f %+.2f;", *least, *most);
+    }
+    std::printf(" |");
+    for (int k = 0; k < 3; ++k) {
+      squares[k] = std::sqrt(std::inner_product(errors[k].begin(), errors[k].end(), errors[k].begin(), 0.0) / 12);
+      std::printf(" %.2f", squares[k]);
+    }
+    std::printf(" |");
+    for (int k = 0; k < 3 && n_before > 0; ++k)
+      std::printf(" %.1f", std::log(before[k] / squares[k]) / std::log(double(n) / n_before));
+    std::printf(" |\n");
+    std::fflush(stdout);
+    before = squares;
+    n_before = n;
+  }
+}
+
 void condition_table() {
   std::printf(
     "\n| smallest fraction | plain, no penalty | plain, penalty | scaled, no penalty | scaled, penalty "
@@ -218,7 +271,8 @@ const std::vector<NamedTable> tables = {{"manufactured", manufactured_table, fal
                                         {"penny", penny_table, false},
                                         {"condition", condition_table, false},
                                         {"long", long_table, true},
-                                        {"long-penny", long_penny_table, true}};
+                                        {"long-penny", long_penny_table, true},
+                                        {"penny-order", penny_order_table, true}};
 
 } // namespace
 
