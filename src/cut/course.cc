@@ -138,6 +138,22 @@ std::optional<Front> front_ahead(const Solid& solid, const CellId c, const std::
                                                                                         : std::nullopt;
 }
 
+bool is_corner_ahead(const Solid& solid, const Front& front, const FrontsOfCells& begun) {
+  constexpr double small = 0.25; // of a face
+  const double h = solid.grid.h();
+  if (front.area >= small * h * h)
+    return false;
+  const auto own = solid.grid.edges(front.cell);
+  const auto is_parted = [&](const CellId next, const grid::EdgeId e) {
+    return next.valid() && (cuts_with(solid, next, begun).blades >> solid.grid.line(next, e) & 1) != 0;
+  };
+  for (int face = 0; face < grid::cube::n_faces; ++face)
+    for (const int i : grid::cube::face_lines[face])
+      if ((front.ahead >> i & 1) != 0 && is_parted(solid.grid.neighbour(front.cell, face), own[i]))
+        return true;
+  return false;
+}
+
 bool fits_in(const Solid& solid, const Front& front, const FrontsOfCells& begun) {
   return agrees_with_neighbours(solid, front, begun) && !leaves_shreds(solid, front, begun);
 }

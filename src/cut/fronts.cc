@@ -1,6 +1,6 @@
 #include "cut/fronts.h"
 
-#include "cut/cell_at_plane.h"
+#include "cut/course.h"
 #include "grid/fronts.h"
 
 #include <Eigen/Geometry>
@@ -49,7 +49,7 @@ Outline outline_of(const Rectangle& rectangle, const double more) {
 /// With the lag of its front.
 template <class Flat>
 std::optional<Outline> outline_with_lag(const Flat& shape, const double h) {
-  return outline_of(shape, grid::front_lag(outline_of(shape, 0).normal) * h);
+  return outline_of(shape, grid::front_lag * h);
 }
 template <class Shape>
 requires(!std::is_same_v<Shape, Disc> &&
@@ -85,7 +85,7 @@ std::vector<Front> find_fronts(const CutSurface& surface, const Solid& solid, co
   const double h = solid.grid.h();
   const auto outline =
     std::visit([&](const auto& shape) -> std::optional<Outline> { return outline_with_lag(shape, h); }, surface.shape);
-  std::vector<Front> fronts;
+  std::vector<Front> fronts, corners;
   if (!outline)
     return fronts;
   for (const auto c : ids<CellId>(solid.grid.n_cells())) {
@@ -106,11 +106,20 @@ std::vector<Front> find_fronts(const CutSurface& surface, const Solid& solid, co
       continue;
     }
     front.label = surface.label;
-    if (front.passed < least_passed)
+    if (front.ahead == 0 || hangs_by_skin(solid, front))
       continue;
-    if (front.ahead != 0 && !hangs_by_skin(solid, front))
+    if (front.passed >= least_passed)
       fronts.push_back(front);
+    else
+      corners.push_back(moved_on(front, least_passed));
   }
+  FrontsOfCells begun;
+  for (const Front& front : fronts)
+    begun.emplace(front.cell, front);
+  for (const Front& corner : corners)
+    if (is_corner_ahead(solid, corner, begun))
+      fronts.push_back(corner);
+  std::ranges::sort(fronts, {}, &Front::cell);
   return fronts;
 }
 
