@@ -69,7 +69,7 @@ Raster section_of(const Solid& solid, const Front& front, const InPlane& in_plan
 
 /// A cell's cube at rest, and around it what a front in another cell may reach over by its lag.
 Box reach_of(const Solid& solid, const CellId c) {
-  const double h = solid.grid.h(), lag = grid::front_lag * h;
+  const double h = solid.grid.h(), lag = grid::most_front_lag * h;
   const Vec3 origin = solid.grid.origin(c);
   return {origin - Vec3::Constant(lag), origin + Vec3::Constant(h + lag)};
 }
@@ -102,7 +102,7 @@ class Sweep {
       corners[8 + v] = x_before_[copy.corners[v].value];
     }
     Box box = geometry::box_around(corners);
-    const Vec3 lag = Vec3::Constant(grid::front_lag * (box.upper - box.lower).maxCoeff());
+    const Vec3 lag = Vec3::Constant(grid::most_front_lag * (box.upper - box.lower).maxCoeff());
     return near_.may_be_in({box.lower - lag, box.upper + lag});
   }
 
@@ -143,8 +143,8 @@ bool is_cut_beside(const Solid& solid, const CellId c) {
 }
 
 /// The part of a section that what is drawn covers, with its lag.
-double passed(const Raster& section, const Raster& swept) {
-  const Raster come = section & swept.grown(grid::front_lag);
+double passed(const Front& front, const Raster& section, const Raster& swept) {
+  const Raster come = section & swept.grown(grid::front_lag(front.normal));
   return section.any() ? std::min(most_passed, double(come.count()) / section.count()) : 0;
 }
 
@@ -188,7 +188,7 @@ std::vector<Front> Advance::take(const Solid& solid, const PendingCuts& pending)
       later.insert(c);
     else if (const Front* const earlier = solid.cuts.front(c)) {
       Front moved = *earlier;
-      moved.passed = passed(cell.section, cell.swept);
+      moved.passed = passed(moved, cell.section, cell.swept);
       if (moved.passed > earlier->passed)
         fronts.push_back(moved);
     } else if (const auto front = front_ahead(solid, c, cell.pieces, cell.label))
@@ -210,7 +210,7 @@ bool Advance::begin(const Solid& solid, Front& front, const FrontsOfCells& begun
   for (const Polygon& piece : cell.pieces)
     draw(piece, in_plane, swept);
   const Raster section = section_of(solid, front, in_plane);
-  front.passed = passed(section, swept);
+  front.passed = passed(front, section, swept);
   if (front.passed < least_passed && is_corner_ahead(solid, front, begun))
     front.passed = least_passed;
   if (front.passed < least_passed || !((section & swept).any() || is_cut_beside(solid, front.cell)) ||

@@ -49,7 +49,7 @@ Outline outline_of(const Rectangle& rectangle, const double more) {
 /// With the lag of its front.
 template <class Flat>
 std::optional<Outline> outline_with_lag(const Flat& shape, const double h) {
-  return outline_of(shape, grid::front_lag * h);
+  return outline_of(shape, grid::front_lag(outline_of(shape, 0).normal) * h);
 }
 template <class Shape>
 requires(!std::is_same_v<Shape, Disc> &&

@@ -76,6 +76,8 @@ bool hang_together(const Parts& parts, const Copy& one, const Copy& other) {
 
 } // namespace
 
+double front_lag(const Vec3& normal) { return 0.25 * std::pow(normal.lpNorm<1>(), 0.25); }
+
 std::vector<std::array<CopyId, 2>> tied_copies(const Solid& solid, const CellComplex& complex,
                                                const std::span<const CellId> cells) {
   const auto& copies = complex.copies;

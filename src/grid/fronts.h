@@ -36,8 +36,11 @@
 
 namespace kerf::grid {
 
-/// By how much a cut seems too short to elements [cubes], in any plane.
-constexpr double front_lag = 0.25;
+/// By how much a cut in a plane of this unit normal seems too short to elements [cubes]: .25 along the grid, hardly more across
+/// it, as measured on discs of any tilt.
+double front_lag(const Vec3& normal);
+/// The most that it can be.
+constexpr double most_front_lag = 0.29;
 
 /// Between two corners at one node.
 struct Tie {
