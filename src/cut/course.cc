@@ -139,13 +139,19 @@ std::optional<Front> front_ahead(const Solid& solid, const CellId c, const std::
 }
 
 bool is_corner_ahead(const Solid& solid, const Front& front, const FrontsOfCells& begun) {
-  constexpr double small = 0.25; // of a face
+  constexpr double small = 0.25, far = 0.5; // of a face; of a cell, from which on it is clear that the cut goes on
   const double h = solid.grid.h();
   if (front.area >= small * h * h)
     return false;
   const auto own = solid.grid.edges(front.cell);
   const auto is_parted = [&](const CellId next, const grid::EdgeId e) {
-    return next.valid() && (cuts_with(solid, next, begun).blades >> solid.grid.line(next, e) & 1) != 0;
+    if (!next.valid())
+      return false;
+    const auto at = begun.find(next);
+    const Front* const beside = at != begun.end() ? &at->second : solid.cuts.front(next);
+    const int line = solid.grid.line(next, e);
+    return beside ? beside->passed >= far && (beside->ahead >> line & 1) != 0
+                  : (grid::cuts_of_copies(solid, next).blades >> line & 1) != 0;
   };
   for (int face = 0; face < grid::cube::n_faces; ++face)
     for (const int i : grid::cube::face_lines[face])
