@@ -8,7 +8,8 @@
 /// What the blade sweeps is drawn onto a raster in that plane, where a point that is passed twice counts once; what leaves
 /// the plane by a quarter of a cube does not count. As elements are too stiff at a front, what is drawn is taken larger by
 /// the lag of fronts, and so reaches on into the next cells; one of which the lag alone reaches has to have a cut one beside
-/// it. The part of the section of plane and material that it covers is how far the cut has come.
+/// it. The part of the section of plane and material that it covers is how far the cut has come. Corners ahead of a front
+/// are parted too (is_corner_ahead, course.h).
 ///
 /// Cells in which cuts wait (pending.h) get no front before they are cut.
 ///

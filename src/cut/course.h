@@ -25,9 +25,9 @@ std::optional<grid::Front> front_ahead(const grid::Solid& solid, grid::CellId c,
 
 using FrontsOfCells = std::map<grid::CellId, grid::Front>;
 
-/// Is it one in a corner that the plane cuts off a cell, beside a cell that is parted up to it, by a cut or by a front, or will be
-/// by those of `begun`? Whole, however little of the cut is to go through it, it would close the cut in the cell beside it
-/// over all of the face that they share: back to where that cell begins.
+/// Does it lie in a corner that the plane cuts off its cell, beside a cell that is cut, or that another front (of `begun`, or
+/// before) has passed by half? Whole, such a cell closes the cut in the one beside it over all of the face that they
+/// share, back to where that cell begins, however little of the cut is to go through it.
 bool is_corner_ahead(const grid::Solid& solid, const grid::Front& front, const FrontsOfCells& begun);
 
 /// Can the cell have this front, if others have those of `begun`?

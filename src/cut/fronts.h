@@ -4,7 +4,7 @@
 ///
 /// Of each cell that the shape's plane meets, and that has one copy, what of the material lies in the plane is clipped with
 /// the shape; the part that is left of it is how far the cut has come. The shape is taken larger by the lag of fronts, as elements are
-/// too stiff there.
+/// too stiff there. Corners ahead of it are parted too (is_corner_ahead, course.h).
 ///
 /// Limits: only shapes that are flat and have an end; a mesh ends with the last cell that it parts. Moving blades: advance.h.
 
