@@ -50,6 +50,7 @@ TEST(PennyShapedCut, OpensAsItShouldWhereverItsFrontLies) {
     {.offset = Vec3(0.5, 0.1, 0.5), .normal = Vec3(0, 1, 1)},
     {.offset = Vec3(0.05, 0.9, 0.1), .normal = Vec3(1, 0, 2)},
     {.offset = Vec3(0.7, 0.2, 0.9), .normal = Vec3(0.3, -0.5, 0.8)},
+    {.offset = Vec3(0.61, 0.95, 0.49), .normal = Vec3(0.09, -0.7, 0.71)}, // corners lie ahead of its front
   };
   for (Penny problem : problems) {
     problem.n_over_radius = 4;
