@@ -4,16 +4,36 @@
 #include "grid/locate.h"
 #include "scene/held.h"
 
+#include <utility>
+
 namespace kerf::scene {
 
 namespace {
 
-void find_supports(Body& body) {
-  body.loads.supports.clear();
+/// 1 for each corner that a support held before a cut, or that comes from such a one.
+std::vector<std::uint8_t> held_before(const dynamics::Support& support, const grid::CutChange& change) {
+  std::vector<std::uint8_t> held(change.n_corners_before, 0);
+  for (const auto i : support.corners)
+    held[i] = 1;
+  grid::inherit(change, held);
+  for (const grid::Lapse& lapse : change.lapsed)
+    held[lapse.heir.value] |= held[lapse.corner.value];
+  return held;
+}
+
+/// A cut gives supports nothing that they did not hold: it shapes material anew, by less than a cube, and a piece that moved
+/// on long ago may have some in a region then.
+void find_supports(Body& body, const grid::CutChange* const change) {
+  const std::vector<dynamics::Support> before = std::exchange(body.loads.supports, {});
   const Points& rest = body.physics->rest();
-  for (const SupportRegion& region : body.regions) {
+  for (std::size_t r = 0; r < body.regions.size(); ++r) {
+    const SupportRegion& region = body.regions[r];
     dynamics::Support support{{}, {}, region.displacement, region.rotation, region.held};
     support.corners = particles_in(body, region.region);
+    if (change && body.physics->particles_are_corners()) {
+      const std::vector<std::uint8_t> held = held_before(before[r], *change);
+      std::erase_if(support.corners, [&](const std::uint32_t i) { return held[i] == 0; });
+    }
     for (const auto i : support.corners)
       support.rest.push_back(rest[i]);
     body.loads.supports.push_back(std::move(support));
@@ -38,7 +58,7 @@ void follow_cut(Body& body, grid::CutChange change, Timings& timings) {
   const ScopedTimer timer(timings, "assemble");
   const double had = body.physics->model().energy(body.state.x);
   body.physics->follow_cut(seen(body), change, body.state);
-  make_loads(body);
+  make_loads(body, &change);
   body.physics->let_out(seen(body), change, had, body.loads, body.state);
 }
 
@@ -54,8 +74,8 @@ void cut_and_follow(Body& body, Timings& timings, const Cut& cut) {
 
 } // namespace
 
-void make_loads(Body& body) {
-  find_supports(body);
+void make_loads(Body& body, const grid::CutChange* const change) {
+  find_supports(body, change);
   body.loads.acting.clear();
   body.loads.carried = body.physics->crumbs().carried();
   body.first_load = {0};
@@ -86,10 +106,12 @@ void archive(Archive& a, Body& body) {
     a(*body.accounts);
   if (body.interior)
     a(body.interior->atlas);
-  if (a.reads()) {
+  if (a.reads())
     make_loads(body);
+  for (std::size_t r = 0; r < body.regions.size(); ++r)
+    a(body.loads.supports[r].corners, body.loads.supports[r].rest);
+  if (a.reads())
     follow(body);
-  }
 }
 
 void start(Body& body, const geometry::TriangleMesh& mesh, const PhysicsMaker& make_physics, Timings& timings) {

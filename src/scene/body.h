@@ -108,8 +108,8 @@ inline const Points& corners(const Body& body) { return body.physics->corners(bo
 /// from `mesh`.
 void start(Body& body, const geometry::TriangleMesh& mesh, const PhysicsMaker& make_physics, Timings& timings);
 
-/// Makes supports and loads of what the body is now; those of forceps are made by hold().
-void make_loads(Body& body);
+/// Makes supports and loads of what the body is now; those of forceps are made by hold(). After a cut: which one.
+void make_loads(Body& body, const grid::CutChange* change = nullptr);
 /// Finds the copy whose material each probe lies in; not valid for one outside.
 void find_probes(Body& body);
 

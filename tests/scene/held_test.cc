@@ -5,6 +5,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <random>
+
 namespace kerf::scene {
 namespace {
 
@@ -41,6 +44,41 @@ TEST(Held, CornersBeyondTheSkinAreHeld) {
   const auto held = particles_in(world.bodies[0], HalfSpace{.point = Vec3(0, 0, 0.08), .normal = -Vec3::UnitZ()});
   EXPECT_EQ(held.size(), 36u); // the nodes' layer is at 0.075, the skin at 0.1, these at 0.125
   EXPECT_TRUE(particles_in(world.bodies[0], HalfSpace{.point = Vec3(0, 0, 0.11), .normal = -Vec3::UnitZ()}).empty());
+}
+
+/// Material of a piece that is free has another shape with each cut, and may reach into a region for the first time: a
+/// support that took hold of it then would draw it back from wherever it is.
+TEST(Held, ACutGivesSupportsNothingThatIsFree) {
+  const Vec3 away(0, 0.3, 0), normal = Vec3(3, -1, 2).normalized();
+  std::size_t n_held = 0;
+  for (unsigned seed = 0; seed < 8; ++seed) {
+    World world = world_of(cube_scene(), {"Body cube/Cube edge [m]=0.021", "Body cube/Support s/Region=half space",
+                                          "Body cube/Support s/Plane point [m]=0, 0, 0",
+                                          "Body cube/Support s/Plane normal [1]=3, -1, 2", "Cut surface c/Shape=plane",
+                                          "Cut surface c/Point [m]=0, 0, 0", "Cut surface c/Normal [1]=0, 0, 1"});
+    Body& body = world.bodies[0];
+    Timings seconds;
+    cut_at_once(body, {"first", cut::Plane{0.0006 * (seed + 1) * normal, normal}, 1}, seconds);
+    std::vector<std::uint8_t> is_held(body.state.x.size(), 0);
+    const auto pieces = physics::corner_pieces(body.solid.complex);
+    for (const auto i : body.loads.supports[0].corners)
+      is_held[pieces[i]] = 1; // of a piece
+    for (std::size_t i = 0; i < body.state.x.size(); ++i)
+      if (!is_held[pieces[i]])
+        body.state.x[i] += away;
+    follow(body);
+    std::mt19937 random(seed);
+    std::normal_distribution<double> normally(0, 0.05);
+    for (int k = 0; k < 8; ++k) {
+      const Vec3 centre = away + Vec3(normally(random), normally(random), normally(random));
+      cut_at_once(body, {"ball", cut::Sphere{centre, 0.05 + std::abs(normally(random))}, 1}, seconds);
+      const dynamics::Support& support = body.loads.supports[0];
+      n_held += support.corners.size();
+      for (std::size_t i = 0; i < support.corners.size(); ++i)
+        EXPECT_LT((body.state.x[support.corners[i]] - support.rest[i]).norm(), 1e-9) << "seed " << seed << ", cut " << k;
+    }
+  }
+  EXPECT_GT(n_held, 10000u);
 }
 
 TEST(Held, PhyxelsAreHeldWhereTheyRest) {
