@@ -68,6 +68,8 @@ Loan<double> piece_volumes(const Body& body, const Watch& watch, const Points& p
   parallel_for(
     triangles.size(),
     [&](const std::size_t t) {
+      if (watch.piece_of_triangle[t] == of_no_piece)
+        return;
       const auto& [a, b, c] = triangles[t];
       of_triangles[t] = points[a].dot(points[b].cross(points[c])) / 6;
     },
