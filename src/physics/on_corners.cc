@@ -42,12 +42,21 @@ lattice::Riders riders_of(const fem::Hexahedra& model, const CutBody& body) {
 }
 
 void damp_riders(const fem::Hexahedra& model, const lattice::Riders& riders, const std::span<const double> mass,
-                 const double dt, dynamics::State& state) {
+                 const dynamics::Loads& loads, const double dt, dynamics::State& state) {
+  if (riders.n_riders() == 0)
+    return;
   const auto& material = model.material();
   const double across = std::sqrt((material.lambda() + 2 * material.mu()) / material.density) / model.h(),
                alpha = std::min(1.0, across * dt * across * dt);
-  if (riders.n_riders() > 0)
-    riders.damp(state.x, mass, alpha, state.v);
+  Loan<Vec3> before = Loan<Vec3>::with_room(state.v.size());
+  for (const dynamics::Support& support : loads.supports)
+    for (const auto i : support.corners)
+      before->push_back(state.v[i]);
+  riders.damp(state.x, mass, alpha, state.v);
+  std::size_t k = 0;
+  for (const dynamics::Support& support : loads.supports)
+    for (const auto i : support.corners)
+      state.v[i] -= support.held * (state.v[i] - before[k++]);
 }
 
 std::vector<std::uint8_t> touched_corners(const grid::CellComplex& complex, const grid::CutChange& change) {

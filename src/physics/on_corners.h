@@ -24,11 +24,11 @@ namespace kerf::physics {
 /// of a lattice are (lattice/riders.h), critically for the frequency of a cube. Of the others none.
 inline lattice::Riders riders_of(const dynamics::ForceModel&, const CutBody&) { return {}; }
 lattice::Riders riders_of(const fem::Hexahedra& model, const CutBody& body);
-inline void damp_riders(const dynamics::ForceModel&, const lattice::Riders&, std::span<const double>, double,
-                        dynamics::State&) {}
-/// `mass` by corner [kg].
-void damp_riders(const fem::Hexahedra& model, const lattice::Riders& riders, std::span<const double> mass, double dt,
-                 dynamics::State& state);
+inline void damp_riders(const dynamics::ForceModel&, const lattice::Riders&, std::span<const double>,
+                        const dynamics::Loads&, double, dynamics::State&) {}
+/// `mass` by corner [kg]. What is held keeps its velocity: supports take the impulse.
+void damp_riders(const fem::Hexahedra& model, const lattice::Riders& riders, std::span<const double> mass,
+                 const dynamics::Loads& loads, double dt, dynamics::State& state);
 
 /// Corners that lapse bring their heirs what they had of momentum, angular momentum and place, by mass as it was [kg]. The
 /// heirs turn for that by what the joining has taken of the kinetic energy at most: one heir has no inertia but
@@ -88,7 +88,7 @@ class OnCorners : public Physics {
     if (carry_all(crumbs_)) {
       state.time += dt;
     } else {
-      damp_riders(*model_, riders_, model().lumped_mass(), dt, state);
+      damp_riders(*model_, riders_, model().lumped_mass(), loads, dt, state);
       report =
         widened_ ? narrowed_step(*stepper_, model_->numbers(), state, loads, dt) : stepper_->step(state, loads, dt);
     }

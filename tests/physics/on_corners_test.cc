@@ -197,12 +197,31 @@ TEST(OnCorners, LightCornersOfElementsAreDampedOnceCut) {
   const Vec3 before = momentum();
   double energy = dynamics::kinetic_energy(physics.model(), state.v);
   for (int i = 0; i < 20; ++i) {
-    damp_riders(physics.own_model(), riders, physics.model().lumped_mass(), 1e-3, state);
+    damp_riders(physics.own_model(), riders, physics.model().lumped_mass(), {}, 1e-3, state);
     const double now = dynamics::kinetic_energy(physics.model(), state.v);
     EXPECT_LT(now, energy);
     energy = now;
   }
   EXPECT_LT((momentum() - before).norm(), 1e-9 * before.norm());
+
+  dynamics::Loads loads; // every third corner slides across z
+  dynamics::Support& support = loads.supports.emplace_back();
+  support.held = dynamics::held_axes("z");
+  for (std::uint32_t i = 0; i < state.v.size(); i += 3)
+    support.corners.push_back(i);
+  state.v = random_points(state.v.size(), random);
+  for (const auto i : support.corners)
+    state.v[i][2] = 0;
+  const Points v = state.v;
+  energy = dynamics::kinetic_energy(physics.model(), state.v);
+  damp_riders(physics.own_model(), riders, physics.model().lumped_mass(), loads, 1e-3, state);
+  EXPECT_LT(dynamics::kinetic_energy(physics.model(), state.v), energy);
+  std::size_t n_moved = 0;
+  for (const auto i : support.corners) {
+    EXPECT_EQ(state.v[i][2], 0);
+    n_moved += state.v[i] != v[i] ? 1 : 0;
+  }
+  EXPECT_GT(n_moved, 0u);
 }
 
 } // namespace
