@@ -50,12 +50,16 @@ TEST(Held, CornersBeyondTheSkinAreHeld) {
 /// support that took hold of it then would draw it back from wherever it is.
 TEST(Held, ACutGivesSupportsNothingThatIsFree) {
   const Vec3 away(0, 0.3, 0), normal = Vec3(3, -1, 2).normalized();
-  std::size_t n_held = 0;
+  const Overrides held_below = {"Body cube/Cube edge [m]=0.021",
+                                "Body cube/Support s/Region=half space",
+                                "Body cube/Support s/Plane point [m]=0, 0, 0",
+                                "Body cube/Support s/Plane normal [1]=3, -1, 2",
+                                "Cut surface c/Shape=plane",
+                                "Cut surface c/Point [m]=0, 0, 0",
+                                "Cut surface c/Normal [1]=0, 0, 1"};
+  std::size_t n_held = 0, n_let_go = 0;
   for (unsigned seed = 0; seed < 8; ++seed) {
-    World world = world_of(cube_scene(), {"Body cube/Cube edge [m]=0.021", "Body cube/Support s/Region=half space",
-                                          "Body cube/Support s/Plane point [m]=0, 0, 0",
-                                          "Body cube/Support s/Plane normal [1]=3, -1, 2", "Cut surface c/Shape=plane",
-                                          "Cut surface c/Point [m]=0, 0, 0", "Cut surface c/Normal [1]=0, 0, 1"});
+    World world = world_of(cube_scene(), held_below), resumed = world_of(cube_scene(), held_below);
     Body& body = world.bodies[0];
     Timings seconds;
     cut_at_once(body, {"first", cut::Plane{0.0006 * (seed + 1) * normal, normal}, 1}, seconds);
@@ -77,8 +81,16 @@ TEST(Held, ACutGivesSupportsNothingThatIsFree) {
       for (std::size_t i = 0; i < support.corners.size(); ++i)
         EXPECT_LT((body.state.x[support.corners[i]] - support.rest[i]).norm(), 1e-9) << "seed " << seed << ", cut " << k;
     }
+    const auto& corners = body.loads.supports[0].corners;
+    n_let_go += particles_in(body, body.regions[0].region).size() - corners.size();
+    Archive archived;
+    archive(archived, body);
+    Archive back(archived.bytes(), "a test");
+    archive(back, resumed.bodies[0]);
+    EXPECT_EQ(resumed.bodies[0].loads.supports[0].corners, corners) << "seed " << seed;
   }
   EXPECT_GT(n_held, 10000u);
+  EXPECT_GT(n_let_go, 0u); // which have material in the region now
 }
 
 TEST(Held, PhyxelsAreHeldWhereTheyRest) {
