@@ -25,7 +25,7 @@ Mat3 inverse_where_it_spans(const Mat3& S) {
   return sum;
 }
 
-/// The heavy corners of a copy, as they are at rest.
+/// Corners that take up the mass of light ones, as they are at rest.
 class Carrier {
  public:
   Carrier(const std::vector<std::uint32_t>& corners, const Points& rest, const std::span<const double> mass)
@@ -51,8 +51,8 @@ class Carrier {
     return follower;
   }
 
-  /// Gives the corners what light ones have, of that mass and moment [kg], [kg m].
-  void take(const double light, const Vec3& moment, const Points& rest, const std::span<const double> mass,
+  /// Gives the corners what light ones have, of that mass and moment [kg], [kg m]. Returns what it leaves of the moment.
+  Vec3 take(const double light, const Vec3& moment, const Points& rest, const std::span<const double> mass,
             std::vector<double>& gathered) const {
     constexpr double most = 0.5; // of a mass
     const Vec3 slope = inverse_ * (moment - light * centre_);
@@ -60,8 +60,13 @@ class Carrier {
     for (const auto j : corners_)
       steepest = std::max(steepest, std::abs(slope.dot(rest[j] - centre_)));
     const double part = steepest > most ? most / steepest : 1;
-    for (const auto j : corners_)
-      gathered[j] += mass[j] * (light / mass_ + part * slope.dot(rest[j] - centre_));
+    Vec3 left = moment;
+    for (const auto j : corners_) {
+      const double more = mass[j] * (light / mass_ + part * slope.dot(rest[j] - centre_));
+      gathered[j] += more;
+      left -= more * rest[j];
+    }
+    return left;
   }
 
  private:
@@ -70,6 +75,20 @@ class Carrier {
   Vec3 centre_ = Vec3::Zero();
   Mat3 inverse_ = Mat3::Zero();
 };
+
+/// Moments that carriers left, by piece [kg m].
+using Left = std::map<std::uint32_t, Vec3>;
+
+/// Gives them to all heavy corners of their piece.
+void give_to_pieces(const Left& left, const std::vector<std::uint32_t>& piece, const Points& rest,
+                    std::vector<double>& mass) {
+  std::map<std::uint32_t, std::vector<std::uint32_t>> corners;
+  for (std::uint32_t i = 0; i < mass.size(); ++i)
+    if (mass[i] > 0 && left.contains(piece[i]))
+      corners[piece[i]].push_back(i);
+  for (const auto& [which, of_piece] : corners)
+    Carrier(of_piece, rest, mass).take(0, left.at(which), rest, mass, mass);
+}
 
 } // namespace
 
@@ -83,6 +102,8 @@ GatheredMass gathered_mass(const grid::Solid& solid, const std::span<const doubl
   for (std::uint32_t i = 0; i < mass.size(); ++i)
     if (!is_heavy[i] && mass[i] > 0 && carrier[i] != grid::no_carrier)
       light_ones[carrier[i]].push_back(i);
+  const auto piece = grid::corner_pieces(solid.complex);
+  Left left;
   GatheredMass result{{mass.begin(), mass.end()}, {}};
   for (const auto& [copy, corners] : light_ones) {
     std::vector<std::uint32_t> heavy;
@@ -98,8 +119,9 @@ GatheredMass gathered_mass(const grid::Solid& solid, const std::span<const doubl
       moment += mass[i] * rest[i];
       result.mass[i] = 0;
     }
-    by.take(all, moment, rest, mass, result.mass);
+    left.try_emplace(piece[heavy.front()], Vec3::Zero()).first->second += by.take(all, moment, rest, mass, result.mass);
   }
+  give_to_pieces(left, piece, rest, result.mass);
   return result;
 }
 

@@ -14,8 +14,9 @@
 ///     w_j = m_j (1 / M + (X_j - X_c).S^+ (X - X_c))
 ///
 /// are those that give an affine motion's value at X and change the m_j least. So the body's mass and its centre stay,
-/// and its second moments change by the order of h^2, as by lumping. No corner's mass changes by more than half of it
-/// but by its part of what comes in: where a carrier has many light corners on one side, less of their moment is kept.
+/// and its second moments change by the order of h^2, as by lumping. No carrier changes a corner's mass by more than
+/// half of it but by its part of what comes in: where it has many light corners on one side, the moment that is left is
+/// given to all heavy corners of the piece in the same way.
 ///
 /// Limits: corners of pieces without a carrier keep their mass.
 

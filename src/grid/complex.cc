@@ -422,6 +422,20 @@ Pieces pieces(const CellComplex& complex) {
   return result;
 }
 
+std::vector<std::uint32_t> corner_pieces(const CellComplex& complex) {
+  return corner_pieces(complex, pieces(complex));
+}
+
+std::vector<std::uint32_t> corner_pieces(const CellComplex& complex, const Pieces& all) {
+  std::vector<std::uint32_t> result(complex.n_corners());
+  if (all.n_pieces == 1)
+    return result;
+  for (const auto c : ids<CopyId>(complex.n_copies()))
+    for (const CornerId corner : complex.copies[c].corners)
+      result[corner.value] = all.piece[c];
+  return result;
+}
+
 Points rest_positions(const Solid& solid) {
   Points x;
   x.reserve(with_room(solid.complex.n_corners()));

@@ -134,6 +134,11 @@ struct Pieces {
 };
 Pieces pieces(const CellComplex& complex);
 
+/// The piece of each corner.
+std::vector<std::uint32_t> corner_pieces(const CellComplex& complex);
+/// The same of pieces that are known.
+std::vector<std::uint32_t> corner_pieces(const CellComplex& complex, const Pieces& all);
+
 /// How many pieces there are.
 inline std::uint32_t n_pieces(const CellComplex& complex) { return pieces(complex).n_pieces; }
 

@@ -194,7 +194,7 @@ class OnCorners : public Physics {
   /// The piece of each corner that the model counts.
   std::vector<std::uint32_t> own_pieces(const CutBody& body) const {
     const grid::CellComplex& complex = body.solid.complex;
-    return counted_pieces(body.pieces ? corner_pieces(complex, *body.pieces) : corner_pieces(complex),
+    return counted_pieces(body.pieces ? grid::corner_pieces(complex, *body.pieces) : grid::corner_pieces(complex),
                           model_->numbers());
   }
   /// All that is made again from what the body is now.

@@ -11,20 +11,6 @@ dynamics::State state_at_rest(const Physics& physics) {
   return state;
 }
 
-std::vector<std::uint32_t> corner_pieces(const grid::CellComplex& complex) {
-  return corner_pieces(complex, grid::pieces(complex));
-}
-
-std::vector<std::uint32_t> corner_pieces(const grid::CellComplex& complex, const grid::Pieces& all) {
-  std::vector<std::uint32_t> pieces(complex.n_corners());
-  if (all.n_pieces == 1)
-    return pieces;
-  for (const auto c : ids<grid::CopyId>(complex.n_copies()))
-    for (const grid::CornerId corner : complex.copies[c].corners)
-      pieces[corner.value] = all.piece[c];
-  return pieces;
-}
-
 Interpolation body_point(const CutBody& body, const Vec3& rest) {
   Interpolation point;
   const grid::CopyId c = grid::copy_at(body.solid, rest);

@@ -69,11 +69,6 @@ class Physics {
 /// A body at rest: all particles where they are at rest, at time 0.
 dynamics::State state_at_rest(const Physics& physics);
 
-/// The piece of each corner.
-std::vector<std::uint32_t> corner_pieces(const grid::CellComplex& complex);
-/// The same of pieces that are known.
-std::vector<std::uint32_t> corner_pieces(const grid::CellComplex& complex, const grid::Pieces& all);
-
 /// A rest point [m] as a point that follows corners; no point where the body has no material.
 Interpolation body_point(const CutBody& body, const Vec3& rest);
 

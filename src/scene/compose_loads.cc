@@ -329,7 +329,7 @@ void require_static_answer(const Section& section, const Body& body) {
   if (parameters.free_modes == "allow")
     return;
   const auto pieces =
-    body.physics->particles_are_corners() ? physics::corner_pieces(body.solid.complex) : std::vector<std::uint32_t>();
+    body.physics->particles_are_corners() ? grid::corner_pieces(body.solid.complex) : std::vector<std::uint32_t>();
   try {
     dynamics::require_supported(dynamics::free_rigid_modes(body.physics->model(), body.loads, 0, body.state.x, pieces));
   } catch (const ParameterError& error) {

@@ -193,7 +193,7 @@ class Grinder {
   /// The piece of each particle: of a phyxel, that of the material around it.
   std::vector<std::uint32_t> pieces() {
     if (body().state.x.size() == body().solid.complex.n_corners()) {
-      auto piece = physics::corner_pieces(body().solid.complex);
+      auto piece = grid::corner_pieces(body().solid.complex);
       if (is_lattice_)
         join_splinters(body().solid, piece);
       return piece;

@@ -35,7 +35,7 @@ Vec3 moment(const std::span<const double> mass, const Points& rest) {
 
 double total(const std::span<const double> mass) { return std::accumulate(mass.begin(), mass.end(), 0.0); }
 
-TEST(GatheredMass, KeepsMassAndNearlyItsCentreAndLeavesNoneAtLightCorners) {
+TEST(GatheredMass, KeepsMassAndItsCentreAndLeavesNoneAtLightCorners) {
   for (const unsigned seed : {1u, 2u, 3u}) {
     const Body body = slivers(seed);
     const material::Elastic material;
@@ -45,7 +45,7 @@ TEST(GatheredMass, KeepsMassAndNearlyItsCentreAndLeavesNoneAtLightCorners) {
     const Points rest = body.rest();
     EXPECT_GT(followers.size(), 50u);
     EXPECT_NEAR(total(gathered), total(mass), 1e-12 * total(mass));
-    EXPECT_LT((moment(gathered, rest) - moment(mass, rest)).norm(), 2e-3 * h * total(mass)) << seed;
+    EXPECT_LT((moment(gathered, rest) - moment(mass, rest)).norm(), 1e-12 * h * total(mass)) << seed;
     std::vector<std::uint8_t> follows(mass.size());
     for (const dynamics::Follower& follower : followers) {
       follows[follower.corner] = 1;
@@ -53,7 +53,7 @@ TEST(GatheredMass, KeepsMassAndNearlyItsCentreAndLeavesNoneAtLightCorners) {
       EXPECT_EQ(gathered[follower.corner], 0);
     }
     for (std::size_t i = 0; i < mass.size(); ++i)
-      EXPECT_TRUE(follows[i] || gathered[i] >= 0.5 * mass[i]) << i;
+      EXPECT_TRUE(follows[i] || gathered[i] >= 0.45 * mass[i]) << i;
   }
 }
 

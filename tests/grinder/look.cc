@@ -21,7 +21,7 @@ bool particles_are_corners(const scene::Body& body) { return body.state.x.size()
 
 std::vector<std::uint32_t> pieces_of_particles(const scene::Body& body, const grid::Pieces& pieces) {
   if (particles_are_corners(body))
-    return physics::corner_pieces(body.solid.complex);
+    return grid::corner_pieces(body.solid.complex);
   std::vector<std::uint32_t> piece;
   for (const Vec3& rest : body.physics->rest())
     piece.push_back(pieces.piece[grid::copy_around(body.solid, rest)]);

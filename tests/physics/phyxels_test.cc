@@ -126,7 +126,7 @@ TEST(Phyxels, PiecesStayTogether) {
       join(model.links().pairs[l], model.link_weights()[l]);
     n_links += model.link_weights().size();
     const pba::CornerMap& map = physics.map();
-    const auto pieces_of_corners = corner_pieces(block.body.complex);
+    const auto pieces_of_corners = grid::corner_pieces(block.body.complex);
     for (std::size_t c = 0; c < pieces_of_corners.size(); ++c)
       for (auto s = map.source_start[c]; s < map.source_start[c + 1]; ++s)
         for (auto k = map.start[map.source[s]]; k < map.start[map.source[s] + 1]; ++k)
@@ -216,7 +216,7 @@ TEST(Phyxels, PiecesPartAtOnce) {
     EXPECT_LT(f.norm(), 1e-9) << "pieces are free of each other";
   state.x = x;
   physics.follow(state);
-  const auto pieces = corner_pieces(block.body.complex);
+  const auto pieces = grid::corner_pieces(block.body.complex);
   const Points rest = grid::rest_positions(block.body);
   for (std::size_t c = 0; c < rest.size(); ++c)
     EXPECT_LT((physics.corners(state)[c] - rest[c] - (pieces[c] == 1 ? away : Vec3(Vec3::Zero()))).norm(), 1e-9);

@@ -34,7 +34,7 @@ TEST(BackendScene, WhatIsCutOffFallsFreely) {
                      observe("pieces, momentum z, mass, reactions"));
     EXPECT_EQ(cube.last("pieces"), 2);
     const Body& body = cube.body();
-    const auto pieces = physics::corner_pieces(body.solid.complex);
+    const auto pieces = grid::corner_pieces(body.solid.complex);
     const Points& x = corners(body);
     const Points rest = grid::rest_positions(body.solid);
     std::map<std::uint32_t, std::pair<double, double>> fall; // of each piece: least and most

@@ -26,7 +26,7 @@ TEST(Held, CornersOfPiecesThatHaveNothingThereAreFree) {
   const World world = cut_cube("fem");
   const Body& body = world.bodies[0];
   ASSERT_EQ(grid::n_pieces(body.solid.complex), 2u);
-  const auto pieces = physics::corner_pieces(body.solid.complex);
+  const auto pieces = grid::corner_pieces(body.solid.complex);
   const auto held = particles_in(body, above);
   std::size_t n_inside = 0;
   for (const Vec3& X : body.physics->rest())
@@ -64,7 +64,7 @@ TEST(Held, ACutGivesSupportsNothingThatIsFree) {
     Timings seconds;
     cut_at_once(body, {"first", cut::Plane{0.0006 * (seed + 1) * normal, normal}, 1}, seconds);
     std::vector<std::uint8_t> is_held(body.state.x.size(), 0);
-    const auto pieces = physics::corner_pieces(body.solid.complex);
+    const auto pieces = grid::corner_pieces(body.solid.complex);
     for (const auto i : body.loads.supports[0].corners)
       is_held[pieces[i]] = 1; // of a piece
     for (std::size_t i = 0; i < body.state.x.size(); ++i)

@@ -129,7 +129,7 @@ TEST(SoundScene, AShortPieceTurnsBesideALongOneThatSwings) {
   Body& body = world.bodies[0];
   Timings timings;
   advance(world, 1, timings);
-  const auto piece = physics::corner_pieces(body.solid.complex);
+  const auto piece = grid::corner_pieces(body.solid.complex);
   const Points& at_rest = body.physics->rest();
   const auto end = std::ranges::max_element(at_rest, {}, [](const Vec3& p) { return p[0]; }) - at_rest.begin();
   const auto is_short = [&](const std::size_t corner) { return piece[corner] == piece[static_cast<std::size_t>(end)]; };
