@@ -5,6 +5,8 @@
 #include "dynamics/state.h"
 
 #include <algorithm>
+#include <functional>
+#include <numeric>
 
 namespace kerf::dynamics {
 
@@ -107,9 +109,18 @@ MassAndMomentum mass_and_momentum(const ForceModel& model, const Points& v) {
                        });
 }
 
-double inner_kinetic_energy(const ForceModel& model, const Points& v) {
-  const auto [mass, momentum] = mass_and_momentum(model, v);
-  return std::max(0.0, kinetic_energy(model, v) - (mass > 0 ? 0.5 * momentum.squaredNorm() / mass : 0));
+double inner_kinetic_energy(const ForceModel& model, const Pieces& pieces, const Points& v) {
+  const auto of_mean = [](const MassAndMomentum& all) {
+    return all.mass > 0 ? 0.5 * all.momentum.squaredNorm() / all.mass : 0;
+  };
+  const double kinetic = kinetic_energy(model, v);
+  if (pieces.n() == 1)
+    return std::max(0.0, kinetic - of_mean(mass_and_momentum(model, v)));
+  const auto mass = model.lumped_mass();
+  Loan<MassAndMomentum> all(pieces.n(), MassAndMomentum());
+  for (std::size_t i = 0; i < v.size(); ++i)
+    all[pieces.of(i)] += {mass[i], mass[i] * v[i]};
+  return std::max(0.0, std::transform_reduce(all->begin(), all->end(), kinetic, std::minus<>(), of_mean));
 }
 
 double gravity_energy(const ForceModel& model, const Loads& loads, const Points& x) {

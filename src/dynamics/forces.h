@@ -3,6 +3,7 @@
 /// Sums of all that acts on a body.
 
 #include "dynamics/loads.h"
+#include "dynamics/pieces.h"
 
 namespace kerf::dynamics {
 
@@ -44,8 +45,8 @@ struct MassAndMomentum {
   }
 };
 MassAndMomentum mass_and_momentum(const ForceModel& model, const Points& v);
-/// Kinetic energy of the motion beside the mean one [J].
-double inner_kinetic_energy(const ForceModel& model, const Points& v);
+/// Kinetic energy of the motion beside the mean one of each piece [J].
+double inner_kinetic_energy(const ForceModel& model, const Pieces& pieces, const Points& v);
 /// -sum of m g.x [J].
 double gravity_energy(const ForceModel& model, const Loads& loads, const Points& x);
 

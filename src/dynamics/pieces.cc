@@ -9,6 +9,8 @@ namespace kerf::dynamics {
 Pieces::Pieces(std::vector<std::uint32_t> piece_of_corner) : piece_(std::move(piece_of_corner)) {
   if (!piece_.empty())
     n_ = 1 + *std::max_element(piece_.begin(), piece_.end());
+  if (n_ == 1)
+    piece_ = {};
 }
 
 Loan<double> Pieces::products(const Points& a, const Points& b) const {

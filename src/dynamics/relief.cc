@@ -30,11 +30,39 @@ Loan<Moments> moments(const Pieces& pieces, const std::span<const double> mass, 
   return all;
 }
 
-double slope_squared(const std::span<const double> mass, const Constraints& constraints, const Points& forces) {
+/// 1 for each piece that loads hold nowhere.
+Loan<std::uint8_t> free_pieces(const Pieces& pieces, const Loads& loads, const std::size_t n_particles) {
+  Loan<std::uint8_t> is_free(pieces.n(), 1);
+  const Constraints constraints(loads, n_particles);
+  for (const auto& held : constraints.held())
+    if (!is_carried(loads, held.corner))
+      is_free[pieces.of(held.corner)] = 0;
+  return is_free;
+}
+
+/// Gravity of each particle, none of those in pieces that fall [m/s^2].
+Loan<Vec3> gravity_on_held(const Pieces& pieces, const Loads& loads, const std::size_t n_particles) {
+  const auto is_free = free_pieces(pieces, loads, n_particles);
+  Loan<Vec3> gravity(n_particles);
+  for (std::size_t i = 0; i < n_particles; ++i)
+    gravity[i] = is_free[pieces.of(i)] != 0 ? Vec3(Vec3::Zero()) : loads.gravity;
+  return gravity;
+}
+
+double slope_squared(const std::span<const double> mass, const Constraints& constraints, const Points& forces,
+                     const Points& gravity) {
   double sum = 0;
   for (std::size_t i = 0; i < forces.size(); ++i)
     if (constraints.is_free(i) && mass[i] > 0)
-      sum += forces[i].squaredNorm() / mass[i];
+      sum += (forces[i] + mass[i] * gravity[i]).squaredNorm() / mass[i];
+  return sum;
+}
+
+/// What gravity asks for to come from one place to another [J].
+double lift(const std::span<const double> mass, const Points& gravity, const Points& from, const Points& to) {
+  double sum = 0;
+  for (std::size_t i = 0; i < from.size(); ++i)
+    sum -= mass[i] * gravity[i].dot(to[i] - from[i]);
   return sum;
 }
 
@@ -57,16 +85,12 @@ Loads held_but(const std::span<const std::uint8_t> is_marked, const State& state
 
 double most_after_cut(const ForceModel& model, const double had, const Points& v) {
   constexpr double little = 1e-3;
-  return had + little * (had + inner_kinetic_energy(model, v));
+  return had + little * (had + inner_kinetic_energy(model, Pieces(), v));
 }
 
 void keep_moments(const Pieces& pieces, const std::span<const double> mass, const Loads& loads, const State& before,
                   State& after) {
-  const Constraints constraints(loads, after.x.size());
-  Loan<std::uint8_t> is_free(pieces.n(), 1);
-  for (const auto& held : constraints.held())
-    if (!is_carried(loads, held.corner))
-      is_free[pieces.of(held.corner)] = 0;
+  const auto is_free = free_pieces(pieces, loads, after.x.size());
   const Loan<Moments> had = moments(pieces, mass, before);
   {
     const Loan<Moments> has = moments(pieces, mass, after);
@@ -95,31 +119,36 @@ void keep_moments(const Pieces& pieces, const std::span<const double> mass, cons
       after.v[i] += spin[pieces.of(i)].cross(arm(i));
 }
 
-double Relief::flow(const std::span<const std::uint8_t> is_marked, const Loads& loads, double excess, State& state,
-                    StepReport& report) const {
+double Relief::flow(const std::span<const std::uint8_t> is_marked, const Loads& loads, const Points& gravity,
+                    const Points& from, double excess, State& state, StepReport& report) const {
   constexpr int most_steps = 8;
   constexpr double worth_a_step = 1e-3; // of the excess
   const Loads held = held_but(is_marked, state, loads);
   const Constraints constraints(held, state.x.size());
   Loan<Vec3> forces = Loan<Vec3>::with_room(state.x.size());
   model_.force(state.x, forces);
-  const double slope = slope_squared(model_.lumped_mass(), constraints, forces);
+  const auto mass = model_.lumped_mass();
+  const double slope = slope_squared(mass, constraints, forces, gravity);
   if (!(slope > 0))
     return excess;
   BalanceSolver solver(model_, {.max_iterations = 10,
                                 .tolerance = 1e-2,
                                 .line_search = LineSearch::backtracking,
                                 .cg_tolerance = 1e-3});
+  Loan<Vec3> away(gravity); // inertia's acceleration where gravity alone acts
+  for (Vec3& a : *away)
+    a = -a;
   double tau = std::sqrt(excess / slope);
   for (int k = 0; k < most_steps && excess > 0; ++k, tau *= 4) {
     Loan<Vec3> x(state.x.size());
     try {
-      Balance flow{.mass_factor = 1 / (tau * tau), .start = Loan<Vec3>(state.x)};
+      Balance flow{
+        .mass_factor = 1 / (tau * tau), .start = Loan<Vec3>(state.x), .acceleration = Loan<Vec3>(*away)};
       report.n_iterations += solver.solve(held, constraints, std::move(flow), x).n_linear;
     } catch (const NumericalError&) { // no further
       break;
     }
-    const double had = excess, left = model_.energy(x) - excess_.most;
+    const double had = excess, left = model_.energy(x) - excess_.most + lift(mass, gravity, from, x);
     if (!(left < had))
       break;
     excess = left;
@@ -136,10 +165,12 @@ StepReport Relief::step(State& state, const Loads& loads, double) {
   if (!(first > 0))
     return report;
   State after = state;
-  double excess = flow(excess_.touched, loads, first, after, report);
+  const Pieces pieces(excess_.piece());
+  const Loan<Vec3> gravity = gravity_on_held(pieces, loads, state.x.size());
+  double excess = flow(excess_.touched, loads, gravity, state.x, first, after, report);
   if (excess > 0)
-    excess = flow(std::vector<std::uint8_t>(state.x.size(), 1), loads, excess, after, report);
-  keep_moments(Pieces(excess_.piece()), model_.lumped_mass(), loads, state, after);
+    excess = flow(std::vector<std::uint8_t>(state.x.size(), 1), loads, gravity, state.x, excess, after, report);
+  keep_moments(pieces, model_.lumped_mass(), loads, state, after);
   const double taken = first - excess, turned = kinetic_energy(model_, after.v) - kinetic_energy(model_, state.v);
   if (turned <= taken) // else it has hardly any inertia, and turns by more than was let out
     state = std::move(after);

@@ -10,7 +10,8 @@
 ///
 ///     M (x' - x) / tau^2 = f(x'),
 ///
-/// each of which takes energy, until there is no more than there was. With e the excess, the first has
+/// each of which takes energy, until there is no more than there was. In pieces that are held, f has gravity too and the energy
+/// that of height: else what hangs would be lifted by what its cut gave. With e the excess, the first has
 /// tau^2 = e / f.M^-1 f, the way down the slope that would take it; each further one four times that tau. What the
 /// touched cannot let out by themselves the whole body does, in the same way. Then every piece that nothing holds is
 /// shifted, and its velocities are turned, so that its masses' centre and its angular momentum are what they were.
@@ -50,9 +51,10 @@ class Relief : public Stepper {
   StepReport step(State& state, const Loads& loads, double dt) override;
 
  private:
-  /// Moves what is marked (1) until nothing is left of the excess, or no more goes; returns what is left of it.
-  double flow(std::span<const std::uint8_t> is_marked, const Loads& loads, double excess, State& state,
-              StepReport& report) const;
+  /// Moves what is marked (1) until nothing is left of the excess that there is over `from`, or no more goes; returns what is left of
+  /// it. `gravity` of each particle; none where a piece falls [m/s^2].
+  double flow(std::span<const std::uint8_t> is_marked, const Loads& loads, const Points& gravity, const Points& from,
+              double excess, State& state, StepReport& report) const;
 
   ElasticModel& model_;
   Excess excess_;

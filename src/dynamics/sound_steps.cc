@@ -203,8 +203,8 @@ double ElasticEnergies::at(const Points& x) {
   return known_[0].energy;
 }
 
-EnergyChange energy_change(const ForceModel& model, ElasticEnergies& energies, const Loads& loads, const State& before,
-                           const State& after) {
+EnergyChange energy_change(const ForceModel& model, const Pieces& pieces, ElasticEnergies& energies, const Loads& loads,
+                           const State& before, const State& after) {
   const double elastic_0 = energies.at(before.x), elastic_1 = energies.at(after.x),
                kinetic_0 = kinetic_energy(model, before.v), kinetic_1 = kinetic_energy(model, after.v),
                load_0 = load_energy(loads, before.time, before.x), load_1 = load_energy(loads, after.time, after.x),
@@ -215,8 +215,8 @@ EnergyChange energy_change(const ForceModel& model, ElasticEnergies& energies, c
                        std::abs(gravity_1) + std::abs(load_0) + std::abs(load_1);
   return {
     .gained = elastic_1 - elastic_0 + (kinetic_1 - kinetic_0) + (load_1 - load_0) + (gravity_1 - gravity_0) - work,
-    .dealt = inner_kinetic_energy(model, before.v) + inner_kinetic_energy(model, after.v) + std::abs(elastic_0) +
-             std::abs(elastic_1) + std::abs(load_1 - load_0) + work,
+    .dealt = inner_kinetic_energy(model, pieces, before.v) + inner_kinetic_energy(model, pieces, after.v) +
+             std::abs(elastic_0) + std::abs(elastic_1) + std::abs(load_1 - load_0) + work,
     .kick = 4 * mass_of(model) * loads.gravity.squaredNorm() * dt * dt,
     .unseen = drowned * sizes + unseen(model, after, dt),
     .inner = kinetic_1 + std::abs(elastic_1)};
@@ -241,7 +241,7 @@ void SoundSteps::add_checked(const State& state, const Loads& loads, const doubl
   const StepReport report = stepper_->step(after, loads, dt);
   keep_carried(loads, state, after);
   require_finite(after);
-  const EnergyChange change = energy_change(model_, energies_, loads, state, after);
+  const EnergyChange change = energy_change(model_, pieces_, energies_, loads, state, after);
   const double shift = options_.kick * change.kick + change.unseen;
   if (!(change.gained <= options_.most_gain * change.dealt + shift) && change.gained > round_off(model_, after.x))
     throw StepError("the step gained " + in_short(change.gained) + " J that no load and no support gave, " +

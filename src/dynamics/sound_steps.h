@@ -5,7 +5,7 @@
 /// A step adds, in what nobody did: the growth of kinetic, elastic, gravity and load energy, less the work of supports,
 /// of driving loads and of potentials that change with time. Work is force times displacement with the forces of the
 /// start or of the end, whichever is more. A sound step gains at most a part of the energy that it deals with: what
-/// moves against the body's mean motion and what is elastic, before and after, and the work; beside the kick that
+/// moves against its piece's mean motion and what is elastic, before and after, and the work; beside the kick that
 /// gravity gives in one step, which first order shifts in time, and round-off. Implicit Euler gains where
 /// energy is concave along its way, of second order in dt; symplectic integrators take and give it back, up to a multiple near their stable step, and
 /// are to be allowed more. Dissipation, the integrator's own too, counts as it should.
@@ -24,6 +24,7 @@
 
 #include "base/error.h"
 #include "dynamics/loads.h"
+#include "dynamics/pieces.h"
 #include "dynamics/stepper.h"
 
 #include <array>
@@ -74,9 +75,10 @@ class ElasticEnergies {
 class SoundSteps : public Stepper {
  public:
   /// The model must outlive the stepper, and stay as it is: after a cut both are made again.
-  SoundSteps(ForceModel& model, std::unique_ptr<Stepper> stepper, const SoundOptions& options,
+  SoundSteps(ForceModel& model, Pieces pieces, std::unique_ptr<Stepper> stepper, const SoundOptions& options,
              std::unique_ptr<Stepper> last_resort = nullptr)
     : model_(model),
+      pieces_(std::move(pieces)),
       stepper_(std::move(stepper)),
       last_resort_(std::move(last_resort)),
       options_(options),
@@ -116,6 +118,7 @@ class SoundSteps : public Stepper {
   StepReport by_last_resort(State& state, const Loads& loads, double dt);
 
   ForceModel& model_;
+  Pieces pieces_;
   std::unique_ptr<Stepper> stepper_, last_resort_;
   SoundOptions options_;
   ElasticEnergies energies_;
@@ -130,8 +133,8 @@ struct EnergyChange {
   double unseen = 0; ///< round-off, and motions that are none [J]
   double inner = 0;  ///< kinetic and elastic energy at the end [J]
 };
-EnergyChange energy_change(const ForceModel& model, ElasticEnergies& energies, const Loads& loads, const State& before,
-                           const State& after);
+EnergyChange energy_change(const ForceModel& model, const Pieces& pieces, ElasticEnergies& energies, const Loads& loads,
+                           const State& before, const State& after);
 
 /// Throws StepError when a position or a velocity is not finite.
 void require_finite(const State& state);

@@ -25,14 +25,14 @@ constexpr dynamics::SoundOptions dissipative{.kick = 0.01, .wanted_gain = 2e-3};
 /// Of 20 steps of a soft body that bends far, and that 16 substeps did not mend, 32 or 64 mended 7, at three times the cost
 /// of all tries before.
 constexpr dynamics::SoundOptions conservative{
-  .most_substeps = 16, .most_gain = 0.05, .most_sum = 0.1, .kick = 0.01, .wanted_gain = 1e-2};
+  .most_substeps = 16, .most_gain = 0.05, .most_sum = 0.1, .kick = 0, .wanted_gain = 1e-2};
 constexpr dynamics::SoundOptions as_they_are{.most_substeps = 1};
 constexpr dynamics::SoundOptions explicit_ones{.most_substeps = 1, .most_gain = 0.75};
 
 /// Watches the energy of an integrator's steps, and divides those that gain some.
 physics::StepperMaker sound(const physics::StepperMaker& make, const dynamics::SoundOptions& options) {
   return [=](ElasticModel& model, const PiecesOfParticles& pieces) -> Stepper {
-    return std::make_unique<dynamics::SoundSteps>(model, make(model, pieces), options);
+    return std::make_unique<dynamics::SoundSteps>(model, dynamics::Pieces(pieces()), make(model, pieces), options);
   };
 }
 
@@ -48,8 +48,9 @@ Stepper implicit_euler(ElasticModel& model, const dynamics::NewtonParameters& pa
 physics::StepperMaker sound_or_implicit_euler(const physics::StepperMaker& make) {
   return [=](ElasticModel& model, const PiecesOfParticles& pieces) -> Stepper {
     auto last_resort = std::make_unique<dynamics::SoundSteps>(
-      model, implicit_euler(model, dynamics::NewtonParameters(), pieces), dissipative);
-    return std::make_unique<dynamics::SoundSteps>(model, make(model, pieces), conservative, std::move(last_resort));
+      model, dynamics::Pieces(pieces()), implicit_euler(model, dynamics::NewtonParameters(), pieces), dissipative);
+    return std::make_unique<dynamics::SoundSteps>(model, dynamics::Pieces(pieces()), make(model, pieces), conservative,
+                                                  std::move(last_resort));
   };
 }
 

@@ -61,6 +61,7 @@ MassSpring::MassSpring(const grid::Solid& solid, const MassSpringOptions& option
         mass_[numbers_[corner.value]] += fill[c.value] * eighth;
   add_springs(solid, fill, options);
   find_users();
+  inversion_.emplace(solid, numbers_, fill, options.youngs_modulus);
 }
 
 void MassSpring::add_springs(const grid::Solid& solid, const std::vector<double>& fill,
@@ -128,7 +129,7 @@ double MassSpring::energy(const Points& x) const {
     const double stretch = (x[s.b] - x[s.a]).norm() - s.length;
     sum += 0.5 * s.stiffness * stretch * stretch;
   }
-  return sum;
+  return sum + inversion_->energy(x);
 }
 
 void MassSpring::force(const Points& x, Points& forces) const {
@@ -145,6 +146,7 @@ void MassSpring::force(const Points& x, Points& forces) const {
     worth_springs);
   forces.resize(mass_.size());
   gather(of_springs_, forces[0].data());
+  inversion_->add_force(x, forces);
 }
 
 MassSpring::Direction MassSpring::direction(const Spring& spring, const Points& x, const dynamics::Tangent kind) {
@@ -162,6 +164,7 @@ void MassSpring::linearise(const Points& x) {
     springs_.size(),
     [&](const std::size_t i) { directions_[i] = direction(springs_[i], x, dynamics::Tangent::positive); },
     worth_springs);
+  inversion_->linearise(x);
 }
 
 Eigen::SparseMatrix<double> MassSpring::stiffness_matrix(const Points& x, const dynamics::Tangent kind) const {
@@ -179,6 +182,7 @@ Eigen::SparseMatrix<double> MassSpring::stiffness_matrix(const Points& x, const 
     add(s.a, s.b, -block);
     add(s.b, s.a, -block);
   }
+  inversion_->add_entries(x, kind, entries);
   const auto n = static_cast<Eigen::Index>(3 * mass_.size());
   Eigen::SparseMatrix<double> K(n, n);
   K.setFromTriplets(entries.begin(), entries.end());
@@ -193,6 +197,7 @@ void MassSpring::apply_stiffness(const std::span<const double> p, const std::spa
     [&](const std::size_t i) { of_springs_[i] = directions_[i].times(at(springs_[i].a) - at(springs_[i].b)); },
     worth_springs);
   gather(of_springs_, y.data());
+  inversion_->add_product(p, y);
 }
 
 void MassSpring::stiffness_diagonal(std::vector<Mat3>& blocks) const {
@@ -206,6 +211,7 @@ void MassSpring::stiffness_diagonal(std::vector<Mat3>& blocks) const {
       blocks[c] = sum;
     },
     worth_corners);
+  inversion_->add_diagonal(blocks);
 }
 
 } // namespace kerf::spring

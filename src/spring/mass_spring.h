@@ -15,11 +15,16 @@
 /// is spread evenly over its corners: then no sliver has a frequency above a full cube's, and the stable step of
 /// explicit integrators does not depend on the cuts.
 ///
+/// Springs know no inside out: what has lost half its volume resists besides (inversion.h).
+///
 /// Limits: nu is 1/4 whatever the material; the mass of a partial copy is exact, its centre is the cube's; small strain
-/// only follows Hooke's law; springs know no inside out, and a body that is turned inside out stays so.
+/// only follows Hooke's law.
 
 #include "dynamics/model.h"
 #include "grid/corner_numbers.h"
+#include "spring/inversion.h"
+
+#include <optional>
 
 namespace kerf::spring {
 
@@ -77,6 +82,7 @@ class MassSpring : public dynamics::ElasticModel, public dynamics::StiffnessMatr
   std::vector<Spring> springs_;                   // sorted by corners
   std::vector<std::uint32_t> user_start_, users_; // by corner: 2 spring + end
   std::vector<double> mass_;
+  std::optional<Inversion> inversion_;
   std::vector<Direction> directions_;
   mutable Points of_springs_; // scratch
 };

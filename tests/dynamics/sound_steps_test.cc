@@ -30,7 +30,7 @@ double energy(const ForceModel& model, const State& state) {
 /// Explicit Euler multiplies a vibration's energy by 1 + (w dt)^2 a step: divided by n, by (1 + (w dt / n)^2)^n.
 TEST(SoundSteps, DivideAStepThatGainsEnergy) {
   Chain model({1, 1, 1}, {.anchor = 100});
-  SoundSteps stepper(model, std::make_unique<ExplicitEuler>(model, go_on), {});
+  SoundSteps stepper(model, Pieces(), std::make_unique<ExplicitEuler>(model, go_on), {});
   State state = model.state();
   state.x[1] += Vec3(0.1, 0, 0);
   const double before = energy(model, state), square = 100 * 0.2 * 0.2;
@@ -44,7 +44,7 @@ TEST(SoundSteps, DivideAStepThatGainsEnergy) {
 
 TEST(SoundSteps, SayWhereAStepCannotBeMended) {
   Chain model({1, 1, 1}, {.anchor = 100});
-  SoundSteps stepper(model, std::make_unique<ExplicitEuler>(model, go_on), {.most_substeps = 1});
+  SoundSteps stepper(model, Pieces(), std::make_unique<ExplicitEuler>(model, go_on), {.most_substeps = 1});
   State state = model.state();
   state.x[1] += Vec3(0.1, 0, 0);
   const State before = state;
@@ -62,7 +62,7 @@ TEST(SoundSteps, SayWhereAStepCannotBeMended) {
 /// Each step gains less than anyone would mind; together they do.
 TEST(SoundSteps, RefuseAMotionThatGrowsStepByStep) {
   Chain model({1, 1}, {.anchor = 100});
-  SoundSteps stepper(model, std::make_unique<ExplicitEuler>(model, go_on), {.most_substeps = 1});
+  SoundSteps stepper(model, Pieces(), std::make_unique<ExplicitEuler>(model, go_on), {.most_substeps = 1});
   State state = model.state();
   state.x[0] += Vec3(0.1, 0, 0);
   state.x[1] -= Vec3(0.1, 0, 0);
@@ -75,7 +75,7 @@ TEST(SoundSteps, RefuseAMotionThatGrowsStepByStep) {
 /// What cannot be mended is taken by another integrator, from which the next step starts anew.
 TEST(SoundSteps, HandAStepThatNothingMendsToTheLastResort) {
   Chain model({1, 1, 1}, {.anchor = 100});
-  SoundSteps stepper(model, std::make_unique<ExplicitEuler>(model, go_on), {.most_substeps = 1},
+  SoundSteps stepper(model, Pieces(), std::make_unique<ExplicitEuler>(model, go_on), {.most_substeps = 1},
                      std::make_unique<ImplicitEuler>(model, ImplicitEulerOptions{.cg_tolerance = 1e-12}));
   State state = model.state();
   state.x[1] += Vec3(0.1, 0, 0);
@@ -92,7 +92,7 @@ TEST(SoundSteps, HandAStepThatNothingMendsToTheLastResort) {
 TEST(SoundSteps, LetWorkPass) {
   for (const double dt : {1e-3, 0.01, 0.1}) {
     Chain model({1, 2, 1}, {.neighbour = 100});
-    SoundSteps stepper(model, std::make_unique<ImplicitEuler>(model, ImplicitEulerOptions{.cg_tolerance = 1e-12}),
+    SoundSteps stepper(model, Pieces(), std::make_unique<ImplicitEuler>(model, ImplicitEulerOptions{.cg_tolerance = 1e-12}),
                        {.most_substeps = 1});
     Loads loads{.gravity = Vec3(0, 0, -9.81), .mass_damping = 0.2, .stiffness_damping = 0.01, .supports = {}};
     loads.supports = {{{0}, {model.rest()[0]}, [](const double t) { return Vec3(std::sin(20 * t), t * t, t); }}};
@@ -107,7 +107,7 @@ TEST(SoundSteps, LetWorkPass) {
 TEST(SoundSteps, DivideAStepThatGainsMoreThanWanted) {
   const auto substeps = [](const double wanted) {
     Chain model({1, 1}, {.anchor = 100});
-    SoundSteps stepper(model, std::make_unique<ExplicitEuler>(model, go_on), {.wanted_gain = wanted});
+    SoundSteps stepper(model, Pieces(), std::make_unique<ExplicitEuler>(model, go_on), {.wanted_gain = wanted});
     State state = model.state();
     state.x[0] += Vec3(0.1, 0, 0);
     state.x[1] -= Vec3(0.1, 0, 0);
@@ -132,7 +132,7 @@ class CountedChain : public Chain {
 /// A step that is taken costs one evaluation: where it ends, the next one starts.
 TEST(SoundSteps, EvaluateTheEnergyOnceAStep) {
   CountedChain model({1, 2, 1}, {.neighbour = 100});
-  SoundSteps stepper(model, std::make_unique<ImplicitEuler>(model, ImplicitEulerOptions{.cg_tolerance = 1e-12}), {});
+  SoundSteps stepper(model, Pieces(), std::make_unique<ImplicitEuler>(model, ImplicitEulerOptions{.cg_tolerance = 1e-12}), {});
   State state = model.state();
   state.x[1] += Vec3(0.1, 0, 0);
   for (int i = 1; i <= 20; ++i) {

@@ -36,6 +36,15 @@ bool is_finite(const scene::Body& body) {
   return std::isfinite(sum);
 }
 
+/// Their 99th percentile; 1 of none.
+double ordinary(std::vector<double> values) {
+  if (values.empty())
+    return 1;
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(0.99 * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
 void look_at_speeds(const scene::Body& body, const grid::Pieces& pieces, std::vector<PieceLook>& looks) {
   const auto piece = pieces_of_particles(body, pieces);
   std::vector<std::vector<double>> speeds(looks.size());
@@ -52,10 +61,29 @@ void look_at_speeds(const scene::Body& body, const grid::Pieces& pieces, std::ve
     looks[p].n_particles = speeds[p].size();
     if (speeds[p].empty())
       continue;
-    const auto at = speeds[p].begin() + static_cast<std::ptrdiff_t>(0.99 * static_cast<double>(speeds[p].size() - 1));
-    std::nth_element(speeds[p].begin(), at, speeds[p].end());
-    looks[p].ordinary = *at;
+    looks[p].ordinary = ordinary(speeds[p]);
   }
+}
+
+void look_at_supports(const scene::Body& body, const grid::Pieces& pieces, std::vector<PieceLook>& looks) {
+  const auto piece = pieces_of_particles(body, pieces);
+  for (const dynamics::Support& support : body.loads.supports)
+    for (const auto particle : support.corners)
+      looks[piece[particle]].is_held = true;
+}
+
+double stretch_of_material(const scene::Body& body) {
+  const Points& x = scene::corners(body);
+  std::vector<double> all;
+  for (const grid::Copy& copy : body.solid.complex.copies) {
+    if (std::popcount(copy.nodes) < 4)
+      continue;
+    double longest = 0;
+    for (const auto& [a, b] : grid::cube::line_vertices)
+      longest = std::max(longest, (x[copy.corners[a].value] - x[copy.corners[b].value]).norm());
+    all.push_back(longest / body.solid.grid.h());
+  }
+  return ordinary(std::move(all));
 }
 
 /// Six times the volume of a triangle's cone from `origin`.
@@ -100,6 +128,8 @@ Look look_at(const scene::Body& body) {
   look.pieces.resize(pieces.n_pieces);
   look_at_speeds(body, pieces, look.pieces);
   look_at_surface(body, pieces, look.pieces);
+  look_at_supports(body, pieces, look.pieces);
+  look.stretch = stretch_of_material(body);
   look.kinetic = observed(body, "kinetic energy");
   look.elastic = observed(body, "elastic energy");
   look.gravity = observed(body, "gravity energy");
@@ -123,8 +153,10 @@ std::string about_particle(const scene::Body& body, const std::size_t particle) 
         words += " [" + std::to_string(std::popcount(copy.nodes)) + " nodes, " +
                  std::to_string(std::popcount(copy.skin)) + " points of the skin]";
   }
-  const grid::CornerId real = body.solid.complex.real_corner[body.solid.complex.node[grid::CornerId(particle)]];
-  return words + (real.value == particle ? ", real" : ", virtual");
+  const grid::NodeId node = body.solid.complex.node[grid::CornerId(particle)];
+  if (!node.valid())
+    return words + "none: it has lapsed";
+  return words + (body.solid.complex.real_corner[node].value == particle ? ", real" : ", virtual");
 }
 
 } // namespace kerf::grinder

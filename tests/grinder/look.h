@@ -14,6 +14,7 @@ struct PieceLook {
   std::size_t who = 0;                ///< the fastest
   double rest_volume = 0, volume = 0; ///< that the surface encloses [m^3]
   double rest_reach = 0, reach = 0;   ///< of its farthest surface vertex from the mean of all [m]
+  bool is_held = false;               ///< by a support
 };
 
 struct Look {
@@ -21,6 +22,7 @@ struct Look {
   std::vector<PieceLook> pieces = {};
   double kinetic = 0, elastic = 0, gravity = 0; ///< [J]
   double missing = 0, work_of_cut = 0;          ///< as observables say [J]
+  double stretch = 1; ///< that one in a hundred copies with half a cube's nodes exceeds, of an edge over that at rest [1]
 };
 
 Look look_at(const scene::Body& body);

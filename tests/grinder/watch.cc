@@ -60,14 +60,16 @@ Watch::Watch(const Scene& scene, const scene::Body& body)
   : most_energy_gained_(most_gained(scene)),
     keeps_energy_(keeps_energy(scene)),
     gravity_(body.loads.gravity.norm()),
-    recoil_(gravity_ * extent(body) / wave_speed(scene)),
+    wave_speed_(wave_speed(scene)),
+    recoil_(gravity_ * extent(body) / wave_speed_),
     mass_(scene::find_observable("mass")->value(body)),
     start_gravity_(scene::find_observable("gravity energy")->value(body)),
     n_pieces_(grid::n_pieces(body.solid.complex)),
     n_recuts_(body.n_recuts) {}
 
 /// What falls has g t. What has sagged and is let go recoils: by no more than g t again, as no more momentum has come
-/// in, or where stress waves of its own weight meet by g L / c each. Blades give no momentum to what they cut.
+/// in, or where stress waves of its own weight meet by g L / c each; or by c times the strain that was let go, twice that at
+/// a free end (one-dimensional waves). Blades give no momentum to what they cut.
 std::optional<Failure> Watch::watch_speeds(const scene::Body& body, const Look& look, const int step,
                                            const double time) {
   const double usual = gravity_ * time + recoil_, limit = 2 * usual;
@@ -91,17 +93,21 @@ std::optional<Failure> Watch::watch_speeds(const scene::Body& body, const Look& 
     if (outlier > 1)
       tell("outlier", usual);
   }
+  recoil_ = std::max(recoil_, wave_speed_ * (look.stretch - 1)); // from the next step on
   return failure;
 }
 
-std::optional<Failure> Watch::watch_shapes(const scene::Body& body, const Look& look, const int step) {
+/// What hangs by a thread is drawn out as far as it falls, and what falls is not.
+std::optional<Failure> Watch::watch_shapes(const scene::Body& body, const Look& look, const int step,
+                                           const double time) {
   const double h = body.solid.grid.h(), least_volume = 1e-9 * h * h * h;
   figures_.stretch = std::max(figures_.stretch, scene::largest_stretch(body).factor);
   std::optional<Failure> failure;
   for (const PieceLook& piece : look.pieces) {
     if (piece.rest_volume < least_volume)
       continue;
-    const double change = piece.volume / piece.rest_volume - 1, reach = piece.reach / piece.rest_reach;
+    const double change = piece.volume / piece.rest_volume - 1, drawn = piece.is_held ? 0.5 * gravity_ * time * time : 0,
+                 reach = std::max(0.0, piece.reach - drawn) / piece.rest_reach;
     figures_.volume = std::max(figures_.volume, std::abs(change) / most_volume_change);
     figures_.reach = std::max(figures_.reach, reach / most_reach);
     const std::string size = " of a piece of " + to_text(piece.rest_volume / (h * h * h)) + " cubes at rest, " +
@@ -149,7 +155,7 @@ std::optional<Failure> Watch::after_step(const scene::Body& body, const int step
   const Look look = look_at(body);
   if (!look.is_finite)
     return Failure{"NaN", step, "a number that is none", true};
-  for (const auto& failure : {watch_speeds(body, look, step, step * dt), watch_shapes(body, look, step),
+  for (const auto& failure : {watch_speeds(body, look, step, step * dt), watch_shapes(body, look, step, step * dt),
                               watch_energy(look, step, dt), watch_pieces(body, look, step)})
     if (failure)
       return failure;

@@ -38,14 +38,14 @@ class Watch {
 
  private:
   std::optional<Failure> watch_speeds(const scene::Body& body, const Look& look, int step, double time);
-  std::optional<Failure> watch_shapes(const scene::Body& body, const Look& look, int step);
+  std::optional<Failure> watch_shapes(const scene::Body& body, const Look& look, int step, double time);
   std::optional<Failure> watch_energy(const Look& look, int step, double dt);
   std::optional<Failure> watch_pieces(const scene::Body& body, const Look& look, int step);
 
   double most_energy_gained_;                             ///< of what has been turned over [1]
   bool keeps_energy_;                                     ///< in the mean: no step is as the one before
   double gravity_ = 0;                                    ///< [m/s^2]
-  double recoil_ = 0;                                     ///< [m/s]
+  double wave_speed_ = 0, recoil_ = 0;                    ///< [m/s]
   double mass_ = 0;                                       ///< [kg]
   double start_gravity_ = 0;                              ///< [J]
   double gained_ = 0, gained_by_cuts_ = 0, turnover_ = 0; ///< [J]
