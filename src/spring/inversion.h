@@ -8,9 +8,8 @@
 ///
 /// a penalty on volume as of Teschner, Heidelberger, Mueller and Gross 2004 (A versatile and robust model for geometrically
 /// complex deformable solids, CGI, section 3.2), asked only where a spring's law has no say any more. F is the mean
-/// gradient over the cube, V its material's volume. Flat cubes get E V / 4, mirrored ones 9/4 E V; as the energy is smooth,
-/// and nothing above half the volume, what is said of small strain (mass_spring.h) stays, and the largest frequency is that
-/// of springs: 4 (E / density)^(1/2) / h with J_0 at F = I / 2^(1/3).
+/// gradient over the cube, V its material's volume. Flat cubes get E V / 4, mirrored ones 9/4 E V. The energy is smooth and
+/// nothing above half the volume, so what is said of small strain (mass_spring.h) stays.
 
 #include "base/loan.h"
 #include "base/vec.h"

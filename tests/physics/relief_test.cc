@@ -1,5 +1,7 @@
 // What a cut gives is let out: of bodies that are bent and crumpled, with every backend.
 
+#include "dynamics/forces.h"
+#include "dynamics/implicit_euler.h"
 #include "dynamics/quantities.h"
 #include "physics/on_corners.h"
 #include "physics/phyxels.h"
@@ -151,6 +153,38 @@ TEST(Relief, IsOfMoreThanTheTouchedWhereThatIsNotEnough) {
   check(elements, [&](dynamics::Excess excess) { return relief_of(elements, std::move(excess)); });
   const lattice::Matching matching(body, {});
   check(matching, [&](dynamics::Excess excess) { return relief_of(matching, std::move(excess)); });
+}
+
+/// A body that hangs in balance has nothing to let out: what a cut seems to give it stays, where the whole body would
+/// otherwise shrink, and rise by more.
+TEST(Relief, LiftsNothingThatHangs) {
+  const auto body = support::with_copies(support::with_placed_skin(support::block({5, 4, 4}, 0.1)));
+  const Points rest = grid::rest_positions(body);
+  fem::Hexahedra model(body, {.material = rubber});
+  dynamics::Loads loads{.gravity = Vec3(3, 0, 0), .supports = {}};
+  dynamics::Support wall{{}, {}, [](double) { return Vec3(Vec3::Zero()); }};
+  const auto left = std::ranges::min_element(rest, {}, [](const Vec3& X) { return X[0]; });
+  for (std::uint32_t i = 0; i < rest.size(); ++i)
+    if (rest[i][0] < (*left)[0] + 1e-9) {
+      wall.corners.push_back(i);
+      wall.rest.push_back(rest[i]);
+    }
+  loads.supports.push_back(std::move(wall));
+  dynamics::State state{rest, Points(rest.size(), Vec3::Zero())};
+  dynamics::ImplicitEulerOptions to_balance{.n_newton = 50, .cg_tolerance = 1e-12, .newton_tolerance = 1e-8};
+  to_balance.line_search = dynamics::LineSearch::backtracking;
+  dynamics::ImplicitEuler(model, to_balance).step(state, loads, 100);
+  state.v.assign(rest.size(), Vec3::Zero());
+  const dynamics::State hangs = state;
+  const auto height = [&](const dynamics::State& at) { return dynamics::gravity_energy(model, loads, at.x); };
+  const double elastic = model.energy(state.x);
+  ASSERT_GT(elastic, 0.1 * std::abs(height(state) - dynamics::gravity_energy(model, loads, rest)));
+  dynamics::Excess excess{.most = 0.8 * elastic,
+                          .touched = std::vector<std::uint8_t>(rest.size(), 0),
+                          .piece = [&] { return std::vector<std::uint32_t>(rest.size(), 0); }};
+  relief_of(model, std::move(excess))->step(state, loads, 0);
+  EXPECT_LT(std::abs(height(state) - height(hangs)), 1e-3 * elastic);
+  EXPECT_LE(model.energy(state.x) + height(state), elastic + height(hangs) + 1e-9 * elastic);
 }
 
 } // namespace
