@@ -189,4 +189,13 @@ Mat3 inverse_factor(const Mat3& block, const Constraints::Freedom& freedom) {
   return inverse;
 }
 
+Loan<std::uint8_t> free_pieces(const Pieces& pieces, const Loads& loads, const std::size_t n_corners) {
+  Loan<std::uint8_t> is_free(pieces.n(), 1);
+  const Constraints constraints(loads, n_corners);
+  for (const auto& held : constraints.held())
+    if (!is_carried(loads, held.corner))
+      is_free[pieces.of(held.corner)] = 0;
+  return is_free;
+}
+
 } // namespace kerf::dynamics

@@ -10,6 +10,7 @@
 
 #include "base/loan.h"
 #include "dynamics/loads.h"
+#include "dynamics/pieces.h"
 
 #include <span>
 
@@ -73,5 +74,8 @@ class Constraints {
   Loan<Hold> holds_;
   Loan<std::size_t> first_; // of each support, among the corners of all
 };
+
+/// 1 for each piece that supports hold nowhere.
+Loan<std::uint8_t> free_pieces(const Pieces& pieces, const Loads& loads, std::size_t n_corners);
 
 } // namespace kerf::dynamics

@@ -30,16 +30,6 @@ Loan<Moments> moments(const Pieces& pieces, const std::span<const double> mass, 
   return all;
 }
 
-/// 1 for each piece that loads hold nowhere.
-Loan<std::uint8_t> free_pieces(const Pieces& pieces, const Loads& loads, const std::size_t n_particles) {
-  Loan<std::uint8_t> is_free(pieces.n(), 1);
-  const Constraints constraints(loads, n_particles);
-  for (const auto& held : constraints.held())
-    if (!is_carried(loads, held.corner))
-      is_free[pieces.of(held.corner)] = 0;
-  return is_free;
-}
-
 /// Gravity of each particle, none of those in pieces that fall [m/s^2].
 Loan<Vec3> gravity_on_held(const Pieces& pieces, const Loads& loads, const std::size_t n_particles) {
   const auto is_free = free_pieces(pieces, loads, n_particles);

@@ -6,6 +6,7 @@
 #include "dynamics/constraints.h"
 #include "dynamics/followers.h"
 #include "dynamics/forces.h"
+#include "dynamics/piece_gains.h"
 
 #include <algorithm>
 #include <array>
@@ -170,6 +171,8 @@ void keep_carried(const Loads& loads, const State& before, State& after) {
     }
 }
 
+} // namespace
+
 std::string in_short(const double value) {
   std::array<char, 32> text;
   std::snprintf(text.data(), text.size(), "%.3g", value);
@@ -177,8 +180,6 @@ std::string in_short(const double value) {
 }
 
 std::string per_cent(const double part) { return in_short(100 * part) + " %"; }
-
-} // namespace
 
 void require_finite(const State& state) {
   const FirstLost all = sum_in_blocks(
@@ -247,6 +248,8 @@ void SoundSteps::add_checked(const State& state, const Loads& loads, const doubl
     throw StepError("the step gained " + in_short(change.gained) + " J that no load and no support gave, " +
                       per_cent(change.gained / change.dealt) + " of the energy that it dealt with",
                     most_thrown(state, after));
+  if (options_.each_piece)
+    require_no_piece_gains(model_, pieces_, loads, state, after, options_.most_gain);
   double& sum = after.numbers[energy_gained];
   sum = std::max(0.0, sum + change.gained);
   if (change.gained > 0 && !(sum <= options_.most_sum * change.inner + shift) && sum > many * round_off(model_, after.x))

@@ -52,6 +52,7 @@ struct SoundOptions {
   double kick = 1;         ///< part that is granted of what first order may misplace of gravity in a step [1]
   /// The same, above which a step is better taken in substeps; gravity's kick is not granted. Infinity: no such limit [1].
   double wanted_gain = std::numeric_limits<double>::infinity();
+  bool each_piece = false; ///< each piece that flies is held to most_gain by itself (piece_gains.h)
 };
 
 /// Elastic energies of the two states that were asked for last: a step that is accepted ends where the next one starts,
@@ -135,6 +136,10 @@ struct EnergyChange {
 };
 EnergyChange energy_change(const ForceModel& model, const Pieces& pieces, ElasticEnergies& energies, const Loads& loads,
                            const State& before, const State& after);
+
+/// Numbers in messages, with three digits.
+std::string in_short(double value);
+std::string per_cent(double part);
 
 /// Throws StepError when a position or a velocity is not finite.
 void require_finite(const State& state);

@@ -182,15 +182,27 @@ void GhostPenalty::count_by(const grid::CornerNumbers& numbers) {
         corner = numbers[corner];
 }
 
+namespace {
+
+double energy_of(const GhostFace& face, const Points& x) {
+  double squares = 0;
+  for (int i = 0; i < 4; ++i)
+    squares += (x[face.a[i]] - 2 * x[face.b[i]] + x[face.c[i]]).squaredNorm();
+  return 0.5 * face.stiffness * squares;
+}
+
+} // namespace
+
 double GhostPenalty::energy(const Points& x) const {
   double sum = 0;
-  for (const GhostFace& face : faces_) {
-    double squares = 0;
-    for (int i = 0; i < 4; ++i)
-      squares += (x[face.a[i]] - 2 * x[face.b[i]] + x[face.c[i]]).squaredNorm();
-    sum += 0.5 * face.stiffness * squares;
-  }
+  for (const GhostFace& face : faces_)
+    sum += energy_of(face, x);
   return sum;
+}
+
+void GhostPenalty::add_energies(const Points& x, const dynamics::Pieces& pieces, const std::span<double> sums) const {
+  for (const GhostFace& face : faces_)
+    sums[pieces.of(face.b[0])] += energy_of(face, x);
 }
 
 void GhostPenalty::add_force(const Points& x, Points& forces) const {

@@ -42,6 +42,7 @@
 
 #include "base/loan.h"
 #include "base/vec.h"
+#include "dynamics/pieces.h"
 #include "grid/corner_numbers.h"
 #include "grid/solid.h"
 #include "material/elastic.h"
@@ -90,6 +91,8 @@ class GhostPenalty {
   const std::vector<double>& extended_mass() const { return extended_mass_; }
 
   double energy(const Points& x) const;
+  /// The same, to each piece's what is in it.
+  void add_energies(const Points& x, const dynamics::Pieces& pieces, std::span<double> sums) const;
   /// forces -= dE/dx [N].
   void add_force(const Points& x, Points& forces) const;
   /// y += K p [N] for p [m].

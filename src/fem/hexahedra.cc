@@ -275,15 +275,43 @@ double Hexahedra::sum_energies(const Points& x, const std::vector<double>& of_ba
   return std::accumulate(of_batches.begin(), of_batches.end(), ghost_penalty_.energy(x) + ties_.energy(x));
 }
 
-/// Adds what lanes have, and what the law says of them.
+/// What a lane has, and what the law says of it.
+double Hexahedra::energy_of(const Turns& turns, const double* const of_lanes, const std::size_t lane,
+                            const std::uint32_t copy) const {
+  return is_hookean() ? of_lanes[lane]
+                      : of_lanes[lane] + elements_[copy].volume * std::visit(
+                                                                    [&](const auto& law) {
+                                                                      return law.energy(gradient_of(turns, lane));
+                                                                    },
+                                                                    law_);
+}
+
 void Hexahedra::add_energies(const std::size_t batch, const Turns& turns, const double* const of_lanes,
                              double& sum) const {
   for_each_lane(batch, [&](const std::size_t lane, const std::uint32_t copy) {
-    sum += of_lanes[lane];
-    if (!is_hookean())
-      sum += elements_[copy].volume *
-             std::visit([&](const auto& law) { return law.energy(gradient_of(turns, lane)); }, law_);
+    sum += energy_of(turns, of_lanes, lane, copy);
   });
+}
+
+Loan<double> Hexahedra::energies(const Points& x, const dynamics::Pieces& pieces) const {
+  const TwoRows lent(batching_->n_rows());
+  Row<double>* const rows = lent.first;
+  put_rows(dynamics::flat(x), rows);
+  Loan<double> of_copies(incidence_.n_copies(), 0), sums(pieces.n(), 0);
+  batching_->for_each([&](const std::size_t i) {
+    const Turns turns = this->turns(i, rows);
+    alignas(64) double of_lanes[n_lanes];
+    force_kernels().energy(batched_.cube, batched_.batch(*batching_, i), turns, mean_part(), rows, of_lanes);
+    for_each_lane(i, [&](const std::size_t lane, const std::uint32_t copy) {
+      of_copies[copy] = energy_of(turns, of_lanes, lane, copy);
+    });
+  });
+  for (std::size_t copy = 0; copy < of_copies.size(); ++copy)
+    if (of_copies[copy] != 0)
+      sums[pieces.of(corner_numbers(copy)[0])] += of_copies[copy];
+  ghost_penalty_.add_energies(x, pieces, sums);
+  ties_.add_energies(x, pieces, sums);
+  return sums;
 }
 
 double Hexahedra::energy(const Points& x) const {

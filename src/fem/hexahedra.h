@@ -25,6 +25,7 @@
 /// Limits: strain beside the mean one is taken as small, so thin parts one cell across are good for moderate strain.
 
 #include "dynamics/model.h"
+#include "dynamics/piece_gains.h"
 #include "fem/batches.h"
 #include "fem/consistent_mass.h"
 #include "fem/element_table.h"
@@ -64,7 +65,7 @@ struct HexahedraOptions {
   grid::Counted counted = grid::Counted::all; ///< corners that integrators see
 };
 
-class Hexahedra : public dynamics::ElasticModel, public dynamics::StiffnessMatrix {
+class Hexahedra : public dynamics::ElasticModel, public dynamics::StiffnessMatrix, public dynamics::PieceEnergies {
  public:
   Hexahedra(const grid::Solid& solid, const HexahedraOptions& options);
 
@@ -82,6 +83,7 @@ class Hexahedra : public dynamics::ElasticModel, public dynamics::StiffnessMatri
   std::span<const dynamics::Follower> followers() const override { return gathered_.followers; }
   double energy(const Points& x) const override;
   double energy_ahead(const Points& x) const override;
+  Loan<double> energies(const Points& x, const dynamics::Pieces& pieces) const override;
   void force(const Points& x, Points& forces) const override;
   void linearise(const Points& x) override;
   void apply_stiffness(std::span<const double> p, std::span<double> y) const override;
@@ -142,6 +144,7 @@ class Hexahedra : public dynamics::ElasticModel, public dynamics::StiffnessMatri
   enum class WithEnergy { always, where_cheap };
   /// With the energy, where it costs nothing (laws other than Hooke's take time for it) or is asked for.
   std::optional<double> force(const Points& x, Points& forces, WithEnergy with_energy) const;
+  double energy_of(const Turns& turns, const double* of_lanes, std::size_t lane, std::uint32_t copy) const;
   void add_energies(std::size_t batch, const Turns& turns, const double* of_lanes, double& sum) const;
   double sum_energies(const Points& x, const std::vector<double>& of_batches) const;
   MeanPart mean_part() const { return is_hookean() ? MeanPart::hooke : MeanPart::none; }

@@ -34,6 +34,11 @@ double Ties::energy(const Points& x) const {
   return sum;
 }
 
+void Ties::add_energies(const Points& x, const dynamics::Pieces& pieces, const std::span<double> sums) const {
+  for (const auto& [a, b, k] : ties_)
+    sums[pieces.of(a)] += 0.5 * k * (x[a] - x[b]).squaredNorm();
+}
+
 void Ties::add_force(const Points& x, Points& forces) const {
   for (const auto& [a, b, k] : ties_) {
     const Vec3 f = k * (x[a] - x[b]);

@@ -2,6 +2,7 @@
 
 /// The springs that hold copies together where a cut ends between them (grid/fronts.h): E = sum of k/2 |x_a - x_b|^2.
 
+#include "dynamics/pieces.h"
 #include "grid/corner_numbers.h"
 #include "grid/fronts.h"
 #include "material/elastic.h"
@@ -26,6 +27,8 @@ class Ties {
 
   std::span<const Tie> all() const { return ties_; }
   double energy(const Points& x) const;
+  /// The same, to each piece's what is in it.
+  void add_energies(const Points& x, const dynamics::Pieces& pieces, std::span<double> sums) const;
   /// forces -= dE/dx [N].
   void add_force(const Points& x, Points& forces) const;
   /// y += K p [N] for p [m].

@@ -73,12 +73,17 @@ Loan<double> Inversion::volumes(const Points& x) const {
 }
 
 double Inversion::energy(const Points& x) const {
+  Loan<double> sum(1, 0);
+  add_energies(x, dynamics::Pieces(), sum);
+  return sum[0];
+}
+
+void Inversion::add_energies(const Points& x, const dynamics::Pieces& pieces, const std::span<double> sums) const {
   const Loan<double> J = volumes(x);
-  double sum = 0;
   for (std::size_t c = 0; c < J.size(); ++c)
     if (J[c] < least_volume)
-      sum += 0.5 * cubes_[c].strength * (least_volume - J[c]) * (least_volume - J[c]);
-  return sum;
+      sums[pieces.of(cubes_[c].corners[0])] +=
+        0.5 * cubes_[c].strength * (least_volume - J[c]) * (least_volume - J[c]);
 }
 
 void Inversion::add_force(const Points& x, Points& forces) const {

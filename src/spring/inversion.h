@@ -7,13 +7,14 @@
 ///     W = E V (J_0 - J)^2,  J = det F < J_0 = 1/2,
 ///
 /// a penalty on volume as of Teschner, Heidelberger, Mueller and Gross 2004 (A versatile and robust model for geometrically
-/// complex deformable solids, CGI, section 3.2), asked only where a spring's law has no say any more. F is the mean
+/// complex deformable solids, CGI), asked only where a spring's law has no say any more. F is the mean
 /// gradient over the cube, V its material's volume. Flat cubes get E V / 4, mirrored ones 9/4 E V. The energy is smooth and
 /// nothing above half the volume, so what is said of small strain (mass_spring.h) stays.
 
 #include "base/loan.h"
 #include "base/vec.h"
 #include "dynamics/model.h"
+#include "dynamics/pieces.h"
 #include "grid/corner_numbers.h"
 
 #include <array>
@@ -28,7 +29,9 @@ class Inversion {
   Inversion(const grid::Solid& solid, const grid::CornerNumbers& numbers, std::span<const double> fill,
             double youngs_modulus);
 
-  double energy(const Points& x) const;                  ///< [J]
+  double energy(const Points& x) const; ///< [J]
+  /// The same, to each piece's what is in it.
+  void add_energies(const Points& x, const dynamics::Pieces& pieces, std::span<double> sums) const;
   void add_force(const Points& x, Points& forces) const; ///< [N]
 
   /// K without what would make it indefinite: the part along the gradient of J.

@@ -123,12 +123,23 @@ void MassSpring::gather(const Points& of_springs, double* const y) const {
     worth_corners);
 }
 
+double MassSpring::energy_of(const Spring& spring, const Points& x) {
+  const double stretch = (x[spring.b] - x[spring.a]).norm() - spring.length;
+  return 0.5 * spring.stiffness * stretch * stretch;
+}
+
+Loan<double> MassSpring::energies(const Points& x, const dynamics::Pieces& pieces) const {
+  Loan<double> sums(pieces.n(), 0);
+  for (const Spring& s : springs_)
+    sums[pieces.of(s.a)] += energy_of(s, x);
+  inversion_->add_energies(x, pieces, sums);
+  return sums;
+}
+
 double MassSpring::energy(const Points& x) const {
   double sum = 0;
-  for (const Spring& s : springs_) {
-    const double stretch = (x[s.b] - x[s.a]).norm() - s.length;
-    sum += 0.5 * s.stiffness * stretch * stretch;
-  }
+  for (const Spring& s : springs_)
+    sum += energy_of(s, x);
   return sum + inversion_->energy(x);
 }
 

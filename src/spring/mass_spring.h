@@ -21,6 +21,7 @@
 /// only follows Hooke's law.
 
 #include "dynamics/model.h"
+#include "dynamics/piece_gains.h"
 #include "grid/corner_numbers.h"
 #include "spring/inversion.h"
 
@@ -37,7 +38,9 @@ struct MassSpringOptions {
 /// The only value that these springs can have [1].
 constexpr double poissons_ratio = 0.25;
 
-class MassSpring : public dynamics::ElasticModel, public dynamics::StiffnessMatrix {
+class MassSpring : public dynamics::ElasticModel,
+                   public dynamics::StiffnessMatrix,
+                   public dynamics::PieceEnergies {
  public:
   /// Throws ParameterError for an option that makes no sense.
   MassSpring(const grid::Solid& solid, const MassSpringOptions& options);
@@ -47,6 +50,7 @@ class MassSpring : public dynamics::ElasticModel, public dynamics::StiffnessMatr
 
   std::span<const double> lumped_mass() const override { return mass_; }
   double energy(const Points& x) const override;
+  Loan<double> energies(const Points& x, const dynamics::Pieces& pieces) const override;
   void force(const Points& x, Points& forces) const override;
   /// K leaves out what a compressed spring loses across itself, which keeps it positive semi-definite (Choi and Ko
   /// 2002).
@@ -71,6 +75,7 @@ class MassSpring : public dynamics::ElasticModel, public dynamics::StiffnessMatr
     Vec3 times(const Vec3& d) const { return across * d + (along - across) * n.dot(d) * n; }
     Mat3 matrix() const { return across * Mat3::Identity() + (along - across) * n * n.transpose(); }
   };
+  static double energy_of(const Spring& spring, const Points& x);
   static Direction direction(const Spring& spring, const Points& x, dynamics::Tangent kind);
 
   void add_springs(const grid::Solid& solid, const std::vector<double>& fill, const MassSpringOptions& options);
