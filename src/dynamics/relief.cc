@@ -7,6 +7,7 @@
 
 #include <Eigen/Geometry>
 
+#include <algorithm>
 #include <cmath>
 
 namespace kerf::dynamics {
@@ -30,29 +31,12 @@ Loan<Moments> moments(const Pieces& pieces, const std::span<const double> mass, 
   return all;
 }
 
-/// Gravity of each particle, none of those in pieces that fall [m/s^2].
-Loan<Vec3> gravity_on_held(const Pieces& pieces, const Loads& loads, const std::size_t n_particles) {
-  const auto is_free = free_pieces(pieces, loads, n_particles);
-  Loan<Vec3> gravity(n_particles);
-  for (std::size_t i = 0; i < n_particles; ++i)
-    gravity[i] = is_free[pieces.of(i)] != 0 ? Vec3(Vec3::Zero()) : loads.gravity;
-  return gravity;
-}
-
 double slope_squared(const std::span<const double> mass, const Constraints& constraints, const Points& forces,
                      const Points& gravity) {
   double sum = 0;
   for (std::size_t i = 0; i < forces.size(); ++i)
     if (constraints.is_free(i) && mass[i] > 0)
       sum += (forces[i] + mass[i] * gravity[i]).squaredNorm() / mass[i];
-  return sum;
-}
-
-/// What gravity asks for to come from one place to another [J].
-double lift(const std::span<const double> mass, const Points& gravity, const Points& from, const Points& to) {
-  double sum = 0;
-  for (std::size_t i = 0; i < from.size(); ++i)
-    sum -= mass[i] * gravity[i].dot(to[i] - from[i]);
   return sum;
 }
 
@@ -72,6 +56,21 @@ Loads held_but(const std::span<const std::uint8_t> is_marked, const State& state
 }
 
 } // namespace
+
+Loan<Vec3> gravity_on_held(const Pieces& pieces, const Loads& loads, const std::size_t n_particles) {
+  const auto is_free = free_pieces(pieces, loads, n_particles);
+  Loan<Vec3> gravity(n_particles);
+  for (std::size_t i = 0; i < n_particles; ++i)
+    gravity[i] = is_free[pieces.of(i)] != 0 ? Vec3(Vec3::Zero()) : loads.gravity;
+  return gravity;
+}
+
+double lift(const std::span<const double> mass, const Points& gravity, const Points& from, const Points& to) {
+  double sum = 0;
+  for (std::size_t i = 0; i < from.size(); ++i)
+    sum -= mass[i] * gravity[i].dot(to[i] - from[i]);
+  return sum;
+}
 
 double most_after_cut(const ForceModel& model, const double had, const Points& v) {
   constexpr double little = 1e-3;
@@ -110,7 +109,7 @@ void keep_moments(const Pieces& pieces, const std::span<const double> mass, cons
 }
 
 double Relief::flow(const std::span<const std::uint8_t> is_marked, const Loads& loads, const Points& gravity,
-                    const Points& from, double excess, State& state, StepReport& report) const {
+                    double excess, State& state, StepReport& report) const {
   constexpr int most_steps = 8;
   constexpr double worth_a_step = 1e-3; // of the excess
   const Loads held = held_but(is_marked, state, loads);
@@ -138,8 +137,8 @@ double Relief::flow(const std::span<const std::uint8_t> is_marked, const Loads& 
     } catch (const NumericalError&) { // no further
       break;
     }
-    const double had = excess, left = model_.energy(x) - excess_.most + lift(mass, gravity, from, x);
-    if (!(left < had))
+    const double had = excess, left = model_.energy(x) - excess_.most;
+    if (!(left + std::max(0.0, lift(mass, gravity, state.x, x)) < had))
       break;
     excess = left;
     state.x.swap(x);
@@ -157,9 +156,9 @@ StepReport Relief::step(State& state, const Loads& loads, double) {
   State after = state;
   const Pieces pieces(excess_.piece());
   const Loan<Vec3> gravity = gravity_on_held(pieces, loads, state.x.size());
-  double excess = flow(excess_.touched, loads, gravity, state.x, first, after, report);
+  double excess = flow(excess_.touched, loads, gravity, first, after, report);
   if (excess > 0)
-    excess = flow(std::vector<std::uint8_t>(state.x.size(), 1), loads, gravity, state.x, excess, after, report);
+    excess = flow(std::vector<std::uint8_t>(state.x.size(), 1), loads, gravity, excess, after, report);
   keep_moments(pieces, model_.lumped_mass(), loads, state, after);
   const double taken = first - excess, turned = kinetic_energy(model_, after.v) - kinetic_energy(model_, state.v);
   if (turned <= taken) // else it has hardly any inertia, and turns by more than was let out

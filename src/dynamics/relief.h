@@ -10,8 +10,8 @@
 ///
 ///     M (x' - x) / tau^2 = f(x'),
 ///
-/// each of which takes energy, until there is no more than there was. In pieces that are held, f has gravity too and the energy
-/// that of height: else what hangs would be lifted by what its cut gave. With e the excess, the first has
+/// each of which takes energy, until there is no more than there was. In pieces that are held f has gravity too, and a step that
+/// lifts them by more than it lets out is not taken: else what hangs would rise by what its cut gave. With e the excess, the first has
 /// tau^2 = e / f.M^-1 f, the way down the slope that would take it; each further one four times that tau. What the
 /// touched cannot let out by themselves the whole body does, in the same way. Then every piece that nothing holds is
 /// shifted, and its velocities are turned, so that its masses' centre and its angular momentum are what they were.
@@ -37,6 +37,11 @@ struct Excess {
 /// mean one.
 double most_after_cut(const ForceModel& model, double had, const Points& v);
 
+/// Gravity of each particle, none of those in pieces that fall [m/s^2].
+Loan<Vec3> gravity_on_held(const Pieces& pieces, const Loads& loads, std::size_t n_particles);
+/// What such gravity asks for to come from one place to another [J].
+double lift(std::span<const double> mass, const Points& gravity, const Points& from, const Points& to);
+
 /// Shifts pieces that loads hold nowhere, and turns their velocities, so that their masses' centres and their angular momenta are
 /// as before.
 void keep_moments(const Pieces& pieces, std::span<const double> mass, const Loads& loads, const State& before,
@@ -51,10 +56,10 @@ class Relief : public Stepper {
   StepReport step(State& state, const Loads& loads, double dt) override;
 
  private:
-  /// Moves what is marked (1) until nothing is left of the excess that there is over `from`, or no more goes; returns what is left of
-  /// it. `gravity` of each particle; none where a piece falls [m/s^2].
-  double flow(std::span<const std::uint8_t> is_marked, const Loads& loads, const Points& gravity, const Points& from,
-              double excess, State& state, StepReport& report) const;
+  /// Moves what is marked (1) until nothing is left of the excess, or no more goes; returns what is left of it. `gravity` of
+  /// each particle; none where a piece falls [m/s^2].
+  double flow(std::span<const std::uint8_t> is_marked, const Loads& loads, const Points& gravity, double excess,
+              State& state, StepReport& report) const;
 
   ElasticModel& model_;
   Excess excess_;

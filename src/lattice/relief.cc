@@ -23,6 +23,8 @@ dynamics::StepReport Relief::step(dynamics::State& state, const dynamics::Loads&
     return {};
   const double first = energy;
   const dynamics::State before = state;
+  const dynamics::Pieces pieces(excess_.piece());
+  const auto gravity = dynamics::gravity_on_held(pieces, loads, state.x.size());
   model_.spread_over_regions(excess_.touched);
   Loan<Vec3> goals = Loan<Vec3>::with_room(state.x.size());
   for (int round = 0; round < most_rounds && energy > excess_.most; ++round) {
@@ -36,12 +38,17 @@ dynamics::StepReport Relief::step(dynamics::State& state, const dynamics::Loads&
     const double had = energy;
     const Points start = state.x;
     go(1);
+    if (energy + dynamics::lift(model_.lumped_mass(), gravity, start, state.x) >= had) { // what hangs would be lifted
+      state.x = start;
+      energy = had;
+      break;
+    }
     if (energy < excess_.most) { // no more than must be: along this way energy is convex
       state.x = start;
       go((had - excess_.most) / (had - energy));
     }
   }
-  dynamics::keep_moments(dynamics::Pieces(excess_.piece()), model_.lumped_mass(), loads, before, state);
+  dynamics::keep_moments(pieces, model_.lumped_mass(), loads, before, state);
   if (kinetic_energy(model_, state.v) - kinetic_energy(model_, before.v) > first - energy) // see dynamics::Relief
     state = before;
   return {};

@@ -187,5 +187,45 @@ TEST(Relief, LiftsNothingThatHangs) {
   EXPECT_LE(model.energy(state.x) + height(state), elastic + height(hangs) + 1e-9 * elastic);
 }
 
+/// What is drawn out and let go shrinks, but not where that lifts it by more than it lets out.
+TEST(Relief, LiftsByNoMoreThanItLetsOut) {
+  const auto body = support::with_copies(support::with_placed_skin(support::block({5, 4, 4}, 0.1)));
+  const Points rest = grid::rest_positions(body);
+  const auto left = std::ranges::min_element(rest, {}, [](const Vec3& X) { return X[0]; });
+  dynamics::Support wall{{}, {}, [](double) { return Vec3(Vec3::Zero()); }};
+  for (std::uint32_t i = 0; i < rest.size(); ++i)
+    if (rest[i][0] < (*left)[0] + 1e-9) {
+      wall.corners.push_back(i);
+      wall.rest.push_back(rest[i]);
+    }
+  const auto check = [&](const dynamics::ForceModel& model, const auto& relief_of, const double gravity) {
+    dynamics::Loads loads{.gravity = Vec3(gravity, 0, 0), .supports = {}};
+    loads.supports.push_back(wall);
+    dynamics::State state{rest, Points(rest.size(), Vec3::Zero())};
+    for (Vec3& x : state.x)
+      x[0] += 0.1 * (x[0] - (*left)[0]);
+    const dynamics::State drawn = state;
+    const double had = model.energy(state.x);
+    dynamics::Excess excess{.most = 0.5 * had,
+                            .touched = std::vector<std::uint8_t>(rest.size(), 1),
+                            .piece = [&] { return std::vector<std::uint32_t>(rest.size(), 0); }};
+    relief_of(std::move(excess))->step(state, loads, 0);
+    const auto total = [&](const dynamics::State& at) {
+      return model.energy(at.x) + dynamics::gravity_energy(model, loads, at.x);
+    };
+    EXPECT_LE(total(state), total(drawn) + 1e-9 * had + 1e-14 * std::abs(total(drawn)));
+    return model.energy(state.x) / had;
+  };
+  fem::Hexahedra elements(body, {.material = rubber});
+  const auto of_elements = [&](dynamics::Excess excess) { return relief_of(elements, std::move(excess)); };
+  const lattice::Matching matching(body, {});
+  const auto of_lattice = [&](dynamics::Excess excess) { return relief_of(matching, std::move(excess)); };
+  for (const double gravity : {0.0, 1e6}) {
+    SCOPED_TRACE(gravity);
+    EXPECT_EQ(check(elements, of_elements, gravity) < 0.6, gravity == 0);
+    EXPECT_EQ(check(matching, of_lattice, gravity) < 0.6, gravity == 0);
+  }
+}
+
 } // namespace
 } // namespace kerf::physics
