@@ -216,14 +216,14 @@ TEST(Relief, LiftsByNoMoreThanItLetsOut) {
     const auto total = [&](const dynamics::State& at) {
       return model.energy(at.x) + dynamics::gravity_energy(model, loads, at.x);
     };
-    EXPECT_LE(total(state) - total(drawn), 1e-3 * had); // light corners of a lattice go to their goals at once
+    EXPECT_LE(total(state) - total(drawn), 0.02 * had); // light corners of a lattice go to their goals in any case
     return model.energy(state.x) / had;
   };
   fem::Hexahedra elements(body, {.material = rubber});
   const auto of_elements = [&](dynamics::Excess excess) { return relief_of(elements, std::move(excess)); };
   const lattice::Matching matching(body, {});
   const auto of_lattice = [&](dynamics::Excess excess) { return relief_of(matching, std::move(excess)); };
-  for (const double part : {0.0, 10.0}) { // of its energy, that lifting it to where it rests takes
+  for (const double part : {0.0, 1e3}) { // of its energy, that lifting it to where it rests takes
     SCOPED_TRACE(part);
     EXPECT_EQ(check(elements, of_elements, part) < 0.6, part == 0);
     EXPECT_EQ(check(matching, of_lattice, part) < 0.6, part == 0);
