@@ -43,7 +43,7 @@ Inversion::Inversion(const grid::Solid& solid, const grid::CornerNumbers& number
   for (const auto c : ids<grid::CopyId>(solid.complex.n_copies())) {
     if (fill[c.value] == 0)
       continue;
-    Cube cube{.corners = {}, .strength = 2 * youngs_modulus * fill[c.value] * h_ * h_ * h_};
+    Cube cube{.corners = {}, .strength = youngs_modulus * fill[c.value] * h_ * h_ * h_};
     std::ranges::transform(solid.complex.copies[c].corners, cube.corners.begin(),
                            [&](const grid::CornerId corner) { return numbers[corner.value]; });
     cubes_.push_back(cube);

@@ -4,12 +4,13 @@
 ///
 /// A copy whose cube has lost more than half its volume resists with the energy
 ///
-///     W = E V (J_0 - J)^2,  J = det F < J_0 = 1/2,
+///     W = E V / 2 (J_0 - J)^2,  J = det F < J_0 = 1/2,
 ///
 /// a penalty on volume as of Teschner, Heidelberger, Mueller and Gross 2004 (A versatile and robust model for geometrically
-/// complex deformable solids, CGI), asked only where a spring's law has no say any more. F is the mean
-/// gradient over the cube, V its material's volume. Flat cubes get E V / 4, mirrored ones 9/4 E V. The energy is smooth and
-/// nothing above half the volume, so what is said of small strain (mass_spring.h) stays.
+/// complex deformable solids, CGI), asked only where a spring's law has no say any more. F is the mean gradient over the
+/// cube, V its material's volume. Flat cubes get E V / 8, mirrored ones 9/8 E V. The energy is smooth and nothing above half
+/// the volume, so what is said of small strain (mass_spring.h) stays. Twice as much shortens the largest steps of symplectic
+/// Euler by up to a fifth (params/studies/stability.prm).
 
 #include "base/loan.h"
 #include "base/vec.h"
@@ -44,7 +45,7 @@ class Inversion {
  private:
   struct Cube {
     std::array<std::uint32_t, 8> corners; ///< numbers, in deal.II's vertex order
-    double strength;                      ///< 2 E V [J]
+    double strength;                      ///< E V [J]
   };
   /// Of a copy at the linearisation point: the gradient of J by its corners [1/m].
   struct Squashed {

@@ -54,7 +54,7 @@ TEST(Inversion, HasItsClosedFormBelowHalfTheVolumeAndNothingAbove) {
     for (Vec3& p : x)
       p = F * p;
     const double lost = std::max(0.0, 0.5 - J),
-                 expected = E * 0.5 * h * h * h * static_cast<double>(block.fill.size()) * lost * lost;
+                 expected = 0.5 * E * 0.5 * h * h * h * static_cast<double>(block.fill.size()) * lost * lost;
     EXPECT_NEAR(inversion.energy(x), expected, 1e-9 * E * h * h * h) << J;
     inversion.add_force(x, forces);
     double largest = 0;
