@@ -1,6 +1,7 @@
 #include "fem/ghost_penalty.h"
 
 #include <algorithm>
+#include <array>
 #include <iterator>
 #include <tuple>
 
@@ -176,6 +177,12 @@ void GhostPenalty::weigh_faces() {
 }
 
 void GhostPenalty::count_by(const grid::CornerNumbers& numbers) {
+  // A piece can become a crumb by a cut elsewhere in it: faces between its other copies are known still.
+  std::erase_if(faces_, [&](const GhostFace& face) {
+    return std::ranges::any_of(std::array{&face.a, &face.b, &face.c}, [&](const auto* const line) {
+      return std::ranges::any_of(*line, [&](const std::uint32_t corner) { return !numbers.counts(corner); });
+    });
+  });
   for (GhostFace& face : faces_)
     for (auto* const line : {&face.a, &face.b, &face.c})
       for (auto& corner : *line)
