@@ -177,7 +177,7 @@ void GhostPenalty::weigh_faces() {
 }
 
 void GhostPenalty::count_by(const grid::CornerNumbers& numbers) {
-  // A piece can become a crumb by a cut elsewhere in it: faces between its other copies are known still.
+  // A face to a copy whose corners nobody counts (a crumb's) has nothing to hold by.
   std::erase_if(faces_, [&](const GhostFace& face) {
     return std::ranges::any_of(std::array{&face.a, &face.b, &face.c}, [&](const auto* const line) {
       return std::ranges::any_of(*line, [&](const std::uint32_t corner) { return !numbers.counts(corner); });
