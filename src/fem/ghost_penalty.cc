@@ -1,7 +1,6 @@
 #include "fem/ghost_penalty.h"
 
 #include <algorithm>
-#include <array>
 #include <iterator>
 #include <tuple>
 
@@ -177,12 +176,6 @@ void GhostPenalty::weigh_faces() {
 }
 
 void GhostPenalty::count_by(const grid::CornerNumbers& numbers) {
-  // A face to a copy whose corners nobody counts (a crumb's) has nothing to hold by.
-  std::erase_if(faces_, [&](const GhostFace& face) {
-    return std::ranges::any_of(std::array{&face.a, &face.b, &face.c}, [&](const auto* const line) {
-      return std::ranges::any_of(*line, [&](const std::uint32_t corner) { return !numbers.counts(corner); });
-    });
-  });
   for (GhostFace& face : faces_)
     for (auto* const line : {&face.a, &face.b, &face.c})
       for (auto& corner : *line)

@@ -116,9 +116,7 @@ class Search {
         samples_->for_each(copies[i], [&](const Vec3& p) { spread.add(p); });
       is_crumb = is_of_one || is_loose || (rule_.may_be_small && extent.is_of_one_cube()) ||
                  (samples_ && !spread.spans_volume(solid_.grid.h()));
-      for (int face = 0; face < 6 && is_crumb; ++face)
-        is_crumb = add_neighbours(copies[i], face, copies);
-      is_crumb = is_crumb && add_tied(copies[i], copies);
+      is_crumb = is_crumb && for_each_beside(copies[i], [&](const CopyId other) { return add(other, copies); });
     }
     if (is_crumb) {
       std::sort(copies.begin(), copies.end());
@@ -130,6 +128,19 @@ class Search {
   }
   bool is_attached(const CopyId c) const { return known_[c] == Known::attached; }
 
+  /// Calls f(other) for each copy that is glued to this one, or that a front holds together with it, until f says false.
+  template <class Function>
+  bool for_each_beside(const CopyId c, const Function& f) const {
+    for (int face = 0; face < 6; ++face)
+      if (!for_each_across(c, face, f))
+        return false;
+    if (solid_.cuts.front(solid_.complex.copies[c].cell))
+      for (const auto& [a, b] : solid_.complex.tied)
+        if ((a == c || b == c) && !f(a == c ? b : a))
+          return false;
+    return true;
+  }
+
  private:
   enum class Known : std::uint8_t { nothing, seen, attached };
 
@@ -138,31 +149,21 @@ class Search {
     return std::popcount(copy.nodes) <= 1 || fill(solid_, copy) < well_filled;
   }
 
-  /// False where one of them is known to be in no crumb.
-  bool add_neighbours(const CopyId c, const int face, std::vector<CopyId>& copies) {
+  template <class Function>
+  bool for_each_across(const CopyId c, const int face, const Function& f) const {
     const Copy& copy = solid_.complex.copies[c];
     const CellId cell = solid_.grid.neighbour(copy.cell, face);
     if (!cell.valid())
       return true;
     for (const CopyId other : solid_.complex.copies_of(cell)) {
       const Part mine = copy.part(), its = solid_.complex.copies[other].part();
-      if (face % 2 == 1 ? !are_glued(mine, its, face / 2) : !are_glued(its, mine, face / 2))
-        continue;
-      if (!add(other, copies))
+      if ((face % 2 == 1 ? are_glued(mine, its, face / 2) : are_glued(its, mine, face / 2)) && !f(other))
         return false;
     }
     return true;
   }
 
-  /// Of those that a front holds together with a copy.
-  bool add_tied(const CopyId c, std::vector<CopyId>& copies) {
-    if (solid_.cuts.front(solid_.complex.copies[c].cell))
-      for (const auto& [a, b] : solid_.complex.tied)
-        if ((a == c || b == c) && !add(a == c ? b : a, copies))
-          return false;
-    return true;
-  }
-
+  /// False where it is known to be in no crumb.
   bool add(const CopyId other, std::vector<CopyId>& copies) {
     if (known_[other] == Known::nothing) {
       known_[other] = Known::seen;
@@ -230,11 +231,21 @@ void update_crumbs(Solid& solid, CutChange& change, const Points* const samples)
   sort_unique(now);
   const auto is_found = [&](const CopyId c) { return std::ranges::binary_search(now, c); };
 
+  std::vector<std::uint32_t> joined; // to what is none, by a copy of that: where it ends is not looked at
+  for (const CopyId c : in_use)
+    if (search.is_attached(c))
+      search.for_each_beside(c, [&](const CopyId other) {
+        joined.push_back(crumbs.of(other));
+        return true;
+      });
+  sort_unique(joined);
+
   std::vector<CopyId> freed = std::move(in_use);
   std::erase_if(crumbs.all, [&](const Crumb& before) {
-    const bool is_met = std::ranges::any_of(before.copies, [&](const CopyId c) {
-      return crumbs.of(c) != before.name || search.is_attached(c) || is_found(c);
-    });
+    const bool is_met = std::ranges::binary_search(joined, before.name) ||
+                        std::ranges::any_of(before.copies, [&](const CopyId c) {
+                          return crumbs.of(c) != before.name || search.is_attached(c) || is_found(c);
+                        });
     if (is_met)
       freed.insert(freed.end(), before.copies.begin(), before.copies.end());
     return is_met;
