@@ -6,6 +6,7 @@
 #include "tests/grid/histories.h"
 #include "tests/support/placed.h"
 #include "tests/support/same.h"
+#include "tests/support/whole_crumbs.h"
 
 #include <gtest/gtest.h>
 
@@ -188,20 +189,32 @@ TEST(Crumbs, KeepTheirNamesUntilTheyAreCut) {
   EXPECT_EQ(names.size(), n_pieces(body.complex)) << "all is dust in the end";
 }
 
-/// All items of a cell that are of two copies hang together from now on.
-CutChange join(Body& body, const CopyId a, const CopyId b) {
-  const CellId cell = body.complex.copies[a].cell;
-  const Items group = body.complex.copies[a].items() | body.complex.copies[b].items();
-  std::vector<Joined> groups = {{group, 0}};
+/// These of a cell hang together from now on, with all that hung on one of them before.
+CutChange join(Body& body, const CellId cell, const Joined& group) {
+  std::vector<Joined> groups = {group};
   if (const auto* const earlier = body.cuts.joined(cell))
     for (const Joined& other : *earlier) {
-      if ((other.items & group) == 0)
+      if ((other.items & group.items) == 0) {
         groups.push_back(other);
-      else
-        groups[0].items |= other.items;
+        continue;
+      }
+      groups[0].items |= other.items;
+      groups[0].intervals |= other.intervals;
     }
   body.cuts.set_joined(cell, groups);
   return update_complex(body, {}, {}, std::array{cell});
+}
+
+/// All items of two copies of a cell.
+CutChange join(Body& body, const CopyId a, const CopyId b) {
+  const Copy &of_a = body.complex.copies[a], &of_b = body.complex.copies[b];
+  return join(body, of_a.cell, {of_a.items() | of_b.items(), 0});
+}
+
+/// A copy and what lies between two cuts on a line of a face.
+CutChange join_interval(Body& body, const CopyId c, const int face) {
+  const Intervals of_line = skeleton::intervals_of(skeleton::in_face(face, 0));
+  return join(body, body.complex.copies[c].cell, {body.complex.copies[c].items(), of_line & -of_line});
 }
 
 /// Cuts make crumbs, and joins take them back: what comes from one crumb alone stays one, all else is what the definition
@@ -264,6 +277,44 @@ TEST(Crumbs, BecomeMaterialAgainWhereTheyAreJoined) {
   EXPECT_GT(n_ended, 20u);
   EXPECT_GT(n_of_two, 5u);
   EXPECT_GT(n_stay, 50u);
+}
+
+/// An interval on a face joins a crumb to what is none, by a change of the other's copy alone.
+TEST(Crumbs, BecomeMaterialAgainWhereOthersAreJoinedToThem) {
+  std::size_t n_ended = 0;
+  for (unsigned seed = 1; seed <= 10; ++seed) {
+    support::Random random(300 + seed);
+    Body body = support::with_copies(support::with_placed_skin(support::block({5, 4, 4}, 0.1)));
+    find_crumbs(body);
+    cut::Cutter cutter{9};
+    cutter.begin(body, rest_positions(body));
+    for (int batch = 0; batch < 4; ++batch) {
+      const histories::Plan plan = histories::random_plan(random, body, 0.4, 0.2, 0.2);
+      CutChange change = cutter.cut(body, {plan.cuts, plan.of_skin, 0});
+      surface::place(body, change, {});
+      update_crumbs(body, change);
+    }
+    const auto join = [&](const CopyId crumb, const int face, const CopyId other) {
+      Body joined = body;
+      for (const auto& [copy, its_face] : {std::pair(crumb, face), {other, face ^ 1}}) {
+        CutChange change = join_interval(joined, copy, its_face);
+        surface::place(joined, change, {});
+        update_crumbs(joined, change);
+      }
+      EXPECT_TRUE(support::are_crumbs_whole_pieces(joined));
+      n_ended += joined.crumbs.holds(crumb) ? 0 : 1;
+    };
+    for (const auto c : ids<CopyId>(body.complex.n_copies())) {
+      if (body.complex.copies[c].is_lapsed() || !body.crumbs.holds(c))
+        continue;
+      for (int face = 0; face < 6; ++face)
+        if (const CellId next = body.grid.neighbour(body.complex.copies[c].cell, face); next.valid())
+          for (const CopyId other : body.complex.copies_of(next))
+            if (!body.crumbs.holds(other))
+              join(c, face, other);
+    }
+  }
+  EXPECT_GT(n_ended, 20u);
 }
 
 /// A plane halves a block; what is known of the upper half by samples decides whether it is one.

@@ -5,6 +5,7 @@
 #include "material/elastic.h"
 #include "scene/observables.h"
 #include "scene/soundness.h"
+#include "tests/support/whole_crumbs.h"
 
 #include <algorithm>
 #include <cmath>
@@ -148,6 +149,8 @@ std::optional<Failure> Watch::watch_pieces(const scene::Body& body, const Look& 
   const bool was_cut = std::exchange(n_recuts_, body.n_recuts) != body.n_recuts;
   if (n_pieces_ != n_before && !was_cut)
     return Failure{"pieces", step, std::to_string(n_before) + " have become " + std::to_string(n_pieces_)};
+  if (was_cut && !support::are_crumbs_whole_pieces(body.solid))
+    return Failure{"crumbs", step, "a part of a piece is a crumb"};
   return {};
 }
 
