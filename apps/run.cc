@@ -16,7 +16,7 @@ namespace kerf::apps {
 namespace {
 
 void print_body(const scene::Body& body, const scene::Watch& watch) {
-  const double volume = surface::enclosed_volume(body.positions, body.surface.triangles);
+  const double volume = surface::enclosed_volume(scene::positions(body), body.surface.triangles);
   const double rest = surface::enclosed_volume(body.surface.rest, body.surface.triangles);
   std::printf("body %s: %zu cells, %zu copies, %u pieces, %zu surface triangles\n", body.name.c_str(),
               body.solid.grid.n_cells(), grid::n_copies_in_use(body.solid.complex), grid::n_pieces(body.solid.complex),

@@ -74,6 +74,12 @@ void cut_and_follow(Body& body, Timings& timings, const Cut& cut) {
 
 } // namespace
 
+const Points& positions(const Body& body) {
+  if (std::exchange(body.has_moved, false))
+    surface::follow(body.surface, corners(body), body.positions_);
+  return body.positions_;
+}
+
 void make_loads(Body& body, const grid::CutChange* const change) {
   find_supports(body, change);
   body.loads.acting.clear();
@@ -147,7 +153,7 @@ void cut_at_once(Body& body, const cut::CutSurface& surface, Timings& timings) {
 
 void follow(Body& body) {
   body.physics->follow(body.state);
-  surface::follow(body.surface, corners(body), body.positions);
+  body.has_moved = true;
 }
 
 } // namespace kerf::scene

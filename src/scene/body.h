@@ -65,7 +65,8 @@ struct Body {
   surface::PlacementCounts placed = {};
   surface::Surface surface = {};
   surface::SurfaceIndex surface_index = {}; ///< nothing in a scene that cuts nothing
-  Points positions = {};                    ///< of the surface's vertices, now [m]
+  mutable Points positions_ = {};           ///< of its vertices, when somebody asked last: positions()
+  mutable bool has_moved = true;            ///< since then
 
   std::unique_ptr<physics::Physics> physics = nullptr;
   double density = 0;                       ///< of its material [kg/m^3]
@@ -104,6 +105,9 @@ inline physics::CutBody seen(const Body& body) { return {body.solid, body.surfac
 /// Where the corners are now [m].
 inline const Points& corners(const Body& body) { return body.physics->corners(body.state); }
 
+/// Where the surface's vertices are now [m]: they are moved when somebody asks. By one thread at a time.
+const Points& positions(const Body& body);
+
 /// Builds complex, surface, physics, state at rest, supports and loads of a body whose grid and skin are there, cut
 /// from `mesh`.
 void start(Body& body, const geometry::TriangleMesh& mesh, const PhysicsMaker& make_physics, Timings& timings);
@@ -123,7 +127,7 @@ void recut(Body& body, std::span<const cut::Blade> blades, double t0, double t1,
 /// Cuts the body with a surface, all of it at once, as it stands now; else like recut().
 void cut_at_once(Body& body, const cut::CutSurface& surface, Timings& timings);
 
-/// Moves corners and surface to where the state is.
+/// Moves the corners to where the state is, and the surface when somebody asks for it.
 void follow(Body& body);
 
 } // namespace kerf::scene

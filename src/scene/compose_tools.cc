@@ -88,7 +88,7 @@ bool comes_near(const cut::Blade& blade, const Body& body) {
   Points path = cut::world_points(blade, first);
   for (const auto& triangle : cut::sweep(blade, first, last))
     path.insert(path.end(), triangle.begin(), triangle.end());
-  const Box swept = geometry::box_around(path), box = geometry::box_around(body.positions);
+  const Box swept = geometry::box_around(path), box = geometry::box_around(positions(body));
   const Vec3 slack = Vec3::Constant(0.5 * (box.upper - box.lower).norm());
   return geometry::overlap(swept, Box{box.lower - slack, box.upper + slack});
 }

@@ -90,7 +90,7 @@ render::DrawnScene drawing(const World& world, const int step) {
   const double time = step * world.time_step;
   render::DrawnScene scene;
   for (const Body& body : world.bodies)
-    scene.surfaces.push_back({body.positions, body.surface.triangles, body.surface.labels, samples_of(body)});
+    scene.surfaces.push_back({positions(body), body.surface.triangles, body.surface.labels, samples_of(body)});
   for (const cut::Blade& blade : world.blades)
     scene.blades.push_back({cut::world_points(blade, time), cut::pose(blade, time).rotation * blade.spine});
   for (const ScissorsHandles& handles : world.scissors)

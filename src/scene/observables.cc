@@ -41,9 +41,10 @@ double energy_missing(const Body& body) {
 }
 
 double largest_displacement(const Body& body) {
+  const Points& x = positions(body);
   double largest = 0;
-  for (std::size_t i = 0; i < body.positions.size(); ++i)
-    largest = std::max(largest, (body.positions[i] - body.surface.rest[i]).norm());
+  for (std::size_t i = 0; i < x.size(); ++i)
+    largest = std::max(largest, (x[i] - body.surface.rest[i]).norm());
   return largest;
 }
 
@@ -283,7 +284,7 @@ const std::vector<Observable>& body_observables() {
      [](const Body& b) { return angular_momentum(b)[2]; }},
     {"mass", "kg", "sum of the lumped mass", mass},
     {"volume", "m^3", "enclosed by the surface now, divergence theorem over its triangles",
-     [](const Body& b) { return surface::enclosed_volume(b.positions, b.surface.triangles); }},
+     [](const Body& b) { return surface::enclosed_volume(positions(b), b.surface.triangles); }},
     {"rest volume", "m^3", "enclosed by the surface at rest", rest_volume},
     {"rest volume change", "m^3",
      "rest volume now less that before any cut: what placing cut vertices on a curved "

@@ -354,13 +354,19 @@ void Recorder::record(const World& world, const int step, Timings& seconds) {
 
 void Recorder::record_all(const World& world, const int step, Timings& seconds) {
   const Timings stepping = std::exchange(seconds, {});
-  if (world.images && is_due(step, world.images->every, world)) {
+  const bool with_surfaces = world.surface_file && is_due(step, world.surface_file->every, world);
+  const bool with_image = world.images && is_due(step, world.images->every, world);
+  if (with_surfaces || with_image) {
+    const ScopedTimer timer(seconds, "surface");
+    for (const Body& body : world.bodies)
+      positions(body);
+  }
+  if (with_image) {
     const ScopedTimer timer(seconds, "images");
     write_image(world, step);
   }
   const ScopedTimer timer(seconds, "output");
   const bool with_frames = is_due(step, world.output.frames_every, world);
-  const bool with_surfaces = world.surface_file && is_due(step, world.surface_file->every, world);
   Fields fields;
   for (const Body& body : world.bodies)
     if (with_frames || with_surfaces)
@@ -417,7 +423,7 @@ void Recorder::append_surfaces(const World& world, const int step, const Fields&
     const double time = step * world.time_step;
     if (bodies_[b].surface_ends && time <= *bodies_[b].surface_ends)
       continue;
-    SurfaceEntry entry{body.positions, {}, {}, {}, at_vertices(body.surface, of_corners[b])};
+    SurfaceEntry entry{positions(body), {}, {}, {}, at_vertices(body.surface, of_corners[b])};
     if (topology == output::Topology::changed) {
       entry.rest = body.surface.rest;
       entry.triangles = body.surface.triangles;

@@ -108,7 +108,7 @@ void advance(World& world, const int step, Timings& seconds) {
   for (std::size_t b = 0; b < world.bodies.size(); ++b) {
     Body& body = world.bodies[b];
     {
-      const ScopedTimer timer(seconds, "surface");
+      const ScopedTimer timer(seconds, "solve");
       follow(body);
       on(world, body, step, t1, [&] { require_sound_volume(body, world.watches[b]); });
     }

@@ -16,6 +16,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <span>
 
 namespace kerf::scene {
 
@@ -37,12 +38,12 @@ constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
 struct Motion {
   std::size_t lost = none; ///< the first one without a finite place
   std::size_t fastest = 0; ///< against the mean motion
-  double speed = 0;        ///< of that [m/s]
+  double squared_speed = 0; ///< of that [m^2/s^2]
 
   Motion& operator+=(const Motion& next) {
     lost = std::min(lost, next.lost);
-    if (next.speed > speed) {
-      speed = next.speed;
+    if (next.squared_speed > squared_speed) {
+      squared_speed = next.squared_speed;
       fastest = next.fastest;
     }
     return *this;
@@ -56,45 +57,6 @@ Vec3 mean_velocity(const dynamics::ForceModel& model, const Points& v) {
 
 const grid::Copy& copy_of(const Body& body, const std::size_t c) {
   return body.solid.complex.copies[grid::CopyId(static_cast<std::uint32_t>(c))];
-}
-
-constexpr std::uint32_t of_no_piece = 0xffffffff;
-constexpr std::size_t worth_triangles = 4096; // from which on a second thread pays
-
-/// Signed volume of each piece that the surface bounds, with its vertices at `points`; none of crumbs, which are rigid.
-Loan<double> piece_volumes(const Body& body, const Watch& watch, const Points& points) {
-  const auto& triangles = body.surface.triangles;
-  Loan<double> of_triangles(triangles.size(), AnyValues()), volumes(watch.rest_volumes.size(), 0);
-  parallel_for(
-    triangles.size(),
-    [&](const std::size_t t) {
-      if (watch.piece_of_triangle[t] == of_no_piece)
-        return;
-      const auto& [a, b, c] = triangles[t];
-      of_triangles[t] = points[a].dot(points[b].cross(points[c])) / 6;
-    },
-    worth_triangles);
-  for (std::size_t t = 0; t < triangles.size(); ++t)
-    if (const std::uint32_t piece = watch.piece_of_triangle[t]; piece != of_no_piece)
-      volumes[piece] += of_triangles[t];
-  return volumes;
-}
-
-void bring_up_to_date(const Body& body, Watch& watch) {
-  if (watch.n_recuts == body.n_recuts)
-    return;
-  watch.n_recuts = body.n_recuts;
-  const auto& [piece_of_copy, n_pieces] = body.pieces;
-  const auto& copies = body.surface.copies;
-  watch.piece_of_triangle.resize(copies.size());
-  parallel_for(
-    copies.size(),
-    [&](const std::size_t t) {
-      watch.piece_of_triangle[t] = body.solid.crumbs.holds(copies[t]) ? of_no_piece : piece_of_copy[copies[t]];
-    },
-    worth_triangles);
-  watch.rest_volumes.assign(n_pieces, 0);
-  watch.rest_volumes = *piece_volumes(body, watch, body.surface.rest);
 }
 
 /// The twelve edges of a copy, four along each axis [m].
@@ -154,7 +116,8 @@ struct Cubes {
   }
 };
 
-Cubes cubes(const Body& body) {
+/// Also fills the volume of each copy's material over that of a cube, by its nodes: an eighth for each, times det F.
+Cubes cubes(const Body& body, const std::span<double> volumes) {
   constexpr std::size_t block = 4096;
   const Points& x = corners(body);
   const std::size_t n = body.solid.complex.n_copies();
@@ -165,10 +128,13 @@ Cubes cubes(const Body& body) {
       const grid::Copy& copy = copy_of(body, c);
       const auto n_nodes = static_cast<std::size_t>(std::popcount(static_cast<unsigned>(copy.nodes)));
       all.n_nodes += n_nodes;
+      volumes[c] = double(n_nodes) / 8;
       if (body.solid.crumbs.holds(grid::CopyId(static_cast<std::uint32_t>(c)))) // rigid
         continue;
       const auto e = edges(x, copy);
-      all.n_inverted += volume_ratio(e, body.solid.grid.h()) < 0 ? n_nodes : 0;
+      const double ratio = volume_ratio(e, body.solid.grid.h());
+      volumes[c] *= ratio;
+      all.n_inverted += ratio < 0 ? n_nodes : 0;
       double longest = 0;
       for (const Vec3& edge : e)
         longest = std::max(longest, edge.squaredNorm());
@@ -178,6 +144,21 @@ Cubes cubes(const Body& body) {
   Cubes all;
   for (const Cubes& one : *blocks)
     all.take_in(one);
+  return all;
+}
+
+/// The material of a piece, over that of a cube.
+struct PieceVolume {
+  double rest = 0, now = 0;
+};
+
+Loan<PieceVolume> piece_volumes(const Body& body, const std::span<const double> of_copies) {
+  Loan<PieceVolume> all(body.pieces.n_pieces, PieceVolume());
+  for (std::size_t c = 0; c < of_copies.size(); ++c) {
+    PieceVolume& piece = all[body.pieces.piece[grid::CopyId(static_cast<std::uint32_t>(c))]];
+    piece.rest += double(std::popcount(static_cast<unsigned>(copy_of(body, c).nodes))) / 8;
+    piece.now += of_copies[c];
+  }
   return all;
 }
 
@@ -201,15 +182,17 @@ bool is_of_small_strain(const Body& body) {
 }
 
 /// What is wrong with the body's volumes; nothing: they are sound.
-std::string unsound_volume(const Body& body, const Watch& watch) {
+std::string unsound_volume(const Body& body) {
   constexpr double most = 10, most_inverted = 0.1;
-  const Loan<double> now = piece_volumes(body, watch, body.positions);
+  Loan<double> of_copies(body.solid.complex.n_copies(), AnyValues());
+  const Cubes all = cubes(body, *of_copies);
+  const Loan<PieceVolume> pieces = piece_volumes(body, *of_copies);
   const bool is_small_strain = is_of_small_strain(body);
   constexpr double most_turned = 1.25; // small strain takes I + tan(a) x for a turn by a: 1 + tan^2(a) of the volume
-  for (std::uint32_t p = 0; p < now.size(); ++p) {
-    const double rest = watch.rest_volumes[p], ratio = now[p] / rest;
-    if (rest < std::pow(body.solid.grid.h(), 3))
+  for (std::uint32_t p = 0; p < pieces.size(); ++p) {
+    if (pieces[p].rest < 1)
       continue;
+    const double ratio = pieces[p].now / pieces[p].rest;
     if (is_small_strain && ratio > most_turned)
       return "piece " + std::to_string(p) + " has " + in_short(100 * ratio) +
              " % of its volume at rest: small strain takes rotations for strains, and this piece turns. "
@@ -223,7 +206,6 @@ std::string unsound_volume(const Body& body, const Watch& watch) {
            ": its volume is " + in_short(100 * ratio) + " % of that at rest. Worst is " +
            worst_copy(body, [&](const std::size_t c) { return body.pieces.piece[grid::CopyId(c)] == p; }) + remedy;
   }
-  const Cubes all = cubes(body);
   // Nodes count, so near-empty copies hardly do.
   if (const double part = double(all.n_inverted) / double(std::max<std::size_t>(all.n_nodes, 1)); part > most_inverted)
     return in_short(100 * part) + " % of the body are inside out. Worst is " +
@@ -249,32 +231,35 @@ void require_sound_motion(const Body& body, const Points& before, const double d
   const Motion all = dynamics::sum_in_blocks(
     body.state.x.size(), Motion(), [&](const std::size_t begin, const std::size_t end, Motion& part) {
       for (std::size_t i = begin; i < end; ++i) {
-        if (!body.state.x[i].allFinite() || !body.state.v[i].allFinite())
+        const Vec3 &x = body.state.x[i], &v = body.state.v[i];
+        const double speed = (v - mean).squaredNorm();
+        if (!std::isfinite(speed + x.sum()))
           part += {i, 0, 0};
-        else if (!held[i])
-          part +=
-            {none, i, std::min((body.state.v[i] - mean).norm(), ((body.state.x[i] - before[i]) / dt - mean).norm())};
+        else if (!held[i] && speed > part.squared_speed)
+          part += {none, i, std::min(speed, ((x - before[i]) / dt - mean).squaredNorm())};
       }
     });
   if (all.lost != none)
     throw NumericalError("the motion has diverged: " + particle_at(body, all.lost) + ", has no finite place any more");
-  const auto [lost, fastest, speed] = all;
+  const double speed = std::sqrt(all.squared_speed);
   if (speed * dt <= body.solid.grid.h())
     return;
   const double eighth = body.density * std::pow(body.solid.grid.h(), 3) / 8,
                now = dynamics::kinetic_energy(model, body.state.v) + model.energy(body.state.x),
                energy = body.initial ? std::max(now, body.initial->energy) : now; // which a corner may still have
   if (0.5 * eighth * speed * speed > energy)
-    throw NumericalError("the motion has diverged: " + particle_at(body, fastest) + ", moves at " + in_short(speed) +
+    throw NumericalError("the motion has diverged: " + particle_at(body, all.fastest) + ", moves at " + in_short(speed) +
                          " m/s, faster than all energy of the body (" + in_short(energy) +
                          " J) could move an eighth of a cube. Use a smaller time step");
 }
 
-Stretch largest_stretch(const Body& body) { return stretch_of(cubes(body), body); }
+Stretch largest_stretch(const Body& body) {
+  Loan<double> volumes(body.solid.complex.n_copies(), AnyValues());
+  return stretch_of(cubes(body, *volumes), body);
+}
 
 void require_sound_volume(const Body& body, Watch& watch) {
-  bring_up_to_date(body, watch);
-  const std::string what = unsound_volume(body, watch);
+  const std::string what = unsound_volume(body);
   watch.is_sound = what.empty();
   if (!what.empty() && !may_be_anywhere(body))
     throw NumericalError(what);

@@ -6,26 +6,23 @@
 /// step against the mean motion while all kinetic and elastic energy of the body could not move an eighth of a full
 /// cube, which is the least that a corner of whole cubes has, that fast: what moves so is lighter than anything that
 /// the grid resolves. A piece that is inside out, or crushed to a tenth or blown up to ten times its volume (at small
-/// strain by a quarter), or a body with a tenth of its copies inside out. And a copy of which an edge is 32 times as
-/// long as at rest. The last two are borne where the initial state gave the body an energy with which it may come there,
-/// and it has at most a quarter more.
+/// strain by a quarter), or a body with a tenth of its copies inside out: volumes are those of copies in their middle,
+/// weighed by their nodes. And a copy of which an edge is 32 times as long as at rest. The last two are borne where the
+/// initial state gave the body an energy with which it may come there, and it has at most a quarter more.
 
 #include "scene/body.h"
 
 namespace kerf::scene {
 
-/// What is known of the pieces of a body's surface; brought up to date after cuts.
 struct Watch {
-  int n_recuts = -1;
-  std::vector<std::uint32_t> piece_of_triangle; ///< of the surface; the largest number: of none, as it bounds a crumb
-  std::vector<double> rest_volumes; ///< of each piece [m^3]
-  bool is_sound = true;             ///< what was found last
+  bool is_sound = true; ///< what was found last
 
-  void archive(Archive& a) { a(is_sound); } // the rest is found again
+  void archive(Archive& a) { a(is_sound); }
 };
 
-/// After a step of dt [s] from `before` [m], before the surface follows. Velocities may ring where nothing damps them, and statics
-/// go far without any: the less of a velocity and of the way over dt counts. Throws NumericalError that names the particle and its place.
+/// After a step of dt [s] from `before` [m], before the corners follow. Velocities may ring where nothing damps them,
+/// and statics go far without any: the less of a velocity and of the way over dt counts. Throws NumericalError that
+/// names the particle and its place.
 void require_sound_motion(const Body& body, const Points& before, double dt);
 /// The copy whose cube is drawn out most.
 struct Stretch {
@@ -35,7 +32,7 @@ struct Stretch {
 /// Of all copies but those of crumbs, which are rigid.
 Stretch largest_stretch(const Body& body);
 
-/// After the surface followed. Pieces below a cube's volume are left out. Throws NumericalError that names the piece,
+/// After the corners followed. Pieces of fewer than eight nodes are left out. Throws NumericalError that names the piece,
 /// its worst copy and its place.
 void require_sound_volume(const Body& body, Watch& watch);
 

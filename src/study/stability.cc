@@ -92,7 +92,7 @@ void step_through(scene::World& world, const StabilityCase& one, const int n_ste
   }
   seen.n_divided = body.n_divided;
   seen.is_back = world.watches.front().is_sound;
-  seen.volume = surface::enclosed_volume(body.positions, body.surface.triangles) /
+  seen.volume = surface::enclosed_volume(scene::positions(body), body.surface.triangles) /
                 surface::enclosed_volume(body.surface.rest, body.surface.triangles);
 }
 

@@ -68,7 +68,7 @@ Sums sums(const Body& body) {
 
 bool is_finite(const Body& body) {
   double sum = 0;
-  for (const Points* points : {&body.state.x, &body.state.v, &corners(body), &body.positions})
+  for (const Points* points : {&body.state.x, &body.state.v, &corners(body), &positions(body)})
     for (const Vec3& p : *points)
       sum += p.sum();
   return std::isfinite(sum);

@@ -30,7 +30,7 @@ std::vector<std::uint32_t> pieces_of_particles(const scene::Body& body, const gr
 
 bool is_finite(const scene::Body& body) {
   double sum = 0;
-  for (const Points* points : {&body.state.x, &body.state.v, &scene::corners(body), &body.positions})
+  for (const Points* points : {&body.state.x, &body.state.v, &scene::corners(body), &scene::positions(body)})
     for (const Vec3& p : *points)
       sum += p.sum();
   return std::isfinite(sum);
@@ -94,7 +94,7 @@ double cone(const Points& x, const Triangle& t, const Vec3& origin) {
 /// Volumes and reaches, both about the mean of a piece's vertices, which keeps splinters exact.
 void look_at_surface(const scene::Body& body, const grid::Pieces& pieces, std::vector<PieceLook>& looks) {
   const surface::Surface& surface = body.surface;
-  const Points* const both[] = {&surface.rest, &body.positions};
+  const Points* const both[] = {&surface.rest, &scene::positions(body)};
   for (int now = 0; now < 2; ++now) {
     const Points& x = *both[now];
     Points mean(looks.size(), Vec3::Zero());

@@ -88,7 +88,7 @@ double penalty(const Body& body, const double height, const double k) {
     const auto X = [&](const int i) { return body.surface.rest[t[i]]; };
     const double area = 0.5 * (X(1) - X(0)).cross(X(2) - X(0)).norm();
     for (const auto vertex : t)
-      sum += k * area / 3 * std::max(0.0, height - body.positions[vertex][2]);
+      sum += k * area / 3 * std::max(0.0, height - positions(body)[vertex][2]);
   }
   return sum;
 }

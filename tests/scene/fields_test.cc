@@ -60,9 +60,9 @@ TEST(Fields, OfVerticesAreThoseOfCornersWeighted) {
   const auto fields = at_vertices(bar.body().surface, fields_at_corners(bar.body(), names));
   expect_uniaxial(fields, bar.body().surface.rest);
   const auto& u = field(fields, "displacement").values;
-  for (std::size_t i = 0; i < bar.body().positions.size(); ++i)
+  for (std::size_t i = 0; i < positions(bar.body()).size(); ++i)
     for (int axis = 0; axis < 3; ++axis)
-      EXPECT_NEAR(u[3 * i + axis], bar.body().positions[i][axis] - bar.body().surface.rest[i][axis], 1e-14);
+      EXPECT_NEAR(u[3 * i + axis], positions(bar.body())[i][axis] - bar.body().surface.rest[i][axis], 1e-14);
 }
 
 /// All six components, each another number: a linear motion by hand.

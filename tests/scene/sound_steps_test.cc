@@ -142,7 +142,7 @@ TEST(SoundScene, AShortPieceTurnsBesideALongOneThatSwings) {
   for (std::size_t t = 0; t < body.surface.triangles.size(); ++t)
     if (is_short(body.solid.complex.copies[body.surface.copies[t]].corners[0].value)) {
       const auto& [a, b, c] = body.surface.triangles[t];
-      volume += body.positions[a].dot(body.positions[b].cross(body.positions[c])) / 6;
+      volume += positions(body)[a].dot(positions(body)[b].cross(positions(body)[c])) / 6;
       rest += body.surface.rest[a].dot(body.surface.rest[b].cross(body.surface.rest[c])) / 6;
     }
   EXPECT_NEAR(volume / rest, 1, 0.02);
