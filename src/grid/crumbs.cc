@@ -128,6 +128,14 @@ class Search {
   }
   bool is_attached(const CopyId c) const { return known_[c] == Known::attached; }
 
+ private:
+  enum class Known : std::uint8_t { nothing, seen, attached };
+
+  bool is_loose(const CopyId c) const {
+    const Copy& copy = solid_.complex.copies[c];
+    return std::popcount(copy.nodes) <= 1 || fill(solid_, copy) < well_filled;
+  }
+
   /// Calls f(other) for each copy that is glued to this one, or that a front holds together with it, until f says false.
   template <class Function>
   bool for_each_beside(const CopyId c, const Function& f) const {
@@ -139,14 +147,6 @@ class Search {
         if ((a == c || b == c) && !f(a == c ? b : a))
           return false;
     return true;
-  }
-
- private:
-  enum class Known : std::uint8_t { nothing, seen, attached };
-
-  bool is_loose(const CopyId c) const {
-    const Copy& copy = solid_.complex.copies[c];
-    return std::popcount(copy.nodes) <= 1 || fill(solid_, copy) < well_filled;
   }
 
   template <class Function>
@@ -178,12 +178,12 @@ class Search {
   Table<CopyId, Known> known_;
 };
 
-/// The crumbs that hold some of these copies.
-std::vector<Crumb> crumbs_at(Search& search, std::uint32_t name, const std::span<const CopyId> copies) {
+/// The crumbs that hold some of these copies, without a name yet.
+std::vector<Crumb> crumbs_at(Search& search, const std::span<const CopyId> copies) {
   std::vector<Crumb> found;
   for (const CopyId c : copies)
     if (auto of_crumb = search.crumb_at(c); !of_crumb.empty())
-      found.push_back({++name, std::move(of_crumb)});
+      found.push_back({Crumbs::none, std::move(of_crumb)});
   return found;
 }
 
@@ -194,12 +194,34 @@ void mark(Solid& solid, const CopyId c, const std::uint32_t crumb) {
 }
 
 void add(Solid& solid, std::vector<Crumb> found) {
-  solid.crumbs.n_named += static_cast<std::uint32_t>(found.size());
   for (Crumb& crumb : found) {
+    crumb.name = ++solid.crumbs.n_named;
     for (const CopyId c : crumb.copies)
       mark(solid, c, crumb.name);
     solid.crumbs.all.push_back(std::move(crumb));
   }
+}
+
+/// Copies across a face from what a cut has changed, of cells that stay what they are: what is glued by points of the skin
+/// or by intervals may be so no more, or newly, though its own cell has not changed.
+std::vector<CopyId> beside(const Solid& solid, const CutChange& change) {
+  std::vector<CopyId> copies;
+  for (const CellId cell : change.cells)
+    for (int face = 0; face < 6; ++face)
+      if (const CellId other = solid.grid.neighbour(cell, face);
+          other.valid() && !std::ranges::binary_search(change.cells, other))
+        for (const CopyId c : solid.complex.copies_of(other))
+          if (const Copy& copy = solid.complex.copies[c]; copy.skin != 0 || copy.intervals != 0)
+            copies.push_back(c);
+  sort_unique(copies);
+  return copies;
+}
+
+/// Whether these copies are a crumb already.
+bool is_known(const Solid& solid, const std::span<const CopyId> copies) {
+  const std::uint32_t name = solid.crumbs.of(copies.front());
+  const auto before = std::ranges::lower_bound(solid.crumbs.all, name, {}, &Crumb::name);
+  return before != solid.crumbs.all.end() && before->name == name && std::ranges::equal(before->copies, copies);
 }
 
 } // namespace
@@ -211,7 +233,7 @@ void find_crumbs(Solid& solid) {
     if (solid.complex.copies[c].nodes != 0xff)
       all.push_back(c);
   Search search(solid, {});
-  if (auto found = crumbs_at(search, 0, all); !found.empty()) {
+  if (auto found = crumbs_at(search, all); !found.empty()) {
     solid.crumbs.of_corner.resize(solid.complex.n_corners(), 0);
     add(solid, std::move(found));
   }
@@ -222,7 +244,10 @@ void update_crumbs(Solid& solid, CutChange& change, const Points* const samples)
   std::vector<CopyId> in_use = change.reshaped;
   std::erase_if(in_use, [&](const CopyId c) { return solid.complex.copies[c].is_lapsed(); });
   Search search(solid, {.may_be_small = true, .samples = samples});
-  std::vector<Crumb> found = crumbs_at(search, crumbs.n_named, in_use);
+  std::vector<Crumb> found = crumbs_at(search, in_use);
+  for (Crumb& crumb : crumbs_at(search, beside(solid, change)))
+    if (!is_known(solid, crumb.copies))
+      found.push_back(std::move(crumb));
   if (found.empty() && crumbs.all.empty())
     return;
   std::vector<CopyId> now;
@@ -231,21 +256,11 @@ void update_crumbs(Solid& solid, CutChange& change, const Points* const samples)
   sort_unique(now);
   const auto is_found = [&](const CopyId c) { return std::ranges::binary_search(now, c); };
 
-  std::vector<std::uint32_t> joined; // to what is none, by a copy of that: where it ends is not looked at
-  for (const CopyId c : in_use)
-    if (search.is_attached(c))
-      search.for_each_beside(c, [&](const CopyId other) {
-        joined.push_back(crumbs.of(other));
-        return true;
-      });
-  sort_unique(joined);
-
   std::vector<CopyId> freed = std::move(in_use);
   std::erase_if(crumbs.all, [&](const Crumb& before) {
-    const bool is_met = std::ranges::binary_search(joined, before.name) ||
-                        std::ranges::any_of(before.copies, [&](const CopyId c) {
-                          return crumbs.of(c) != before.name || search.is_attached(c) || is_found(c);
-                        });
+    const bool is_met = std::ranges::any_of(before.copies, [&](const CopyId c) {
+      return crumbs.of(c) != before.name || search.is_attached(c) || is_found(c);
+    });
     if (is_met)
       freed.insert(freed.end(), before.copies.begin(), before.copies.end());
     return is_met;

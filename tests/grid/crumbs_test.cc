@@ -279,10 +279,10 @@ TEST(Crumbs, BecomeMaterialAgainWhereTheyAreJoined) {
   EXPECT_GT(n_stay, 50u);
 }
 
-/// An interval on a face joins a crumb to what is none, by a change of the other's copy alone.
+/// An interval on a face joins a crumb to what is none, and parts it from that again, by changes of the other's copy alone.
 TEST(Crumbs, BecomeMaterialAgainWhereOthersAreJoinedToThem) {
-  std::size_t n_ended = 0;
-  for (unsigned seed = 1; seed <= 10; ++seed) {
+  std::size_t n_ended = 0, n_again = 0;
+  for (unsigned seed = 1; seed <= 4; ++seed) {
     support::Random random(300 + seed);
     Body body = support::with_copies(support::with_placed_skin(support::block({5, 4, 4}, 0.1)));
     find_crumbs(body);
@@ -302,7 +302,16 @@ TEST(Crumbs, BecomeMaterialAgainWhereOthersAreJoinedToThem) {
         update_crumbs(joined, change);
       }
       EXPECT_TRUE(support::are_crumbs_whole_pieces(joined));
-      n_ended += joined.crumbs.holds(crumb) ? 0 : 1;
+      if (joined.crumbs.holds(crumb))
+        return;
+      ++n_ended;
+      const CellId cell = joined.complex.copies[other].cell;
+      joined.cuts.set_joined(cell, {});
+      CutChange parted = update_complex(joined, {}, {}, std::array{cell});
+      surface::place(joined, parted, {});
+      update_crumbs(joined, parted);
+      EXPECT_TRUE(support::are_crumbs_whole_pieces(joined) && support::are_loose_pieces_crumbs(joined));
+      n_again += joined.crumbs.holds(crumb) ? 1 : 0;
     };
     for (const auto c : ids<CopyId>(body.complex.n_copies())) {
       if (body.complex.copies[c].is_lapsed() || !body.crumbs.holds(c))
@@ -315,6 +324,7 @@ TEST(Crumbs, BecomeMaterialAgainWhereOthersAreJoinedToThem) {
     }
   }
   EXPECT_GT(n_ended, 20u);
+  EXPECT_GT(n_again, 20u);
 }
 
 /// A plane halves a block; what is known of the upper half by samples decides whether it is one.

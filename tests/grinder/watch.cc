@@ -151,6 +151,8 @@ std::optional<Failure> Watch::watch_pieces(const scene::Body& body, const Look& 
     return Failure{"pieces", step, std::to_string(n_before) + " have become " + std::to_string(n_pieces_)};
   if (was_cut && !support::are_crumbs_whole_pieces(body.solid))
     return Failure{"crumbs", step, "a part of a piece is a crumb"};
+  if (was_cut && !support::are_loose_pieces_crumbs(body.solid))
+    return Failure{"crumbs", step, "a piece of loose copies is none"};
   return {};
 }
 

@@ -1,10 +1,13 @@
 #pragma once
 
 #include "grid/complex.h"
+#include "grid/material.h"
 #include "grid/solid.h"
 
 #include <algorithm>
+#include <bit>
 #include <map>
+#include <vector>
 
 namespace kerf::support {
 
@@ -23,6 +26,20 @@ inline bool are_crumbs_whole_pieces(const grid::Solid& solid) {
     if (!std::ranges::all_of(copy.corners, agrees))
       return false;
   }
+  return true;
+}
+
+/// No piece of loose copies alone is missing among the crumbs.
+inline bool are_loose_pieces_crumbs(const grid::Solid& solid) {
+  const grid::Pieces pieces = grid::pieces(solid.complex);
+  std::vector<bool> is_loose(pieces.n_pieces, true);
+  for (const auto c : ids<grid::CopyId>(solid.complex.n_copies()))
+    if (const grid::Copy& copy = solid.complex.copies[c];
+        !copy.is_lapsed() && is_loose[pieces.piece[c]] && std::popcount(copy.nodes) > 1)
+      is_loose[pieces.piece[c]] = grid::fill(solid, copy) < grid::well_filled;
+  for (const auto c : ids<grid::CopyId>(solid.complex.n_copies()))
+    if (!solid.complex.copies[c].is_lapsed() && is_loose[pieces.piece[c]] && !solid.crumbs.holds(c))
+      return false;
   return true;
 }
 
