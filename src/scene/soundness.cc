@@ -116,8 +116,16 @@ struct Cubes {
   }
 };
 
-/// Also fills the volume of each copy's material over that of a cube, by its nodes: an eighth for each, times det F.
-Cubes cubes(const Body& body, const std::span<double> volumes) {
+bool is_rigid(const Body& body, const std::size_t c) {
+  return body.solid.crumbs.holds(grid::CopyId(static_cast<std::uint32_t>(c)));
+}
+
+std::size_t n_nodes(const grid::Copy& copy) {
+  return static_cast<std::size_t>(std::popcount(static_cast<unsigned>(copy.nodes)));
+}
+
+/// Of all copies that are not rigid. Fills det F of each, in its middle.
+Cubes cubes(const Body& body, const std::span<double> ratios) {
   constexpr std::size_t block = 4096;
   const Points& x = corners(body);
   const std::size_t n = body.solid.complex.n_copies();
@@ -125,16 +133,13 @@ Cubes cubes(const Body& body, const std::span<double> volumes) {
   parallel_for(blocks.size(), [&](const std::size_t b) {
     Cubes& all = blocks[b];
     for (std::size_t c = b * block; c < std::min(n, (b + 1) * block); ++c) {
-      const grid::Copy& copy = copy_of(body, c);
-      const auto n_nodes = static_cast<std::size_t>(std::popcount(static_cast<unsigned>(copy.nodes)));
-      all.n_nodes += n_nodes;
-      volumes[c] = double(n_nodes) / 8;
-      if (body.solid.crumbs.holds(grid::CopyId(static_cast<std::uint32_t>(c)))) // rigid
+      if (is_rigid(body, c))
         continue;
+      const grid::Copy& copy = copy_of(body, c);
       const auto e = edges(x, copy);
-      const double ratio = volume_ratio(e, body.solid.grid.h());
-      volumes[c] *= ratio;
-      all.n_inverted += ratio < 0 ? n_nodes : 0;
+      ratios[c] = volume_ratio(e, body.solid.grid.h());
+      all.n_nodes += n_nodes(copy);
+      all.n_inverted += ratios[c] < 0 ? n_nodes(copy) : 0;
       double longest = 0;
       for (const Vec3& edge : e)
         longest = std::max(longest, edge.squaredNorm());
@@ -147,17 +152,20 @@ Cubes cubes(const Body& body, const std::span<double> volumes) {
   return all;
 }
 
-/// The material of a piece, over that of a cube.
+/// The material of a piece over that of a cube, by its nodes: an eighth for each. None of a rigid one.
 struct PieceVolume {
   double rest = 0, now = 0;
 };
 
-Loan<PieceVolume> piece_volumes(const Body& body, const std::span<const double> of_copies) {
+Loan<PieceVolume> piece_volumes(const Body& body, const std::span<const double> ratios) {
   Loan<PieceVolume> all(body.pieces.n_pieces, PieceVolume());
-  for (std::size_t c = 0; c < of_copies.size(); ++c) {
+  for (std::size_t c = 0; c < ratios.size(); ++c) {
+    if (is_rigid(body, c))
+      continue;
     PieceVolume& piece = all[body.pieces.piece[grid::CopyId(static_cast<std::uint32_t>(c))]];
-    piece.rest += double(std::popcount(static_cast<unsigned>(copy_of(body, c).nodes))) / 8;
-    piece.now += of_copies[c];
+    const double rest = double(n_nodes(copy_of(body, c))) / 8;
+    piece.rest += rest;
+    piece.now += rest * ratios[c];
   }
   return all;
 }
@@ -184,9 +192,9 @@ bool is_of_small_strain(const Body& body) {
 /// What is wrong with the body's volumes; nothing: they are sound.
 std::string unsound_volume(const Body& body) {
   constexpr double most = 10, most_inverted = 0.1;
-  Loan<double> of_copies(body.solid.complex.n_copies(), AnyValues());
-  const Cubes all = cubes(body, *of_copies);
-  const Loan<PieceVolume> pieces = piece_volumes(body, *of_copies);
+  Loan<double> ratios(body.solid.complex.n_copies(), AnyValues());
+  const Cubes all = cubes(body, *ratios);
+  const Loan<PieceVolume> pieces = piece_volumes(body, *ratios);
   const bool is_small_strain = is_of_small_strain(body);
   constexpr double most_turned = 1.25; // small strain takes I + tan(a) x for a turn by a: 1 + tan^2(a) of the volume
   for (std::uint32_t p = 0; p < pieces.size(); ++p) {
@@ -227,23 +235,29 @@ std::string particle_at(const Body& body, const std::size_t particle) {
 void require_sound_motion(const Body& body, const Points& before, const double dt) {
   const dynamics::ForceModel& model = body.physics->model();
   const Vec3 mean = mean_velocity(model, body.state.v);
-  const auto held = dynamics::held_corners(body.loads, body.state.x.size());
-  const Motion all = dynamics::sum_in_blocks(
-    body.state.x.size(), Motion(), [&](const std::size_t begin, const std::size_t end, Motion& part) {
-      for (std::size_t i = begin; i < end; ++i) {
-        const Vec3 &x = body.state.x[i], &v = body.state.v[i];
-        const double speed = (v - mean).squaredNorm();
-        if (!std::isfinite(speed + x.sum()))
-          part += {i, 0, 0};
-        else if (!held[i] && speed > part.squared_speed)
-          part += {none, i, std::min(speed, ((x - before[i]) / dt - mean).squaredNorm())};
-      }
-    });
+  const auto motion_but_of = [&](const std::span<const std::uint8_t> held) {
+    return dynamics::sum_in_blocks(
+      body.state.x.size(), Motion(), [&](const std::size_t begin, const std::size_t end, Motion& part) {
+        for (std::size_t i = begin; i < end; ++i) {
+          const Vec3 &x = body.state.x[i], &v = body.state.v[i];
+          const double speed = (v - mean).squaredNorm();
+          if (!std::isfinite(speed + x.sum()))
+            part += {i, 0, 0};
+          else if (speed > part.squared_speed && (held.empty() || held[i] == 0))
+            part += {none, i, std::min(speed, ((x - before[i]) / dt - mean).squaredNorm())};
+        }
+      });
+  };
+  const auto is_slow = [&](const Motion& all) { return std::sqrt(all.squared_speed) * dt <= body.solid.grid.h(); };
+  Motion all = motion_but_of({});
   if (all.lost != none)
     throw NumericalError("the motion has diverged: " + particle_at(body, all.lost) + ", has no finite place any more");
-  const double speed = std::sqrt(all.squared_speed);
-  if (speed * dt <= body.solid.grid.h())
+  if (is_slow(all))
     return;
+  all = motion_but_of(dynamics::held_corners(body.loads, body.state.x.size()));
+  if (is_slow(all))
+    return;
+  const double speed = std::sqrt(all.squared_speed);
   const double eighth = body.density * std::pow(body.solid.grid.h(), 3) / 8,
                now = dynamics::kinetic_energy(model, body.state.v) + model.energy(body.state.x),
                energy = body.initial ? std::max(now, body.initial->energy) : now; // which a corner may still have
@@ -254,8 +268,8 @@ void require_sound_motion(const Body& body, const Points& before, const double d
 }
 
 Stretch largest_stretch(const Body& body) {
-  Loan<double> volumes(body.solid.complex.n_copies(), AnyValues());
-  return stretch_of(cubes(body, *volumes), body);
+  Loan<double> ratios(body.solid.complex.n_copies(), AnyValues());
+  return stretch_of(cubes(body, *ratios), body);
 }
 
 void require_sound_volume(const Body& body, Watch& watch) {
