@@ -43,15 +43,18 @@ Matrix6 inertia_of_modes(const RigidBody& body, const RigidMotion& motion) {
 
 /// The least d, as measured by W, of those with the least (S d - b).
 Vector6 least_solution(const Matrix6& S, const Vector6& b, const Matrix6& W) {
-  constexpr double round_off = 1e-9;
+  constexpr double round_off = 1e-9, well_conditioned = 1e-3;
   const Eigen::LLT<Matrix6> factor(W);
-  const Matrix6 inverse = factor.matrixL().solve(Matrix6::Identity());
-  const Eigen::SelfAdjointEigenSolver<Matrix6> eigen(inverse * S * inverse.transpose());
-  const Vector6 c = eigen.eigenvectors().transpose() * (inverse * b);
+  const Matrix6 inverse = factor.matrixL().solve(Matrix6::Identity()), A = inverse * S * inverse.transpose();
+  const Vector6 c = inverse * b;
+  if (const Eigen::LDLT<Matrix6> all(A); all.vectorD().minCoeff() > well_conditioned * all.vectorD().maxCoeff())
+    return inverse.transpose() * all.solve(c); // there is one alone
+  const Eigen::SelfAdjointEigenSolver<Matrix6> eigen(A);
+  const Vector6 along = eigen.eigenvectors().transpose() * c;
   Vector6 d = Vector6::Zero();
   for (int k = 0; k < 6; ++k)
     if (eigen.eigenvalues()[k] > round_off * eigen.eigenvalues()[5])
-      d += c[k] / eigen.eigenvalues()[k] * eigen.eigenvectors().col(k);
+      d += along[k] / eigen.eigenvalues()[k] * eigen.eigenvectors().col(k);
   return inverse.transpose() * d;
 }
 
