@@ -5,7 +5,6 @@
 #include <Eigen/LU>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace kerf::dynamics {
@@ -18,8 +17,8 @@ Mat3 cross_matrix(const Vec3& a) {
   return A;
 }
 
-/// Pi of the midpoint rule, by Newton's method. As the residual is quadratic, a change of d leaves an error of less than
-/// d^2 / |start| where the body turns by less than 1 rad.
+/// Pi of the midpoint rule, by Newton's method. As the residual is quadratic, a change of d leaves an error of less
+/// than d^2 / |start| where the body turns by less than 1 rad.
 Vec3 middle_momentum(const Mat3& inverse_inertia, const Vec3& start, const double dt) {
   constexpr int most = 30;
   constexpr double round_off = 1e-17;
@@ -44,14 +43,6 @@ Mat3 times_cayley(const Mat3& R, const Vec3& a) {
   return (Eigen::Quaterniond(R) * half).normalized().toRotationMatrix();
 }
 
-/// (1 - exp(-z)) / z and (1 - that) / z, without cancellation.
-std::array<double, 2> decays(const double z) {
-  if (std::abs(z) < 1e-3)
-    return {1 - z / 2 * (1 - z / 3 * (1 - z / 4)), 0.5 - z / 6 * (1 - z / 4 * (1 - z / 5))};
-  const double first = -std::expm1(-z) / z;
-  return {first, (1 - first) / z};
-}
-
 } // namespace
 
 Vec3 angular_velocity(const RigidBody& body, const RigidMotion& motion) {
@@ -73,20 +64,41 @@ double kinetic_energy(const RigidBody& body, const RigidMotion& motion) {
   return 0.5 * body.mass * motion.v.squaredNorm() + 0.5 * motion.spin.dot(angular_velocity(body, motion));
 }
 
-void fly(const RigidBody& body, const Vec3& gravity, const double alpha, const double dt, RigidMotion& motion) {
-  const auto [first, second] = decays(alpha * dt);
-  motion.x += dt * first * motion.v + dt * dt * second * gravity;
-  motion.v += dt * first * (gravity - alpha * motion.v);
-  if (motion.spin.isZero(0))
-    return;
+Decay::Decay(const double alpha, const double dt) : alpha_(alpha), dt_(dt) {
+  const double z = alpha * dt;
+  if (std::abs(z) < 1e-3) { // without cancellation
+    mean_ = 1 - z / 2 * (1 - z / 3 * (1 - z / 4));
+    of_force_ = 0.5 - z / 6 * (1 - z / 4 * (1 - z / 5));
+  } else {
+    mean_ = -std::expm1(-z) / z;
+    of_force_ = (1 - mean_) / z;
+  }
+}
+
+double Decay::end() const { return std::exp(-alpha_ * dt_); }
+
+void Decay::move(const Vec3& gravity, RigidMotion& motion) const {
+  motion.x += dt_ * mean_ * motion.v + dt_ * dt_ * of_force_ * gravity;
+  motion.v += dt_ * mean_ * (gravity - alpha_ * motion.v);
+}
+
+void turn(const RigidBody& body, const double mean, const double dt, RigidMotion& motion) {
   const Mat3 inverse = body.inertia.inverse();
-  const double angle = dt * first * (inverse * (motion.R.transpose() * motion.spin)).norm();
-  const int n = static_cast<int>(std::clamp(std::ceil(angle), 1.0, most_turns)); // turns of at most 1 rad
+  const double angle = dt * mean * (inverse * (motion.R.transpose() * motion.spin)).norm();
+  const int n = static_cast<int>(std::clamp(std::ceil(angle), 1.0, most_turns));
   for (int i = 0; i < n; ++i) {
-    const Vec3 start = first * (motion.R.transpose() * motion.spin); // as of the mean spin over the step
+    const Vec3 start = mean * (motion.R.transpose() * motion.spin);
     motion.R = times_cayley(motion.R, dt / n * inverse * middle_momentum(inverse, start, dt / n));
   }
-  motion.spin *= std::exp(-alpha * dt);
+}
+
+void fly(const RigidBody& body, const Vec3& gravity, const double alpha, const double dt, RigidMotion& motion) {
+  const Decay decay(alpha, dt);
+  decay.move(gravity, motion);
+  if (motion.spin.isZero(0))
+    return;
+  turn(body, decay.mean(), dt, motion);
+  motion.spin *= decay.end();
 }
 
 Mat3 turned(const Mat3& R, const Vec3& angle) {

@@ -1,5 +1,7 @@
 // How crumbs move in a step.
 
+#include "base/loan.h"
+#include "dynamics/flight.h"
 #include "dynamics/forces.h"
 #include "dynamics/sound_steps.h"
 #include "physics/crumbs.h"
@@ -22,10 +24,17 @@ using Matrix6 = Eigen::Matrix<double, 6, 6>;
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 using Matrix36 = Eigen::Matrix<double, 3, 6>;
 
-/// Displacement of a point at r from the centre, by translation and rotation.
+/// Displacement of a point at r from the centre, by rotation.
+Mat3 turns_at(const Vec3& r) {
+  Mat3 G;
+  G << 0, r[2], -r[1], -r[2], 0, r[0], r[1], -r[0], 0;
+  return G;
+}
+
+/// The same by translation and rotation.
 Matrix36 modes_at(const Vec3& r) {
   Matrix36 G;
-  G << 1, 0, 0, 0, r[2], -r[1], 0, 1, 0, -r[2], 0, r[0], 0, 0, 1, r[1], -r[0], 0;
+  G << Mat3::Identity(), turns_at(r);
   return G;
 }
 
@@ -91,14 +100,14 @@ void Crumbs::step(const dynamics::Loads& loads, const double dt, const dynamics:
 void Crumbs::fly(const dynamics::Loads& loads, const double dt, std::vector<Wrench>& pushes,
                  dynamics::State& state) const {
   constexpr int most = 64;
+  const auto body_of = [&](const std::size_t b) -> const RigidBody& { return crumbs_[b].body; };
   const Motions begin = state.crumbs;
   for (int n = 1; n <= most; n *= 2) {
     Motions motions = begin;
     bool is_sound = true;
     for (int k = 0; k < n && is_sound; ++k) {
       const Motions start = motions;
-      for (std::size_t b = 0; b < crumbs_.size(); ++b)
-        dynamics::fly(crumbs_[b].body, loads.gravity, loads.mass_damping, dt / n, motions[b]);
+      dynamics::fly(body_of, loads.gravity, loads.mass_damping, dt / n, motions);
       if (!loads.acting.empty()) {
         motions = pushed(loads, dt / n, start, Motions(motions), pushes, state);
         is_sound = gains_nothing(loads, dt / n, start, motions, state);
@@ -259,26 +268,32 @@ std::vector<std::vector<Crumbs::Hold>> Crumbs::holds(const dynamics::Loads& load
   return all;
 }
 
-void Crumbs::obey(const dynamics::Loads& loads, const std::span<const Hold> holds, const double time, const double dt,
-                  const RigidBody& body, RigidMotion& motion) const {
+void Crumbs::obey(const dynamics::Loads& loads, const std::span<const Hold> holds, const std::span<const Way> ways,
+                  const double dt, const RigidBody& body, RigidMotion& motion) const {
   constexpr int n_places = 4;       // rotations are not linear
   constexpr double nothing = 1e-15; // of a turn, or of the way from the origin
-  Points places, velocities;        // that supports want, the latter in the mean of the step
+  Loan<Vec3> places, velocities;    // that supports want, the latter in the mean of the step
   for (const Hold& hold : holds) {
-    const dynamics::Support& support = loads.supports[hold.support];
-    places.push_back(support.places(time)(support.rest[hold.index]));
-    velocities.push_back((places.back() - support.places(time - dt)(support.rest[hold.index])) / dt);
+    const Vec3& rest = loads.supports[hold.support].rest[hold.index];
+    places->push_back(ways[hold.support].to(rest));
+    velocities->push_back((ways[hold.support].to(rest) - ways[hold.support].from(rest)) / dt);
   }
   const auto least_change = [&](const auto& missing) {
     Matrix6 S = Matrix6::Zero();
     Vector6 rhs = Vector6::Zero();
     for (std::size_t i = 0; i < holds.size(); ++i) {
       const Vec3 x = dynamics::place(body, motion, holds[i].rest);
-      const Matrix36 G = modes_at(x - motion.x);
+      const Mat3 G = turns_at(x - motion.x);
       const Mat3& H = loads.supports[holds[i].support].held;
-      S += G.transpose() * H * G;
-      rhs += G.transpose() * (H * missing(i, x));
+      const Mat3 HG = H * G;
+      S.topLeftCorner<3, 3>() += H;
+      S.topRightCorner<3, 3>() += HG;
+      S.bottomRightCorner<3, 3>() += G.transpose() * HG;
+      const Vec3 wanted = H * missing(i, x);
+      rhs.head<3>() += wanted;
+      rhs.tail<3>() += G.transpose() * wanted;
     }
+    S.bottomLeftCorner<3, 3>() = S.topRightCorner<3, 3>().transpose();
     return least_solution(S, rhs, inertia_of_modes(body, motion));
   };
   for (int i = 0; i < n_places; ++i) {
@@ -298,13 +313,16 @@ void Crumbs::obey(const dynamics::Loads& loads, const std::span<const Hold> hold
 void Crumbs::hold(const dynamics::Loads& loads, const double dt, const Motions& start,
                   const std::vector<Wrench>& pushes, dynamics::State& state) {
   const auto all = holds(loads);
+  std::vector<Way> ways;
+  for (const dynamics::Support& support : loads.supports)
+    ways.push_back({support.places(state.time - dt), support.places(state.time)});
   for (std::size_t b = 0; b < crumbs_.size(); ++b) {
     if (all[b].empty())
       continue;
     const RigidBody& body = crumbs_[b].body;
     RigidMotion& motion = state.crumbs[b];
     const RigidMotion before = motion;
-    obey(loads, all[b], state.time, dt, body, motion);
+    obey(loads, all[b], ways, dt, body, motion);
     dynamics::Reaction& reaction = reactions_[all[b][0].support];
     const double alpha = loads.mass_damping;
     const Vec3 force = body.mass * ((motion.v - start[b].v) / dt + alpha * motion.v - loads.gravity) - pushes[b].force;

@@ -1,11 +1,15 @@
 #include "physics/crumbs.h"
 
+#include "base/loan.h"
+#include "dynamics/flight.h"
+
 #include <Eigen/Geometry>
 
 #include <algorithm>
 
 namespace kerf::physics {
 
+using dynamics::RigidBody;
 using dynamics::RigidMotion;
 
 namespace {
@@ -92,14 +96,12 @@ void Crumbs::take_particles(const grid::Solid& solid, const CrumbParticles* cons
 }
 
 void Crumbs::carry(const Motions& motions, dynamics::State& state) const {
-  for (std::size_t b = 0; b < crumbs_.size(); ++b) {
-    const Vec3 omega = dynamics::angular_velocity(crumbs_[b].body, motions[b]);
-    for (std::size_t i = 0; i < crumbs_[b].particles.size(); ++i) {
-      const auto particle = crumbs_[b].particles[i];
-      state.x[particle] = dynamics::place(crumbs_[b].body, motions[b], crumbs_[b].rest_of_particles[i]);
-      state.v[particle] = dynamics::velocity(motions[b], omega, state.x[particle]);
-    }
-  }
+  Loan<Vec3> omegas(crumbs_.size());
+  dynamics::put_angular_velocities([&](const std::size_t b) -> const RigidBody& { return crumbs_[b].body; }, motions,
+                                   *omegas);
+  for (std::size_t b = 0; b < crumbs_.size(); ++b)
+    dynamics::carry(crumbs_[b].body, motions[b], omegas[b], crumbs_[b].rest_of_particles, crumbs_[b].particles.data(),
+                    state.x, state.v);
 }
 
 void Crumbs::put(const Motion& of_corners, dynamics::State& state) const {

@@ -7,13 +7,14 @@
 /// them. Their flight is exact in gravity and mass damping, and keeps spin and energy of rotation to round-off
 /// (dynamics/rigid_body.h). Loads push a crumb with the forces of the step's end, as implicit Euler does, by at most 20
 /// iterations of Newton's method for its six unknowns, and in such a step gravity and damping do as they do. A step in
-/// which crumbs gain more than 1 % of their kinetic energy from nothing is taken again in up to 64 substeps. A support moves a crumb by the corners that it holds; the change of motion that this
-/// takes is the least in kinetic energy. In statics a crumb that nothing holds stays where it is.
+/// which crumbs gain more than 1 % of their kinetic energy from nothing is taken again in up to 64 substeps. A support
+/// moves a crumb by the corners that it holds; the change of motion that this takes is the least in kinetic energy. In
+/// statics a crumb that nothing holds stays where it is.
 ///
 /// A piece that becomes a crumb keeps its momentum and the mean rotation and angular velocity of its material; what it
-/// was deformed by is gone at once, and its angular momentum is that of the material, no longer of masses at corners. One that
-/// becomes material again leaves its particles where they are and as they move, and so gives back what becoming one took;
-/// what momentum changes by as masses are weighed otherwise, they get as one velocity.
+/// was deformed by is gone at once, and its angular momentum is that of the material, no longer of masses at corners.
+/// One that becomes material again leaves its particles where they are and as they move, and so gives back what
+/// becoming one took; what momentum changes by as masses are weighed otherwise, they get as one velocity.
 
 #include "dynamics/quantities.h"
 #include "dynamics/stepper.h"
@@ -116,7 +117,11 @@ class Crumbs {
   void fly(const dynamics::Loads& loads, double dt, std::vector<Wrench>& pushes, dynamics::State& state) const;
   void hold(const dynamics::Loads& loads, double dt, const Motions& start, const std::vector<Wrench>& pushes,
             dynamics::State& state);
-  void obey(const dynamics::Loads& loads, std::span<const Hold> holds, double time, double dt,
+  /// Where a support has its corners before and after a step.
+  struct Way {
+    dynamics::Support::Places from, to;
+  };
+  void obey(const dynamics::Loads& loads, std::span<const Hold> holds, std::span<const Way> ways, double dt,
             const dynamics::RigidBody& body, dynamics::RigidMotion& motion) const;
   std::vector<std::vector<Hold>> holds(const dynamics::Loads& loads) const;
 
