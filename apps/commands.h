@@ -21,8 +21,8 @@ int bench(const Arguments& arguments);
 /// The page of a command with many options, a line each with its default; empty for the others.
 std::string help_of(const std::string& command);
 
-/// Becomes the Python package's command of that name (python/main.py): report, export, inspect. Returns only by throwing
-/// DataError, where the package or Python is not there.
+/// Becomes the Python package's command of that name (python/main.py): report, export, inspect. Returns only by
+/// throwing DataError, where the package or Python is not there.
 [[noreturn]] void become_python(const std::string& command, const Arguments& arguments);
 
 } // namespace kerf::apps

@@ -65,7 +65,8 @@ samples on the clock: leave the machine alone meanwhile.
 } // namespace
 
 std::string help_of(const std::string& command) {
-  static const std::map<std::string, const char*> pages = {{"run", of_run}, {"check", of_check}, {"study", of_study}, {"bench", of_bench}};
+  static const std::map<std::string, const char*> pages = {
+    {"run", of_run}, {"check", of_check}, {"study", of_study}, {"bench", of_bench}};
   const auto page = pages.find(command);
   return page == pages.end() ? "" : page->second + std::string(exit_codes);
 }

@@ -15,8 +15,8 @@ struct Process {
   std::FILE* said = nullptr; ///< what it writes, out of the way
 };
 
-/// Starts this program with the words, the first of which is its name. It gets the signal when we end, however we end. Throws
-/// DataError where no process can be started.
+/// Starts this program with the words, the first of which is its name. It gets the signal when we end, however we end.
+/// Throws DataError where no process can be started.
 Process start(const std::vector<std::string>& words, int signal_at_our_end);
 
 /// Whether it has ended, and then how, as a shell would say it: -1 while it runs.

@@ -26,7 +26,8 @@ enum class Scenes { one, several, study };
 /// Throws ParameterError for what is no valid argument.
 SceneArguments parse_scene_arguments(const Arguments& arguments, Scenes scenes = Scenes::one);
 
-/// The scene or the study, as written. Throws ParameterError as read_scene_text() does, and where it is the other of the two.
+/// The scene or the study, as written. Throws ParameterError as read_scene_text() does, and where it is the other of
+/// the two.
 scene::SceneText read_text(const SceneArguments& arguments, Scenes scenes = Scenes::one);
 
 /// Appends what a process for one of several scenes or rows is told as well: changes of the scene, and what to do about

@@ -10,7 +10,8 @@
 ///
 /// An archive that was made without bytes collects what it is handed; one that was made of bytes fills it. Names stand
 /// between the fields of types that hold much, so that bytes of another version are recognised and not misread.
-/// Limits: numbers are those of this machine (order of bytes, sizes); whoever keeps the bytes guards them by a checksum.
+/// Limits: numbers are those of this machine (order of bytes, sizes); whoever keeps the bytes guards them by a
+/// checksum.
 
 #include "base/error.h"
 #include "base/id.h"

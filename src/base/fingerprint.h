@@ -8,8 +8,8 @@
 
 namespace kerf {
 
-/// Of all bits of points and of how many there are, the same for any number of threads. Points that differ in one place never
-/// have the same; others are taken for each other as rarely as 64 bits allow, with a probability of 5e-20.
+/// Of all bits of points and of how many there are, the same for any number of threads. Points that differ in one place
+/// never have the same; others are taken for each other as rarely as 64 bits allow, with a probability of 5e-20.
 std::uint64_t fingerprint(const Points& points);
 
 } // namespace kerf

@@ -1,6 +1,7 @@
 #pragma once
 
-/// A reference to something that can be called, for parameters: it allocates nothing, and must not outlive what it refers to.
+/// A reference to something that can be called, for parameters: it allocates nothing, and must not outlive what it
+/// refers to.
 
 #include <memory>
 #include <type_traits>

@@ -1,10 +1,11 @@
 #pragma once
 
-/// Vectors for intermediate values whose memory is borrowed: it goes back to the thread when they end, for those that come next.
-/// So a step allocates nothing once the steps before have made what it takes, and no object keeps what only its functions need.
+/// Vectors for intermediate values whose memory is borrowed: it goes back to the thread when they end, for those that
+/// come next. So a step allocates nothing once the steps before have made what it takes, and no object keeps what only
+/// its functions need.
 ///
-/// Lent is the smallest memory that is large enough, and where none is, the largest: it grows. So who says at once how much he
-/// takes does not make small vectors large, and there are no more large ones than are in use at a time.
+/// Lent is the smallest memory that is large enough, and where none is, the largest: it grows. So who says at once how
+/// much he takes does not make small vectors large, and there are no more large ones than are in use at a time.
 
 #include <algorithm>
 #include <cstddef>

@@ -77,8 +77,8 @@ class Parameters {
 
  private:
   using Fault = std::string (*)(const std::string& value);
-  /// `parse` turns a text into a T or into nothing, in which case `rule` is broken. `fault` says more of such a text, or
-  /// nothing: "is no number".
+  /// `parse` turns a text into a T or into nothing, in which case `rule` is broken. `fault` says more of such a text,
+  /// or nothing: "is no number".
   template <class T, class Parse>
   Parameter& add(const std::string& name, T& field, const std::string& fallback, const std::string& rule,
                  const std::string& text, const Parse& parse, Fault fault = nullptr);

@@ -1,8 +1,9 @@
 #pragma once
 
-/// Disjoint sets of 0 .. n - 1, as in union_find.h, that several threads unite at once: a set's root is its smallest member
-/// then too, so nothing that is asked for afterwards depends on threads. Without locks (Anderson and Woll 1991, Wait-free
-/// parallel algorithms for the union-find problem): only roots are linked, by comparison and exchange, each to a smaller one.
+/// Disjoint sets of 0 .. n - 1, as in union_find.h, that several threads unite at once: a set's root is its smallest
+/// member then too, so nothing that is asked for afterwards depends on threads. Without locks (Anderson and Woll 1991,
+/// Wait-free parallel algorithms for the union-find problem): only roots are linked, by comparison and exchange, each
+/// to a smaller one.
 
 #include "base/loan.h"
 #include "base/parallel.h"
@@ -47,8 +48,8 @@ class SharedUnionFind {
     }
   }
 
-  /// Numbers the sets from 0 in the order of their smallest members, those of members alone that `counts(i)`; a set of which
-  /// one counts must have all counted. Returns how many there are.
+  /// Numbers the sets from 0 in the order of their smallest members, those of members alone that `counts(i)`; a set of
+  /// which one counts must have all counted. Returns how many there are.
   template <class Counts>
   std::uint32_t number(std::vector<std::uint32_t>& set_of, const std::uint32_t otherwise, const Counts& counts) {
     set_of.resize(parent_.size());

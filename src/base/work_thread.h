@@ -1,7 +1,7 @@
 #pragma once
 
-/// Work that is done in a thread of its own beside its giver's, one piece after the other: files that are written while a run
-/// goes on.
+/// Work that is done in a thread of its own beside its giver's, one piece after the other: files that are written while
+/// a run goes on.
 
 #include <condition_variable>
 #include <exception>
@@ -19,8 +19,8 @@ class WorkThread {
   WorkThread(const WorkThread&) = delete;
   WorkThread& operator=(const WorkThread&) = delete;
 
-  /// At most two pieces are kept, one of which is being done: waits until there is room. Throws what an earlier one has thrown,
-  /// once; what was given after that one and before is not done.
+  /// At most two pieces are kept, one of which is being done: waits until there is room. Throws what an earlier one has
+  /// thrown, once; what was given after that one and before is not done.
   void give(std::function<void()> work);
   /// Waits until all is done; throws likewise.
   void wait();

@@ -99,8 +99,8 @@ class Stirred {
   std::size_t n_ = 0;
 };
 
-/// Of full cubes, counted from kernels.h: two transforms of 72 additions, two rotations of seven modes (15 each), Hooke's
-/// law; of rows read, read and written, corners' numbers and a rotation.
+/// Of full cubes, counted from kernels.h: two transforms of 72 additions, two rotations of seven modes (15 each),
+/// Hooke's law; of rows read, read and written, corners' numbers and a rotation.
 Need need_of_product(const std::size_t n_elements) {
   constexpr double flops = 2 * 72 + 2 * 7 * 15 + 60, bytes = 3 * 32 + 8 * 4 + 9 * 8;
   return {flops * double(n_elements), bytes * double(n_elements)};

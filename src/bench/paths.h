@@ -1,7 +1,7 @@
 #pragma once
 
-/// The hot paths of the program, each on cubes of any number of cells: what a step, a cut and a frame are made of. Bodies
-/// are composed as a scene would have them, so what is measured is what runs.
+/// The hot paths of the program, each on cubes of any number of cells: what a step, a cut and a frame are made of.
+/// Bodies are composed as a scene would have them, so what is measured is what runs.
 
 #include "bench/machine.h"
 #include "output/bench_file.h"

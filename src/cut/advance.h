@@ -2,14 +2,14 @@
 
 /// How far moving blades have come in cells that they have not parted: the fronts that they leave (grid/fronts.h).
 ///
-/// A cell is parted along the plane in which the blade will go through it, where that is certain (course.h); else it stays
-/// whole until it is cut.
+/// A cell is parted along the plane in which the blade will go through it, where that is certain (course.h); else it
+/// stays whole until it is cut.
 ///
-/// What the blade sweeps is drawn onto a raster in that plane, where a point that is passed twice counts once; what leaves
-/// the plane by a quarter of a cube does not count. As elements are too stiff at a front, what is drawn is taken larger by
-/// the lag of fronts, and so reaches on into the next cells; one of which the lag alone reaches has to have a cut one beside
-/// it. The part of the section of plane and material that it covers is how far the cut has come. Corners ahead of a front
-/// are parted too (is_corner_ahead, course.h).
+/// What the blade sweeps is drawn onto a raster in that plane, where a point that is passed twice counts once; what
+/// leaves the plane by a quarter of a cube does not count. As elements are too stiff at a front, what is drawn is taken
+/// larger by the lag of fronts, and so reaches on into the next cells; one of which the lag alone reaches has to have a
+/// cut one beside it. The part of the section of plane and material that it covers is how far the cut has come. Corners
+/// ahead of a front are parted too (is_corner_ahead, course.h).
 ///
 /// Cells in which cuts wait (pending.h) get no front before they are cut.
 ///
@@ -32,8 +32,8 @@ class Advance {
   void sweep(const BladePath& path, const grid::Solid& solid, const Points& x_before, const Points& x,
              const EdgeBoxes& boxes, grid::CutLabel label);
 
-  /// The fronts that have begun or moved on since it was asked last, ascending; where nothing is left to part, cells are
-  /// forgotten. To be asked when what the blades have met is cut.
+  /// The fronts that have begun or moved on since it was asked last, ascending; where nothing is left to part, cells
+  /// are forgotten. To be asked when what the blades have met is cut.
   std::vector<grid::Front> take(const grid::Solid& solid, const PendingCuts& pending);
 
   void archive(Archive& a) { a(cells_, touched_); }

@@ -11,8 +11,8 @@
 namespace kerf::cut {
 
 /// The polyline of a chain of arcs [m]: through points 1 2 3, then 3 4 5, and so on. Throws ParameterError at the path
-/// "Edge [m]": fewer than three points or an even number, points of an arc that are the same or not finite, or on a line
-/// but not in order.
+/// "Edge [m]": fewer than three points or an even number, points of an arc that are the same or not finite, or on a
+/// line but not in order.
 Points arcs(const Points& points);
 
 } // namespace kerf::cut

@@ -44,7 +44,8 @@ Points known_points(const Solid& solid, const CellId c, const std::vector<Polygo
   return points;
 }
 
-/// The plane nearest to points, and how far they stray from it [m]; where they span little, how far they would in a cell.
+/// The plane nearest to points, and how far they stray from it [m]; where they span little, how far they would in a
+/// cell.
 struct Course {
   Plane plane;
   double stray;
@@ -67,8 +68,8 @@ std::optional<Course> course_of(const Points& points, const double h) {
   return course;
 }
 
-/// As the predicates have it, by which blades cut (geometry/predicates.h): what lies right in a plane is behind it along
-/// the first axis that is not in the plane.
+/// As the predicates have it, by which blades cut (geometry/predicates.h): what lies right in a plane is behind it
+/// along the first axis that is not in the plane.
 Plane displaced(const Plane& plane, const double distance) {
   int axis = 0;
   while (std::abs(plane.normal[axis]) < in_plane)

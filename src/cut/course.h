@@ -1,15 +1,15 @@
 #pragma once
 
-/// Where a blade will go in a cell, before it has been there. It is taken to go on as it came: in the plane nearest to what
-/// it has swept in the cell and to where it has cut edges around it, all at rest.
+/// Where a blade will go in a cell, before it has been there. It is taken to go on as it came: in the plane nearest to
+/// what it has swept in the cell and to where it has cut edges around it, all at rest.
 ///
-/// That is taken as certain where no node and no point of the skin lies nearer to the plane than twice what strays farthest
-/// from it, and more where the blade has not come far yet (of what lies right in it, where nothing strays, the predicates
-/// know the side), where what is cut already is
-/// parted by it, and where each of the two parts has a node. Cells are parted one by
-/// one, but share what they part: so one that is to have a front has to divide its faces as those beside it do, as far as
-/// they divide them at all, and may leave nothing that hangs together with hardly anything (shreds.h). Where a blade turns
-/// or a body swings, a cell so stays whole rather than parted in a wrong place.
+/// That is taken as certain where no node and no point of the skin lies nearer to the plane than twice what strays
+/// farthest from it, and more where the blade has not come far yet (of what lies right in it, where nothing strays, the
+/// predicates know the side), where what is cut already is parted by it, and where each of the two parts has a node.
+/// Cells are parted one by one, but share what they part: so one that is to have a front has to divide its faces as
+/// those beside it do, as far as they divide them at all, and may leave nothing that hangs together with hardly
+/// anything (shreds.h). Where a blade turns or a body swings, a cell so stays whole rather than parted in a wrong
+/// place.
 
 #include "cut/cell_at_plane.h"
 
@@ -18,22 +18,23 @@
 
 namespace kerf::cut {
 
-/// The front of a cut that goes on through a cell as it came, and has passed nothing yet; none where that is not certain.
-/// `pieces`: what the blade has swept in the cell, rest frame [m].
+/// The front of a cut that goes on through a cell as it came, and has passed nothing yet; none where that is not
+/// certain. `pieces`: what the blade has swept in the cell, rest frame [m].
 std::optional<grid::Front> front_ahead(const grid::Solid& solid, grid::CellId c, const std::vector<Polygon>& pieces,
                                        grid::CutLabel label);
 
 using FrontsOfCells = std::map<grid::CellId, grid::Front>;
 
-/// Does it lie in a corner that the plane cuts off its cell, beside a cell that is cut, or that another front (of `begun`, or
-/// before) has passed by half? Whole, such a cell closes the cut in the one beside it over all of the face that they
-/// share, back to where that cell begins, however little of the cut is to go through it.
+/// Does it lie in a corner that the plane cuts off its cell, beside a cell that is cut, or that another front (of
+/// `begun`, or before) has passed by half? Whole, such a cell closes the cut in the one beside it over all of the face
+/// that they share, back to where that cell begins, however little of the cut is to go through it.
 bool is_corner_ahead(const grid::Solid& solid, const grid::Front& front, const FrontsOfCells& begun);
 
 /// Can the cell have this front, if others have those of `begun`?
 bool fits_in(const grid::Solid& solid, const grid::Front& front, const FrontsOfCells& begun);
 
-/// Does the front still say how its cell is to be parted? Not when its own blade has parted the cell, or has cut it otherwise.
+/// Does the front still say how its cell is to be parted? Not when its own blade has parted the cell, or has cut it
+/// otherwise.
 bool is_ahead(const grid::Solid& solid, const grid::Front& front);
 
 } // namespace kerf::cut

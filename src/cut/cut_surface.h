@@ -1,14 +1,16 @@
 #pragma once
 
 /// A cut by a surface that is known at once, instead of swept step by step (thesis §2.4.3 limits sweeps to two edges of
-/// a cell a step; what is known at once needs no such limit): a plane, a sphere, a closed cylinder, a disc, a rectangle, a mesh.
+/// a cell a step; what is known at once needs no such limit): a plane, a sphere, a closed cylinder, a disc, a
+/// rectangle, a mesh.
 ///
 /// Method: a signed function of position alone is sampled at the ends of each current edge: f < 0 is below a plane or
 /// inside a body, and 0 counts as positive. Plane, sphere and cylinder cut an edge when its ends have different signs:
 /// what they cut is the border of a set of nodes, so it has no hole, whatever the rounding. A disc cuts an edge that
-/// its plane cuts at less than the radius from its centre, a rectangle one that its plane cuts between its sides. Where along the edge follows in closed form. A mesh, open
-/// or closed, cuts like a sweep (recut.h): edges that an odd number of its triangles cross, by exact predicates. So
-/// where a mesh runs through itself, or lies on itself twice, the edges that it crosses evenly stay whole.
+/// its plane cuts at less than the radius from its centre, a rectangle one that its plane cuts between its sides. Where
+/// along the edge follows in closed form. A mesh, open or closed, cuts like a sweep (recut.h): edges that an odd number
+/// of its triangles cross, by exact predicates. So where a mesh runs through itself, or lies on itself twice, the edges
+/// that it crosses evenly stay whole.
 ///
 /// Limit: an edge inside the body is cut once, so where a sphere or cylinder passes an edge between its two ends, it is
 /// left whole and counted.

@@ -49,8 +49,8 @@ class Passage {
     }
   }
 
-  /// What blades that are in a cell or beside it, and have not left it before, have cut there, if others have cut it too. Which
-  /// have left it is noted.
+  /// What blades that are in a cell or beside it, and have not left it before, have cut there, if others have cut it
+  /// too. Which have left it is noted.
   grid::Segments cuts_in(const Solid& solid, const grid::CellId c, const Points& x, const std::size_t n_labels,
                          std::set<LeftCell>& left) const {
     grid::Segments cuts = 0;

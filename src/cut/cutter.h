@@ -4,12 +4,12 @@
 /// waits and what may still go on, counts, and cuts the grid's edges and the copies. What it returns is all that a
 /// cut has changed: placement, surface and physics follow that (scene/body.cc).
 ///
-/// Where a blade crosses what others have cut, it parts a cell only once it has left the cell, and those beside it: what
-/// its cuts free before may belong to a part from which only later ones, or those of the next cell, tell that it does
-/// (sides.h). Such cells are *unsettled*. They wait as long as the blade comes on: it has moved in the step, or has met
-/// something that it had not before, as where material moves through a blade that rests, or cuts of it wait. A blade
-/// that has left a cell, or come to rest in it, holds it no more, so that what it has parted is not joined when it comes
-/// by again.
+/// Where a blade crosses what others have cut, it parts a cell only once it has left the cell, and those beside it:
+/// what its cuts free before may belong to a part from which only later ones, or those of the next cell, tell that it
+/// does (sides.h). Such cells are *unsettled*. They wait as long as the blade comes on: it has moved in the step, or
+/// has met something that it had not before, as where material moves through a blade that rests, or cuts of it wait. A
+/// blade that has left a cell, or come to rest in it, holds it no more, so that what it has parted is not joined when
+/// it comes by again.
 ///
 /// Labels: of blades and surfaces, from 1 on.
 

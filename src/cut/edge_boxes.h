@@ -37,8 +37,8 @@ class EdgeBoxes {
   void fit(const Points& x) { fit(x, x); }
   /// For corners that have moved from `x_before` to `x` [m].
   void fit(const Points& x_before, const Points& x);
-  /// The same where `x_before` is what it was fitted to last, but for corners that are new: these positions are not read
-  /// once more.
+  /// The same where `x_before` is what it was fitted to last, but for corners that are new: these positions are not
+  /// read once more.
   void move_on(const Points& x_before, const Points& x);
 
   /// Numbers of the blocks that `may_meet` does not turn down, ascending. It may not turn a block down unless all parts
@@ -86,8 +86,8 @@ class EdgeBoxes {
       f(skin_cells_[i]);
   }
 
-  /// The block's box holds edges between material nodes; edges of the skin begin at one of those. How far they reach, to
-  /// corners outside of the material, is not known: not farther than four times the longest edge of the body [m].
+  /// The block's box holds edges between material nodes; edges of the skin begin at one of those. How far they reach,
+  /// to corners outside of the material, is not known: not farther than four times the longest edge of the body [m].
   double reach_of_skin() const { return 4 * longest(); }
   /// Holds all of a block: edges, edges of the skin, cells [m].
   Box with_skin(const Block& block) const {

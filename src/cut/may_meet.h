@@ -1,7 +1,7 @@
 #pragma once
 
-/// Whether a shape can meet anything in a box: never no when it does, so that whoever asks may leave the box out. Round-off
-/// counts as meeting.
+/// Whether a shape can meet anything in a box: never no when it does, so that whoever asks may leave the box out.
+/// Round-off counts as meeting.
 
 #include "base/vec.h"
 

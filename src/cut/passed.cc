@@ -77,8 +77,8 @@ class Search {
 
   bool is_near(const EdgeBoxes::Block& block) const { return near_.may_be_in(block.around_cells()); }
 
-  /// `room`: no corner of a copy lies further from the middle between its first and its last one [m]. That is 1.5 of the
-  /// longest edge at most, by any way along three edges.
+  /// `room`: no corner of a copy lies further from the middle between its first and its last one [m]. That is 1.5 of
+  /// the longest edge at most, by any way along three edges.
   bool passes(const grid::CellId cell, const double room) const {
     for (const grid::CopyId c : solid_.complex.copies_of(cell)) {
       const grid::Copy& copy = solid_.complex.copies[c];

@@ -18,8 +18,8 @@ class PendingCuts {
  public:
   static constexpr int max_per_cell = 2; ///< edges of a cell that one release may cut
 
-  /// Puts cuts at the end of the queue, in their order; an edge that waits already keeps its first cut. Returns those of
-  /// other labels that it does not keep.
+  /// Puts cuts at the end of the queue, in their order; an edge that waits already keeps its first cut. Returns those
+  /// of other labels that it does not keep.
   std::vector<grid::EdgeCut> push(std::span<const grid::EdgeCut> cuts);
 
   /// Takes out the cuts of this step, oldest first: each one that leaves no cell around its edge with more than two.

@@ -5,14 +5,14 @@
 /// Method: an uncut edge between two material nodes is one current segment, from the real corner of its lower node to
 /// that of its upper node; an edge of the skin that no blade has cut is the one from its material node to the skin,
 /// among the corners of that node's copy; and the segments of the skin in faces and cells (grid/skeleton.h) are met as
-/// edges are, so that where a cut meets the skin is found, and not inferred. It is cut when an odd number of the sweep's triangles cross it, by the exact
-/// predicates of geometry/predicates.h; boxes keep most pairs away from them. The normal is pulled back to rest
-/// (target.h).
+/// edges are, so that where a cut meets the skin is found, and not inferred. It is cut when an odd number of the
+/// sweep's triangles cross it, by the exact predicates of geometry/predicates.h; boxes keep most pairs away from them.
+/// The normal is pulled back to rest (target.h).
 ///
 /// Who cuts a body often keeps boxes around its edges (edge_boxes.h) and hands them over, fitted to the corners'
 /// places: then the time goes with the area that is cut. Without them every edge is looked at. The result is the same,
-/// bit by bit, but for edges and segments of the skin that reach further from their block than four times the longest edge of the
-/// body.
+/// bit by bit, but for edges and segments of the skin that reach further from their block than four times the longest
+/// edge of the body.
 ///
 /// A body that moves is met in relative motion (moving_edge.h): what a blade sweeps in successive steps leaves no gap
 /// for an edge to slip through, and material that moves through a resting blade is cut.

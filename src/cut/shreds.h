@@ -2,15 +2,15 @@
 
 /// What a cut would part from the body, and the grid cannot show: it stays where it hangs.
 ///
-/// Tips are points of the skin that bound no material: where a blade passes along the skin, or the skin is so hollow that
-/// a point of it lies on a blade's other side than its neighbours, though the material there is not parted. They stay
-/// with all their neighbours across the blade, unless something beside them lies on the same side of all cuts (sides.h):
-/// then they hang on that.
+/// Tips are points of the skin that bound no material: where a blade passes along the skin, or the skin is so hollow
+/// that a point of it lies on a blade's other side than its neighbours, though the material there is not parted. They
+/// stay with all their neighbours across the blade, unless something beside them lies on the same side of all cuts
+/// (sides.h): then they hang on that.
 ///
-/// Shavings are a few nodes, or points of the skin, between cuts of one blade on opposite sides, with less material than
-/// a cube: where a blade comes back through a body that has moved, beside where it was before. The grid has nodes here
-/// and there in what lies between, and would show crumbs. They stay by that one of the new cuts that comes nearest to
-/// them. What different blades part is parted, however thin, and so is what one blade cuts off from one side.
+/// Shavings are a few nodes, or points of the skin, between cuts of one blade on opposite sides, with less material
+/// than a cube: where a blade comes back through a body that has moved, beside where it was before. The grid has nodes
+/// here and there in what lies between, and would show crumbs. They stay by that one of the new cuts that comes nearest
+/// to them. What different blades part is parted, however thin, and so is what one blade cuts off from one side.
 
 #include "grid/parts.h"
 #include "grid/solid.h"

@@ -82,8 +82,8 @@ class Meetings {
     return result;
   }
 
-  /// Calls f(interval, its sides, the segment's ends) for all intervals that a cell can tell apart: up to two of a line,
-  /// one of a half.
+  /// Calls f(interval, its sides, the segment's ends) for all intervals that a cell can tell apart: up to two of a
+  /// line, one of a half.
   template <class Function>
   void for_each_interval(const std::array<Sides, skeleton::n_items>& sides, const Function& f) const {
     for (int segment = 0; segment < skeleton::first_spoke; ++segment) {

@@ -5,18 +5,18 @@
 /// here and there, with no edge from one to the next.
 ///
 /// Who has met a segment is known by its cut, and by later ones of others (grid/cuts.h). To the normals of one label,
-/// turned to one side, each meeting is a step of +1 or -1 from one end of the segment to the other; steps along ways add
-/// up to how an item lies to the label. Where that depends on the way, for any label, as where a cut ends in the cell or
-/// comes back beside itself, nothing is said of the cell.
+/// turned to one side, each meeting is a step of +1 or -1 from one end of the segment to the other; steps along ways
+/// add up to how an item lies to the label. Where that depends on the way, for any label, as where a cut ends in the
+/// cell or comes back beside itself, nothing is said of the cell.
 ///
-/// Splinters of such a wedge lie in cells next to each other too, where it passes through the face between them with none
-/// of the face's nodes in it. Its material in the face is seen on the face's segments: an *interval* between two cuts
-/// that meet a segment lies on known sides of all, and belongs in each cell around to the part that lies so. Copies that
-/// have an interval in common are glued as those are that have a node in common (grid/parts.h). Three cuts leave two
-/// intervals of a line; a half of an arc that three meet, or a line that four meet, is not asked. Where the wedge passes
-/// through a cell in which it has neither a node nor a point of the skin, nothing leads on: at five degrees half the bodies
-/// of seven cubes keep splinters, 54 of 88 of which have more of their wedge in a cell with which they share an edge or a
-/// node alone, the others nowhere around.
+/// Splinters of such a wedge lie in cells next to each other too, where it passes through the face between them with
+/// none of the face's nodes in it. Its material in the face is seen on the face's segments: an *interval* between two
+/// cuts that meet a segment lies on known sides of all, and belongs in each cell around to the part that lies so.
+/// Copies that have an interval in common are glued as those are that have a node in common (grid/parts.h). Three cuts
+/// leave two intervals of a line; a half of an arc that three meet, or a line that four meet, is not asked. Where the
+/// wedge passes through a cell in which it has neither a node nor a point of the skin, nothing leads on: at five
+/// degrees half the bodies of seven cubes keep splinters, 54 of 88 of which have more of their wedge in a cell with
+/// which they share an edge or a node alone, the others nowhere around.
 
 #include "grid/solid.h"
 
@@ -29,9 +29,9 @@ std::vector<grid::Joined> on_same_sides(const grid::Solid& solid, grid::CellId c
 std::vector<grid::Joined> without_cuts(const grid::Solid& solid, grid::CellId c, grid::Segments cuts);
 
 /// Of these groups what can be one: parts that are one copy already, or whose copies' corners have moved apart by less
-/// than a quarter of a cube, with the corners at `x` [m]; and of intervals those beyond which, across a face, lies no copy
-/// that has moved away so far. A copy is turned inside out where one of its faces moves by a cube against the other, or
-/// both by half of one; joined corners are moved by a quarter at most, half of that.
+/// than a quarter of a cube, with the corners at `x` [m]; and of intervals those beyond which, across a face, lies no
+/// copy that has moved away so far. A copy is turned inside out where one of its faces moves by a cube against the
+/// other, or both by half of one; joined corners are moved by a quarter at most, half of that.
 std::vector<grid::Joined> near_each_other(const grid::Solid& solid, grid::CellId c, std::vector<grid::Joined> groups,
                                           const Points& x);
 

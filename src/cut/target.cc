@@ -260,7 +260,8 @@ Segment SkinNow::segment(const int segment, const Points& x) const {
   return {place(a, x), place(b, x)};
 }
 
-/// The same bits in all cells that know the item: on a line as an edge of the grid ends, in a face by its corners alone.
+/// The same bits in all cells that know the item: on a line as an edge of the grid ends, in a face by its corners
+/// alone.
 Vec3 SkinNow::place(const int item, const Points& x) const {
   const grid::Copy& copy = copy_with(item);
   const auto corner = [&](const int v) -> const Vec3& { return x[copy.corners[v].value]; };

@@ -107,8 +107,8 @@ class Target {
   /// NumericalError when a corner is not at a finite position.
   Target(const grid::Solid& solid, const Points& x_before, const Points& x, const EdgeBoxes* boxes);
 
-  /// Cuts every edge and every segment of the skin that `judge` finds crossed an odd number of times. They are judged in
-  /// parallel; the result is ordered.
+  /// Cuts every edge and every segment of the skin that `judge` finds crossed an odd number of times. They are judged
+  /// in parallel; the result is ordered.
   SweepCuts cut(grid::CutLabel label, const Nearness& near, const Judge& judge) const;
 
  private:

@@ -8,12 +8,12 @@
 /// for x, with supports eliminated: an integrator is a choice of kappa, omega, x_0, v_0, a_0 (Hughes, The Finite
 /// Element Method, 2000, ch. 9), statics is kappa = omega = 0. K is the model's stiffness at the iterate.
 ///
-/// Newton's method from x_0. A correction solves A d = r with A = (kappa + alpha omega) M + (1 + beta omega) K +
-/// loads, by conjugate gradients or by a factorisation, among the directions that supports leave free. Residuals are
-/// measured by the inverses L^-T L^-1 of A's diagonal 3 x 3 blocks (L: Cholesky factors), in which the lumped masses stand
-/// for M, as they bound it from above: each corner counts in its own measure, one of hardly any mass like every other. The
-/// same are the preconditioner, or what the model offers in their place (preconditioner.h), as long as that comes to an end
-/// within 100 iterations.
+/// Newton's method from x_0. A correction solves A d = r with A = (kappa + alpha omega) M + (1 + beta omega) K + loads,
+/// by conjugate gradients or by a factorisation, among the directions that supports leave free. Residuals are measured
+/// by the inverses L^-T L^-1 of A's diagonal 3 x 3 blocks (L: Cholesky factors), in which the lumped masses stand for
+/// M, as they bound it from above: each corner counts in its own measure, one of hardly any mass like every other. The
+/// same are the preconditioner, or what the model offers in their place (preconditioner.h), as long as that comes to an
+/// end within 100 iterations.
 ///
 /// The line search halves a correction until the incremental potential falls by 1e-4 of what its slope promises
 /// (Armijo), or, where the fall drowns in round-off, until the slope has (Hager and Zhang 2005, A new conjugate
@@ -21,29 +21,30 @@
 /// (kappa + alpha omega) M |x - x_0|^2 / 2 and so on, and for loads without a potential their work along the
 /// correction, by the trapezoidal rule.
 ///
-/// A correction that is tested (Trust) costs one evaluation of forces more, and is taken where its end bears it, in each
-/// piece of the body by itself: nothing joins them, and what a small one lacks is not to drown in what a large one
-/// does. What conjugate gradients do not see counts for nothing. Its quadratic model has little slope left there: the power of what is out of balance has fallen to a quarter (curvature
-/// condition of Wolfe 1969, Convergence conditions for ascent methods), uniform motion of a free piece aside, which
-/// anything follows. And what is out of balance turns a piece in free flight by hardly more than what
-/// implicit Euler itself does: with x_1 = x_0 + dt v_1, the sum of x x m v changes in a step by dt times the torque at
-/// x_1 and by dt times the sum of m v_1 x v_0, which is no torque of anything, and is dt^2 (2 T)^2 / L in a spin of
-/// energy T and angular momentum L. Tangents that know a stress, but not all of how it turns, fail there.
+/// A correction that is tested (Trust) costs one evaluation of forces more, and is taken where its end bears it, in
+/// each piece of the body by itself: nothing joins them, and what a small one lacks is not to drown in what a large one
+/// does. What conjugate gradients do not see counts for nothing. Its quadratic model has little slope left there: the
+/// power of what is out of balance has fallen to a quarter (curvature condition of Wolfe 1969, Convergence conditions
+/// for ascent methods), uniform motion of a free piece aside, which anything follows. And what is out of balance turns
+/// a piece in free flight by hardly more than what implicit Euler itself does: with x_1 = x_0 + dt v_1, the sum of x x
+/// m v changes in a step by dt times the torque at x_1 and by dt times the sum of m v_1 x v_0, which is no torque of
+/// anything, and is dt^2 (2 T)^2 / L in a spin of energy T and angular momentum L. Tangents that know a stress, but not
+/// all of how it turns, fail there.
 ///
-/// It is gone on from where the energy of the step is not its own. With d = x - x_0 = dt v_1 and r what is out of balance
-/// at x, the energy of a step of implicit Euler changes by
+/// It is gone on from where the energy of the step is not its own. With d = x - x_0 = dt v_1 and r what is out of
+/// balance at x, the energy of a step of implicit Euler changes by
 ///
 ///     -d.r - |v_1 - v_0|_M^2 / 2 - (V(x_0) - V(x) - f(x).d),
 ///
-/// whose last bracket is d.K d / 2 to second order and positive for a convex V: the method itself takes energy, and gives
-/// none. What is left out of balance gives its work -d.r. Newton's method goes on until that is less than what the method
-/// takes, |v_1 - v_0|_M^2 / 2 + d.K d / 2 with the K that the first correction has met, so that no step gains energy by an
-/// unfinished solution. -d.r is of third order in dt where a solution is smooth, the other of second: shorter steps need
-/// no second correction. Of a piece in free flight d is that against its mean motion.
+/// whose last bracket is d.K d / 2 to second order and positive for a convex V: the method itself takes energy, and
+/// gives none. What is left out of balance gives its work -d.r. Newton's method goes on until that is less than what
+/// the method takes, |v_1 - v_0|_M^2 / 2 + d.K d / 2 with the K that the first correction has met, so that no step
+/// gains energy by an unfinished solution. -d.r is of third order in dt where a solution is smooth, the other of
+/// second: shorter steps need no second correction. Of a piece in free flight d is that against its mean motion.
 ///
-/// Half the way from free motion to x is the error of the step itself: x_1 - x_0 - dt v_0 = dt^2 a_1, and implicit Euler
-/// is wrong by dt^2 a / 2. Conjugate gradients know that way in the energy norm, wherever they start, and need not be much
-/// better. Nothing is solved below the round-off of forces.
+/// Half the way from free motion to x is the error of the step itself: x_1 - x_0 - dt v_0 = dt^2 a_1, and implicit
+/// Euler is wrong by dt^2 a / 2. Conjugate gradients know that way in the energy norm, wherever they start, and need
+/// not be much better. Nothing is solved below the round-off of forces.
 ///
 /// Where nothing resists some rigid motions, K is singular: residuals are relieved of what goes along them, and
 /// corrections of what moves along them (FreeMotions).
@@ -70,8 +71,9 @@ enum class Trust {
   tested ///< test it where it leads; if it does not bear that, go on with a line search, from the start or from there
 };
 
-/// A singular equation leaves motions that nothing resists, of bodies that are free in statics. The blocks add none of them;
-/// a model's preconditioner makes them of round-off, and a rotation by much lets no step along the correction pass.
+/// A singular equation leaves motions that nothing resists, of bodies that are free in statics. The blocks add none of
+/// them; a model's preconditioner makes them of round-off, and a rotation by much lets no step along the correction
+/// pass.
 enum class Equation { regular, singular };
 
 struct NewtonOptions {
@@ -86,7 +88,8 @@ struct NewtonOptions {
   /// right-hand side, which vanishes at rest and would be solved ever more exactly there.
   double cg_tolerance = 1e-6;
   int max_cg_iterations = 2000;
-  /// Error that conjugate gradients may leave over the step's own, in the energy norm of A [1]. 0: `cg_tolerance` alone.
+  /// Error that conjugate gradients may leave over the step's own, in the energy norm of A [1]. 0: `cg_tolerance`
+  /// alone.
   double step_tolerance = 0;
   Trust trust = Trust::blind;
   Equation equation = Equation::regular;

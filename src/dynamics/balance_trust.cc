@@ -1,4 +1,5 @@
-/// What a correction must bear where it ends (balance.h). Nothing joins the pieces of a body, so each is asked by itself.
+/// What a correction must bear where it ends (balance.h). Nothing joins the pieces of a body, so each is asked by
+/// itself.
 
 #include "base/error.h"
 #include "base/parallel.h"

@@ -1,9 +1,9 @@
 #pragma once
 
-/// Preconditioned conjugate gradients (Hestenes and Stiefel 1952) that stop where the matrix is not positive (Steihaug 1983): a
-/// direction p with p.Ap <= 0 ends the iteration at the last iterate, or at p itself when nothing was found yet, so
-/// that what comes back is a descent direction of 1/2 x.Ax - b.x. Sums are taken in blocks of fixed size, so any
-/// number of threads gives the same bits.
+/// Preconditioned conjugate gradients (Hestenes and Stiefel 1952) that stop where the matrix is not positive (Steihaug
+/// 1983): a direction p with p.Ap <= 0 ends the iteration at the last iterate, or at p itself when nothing was found
+/// yet, so that what comes back is a descent direction of 1/2 x.Ax - b.x. Sums are taken in blocks of fixed size, so
+/// any number of threads gives the same bits.
 
 #include "base/function_ref.h"
 #include "base/loan.h"
@@ -60,26 +60,27 @@ struct CgEquation {
   Product J = {}; ///< empty: B
 };
 
-/// Solves A x = b from the x that is given, or from zero where that is nearer in the energy norm. `left`: where b - A x is
-/// to be, but after a direction that the matrix does not resist; nowhere if empty.
+/// Solves A x = b from the x that is given, or from zero where that is nearer in the energy norm. `left`: where b - A x
+/// is to be, but after a direction that the matrix does not resist; nowhere if empty.
 ///
 /// An iteration takes alpha r.Br off the error's square, exactly (Hestenes and Stiefel 1952, theorem 6:3), so what the
 /// last few took is a lower bound for the error before them that round-off does not spoil (Strakos and Tichy 2002, On
 /// error estimation in the conjugate gradient method and why it works in finite precision computations, ETNA 13), and
 /// the sum of all is the square of the way.
 ///
-/// Where B is more than J, the error of the iterate at hand is told too: its square is the sum of all alpha r.Br to come. With
-/// alpha at most that of any iteration so far, and r.Br falling at least by the factor q that was the larger of the last two,
-/// that is alpha r.Br / (1 - q). Multigrid's B is good for that: in 8,300 iterations of seven scenes, soft and stiff, cut
-/// and not, nu up to .49, the square of the error was more than four times that in six. After the first iteration there is
-/// one q: the square of the error was 1.2 times that in the middle and 3.8 at most, in 690 solutions of eight scenes. Before
-/// Br is had, r.Br is taken to fall as r.Jr does: the square of the error was .9 times what that says, 15 at most. So the
-/// application of B that would tell that the error is small, and do nothing else, is mostly spared.
+/// Where B is more than J, the error of the iterate at hand is told too: its square is the sum of all alpha r.Br to
+/// come. With alpha at most that of any iteration so far, and r.Br falling at least by the factor q that was the larger
+/// of the last two, that is alpha r.Br / (1 - q). Multigrid's B is good for that: in 8,300 iterations of seven scenes,
+/// soft and stiff, cut and not, nu up to .49, the square of the error was more than four times that in six. After the
+/// first iteration there is one q: the square of the error was 1.2 times that in the middle and 3.8 at most, in 690
+/// solutions of eight scenes. Before Br is had, r.Br is taken to fall as r.Jr does: the square of the error was .9
+/// times what that says, 15 at most. So the application of B that would tell that the error is small, and do nothing
+/// else, is mostly spared.
 CgReport conjugate_gradients(const CgEquation& equation, std::span<const double> b, const CgStop& stop,
                              int max_iterations, std::span<double> x, std::span<double> left = {});
 
-/// The same, but for an equation with J of its own by B for at most 100 iterations, and from there by J: where B gets on
-/// badly, the blocks alone may do as well, at a fraction of its cost.
+/// The same, but for an equation with J of its own by B for at most 100 iterations, and from there by J: where B gets
+/// on badly, the blocks alone may do as well, at a fraction of its cost.
 CgReport patient_conjugate_gradients(const CgEquation& equation, std::span<const double> b, const CgStop& stop,
                                      int max_iterations, std::span<double> x, std::span<double> left = {});
 

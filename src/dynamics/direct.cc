@@ -47,8 +47,8 @@ Eigen::VectorXd scaling(const Matrix& A) {
   throw NumericalError("the stiffness is singular: a part of the body is free to move, or has lost all stiffness");
 }
 
-/// A matrix with a unit diagonal has pivots between its smallest and largest eigenvalue, and a kernel leaves one that is
-/// round-off. Where the condition is bad, what the first solution leaves is solved for again.
+/// A matrix with a unit diagonal has pivots between its smallest and largest eigenvalue, and a kernel leaves one that
+/// is round-off. Where the condition is bad, what the first solution leaves is solved for again.
 void require_regular(const Eigen::SimplicialLDLT<Matrix>& solver) {
   constexpr double round_off = 64 * std::numeric_limits<double>::epsilon();
   if (solver.info() != Eigen::Success || !(solver.vectorD().cwiseAbs().minCoeff() > round_off))

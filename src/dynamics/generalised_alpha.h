@@ -11,9 +11,9 @@
 /// every dt, and no more damping at low frequency than needed. Newmark is alpha_m = alpha_f = 0; average acceleration
 /// beta = 1/4, gamma = 1/2 keeps the energy of linear bodies.
 ///
-/// A corner without mass follows (followers.h): the balance gives its place y where it holds, whatever its place before.
-/// From there it goes on to the step's end as its leaders do. Extrapolated from the step's start as they are, it
-/// would swing about y with the factor -alpha_f / (1 - alpha_f), for ever where rho_inf is 1.
+/// A corner without mass follows (followers.h): the balance gives its place y where it holds, whatever its place
+/// before. From there it goes on to the step's end as its leaders do. Extrapolated from the step's start as they are,
+/// it would swing about y with the factor -alpha_f / (1 - alpha_f), for ever where rho_inf is 1.
 ///
 /// State::history "acceleration" [m/s^2] is a_0. At the start the balance of forces gives it. Followers are
 /// not in balance there yet: what pulls at them is given to their leaders, with the weights that lead them, so that
@@ -23,13 +23,13 @@
 ///     (M + beta dt^2 K) a_0 = f(x_0) + M g + loads.
 ///
 /// A vibration of frequency w gets 1 / (1 + beta (w dt)^2) of its acceleration. Where the step resolves it, that is an
-/// error of second order, whose power averages out over a period. Where it does not, M a_0 = f itself would throw what the
-/// cut lets go at a distance d from its balance to the other side in the first step, with all its energy, for ever at
-/// rho_inf = 1; so it comes to its balance in the first step, and keeps a velocity of 2 d / dt, in that step and, times
-/// rho_inf in each, the next ones. That first step is one of average acceleration: any with alpha_f > 0 leaves
-/// -alpha_f / (1 - alpha_f) of a distance that it does not resolve. Rannacher (1984,
-/// Finite element solution of diffusion problems with irregular data, Numer. Math. 43) takes a few steps of implicit Euler
-/// after a jump: these take energy from what is resolved too, and with a blade that cuts in every step there are no others.
+/// error of second order, whose power averages out over a period. Where it does not, M a_0 = f itself would throw what
+/// the cut lets go at a distance d from its balance to the other side in the first step, with all its energy, for ever
+/// at rho_inf = 1; so it comes to its balance in the first step, and keeps a velocity of 2 d / dt, in that step and,
+/// times rho_inf in each, the next ones. That first step is one of average acceleration: any with alpha_f > 0 leaves
+/// -alpha_f / (1 - alpha_f) of a distance that it does not resolve. Rannacher (1984, Finite element solution of
+/// diffusion problems with irregular data, Numer. Math. 43) takes a few steps of implicit Euler after a jump: these
+/// take energy from what is resolved too, and with a blade that cuts in every step there are no others.
 
 #include "dynamics/newton_parameters.h"
 
@@ -71,8 +71,8 @@ class GeneralisedAlpha : public Stepper {
 };
 
 struct GeneralisedAlphaParameters {
-  /// Cuts start vibrations that no step resolves: those of small pieces under strain changed their volume by a third and
-  /// more where .8 of them was left in each step, and by a tenth with this.
+  /// Cuts start vibrations that no step resolves: those of small pieces under strain changed their volume by a third
+  /// and more where .8 of them was left in each step, and by a tenth with this.
   double rho_inf = 0.5; ///< [1]
   NewtonParameters newton = converged_newton();
 

@@ -45,8 +45,8 @@ struct Loads {
   double stiffness_damping = 0; ///< Rayleigh's beta: a force -beta K v [s]
   std::vector<Support> supports;
   std::vector<std::unique_ptr<Load>> acting = {}; ///< beside gravity
-  /// 1 for each corner that a rigid body carries: it has no mass and no freedom of its own, stays where it is in a step,
-  /// and is moved by whoever moves the body. Supports do not see it. Empty: none.
+  /// 1 for each corner that a rigid body carries: it has no mass and no freedom of its own, stays where it is in a
+  /// step, and is moved by whoever moves the body. Supports do not see it. Empty: none.
   std::vector<std::uint8_t> carried = {};
 };
 

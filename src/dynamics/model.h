@@ -24,8 +24,8 @@ class MassCoupling {
   virtual void add_entries(double factor, std::vector<Eigen::Triplet<double>>& entries) const = 0;
 };
 
-/// A corner without mass: its place follows from the balance of forces, its velocity from those of its leaders, which have
-/// a mass (followers.h). The weights are those of affine motions.
+/// A corner without mass: its place follows from the balance of forces, its velocity from those of its leaders, which
+/// have a mass (followers.h). The weights are those of affine motions.
 struct Follower {
   std::uint32_t corner;
   std::uint32_t n_leaders;

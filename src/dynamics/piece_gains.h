@@ -2,8 +2,8 @@
 
 /// Steps whose energy is accounted for in each piece that flies by itself (sound_steps.h).
 ///
-/// The problem: what a small piece gains in a step drowns in the energy of all others. One of five cubes swelled by 60 % in a step of
-/// generalised alpha that lost energy in sum.
+/// The problem: what a small piece gains in a step drowns in the energy of all others. One of five cubes swelled by 60
+/// % in a step of generalised alpha that lost energy in sum.
 ///
 /// A piece that nothing holds, and on which gravity alone acts, keeps its energy, so each is judged as the whole is. It
 /// takes the elastic energy of each piece, twice a step, of models that tell it (PieceEnergies).

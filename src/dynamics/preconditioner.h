@@ -23,13 +23,13 @@ class Preconditioner {
  public:
   virtual ~Preconditioner() = default;
 
-  /// z = B r [m] for r [N], 3 n numbers each, with B near A^-1: symmetric, and positive among the free directions. What r
-  /// has along others is not looked at, and z has none there.
+  /// z = B r [m] for r [N], 3 n numbers each, with B near A^-1: symmetric, and positive among the free directions. What
+  /// r has along others is not looked at, and z has none there.
   virtual void apply(std::span<const double> r, std::span<double> z) = 0;
 };
 
-/// L^-1 for the Cholesky factor L of a diagonal block among its free directions, from whose basis it maps; zero rows for
-/// those that are held. So S^T S is the block's inverse.
+/// L^-1 for the Cholesky factor L of a diagonal block among its free directions, from whose basis it maps; zero rows
+/// for those that are held. So S^T S is the block's inverse.
 Mat3 inverse_factor(const Mat3& block, const Constraints::Freedom& freedom);
 
 } // namespace kerf::dynamics

@@ -15,8 +15,9 @@ namespace kerf::dynamics {
 /// What to do about rigid motions that no support and no load resists.
 enum class FreeModes {
   refuse, ///< with their names
-  /// The model itself, or gravity on what hangs, resists them. Along translations, and with a law that sees rotations along
-  /// all of them, the loads may have hardly anything out of balance (a tenth), and are relieved of it (FreeMotions).
+  /// The model itself, or gravity on what hangs, resists them. Along translations, and with a law that sees rotations
+  /// along all of them, the loads may have hardly anything out of balance (a tenth), and are relieved of it
+  /// (FreeMotions).
   allow
 };
 
@@ -49,8 +50,8 @@ class QuasiStatic : public Stepper {
     : model_(model), options_(options), solver_(model, newton(options)) {}
 
   MotionKind motion() const override { return MotionKind::quasi_static; }
-  /// Counts load steps as substeps. Throws ParameterError for free rigid motions, NumericalError for loads along them that are
-  /// not in balance, and when the smallest load step (1/1024) does not converge.
+  /// Counts load steps as substeps. Throws ParameterError for free rigid motions, NumericalError for loads along them
+  /// that are not in balance, and when the smallest load step (1/1024) does not converge.
   StepReport step(State& state, const Loads& loads, double dt) override;
 
  private:

@@ -2,19 +2,21 @@
 
 /// What a cut gave is let out.
 ///
-/// The problem: a cut makes energy another function of the positions. Near-empty copies are held by a penalty that was not there,
-/// partial elements condense other modes, phyxels lose neighbours that their gradients were fitted to. So at the same positions
-/// there may be more elastic energy than before, which nobody gave, and which would throw what the cut has touched.
+/// The problem: a cut makes energy another function of the positions. Near-empty copies are held by a penalty that was
+/// not there, partial elements condense other modes, phyxels lose neighbours that their gradients were fitted to. So at
+/// the same positions there may be more elastic energy than before, which nobody gave, and which would throw what the
+/// cut has touched.
 ///
 /// The method: what the cut has touched goes towards its balance, all else held, by implicit steps of the gradient flow
 ///
 ///     M (x' - x) / tau^2 = f(x'),
 ///
-/// each of which takes energy, until there is no more than there was. In pieces that are held f has gravity too, and a step that
-/// lifts them by more than it lets out is not taken: else what hangs would rise by what its cut gave. With e the excess, the first has
-/// tau^2 = e / f.M^-1 f, the way down the slope that would take it; each further one four times that tau. What the
-/// touched cannot let out by themselves the whole body does, in the same way. Then every piece that nothing holds is
-/// shifted, and its velocities are turned, so that its masses' centre and its angular momentum are what they were.
+/// each of which takes energy, until there is no more than there was. In pieces that are held f has gravity too, and a
+/// step that lifts them by more than it lets out is not taken: else what hangs would rise by what its cut gave. With e
+/// the excess, the first has tau^2 = e / f.M^-1 f, the way down the slope that would take it; each further one four
+/// times that tau. What the touched cannot let out by themselves the whole body does, in the same way. Then every piece
+/// that nothing holds is shifted, and its velocities are turned, so that its masses' centre and its angular momentum
+/// are what they were.
 ///
 /// Limits: a piece may come to a balance of its own with energy left, as was seen of points; that stays.
 
@@ -33,8 +35,8 @@ struct Excess {
   std::function<std::vector<std::uint32_t>()> piece; ///< of each particle, 0, 1, ...
 };
 
-/// Elastic energy that a cut may leave where there were `had` [J] before: a thousandth more, of it and of the motion against the
-/// mean one.
+/// Elastic energy that a cut may leave where there were `had` [J] before: a thousandth more, of it and of the motion
+/// against the mean one.
 double most_after_cut(const ForceModel& model, double had, const Points& v);
 
 /// Gravity of each particle, none of those in pieces that fall [m/s^2].
@@ -42,8 +44,8 @@ Loan<Vec3> gravity_on_held(const Pieces& pieces, const Loads& loads, std::size_t
 /// What such gravity asks for to come from one place to another [J].
 double lift(std::span<const double> mass, const Points& gravity, const Points& from, const Points& to);
 
-/// Shifts pieces that loads hold nowhere, and turns their velocities, so that their masses' centres and their angular momenta are
-/// as before.
+/// Shifts pieces that loads hold nowhere, and turns their velocities, so that their masses' centres and their angular
+/// momenta are as before.
 void keep_moments(const Pieces& pieces, std::span<const double> mass, const Loads& loads, const State& before,
                   State& after);
 
@@ -56,8 +58,8 @@ class Relief : public Stepper {
   StepReport step(State& state, const Loads& loads, double dt) override;
 
  private:
-  /// Moves what is marked (1) until nothing is left of the excess, or no more goes; returns what is left of it. `gravity` of
-  /// each particle; none where a piece falls [m/s^2].
+  /// Moves what is marked (1) until nothing is left of the excess, or no more goes; returns what is left of it.
+  /// `gravity` of each particle; none where a piece falls [m/s^2].
   double flow(std::span<const std::uint8_t> is_marked, const Loads& loads, const Points& gravity, double excess,
               State& state, StepReport& report) const;
 

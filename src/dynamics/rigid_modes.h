@@ -22,9 +22,9 @@ struct FreeMode {
 std::vector<FreeMode> free_rigid_modes(const ForceModel& model, const Loads& loads, double time, const Points& x,
                                        std::span<const std::uint32_t> piece);
 
-/// Rigid motions that an equation leaves out. Along them bodies are accelerated as a whole by what their loads have out of
-/// balance, and deform in the frame that is: forces are relieved of as much as the masses' inertia takes (inertia relief),
-/// and motions of as much as the masses move along them.
+/// Rigid motions that an equation leaves out. Along them bodies are accelerated as a whole by what their loads have out
+/// of balance, and deform in the frame that is: forces are relieved of as much as the masses' inertia takes (inertia
+/// relief), and motions of as much as the masses move along them.
 class FreeMotions {
  public:
   FreeMotions() = default; ///< none

@@ -6,16 +6,17 @@
 /// of driving loads and of potentials that change with time. Work is force times displacement with the forces of the
 /// start or of the end, whichever is more. A sound step gains at most a part of the energy that it deals with: what
 /// moves against its piece's mean motion and what is elastic, before and after, and the work; beside the kick that
-/// gravity gives in one step, which first order shifts in time, and round-off. Implicit Euler gains where
-/// energy is concave along its way, of second order in dt; symplectic integrators take and give it back, up to a multiple near their stable step, and
-/// are to be allowed more. Dissipation, the integrator's own too, counts as it should.
+/// gravity gives in one step, which first order shifts in time, and round-off. Implicit Euler gains where energy is
+/// concave along its way, of second order in dt; symplectic integrators take and give it back, up to a multiple near
+/// their stable step, and are to be allowed more. Dissipation, the integrator's own too, counts as it should.
 ///
 /// Two things are done about a step that fails, gains energy or is no longer finite. It is taken again in 2, 4, ...
 /// substeps, which remove any error of second order. A method that takes energy and gives none is held to less
-/// (SoundOptions::wanted_gain); steps of it that gain more, as Newton's method has not come to an end, are tried again in 2
-/// and 4 substeps, of which the first that gains no more is taken, or else what gained least. And an integrator that gains a little in each step is watched by
-/// the sum (Page 1954, Continuous inspection schemes, Biometrika 41: S = max(0, S + gain)): once a part of all kinetic and
-/// elastic energy is gained that way, half where nothing else is said, the motion is no more the body's.
+/// (SoundOptions::wanted_gain); steps of it that gain more, as Newton's method has not come to an end, are tried again
+/// in 2 and 4 substeps, of which the first that gains no more is taken, or else what gained least. And an integrator
+/// that gains a little in each step is watched by the sum (Page 1954, Continuous inspection schemes, Biometrika 41: S =
+/// max(0, S + gain)): once a part of all kinetic and elastic energy is gained that way, half where nothing else is
+/// said, the motion is no more the body's.
 ///
 /// An integrator that takes no energy may have another for the last resort, which does: a step that nothing mends is
 /// then taken by that one, and the next starts anew.
@@ -50,7 +51,8 @@ struct SoundOptions {
   double most_gain = 0.25; ///< in a step, of the energy that it deals with [1]
   double most_sum = 0.5;   ///< of what steps gained, over all kinetic and elastic energy [1]
   double kick = 1;         ///< part that is granted of what first order may misplace of gravity in a step [1]
-  /// The same, above which a step is better taken in substeps; gravity's kick is not granted. Infinity: no such limit [1].
+  /// The same, above which a step is better taken in substeps; gravity's kick is not granted. Infinity: no such limit
+  /// [1].
   double wanted_gain = std::numeric_limits<double>::infinity();
   bool each_piece = false; ///< each piece that flies is held to most_gain by itself (piece_gains.h)
 };

@@ -56,8 +56,8 @@ inline const Points* remembered(const State& state, const std::string& name) {
   return it == state.history.end() || it->second.size() != state.x.size() ? nullptr : &it->second;
 }
 
-/// To be called when forces have changed at once, by a cut for one: what was remembered of them is no longer true. The change of
-/// velocity stays: it is where the next step begins to look.
+/// To be called when forces have changed at once, by a cut for one: what was remembered of them is no longer true. The
+/// change of velocity stays: it is where the next step begins to look.
 inline void forget_forces(State& state) { state.history.erase("acceleration"); }
 
 /// Of what integrators remember beside x and v, nothing: the next step starts anew.

@@ -2,13 +2,13 @@
 
 /// Elements in batches for the kernels: which copies go through them together, and what they are made of.
 ///
-/// Copies go in the order of their cells, so that what lies side by side is read together, in chunks, the copies of some
-/// hundred cells each: first a chunk's full cubes, then its partial ones, each in batches of 16. Chunks that share a corner
-/// have different colours. One colour after the other, and a chunk's batches in their order, is the order of all sums: the
-/// same for any number of threads, as it depends on the copies and their corners alone.
+/// Copies go in the order of their cells, so that what lies side by side is read together, in chunks, the copies of
+/// some hundred cells each: first a chunk's full cubes, then its partial ones, each in batches of 16. Chunks that share
+/// a corner have different colours. One colour after the other, and a chunk's batches in their order, is the order of
+/// all sums: the same for any number of threads, as it depends on the copies and their corners alone.
 ///
-/// A cut changes the batches of the chunks that it meets, and all others stay as they are, with what their partial cubes are
-/// made of. Chunks of cells are coloured by the grid's nodes, which no cut changes.
+/// A cut changes the batches of the chunks that it meets, and all others stay as they are, with what their partial
+/// cubes are made of. Chunks of cells are coloured by the grid's nodes, which no cut changes.
 
 #include "base/parallel.h"
 #include "fem/element.h"
@@ -46,8 +46,8 @@ struct CopiesInOrder {
   std::size_t n_corners;
 };
 
-/// A colour of each chunk of cubes, given by their 8 vertices: the first that no chunk before it has that shares a vertex.
-/// Cubes without use have the vertex `no_vertex`.
+/// A colour of each chunk of cubes, given by their 8 vertices: the first that no chunk before it has that shares a
+/// vertex. Cubes without use have the vertex `no_vertex`.
 std::vector<std::uint32_t> colours_of_chunks(std::span<const std::uint32_t> chunk_ends,
                                              std::span<const std::uint32_t> vertices, std::size_t n_vertices);
 constexpr std::uint32_t no_vertex = 0xffffffff;
@@ -65,8 +65,8 @@ class Batching {
   explicit Batching(std::vector<std::uint32_t> colour_of_chunk) : colour_of_chunk_(std::move(colour_of_chunk)) {}
   Batching() = default;
 
-  /// Takes over copies after a cut; is_same: of each, whether it is in the cell that it was in, with the material that it had.
-  /// Returns the batches of partial cubes of which one is not what it was, or was elsewhere.
+  /// Takes over copies after a cut; is_same: of each, whether it is in the cell that it was in, with the material that
+  /// it had. Returns the batches of partial cubes of which one is not what it was, or was elsewhere.
   std::vector<std::uint32_t> update(const CopiesInOrder& copies, std::span<const std::uint8_t> is_same,
                                     CornersOfSame corners = CornersOfSame::kept);
 

@@ -11,9 +11,9 @@ namespace {
 
 constexpr std::uint32_t none = CellsOfLevel::unused;
 
-/// Groups of corners, up to some each, that rows join: one of two joins both; one of four or eight what of its corners is
-/// alone, to each other where these are two, one to the others: so corners beyond a body's own edges, which no row of two
-/// knows, belong to somebody.
+/// Groups of corners, up to some each, that rows join: one of two joins both; one of four or eight what of its corners
+/// is alone, to each other where these are two, one to the others: so corners beyond a body's own edges, which no row
+/// of two knows, belong to somebody.
 std::vector<std::vector<std::uint32_t>> joined(const Weights& rows, const std::size_t n_corners,
                                                const std::size_t most) {
   std::vector<std::vector<std::uint32_t>> groups;

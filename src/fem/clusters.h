@@ -19,8 +19,8 @@ struct PointSprings {
 /// For motions of coarse cubes.
 PointSprings coarsened(const PointSprings& fine, const Weights& prolongation, std::size_t n_coarse);
 
-/// Corners at both ends of edges that springs hold between them, a few together: opposite motions of the two ends meet no spring,
-/// but blocks of one corner each, which have to bound it.
+/// Corners at both ends of edges that springs hold between them, a few together: opposite motions of the two ends meet
+/// no spring, but blocks of one corner each, which have to bound it.
 class Clusters {
  public:
   Clusters() = default;

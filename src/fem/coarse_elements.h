@@ -2,11 +2,12 @@
 
 /// Elements of coarse copies.
 ///
-/// Galerkin's coarse element is the sum of its children's energies for trilinear motions of the coarse cube, in one frame.
-/// It is again a mean gradient against Hooke's law and a matrix against hourglass modes, as for every motion u the mean
-/// part is the volume's mean of the children's: V b_m = sum V_c g_m with g_m the child's gradient of the coarse mode m,
-/// and what the children's energies hold beside that meets hourglass modes alone. In the child the coarse mode of axes m
-/// is sum over its parts n of 2^-|m| sigma^(m without n) times the child's mode n, sigma = +-1 the child's octant.
+/// Galerkin's coarse element is the sum of its children's energies for trilinear motions of the coarse cube, in one
+/// frame. It is again a mean gradient against Hooke's law and a matrix against hourglass modes, as for every motion u
+/// the mean part is the volume's mean of the children's: V b_m = sum V_c g_m with g_m the child's gradient of the
+/// coarse mode m, and what the children's energies hold beside that meets hourglass modes alone. In the child the
+/// coarse mode of axes m is sum over its parts n of 2^-|m| sigma^(m without n) times the child's mode n, sigma = +-1
+/// the child's octant.
 
 #include "fem/element.h"
 

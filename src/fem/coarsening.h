@@ -1,8 +1,8 @@
 #pragma once
 
-/// The same body on a grid of cubes twice as large. A coarse copy is a connected component of the fine copies in 2 x 2 x 2
-/// cubes, joined over the faces at which they are glued; two coarse copies are glued over a whole face where fine ones
-/// are, across it. So what a cut has parted stays parted on every level, as in the virtual node algorithm itself.
+/// The same body on a grid of cubes twice as large. A coarse copy is a connected component of the fine copies in 2 x 2
+/// x 2 cubes, joined over the faces at which they are glued; two coarse copies are glued over a whole face where fine
+/// ones are, across it. So what a cut has parted stays parted on every level, as in the virtual node algorithm itself.
 ///
 /// Everything here is said by the fine copies and their corners alone; numbers go by first occurrence.
 

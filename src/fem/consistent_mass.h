@@ -1,13 +1,13 @@
 #pragma once
 
-/// The consistent mass matrix of the elements, beside the lumped one that it is added to: M_ab = density times the integral of
-/// N_a N_b over the material, for each copy. Its rows sum to the lumped masses, so M - diag(m) is minus a graph Laplacian,
-/// with weights M_ab: it moves no momentum.
+/// The consistent mass matrix of the elements, beside the lumped one that it is added to: M_ab = density times the
+/// integral of N_a N_b over the material, for each copy. Its rows sum to the lumped masses, so M - diag(m) is minus a
+/// graph Laplacian, with weights M_ab: it moves no momentum.
 ///
-/// Where mass is extended to corners that only near-empty copies know (ghost_penalty.h), a corner keeps the part r_a <= 1 of its
-/// mass, and weights become M_ab min(r_a, r_b). What results stays positive: min(r_a, r_b) is the integral over s in (0, 1) of
-/// whether both r_a and r_b exceed s, and for each s the sum is M between the corners that do, and a diagonal that is not
-/// negative.
+/// Where mass is extended to corners that only near-empty copies know (ghost_penalty.h), a corner keeps the part r_a <=
+/// 1 of its mass, and weights become M_ab min(r_a, r_b). What results stays positive: min(r_a, r_b) is the integral
+/// over s in (0, 1) of whether both r_a and r_b exceed s, and for each s the sum is M between the corners that do, and
+/// a diagonal that is not negative.
 
 #include "dynamics/model.h"
 #include "fem/element_table.h"

@@ -1,8 +1,8 @@
 #pragma once
 
-/// deal.II's V-cycle over our levels: its vectors, its order of smoothing, restriction and prolongation. Operator, smoother
-/// and transfer are those of level.h: deal.II's Chebyshev smoother, the same polynomial, makes a step 13 % longer
-/// (tests/bench/chebyshev.cc, results/README.md).
+/// deal.II's V-cycle over our levels: its vectors, its order of smoothing, restriction and prolongation. Operator,
+/// smoother and transfer are those of level.h: deal.II's Chebyshev smoother, the same polynomial, makes a step 13 %
+/// longer (tests/bench/chebyshev.cc, results/README.md).
 
 #include "fem/kernels.h"
 

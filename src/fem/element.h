@@ -39,8 +39,8 @@ enum class Part {
 /// Of an element as a matrix, symmetric [N/m].
 Matrix24 stiffness(const Element& element, const material::Elastic& material, Part part = Part::whole);
 
-/// The largest eigenvalue of D^-1 K for the 3 x 3 diagonal blocks D of Hooke's stiffness [1]: at most 8. The largest over
-/// all elements of a body bounds that of the body, however the elements turn.
+/// The largest eigenvalue of D^-1 K for the 3 x 3 diagonal blocks D of Hooke's stiffness [1]: at most 8. The largest
+/// over all elements of a body bounds that of the body, however the elements turn.
 double jacobi_bound(const Element& element, const material::Elastic& material);
 
 /// Density times the integral of N_a N_b for each pair of vertices [kg]; `mass_of_cube`: of a full one.

@@ -1,6 +1,7 @@
 #pragma once
 
-/// The elements of a body: one for all full cubes, one for each copy whose material is less. Copies of crumbs need none.
+/// The elements of a body: one for all full cubes, one for each copy whose material is less. Copies of crumbs need
+/// none.
 
 #include "fem/element.h"
 #include "grid/solid.h"

@@ -1,7 +1,7 @@
 #pragma once
 
-/// The loops of kernels.h for rotations, forces and energies (turned.h), beside those of element_loops.h. For kernels.cc
-/// alone.
+/// The loops of kernels.h for rotations, forces and energies (turned.h), beside those of element_loops.h. For
+/// kernels.cc alone.
 
 #include "fem/element_loops.h"
 

@@ -51,7 +51,8 @@ class Carrier {
     return follower;
   }
 
-  /// Gives the corners what light ones have, of that mass and moment [kg], [kg m]. Returns what it leaves of the moment.
+  /// Gives the corners what light ones have, of that mass and moment [kg], [kg m]. Returns what it leaves of the
+  /// moment.
   Vec3 take(const double light, const Vec3& moment, const Points& rest, const std::span<const double> mass,
             std::vector<double>& gathered) const {
     constexpr double most = 0.5; // of a mass

@@ -2,14 +2,15 @@
 
 /// Masses without those of light corners, for integrators that take no energy.
 ///
-/// The problem: what holds a corner that hardly any material holds fades with its mass (ghost_penalty.h), so its frequency is
-/// one that a step resolves, and the energy with which it swings far is next to none. The vibrations of a body that nothing
-/// damps come to all its corners alike, so in time each of these has as much energy as any other, and a corner of 1/5000 of a
-/// cube swings by eight cubes.
+/// The problem: what holds a corner that hardly any material holds fades with its mass (ghost_penalty.h), so its
+/// frequency is one that a step resolves, and the energy with which it swings far is next to none. The vibrations of a
+/// body that nothing damps come to all its corners alike, so in time each of these has as much energy as any other, and
+/// a corner of 1/5000 of a cube swings by eight cubes.
 ///
-/// The method: a corner with less than `light` of a cube's mass gets none. It has no motion of its own then, and follows the
-/// others by the balance of elastic forces. What it had goes to the heavy corners of its carrier (grid/carriers.h), as
-/// an affine motion would carry it there: with M, X_c and S the mass, centre and second moment of these, the weights
+/// The method: a corner with less than `light` of a cube's mass gets none. It has no motion of its own then, and
+/// follows the others by the balance of elastic forces. What it had goes to the heavy corners of its carrier
+/// (grid/carriers.h), as an affine motion would carry it there: with M, X_c and S the mass, centre and second moment of
+/// these, the weights
 ///
 ///     w_j = m_j (1 / M + (X_j - X_c).S^+ (X - X_c))
 ///

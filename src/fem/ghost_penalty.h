@@ -3,32 +3,32 @@
 /// What holds the corners that hardly any material holds (ghost penalty: Burman 2010; for elasticity Hansbo, Larson and
 /// Larsson 2017).
 ///
-/// The problem: a copy with a part f of its cube in it has a stiffness and a mass that vanish with f, and the more so the
-/// farther a corner is from the material. Where no other copy knows that corner, nothing holds it: the condition number
-/// grows without bound however the equations are scaled, and in large motion the copy turns inside out.
+/// The problem: a copy with a part f of its cube in it has a stiffness and a mass that vanish with f, and the more so
+/// the farther a corner is from the material. Where no other copy knows that corner, nothing holds it: the condition
+/// number grows without bound however the equations are scaled, and in large motion the copy turns inside out.
 ///
-/// The method: across a face between two copies that are glued there, of which one is near-empty, the motion shall go on
-/// as it is in the other. Trilinear motions are linear along each line of the grid, so their gradients jump by the second
-/// differences of the corners a, b, c of the four lines across the face, and the penalty is
+/// The method: across a face between two copies that are glued there, of which one is near-empty, the motion shall go
+/// on as it is in the other. Trilinear motions are linear along each line of the grid, so their gradients jump by the
+/// second differences of the corners a, b, c of the four lines across the face, and the penalty is
 ///
 ///     E = sum over faces  k / 2  sum over its four lines  |x_a - 2 x_b + x_c|^2,
 ///     k = weight mu h need min(1, m / m_ref) / 4,    need = max(0, 1 - f / well_filled),
 ///
 /// f that of the emptier one of the two, m the least mass (below) of the twelve corners: weight mu h times the integral
-/// over the face of the squared jump of the normal derivative, with the face's mass matrix lumped. Penalties stand where
-/// they are needed: a copy's distance is 0 where it is well-filled, else one face more than that of its nearest glued
-/// neighbour; near-empty copies extend their neighbours of less distance, and faces between copies of the same distance
-/// have no penalty. (One there would stiffen the bending of a skin along which they lie.) Beyond a distance of 8, in
-/// sheets much thinner than a cube, all faces have one.
+/// over the face of the squared jump of the normal derivative, with the face's mass matrix lumped. Penalties stand
+/// where they are needed: a copy's distance is 0 where it is well-filled, else one face more than that of its nearest
+/// glued neighbour; near-empty copies extend their neighbours of less distance, and faces between copies of the same
+/// distance have no penalty. (One there would stiffen the bending of a skin along which they lie.) Beyond a distance of
+/// 8, in sheets much thinner than a cube, all faces have one.
 ///
-/// The mass that k is measured by, and that explicit integrators take, is the lumped one, extended in the same way: along
-/// each of these lines the corner c gets d of the mass of b,
+/// The mass that k is measured by, and that explicit integrators take, is the lumped one, extended in the same way:
+/// along each of these lines the corner c gets d of the mass of b,
 ///
 ///     m_a + d, m_b - 2 d, m_c + d,    d = need / 4  theta max(0, m_b - 4 m_c)  for each face, theta = 1/16,
 ///
 /// and so with a and c exchanged; distance by distance, so that what a corner was given goes on to the next. That keeps
-/// the total and the centre of mass, and changes moments of inertia by the order of h^2, as lumping does. Then k falls by
-/// a factor for each line between a corner and a well-filled copy, however little material is there, and the largest
+/// the total and the centre of mass, and changes moments of inertia by the order of h^2, as lumping does. Then k falls
+/// by a factor for each line between a corner and a well-filled copy, however little material is there, and the largest
 /// frequency is that of full cubes.
 ///
 /// What it keeps: E is zero, and exerts no force, for every affine motion, large ones too, so patch tests and rigid
@@ -36,9 +36,9 @@
 /// differences are of order h^2, so the order of the elements stays. It sees no lambda: near-incompressible bodies do
 /// not lock by it.
 ///
-/// Departs from the sources: the weight fades as a copy fills, so that a cut that moves on changes nothing abruptly, and
-/// faces between well-filled copies have none; and it is measured by mass, which keeps both spectra flat where several
-/// near-empty copies lie in a row (tests/fem/ghost_penalty_test.cc has the figures).
+/// Departs from the sources: the weight fades as a copy fills, so that a cut that moves on changes nothing abruptly,
+/// and faces between well-filled copies have none; and it is measured by mass, which keeps both spectra flat where
+/// several near-empty copies lie in a row (tests/fem/ghost_penalty_test.cc has the figures).
 
 #include "base/loan.h"
 #include "base/vec.h"
@@ -76,8 +76,8 @@ class GhostPenalty {
   GhostPenalty(const GhostPenaltyOptions& options, const material::Elastic& material, double h);
 
   /// Takes over copies that are new, or whose corners or material have changed. `fill`: the part of its cube that a
-  /// copy's material is [1]; `mass`: the lumped one of each corner [kg]. Costs as much as there are changed copies, and a
-  /// pass over faces and masses.
+  /// copy's material is [1]; `mass`: the lumped one of each corner [kg]. Costs as much as there are changed copies, and
+  /// a pass over faces and masses.
   void update(const grid::Solid& solid, std::span<const grid::CopyId> changed,
               const std::function<double(std::size_t copy)>& fill, std::span<const double> mass);
 

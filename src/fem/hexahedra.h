@@ -14,9 +14,9 @@
 /// semi-definite; stiffness_matrix() has the exact second derivative too.
 ///
 /// Copies of crumbs (grid/crumbs.h) have neither mass nor stiffness, and cost nothing in the loops over elements, which
-/// go over batches of like ones (batches.h). Their corners cost nothing either where that is asked for: then integrators
-/// see those that have a number (numbers()), and all that they give and get is by number. What is asked of one copy or
-/// corner is by corner as ever.
+/// go over batches of like ones (batches.h). Their corners cost nothing either where that is asked for: then
+/// integrators see those that have a number (numbers()), and all that they give and get is by number. What is asked of
+/// one copy or corner is by corner as ever.
 ///
 /// Every copy's element is its own, and sums over copies are taken in an order that the complex alone says: any number
 /// of threads, and any way of getting to a complex, gives the same bits. Functions that are const may be called from
@@ -69,8 +69,8 @@ class Hexahedra : public dynamics::ElasticModel, public dynamics::StiffnessMatri
  public:
   Hexahedra(const grid::Solid& solid, const HexahedraOptions& options);
 
-  /// Follows a cut. `changed`: what grid::CutChange::reshaped says. All else stays as it is; the outcome is that of building
-  /// anew, bit by bit. The linearisation is lost.
+  /// Follows a cut. `changed`: what grid::CutChange::reshaped says. All else stays as it is; the outcome is that of
+  /// building anew, bit by bit. The linearisation is lost.
   void update(const grid::Solid& solid, std::span<const grid::CopyId> changed);
 
   /// Corners as integrators see them.

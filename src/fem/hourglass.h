@@ -45,8 +45,9 @@ std::array<Vec3, 8> mean_gradients(const Centred& moments);
 /// Stiffness for a cube of edge 1 m, Hooke's law [N/m]. Vanishes on affine displacements.
 Matrix24 hourglass_stiffness(const Centred& moments, const material::Elastic& material, Strain strain);
 
-/// Displacement gradients less their mean, one for each of the six monomials (less its own mean), 9 rows each, column by
-/// column, of the 24 nodal displacements of a cube of edge 1 m: with the modes of the element's own, as they settle [1/m].
+/// Displacement gradients less their mean, one for each of the six monomials (less its own mean), 9 rows each, column
+/// by column, of the 24 nodal displacements of a cube of edge 1 m: with the modes of the element's own, as they settle
+/// [1/m].
 using Gradients = Eigen::Matrix<double, 54, 24>;
 Gradients hourglass_gradients(const Centred& moments, const material::Elastic& material, Strain strain);
 

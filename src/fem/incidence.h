@@ -1,7 +1,7 @@
 #pragma once
 
-/// Which copies hold which corners, in both directions, kept up to date as cuts change a few copies at a time. Copies of
-/// crumbs (grid/crumbs.h) hold none.
+/// Which copies hold which corners, in both directions, kept up to date as cuts change a few copies at a time. Copies
+/// of crumbs (grid/crumbs.h) hold none.
 
 #include "grid/solid.h"
 

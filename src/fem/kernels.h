@@ -3,12 +3,13 @@
 /// The inner loops over elements, on plain pointers, vectors across elements, compiled for several instruction sets and
 /// chosen at run time.
 ///
-/// The motion of a cube's 8 nodes is taken apart into modes: c_m = sum over nodes a of s_m(a) u_a for the products s_m of
-/// the signs of the node's coordinates, m = bits of the axes in the product. (A Walsh-Hadamard transform: 24 additions a
-/// direction.) Translations are c_0, the three linear modes c_1, c_2, c_4 are affine motions, and what remains, c_3, c_5,
-/// c_6, c_7, are the hourglass modes. An element is then little: the mean deformation gradient, sum c_m b_m^T with b_m =
-/// e_k / (4 h) for the linear modes and 12 numbers for the others, meets Hooke's law or a law's tangent; a symmetric
-/// 12 x 12 matrix meets the hourglass modes, and vanishes for most pairs in a full cube, which is its own mirror image.
+/// The motion of a cube's 8 nodes is taken apart into modes: c_m = sum over nodes a of s_m(a) u_a for the products s_m
+/// of the signs of the node's coordinates, m = bits of the axes in the product. (A Walsh-Hadamard transform: 24
+/// additions a direction.) Translations are c_0, the three linear modes c_1, c_2, c_4 are affine motions, and what
+/// remains, c_3, c_5, c_6, c_7, are the hourglass modes. An element is then little: the mean deformation gradient, sum
+/// c_m b_m^T with b_m = e_k / (4 h) for the linear modes and 12 numbers for the others, meets Hooke's law or a law's
+/// tangent; a symmetric 12 x 12 matrix meets the hourglass modes, and vanishes for most pairs in a full cube, which is
+/// its own mirror image.
 ///
 /// Elements come in batches of 16 of one kind, full or partial. What elements add to a corner is summed in the order
 /// of batches, then of lanes: the same for any number of threads whose batches share no corner.
@@ -39,8 +40,8 @@ struct alignas(64) PartialCubes {
   T gradient[n_hourglass][n_lanes]; ///< b_m, at 3 k + j [1/m]
 };
 
-/// Of a partial cube, what hourglass modes meet in the turned frame [N/m]. Unknowns are 3 k + i for mode k of 3, 5, 6, 7 and
-/// direction i. In single precision for both: it is most of what a product reads.
+/// Of a partial cube, what hourglass modes meet in the turned frame [N/m]. Unknowns are 3 k + i for mode k of 3, 5, 6,
+/// 7 and direction i. In single precision for both: it is most of what a product reads.
 struct alignas(64) HourglassOfCubes {
   float pair[n_hourglass_pairs][n_lanes];
 };

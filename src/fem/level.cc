@@ -54,8 +54,8 @@ std::array<ChebyshevStep, n_steps> chebyshev_steps(const double lower, const dou
   return steps;
 }
 std::array<ChebyshevStep, n_steps> chebyshev_steps(const double bound) {
-  // Of the spectrum's range that the coarse level sees to. Of 1/16, 1/30, 1/50, 1/80 that with the fewest iterations of a
-  // liver while it is cut: 6.6, 6.3, 6.3, 6.7 a step.
+  // Of the spectrum's range that the coarse level sees to. Of 1/16, 1/30, 1/50, 1/80 that with the fewest iterations of
+  // a liver while it is cut: 6.6, 6.3, 6.3, 6.7 a step.
   constexpr double part = 1.0 / 30;
   return chebyshev_steps(part * bound, bound);
 }
@@ -249,8 +249,8 @@ void Level::add_of_clusters(const float after, FloatRow* const x) {
     });
 }
 
-/// r = b - t, d = after D^-1 r, x += d, t = M d for the first step, r -= A d, d = before d + after D^-1 r, x += d for each
-/// other one. From zero, x and t are not looked at.
+/// r = b - t, d = after D^-1 r, x += d, t = M d for the first step, r -= A d, d = before d + after D^-1 r, x += d for
+/// each other one. From zero, x and t are not looked at.
 template <bool from_zero>
 void Level::take_steps(const FloatRow* const b, FloatRow* const x) {
   const auto steps = chebyshev_steps(bound);

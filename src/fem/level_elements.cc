@@ -11,7 +11,8 @@ namespace {
 
 constexpr std::uint32_t none = CellsOfLevel::unused;
 
-/// The copy that had just these children. They come in the same order then and now: that of the lowest finest copy in each.
+/// The copy that had just these children. They come in the same order then and now: that of the lowest finest copy in
+/// each.
 std::uint32_t same_before(const std::span<const std::uint32_t> children, const CoarseBefore& before) {
   std::uint32_t parent = none;
   for (const std::uint32_t child : children) {

@@ -1,7 +1,7 @@
 #pragma once
 
-/// What the levels of multigrid.h are made of. A coarse element is the sum of its children (coarse_elements.h); after a cut
-/// those whose children are what they were are taken over, so only what the cut has reached is summed anew.
+/// What the levels of multigrid.h are made of. A coarse element is the sum of its children (coarse_elements.h); after a
+/// cut those whose children are what they were are taken over, so only what the cut has reached is summed anew.
 
 #include "fem/batches.h"
 #include "fem/coarsening.h"

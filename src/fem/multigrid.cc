@@ -76,7 +76,8 @@ double largest(const std::span<const double> values) {
 
 } // namespace
 
-/// A factorisation of the coarsest level, shifted by what single precision does not see: a free body's motion is singular.
+/// A factorisation of the coarsest level, shifted by what single precision does not see: a free body's motion is
+/// singular.
 struct Multigrid::Coarsest {
   explicit Coarsest(const material::Elastic& of) : material(of) {}
 

@@ -1,22 +1,23 @@
 #pragma once
 
-/// Geometric multigrid on the copies of a cut body, a preconditioner for the equations of implicit steps and of statics:
+/// Geometric multigrid on the copies of a cut body, a preconditioner for the equations of implicit steps and of
+/// statics:
 ///
 ///     A = mass_factor M + stiffness_factor K + loads, among the directions that supports leave free.
 ///
-/// Levels: coarsening.h, elements on them: coarse_elements.h, with the mean rotation of their children; so all levels are
-/// the same kernels. M is lumped on every level, restricted with the weights of the transfer. What loads resist at points,
-/// as where a skin is held, is restricted exactly, and the corners that it joins are smoothed together (clusters.h); what
-/// they resist between two points is lumped. Penalties of near-empty copies (ghost_penalty.h) go along: for motions of the
-/// coarse cubes a face's second differences are half those across the coarse face, and vanish within a coarse copy. Ties at
-/// fronts (ties.h) are ties of the coarse corners, and vanish where these are one. Coarse levels do not know supports, but
-/// springs in their place, of the size of the stiffness that they hold.
+/// Levels: coarsening.h, elements on them: coarse_elements.h, with the mean rotation of their children; so all levels
+/// are the same kernels. M is lumped on every level, restricted with the weights of the transfer. What loads resist at
+/// points, as where a skin is held, is restricted exactly, and the corners that it joins are smoothed together
+/// (clusters.h); what they resist between two points is lumped. Penalties of near-empty copies (ghost_penalty.h) go
+/// along: for motions of the coarse cubes a face's second differences are half those across the coarse face, and vanish
+/// within a coarse copy. Ties at fronts (ties.h) are ties of the coarse corners, and vanish where these are one. Coarse
+/// levels do not know supports, but springs in their place, of the size of the stiffness that they hold.
 ///
-/// A cycle is deal.II's V (cycle.h), smoothed before and after by the same Chebyshev polynomial of block Jacobi's matrix (Adams,
-/// Brezina, Hu and Tuminaro 2003, Parallel multigrid smoothing, J. Comput. Phys. 188), so it is symmetric; it is positive as long as
-/// the polynomial knows a bound for the largest eigenvalue, which is had element by element (jacobi_bound): elements
-/// whose own bound is above that of a full cube count more in the diagonal blocks. The coarsest level is factorised,
-/// unless it is large as dust is. All is single precision, but that.
+/// A cycle is deal.II's V (cycle.h), smoothed before and after by the same Chebyshev polynomial of block Jacobi's
+/// matrix (Adams, Brezina, Hu and Tuminaro 2003, Parallel multigrid smoothing, J. Comput. Phys. 188), so it is
+/// symmetric; it is positive as long as the polynomial knows a bound for the largest eigenvalue, which is had element
+/// by element (jacobi_bound): elements whose own bound is above that of a full cube count more in the diagonal blocks.
+/// The coarsest level is factorised, unless it is large as dust is. All is single precision, but that.
 ///
 /// Departs from Galerkin: a coarse cube turns as a whole, and masses and penalties are lumped; laws other than
 /// Hooke's are replaced by his.

@@ -1,7 +1,7 @@
 #pragma once
 
-/// How kernels read and write the rows of corners, for numbers T and vectors of W of them. All is inlined into functions of
-/// one instruction set each, so this file is for kernels.cc alone.
+/// How kernels read and write the rows of corners, for numbers T and vectors of W of them. All is inlined into
+/// functions of one instruction set each, so this file is for kernels.cc alone.
 
 #include "fem/kernels.h"
 

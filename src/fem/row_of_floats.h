@@ -1,7 +1,7 @@
 #pragma once
 
-/// A corner's row of single precision (kernels.h) in one register of any x86-64: three numbers, and one that nobody looks
-/// at.
+/// A corner's row of single precision (kernels.h) in one register of any x86-64: three numbers, and one that nobody
+/// looks at.
 
 #include "fem/kernels.h"
 

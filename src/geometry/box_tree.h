@@ -2,8 +2,8 @@
 
 /// Which of many boxes overlap a given one: built once, queried often.
 ///
-/// Method: a binary tree over the boxes, split at the median of their middles along the longest side of what the middles
-/// span; a few boxes a leaf. Boxes are closed: two that only touch overlap.
+/// Method: a binary tree over the boxes, split at the median of their middles along the longest side of what the
+/// middles span; a few boxes a leaf. Boxes are closed: two that only touch overlap.
 
 #include "base/vec.h"
 

@@ -1,7 +1,7 @@
 #pragma once
 
-/// Is a point inside a closed mesh? Exact: a segment from the point to beyond the mesh crosses it an odd number of times
-/// (predicates.h has one rule for every contact).
+/// Is a point inside a closed mesh? Exact: a segment from the point to beyond the mesh crosses it an odd number of
+/// times (predicates.h has one rule for every contact).
 
 #include "geometry/box_tree.h"
 #include "geometry/triangle_mesh.h"

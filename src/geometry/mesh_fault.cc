@@ -104,7 +104,8 @@ std::optional<Promise> ply_header(Lines& lines) {
   return promise;
 }
 
-/// Of a binary one: 80 bytes, the number of triangles, 50 bytes each. A text begins with "solid" and has another length.
+/// Of a binary one: 80 bytes, the number of triangles, 50 bytes each. A text begins with "solid" and has another
+/// length.
 std::optional<Promise> stl_header(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
   std::array<char, 80> title{};

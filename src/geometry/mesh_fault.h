@@ -7,8 +7,8 @@
 
 namespace kerf::geometry {
 
-/// Throws DataError where the header is one that a reader does not survive, or promises more vertices and faces than fit
-/// into the length of the file: whoever makes room for them would take any amount of memory.
+/// Throws DataError where the header is one that a reader does not survive, or promises more vertices and faces than
+/// fit into the length of the file: whoever makes room for them would take any amount of memory.
 void require_room_for_header(const std::string& path);
 
 /// The first fault of a text file (OFF, OBJ, PLY, STL) that no reader takes: "line 12: 'nan' is no finite number", or

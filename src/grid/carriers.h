@@ -16,9 +16,9 @@ constexpr std::uint32_t no_carrier = CopyId::no_value;
 /// Whether more has cut a body than its skin: without a cut nothing sets light corners ringing.
 bool is_cut(const Cuts& cuts);
 
-/// For each corner the copy that carries it: one that knows it, or else the nearest one of its piece (fewest steps between
-/// copies with a corner in common), of which at least four corners are heavy; `no_carrier` where the piece has no such copy.
-/// `is_heavy`: of each corner.
+/// For each corner the copy that carries it: one that knows it, or else the nearest one of its piece (fewest steps
+/// between copies with a corner in common), of which at least four corners are heavy; `no_carrier` where the piece has
+/// no such copy. `is_heavy`: of each corner.
 std::vector<std::uint32_t> nearest_carriers(const CellComplex& complex, std::span<const std::uint8_t> is_heavy);
 
 } // namespace kerf::grid

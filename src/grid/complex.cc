@@ -195,9 +195,9 @@ class Update {
     std::uint32_t crumb;
   };
 
-  /// A part goes on as the copy that had its lowest item, or starts with that one's corners where a lower part goes on as
-  /// it. Where a front is taken back, or others hang together, parts may join what copies were: those that no part goes
-  /// on as lapse.
+  /// A part goes on as the copy that had its lowest item, or starts with that one's corners where a lower part goes on
+  /// as it. Where a front is taken back, or others hang together, parts may join what copies were: those that no part
+  /// goes on as lapse.
   void divide(const CellId cell, const std::span<const CellId> may_join) {
     const CellCuts cell_cuts = cuts_of_copies(solid_, cell);
     const Parts parts = parts_of(cell_cuts), unsaid = unsaid_parts(cell, cell_cuts);

@@ -2,18 +2,17 @@
 
 /// The cells, duplicated once per connected component (the virtual node algorithm of Molino, Bao and Fedkiw 2004, on
 /// cubes; thesis §2.4.2). Two copies in face-adjacent cells that share a material node, a point of the skin, or an
-/// interval between two cuts (parts.h) on the common face are glued along the whole face. Corners are the node instances
-/// that come out of it, the unknowns of every physics.
+/// interval between two cuts (parts.h) on the common face are glued along the whole face. Corners are the node
+/// instances that come out of it, the unknowns of every physics.
 ///
 /// A cut splits copies, and a corner depends on the copies of the (up to eight) cells around its node alone. So an
 /// update looks at the cells around the new cut edges and at the nodes of those that split; all that is there keeps its
 /// name: a copy the part (parts.h) with its lowest item, a corner the class with the node's own material,
 /// else the first one; what is new comes last. Names depend on the sequence of cuts, the complex up to names does not.
 ///
-/// Where a front is taken back (fronts.h), or parts turn out to lie on the same side of all cuts (Cuts::joined), copies are
-/// joined again, and corners with them. Those whose names are not
-/// needed any more *lapse*: they stand in the tables, but a lapsed copy holds nothing and belongs to no cell's copies, and
-/// no copy has a lapsed corner.
+/// Where a front is taken back (fronts.h), or parts turn out to lie on the same side of all cuts (Cuts::joined), copies
+/// are joined again, and corners with them. Those whose names are not needed any more *lapse*: they stand in the
+/// tables, but a lapsed copy holds nothing and belongs to no cell's copies, and no copy has a lapsed corner.
 
 #include "grid/parts.h"
 
@@ -89,7 +88,8 @@ struct CellComplex {
   CopiesOfCell copies_of(CellId cell) const { return {copies, first_copy[cell]}; }
   /// The copy of `cell` whose component holds the material node at `vertex`; invalid when that node is empty.
   CopyId copy_at(CellId cell, int vertex) const;
-  /// The copy of `cell` with an item of its skeleton that is a node, or that it has said to hold; invalid when none does.
+  /// The copy of `cell` with an item of its skeleton that is a node, or that it has said to hold; invalid when none
+  /// does.
   CopyId copy_with(CellId cell, int item) const;
   /// Memory of all tables [B].
   std::size_t n_bytes() const;
@@ -114,9 +114,9 @@ struct CutChange {
   bool any() const { return !cells.empty(); }
 };
 
-/// Brings the complex up to date with edges and segments of the skin that are cut, but were not when it was built or updated
-/// last, and with cells whose fronts or joined items are others since, or are taken back. What it costs depends on these alone. Lapsed copies
-/// are marked like those of crumbs: no physics knows them.
+/// Brings the complex up to date with edges and segments of the skin that are cut, but were not when it was built or
+/// updated last, and with cells whose fronts or joined items are others since, or are taken back. What it costs depends
+/// on these alone. Lapsed copies are marked like those of crumbs: no physics knows them.
 CutChange update_complex(Solid& solid, std::vector<EdgeId> new_edges, std::vector<SkinSegment> new_segments = {},
                          std::span<const CellId> with_other_fronts = {});
 
@@ -127,7 +127,8 @@ void inherit(const CutChange& change, std::vector<T>& of_corners) {
     of_corners.push_back(T(of_corners[parent.value]));
 }
 
-/// The connected components of the copies; tied ones are connected. Found from scratch whenever asked for, linear in the copies.
+/// The connected components of the copies; tied ones are connected. Found from scratch whenever asked for, linear in
+/// the copies.
 struct Pieces {
   Table<CopyId, std::uint32_t> piece; ///< of each copy, numbered from 0 in the order of their first copies
   std::uint32_t n_pieces = 0;

@@ -1,7 +1,8 @@
 #pragma once
 
-/// Which corners a physics works on, and how it counts them. Those of crumbs (crumbs.h) move with their rigid bodies: among a
-/// thousand crumbs most corners are theirs, and every vector of a solver, every sum over corners, would have them.
+/// Which corners a physics works on, and how it counts them. Those of crumbs (crumbs.h) move with their rigid bodies:
+/// among a thousand crumbs most corners are theirs, and every vector of a solver, every sum over corners, would have
+/// them.
 
 #include "grid/solid.h"
 

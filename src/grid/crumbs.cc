@@ -136,7 +136,8 @@ class Search {
     return std::popcount(copy.nodes) <= 1 || fill(solid_, copy) < well_filled;
   }
 
-  /// Calls f(other) for each copy that is glued to this one, or that a front holds together with it, until f says false.
+  /// Calls f(other) for each copy that is glued to this one, or that a front holds together with it, until f says
+  /// false.
   template <class Function>
   bool for_each_beside(const CopyId c, const Function& f) const {
     for (int face = 0; face < 6; ++face)
@@ -202,8 +203,8 @@ void add(Solid& solid, std::vector<Crumb> found) {
   }
 }
 
-/// Copies across a face from what a cut has changed, of cells that stay what they are: what is glued by points of the skin
-/// or by intervals may be so no more, or newly, though its own cell has not changed.
+/// Copies across a face from what a cut has changed, of cells that stay what they are: what is glued by points of the
+/// skin or by intervals may be so no more, or newly, though its own cell has not changed.
 std::vector<CopyId> beside(const Solid& solid, const CutChange& change) {
   std::vector<CopyId> copies;
   for (const CellId cell : change.cells)

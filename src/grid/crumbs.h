@@ -3,14 +3,14 @@
 /// Pieces in which no copy holds enough material to be deformed: what a blade's dust is made of, and thin parts of a
 /// body that the grid takes for pieces of their own. Every physics moves them as rigid bodies (physics/crumbs.h).
 ///
-/// A copy is *loose* when its material fills less than a quarter of its cube, or holds one node at most. A **crumb** is a
-/// piece of loose copies alone; or one that a cut has left, and whose nodes are all vertices of one cube: of such a
+/// A copy is *loose* when its material fills less than a quarter of its cube, or holds one node at most. A **crumb** is
+/// a piece of loose copies alone; or one that a cut has left, and whose nodes are all vertices of one cube: of such a
 /// piece the grid knows hardly more than one deformation gradient, and spends up to 27 copies on it. What a cut leaves
-/// of a crumb stays one. A piece that a cut has left is one too where the physics knows the body by *samples*, points of
-/// its own, and those of the piece span no volume: their second moment about their mean is less than h^2 / 2 along some
-/// direction, that of two which stand half a cube off a plane. What they do tells no deformation gradient, or one that
-/// few of them tell (a piece of seven lost 44 % of its volume with h^2 / 8). Where copies are joined (complex.h), and
-/// not all of a piece comes from one crumb, it is looked at as if it had been none: crumbs become material again.
+/// of a crumb stays one. A piece that a cut has left is one too where the physics knows the body by *samples*, points
+/// of its own, and those of the piece span no volume: their second moment about their mean is less than h^2 / 2 along
+/// some direction, that of two which stand half a cube off a plane. What they do tells no deformation gradient, or one
+/// that few of them tell (a piece of seven lost 44 % of its volume with h^2 / 8). Where copies are joined (complex.h),
+/// and not all of a piece comes from one crumb, it is looked at as if it had been none: crumbs become material again.
 ///
 /// Found by walking from the copies that a cut has changed, over glued faces, for as long as it may be a crumb: what it
 /// costs depends on the cut alone, but for four bytes a copy.

@@ -77,8 +77,8 @@ struct Joined {
   void archive(Archive& a) { a(items, intervals); }
 };
 
-/// A cell in which a cut ends, or would by fronts.h: the copies are parted as if it went on through the cell in a plane,
-/// and tied together as far as it has not come.
+/// A cell in which a cut ends, or would by fronts.h: the copies are parted as if it went on through the cell in a
+/// plane, and tied together as far as it has not come.
 struct Front {
   CellId cell;
   Segments ahead = 0; ///< of the cell's segments those that the plane meets, but not the cut
@@ -172,8 +172,8 @@ class Cuts {
   std::span<const SkinCut> new_skin_cuts() const { return skin_cuts().subspan(n_settled_of_skin_); }
   void settle();
 
-  /// The vertex in a face or a cell, where a cut has placed one; the middle otherwise is the caller's to know. Where the
-  /// skin passes through it is that of the skin.
+  /// The vertex in a face or a cell, where a cut has placed one; the middle otherwise is the caller's to know. Where
+  /// the skin passes through it is that of the skin.
   const Vec3* point(FaceId f) const { return point_at(face_point_[f]); }
   const Vec3* point(CellId c) const { return point_at(cell_point_[c]); }
   void set_point(FaceId f, const Vec3& p) { set(face_point_.at(f), p); }

@@ -3,41 +3,42 @@
 /// Fronts inside cells: what ties the copies of a cell in which a cut ends (Front, cuts.h).
 ///
 /// Copies are parted cell by cell, so a cut could only be some whole cubes long. Where it ends inside a cell its copies
-/// are parted all the same, as with phantom nodes (Rabczuk, Zi, Gerstenberger and Wall 2008, A new crack tip element for
-/// the phantom-node method, Int. J. Numer. Meth. Engng 75), and the jump ends at the next cell, which is whole. What the
-/// cut has not come to yet, a part 1 - f of the plane in the cell, is made up for by an elastic layer in all of it:
+/// are parted all the same, as with phantom nodes (Rabczuk, Zi, Gerstenberger and Wall 2008, A new crack tip element
+/// for the phantom-node method, Int. J. Numer. Meth. Engng 75), and the jump ends at the next cell, which is whole.
+/// What the cut has not come to yet, a part 1 - f of the plane in the cell, is made up for by an elastic layer in all
+/// of it:
 ///
 ///     E = integral of kappa / 2 |jump|^2 dA,     kappa = c E / (1 - nu^2) / h  (1 - f) / f.
 ///
 /// Seen from the front the cell is one spring of stiffness k_0 against opening, and to open by a part f of what the
 /// open cell does, k_0 + k has to be k_0 / f. The compliance of the body then grows linearly with what the cut passes,
-/// and a front that moves on gives and takes no energy at once. The jump is the sum of N_v (x_v - y_v) over the vertices
-/// v at which the copies have corners x_v, y_v of their own. By rows, the layer is a spring of no length at each of these
-/// vertices, of stiffness kappa times the integral of N_v times the sum of their N: where the plane lies close to nodes,
-/// theirs alone hold it.
+/// and a front that moves on gives and takes no energy at once. The jump is the sum of N_v (x_v - y_v) over the
+/// vertices v at which the copies have corners x_v, y_v of their own. By rows, the layer is a spring of no length at
+/// each of these vertices, of stiffness kappa times the integral of N_v times the sum of their N: where the plane lies
+/// close to nodes, theirs alone hold it.
 ///
-/// Elements cannot follow the root in which displacement ends at a front, and so are too stiff there, as if the cut were
-/// shorter by a part of a cube. At f = 0 and f = 1 the layer plays no part in that; c is such that it is as much between:
-/// .6 for elements of either kind, any Poisson's ratio, a plane that lies anywhere and a front along the grid, for which it
-/// is the same to .01 to .03 cubes, and to .09 for a front across the diagonals of faces. Who finds fronts lets the cut go
-/// on by that much (front_lag, cut/fronts.h).
+/// Elements cannot follow the root in which displacement ends at a front, and so are too stiff there, as if the cut
+/// were shorter by a part of a cube. At f = 0 and f = 1 the layer plays no part in that; c is such that it is as much
+/// between: .6 for elements of either kind, any Poisson's ratio, a plane that lies anywhere and a front along the grid,
+/// for which it is the same to .01 to .03 cubes, and to .09 for a front across the diagonals of faces. Who finds fronts
+/// lets the cut go on by that much (front_lag, cut/fronts.h).
 ///
-/// A front is provisional: when its blade cuts the cell, it is taken back, as far as it said otherwise (complex.h), and what
-/// the blade leaves is the same as without.
+/// A front is provisional: when its blade cuts the cell, it is taken back, as far as it said otherwise (complex.h), and
+/// what the blade leaves is the same as without.
 ///
-/// A surface, or another blade, may leave a third part of the cell, of skin without a node. That is no front: it is held
-/// to what it belongs to, by springs as stiff as its own material is: stiffer ones would do no more, and conjugate gradients
-/// would feel them.
+/// A surface, or another blade, may leave a third part of the cell, of skin without a node. That is no front: it is
+/// held to what it belongs to, by springs as stiff as its own material is: stiffer ones would do no more, and conjugate
+/// gradients would feel them.
 ///
-/// Departs from the source, in which the jump vanishes at the front by the shape functions of the element: these need the
-/// front's shape in the cell, and another integration for each.
+/// Departs from the source, in which the jump vanishes at the front by the shape functions of the element: these need
+/// the front's shape in the cell, and another integration for each.
 
 #include "grid/solid.h"
 
 namespace kerf::grid {
 
-/// By how much a cut in a plane of this unit normal seems too short to elements [cubes]: .25 along the grid, hardly more across
-/// it, as measured on discs of any tilt.
+/// By how much a cut in a plane of this unit normal seems too short to elements [cubes]: .25 along the grid, hardly
+/// more across it, as measured on discs of any tilt.
 double front_lag(const Vec3& normal);
 /// The most that it can be.
 constexpr double most_front_lag = 0.29;
@@ -48,8 +49,8 @@ struct Tie {
   double length; ///< its spring's stiffness over E / (1 - nu^2) [m]
 };
 
-/// The copies that fronts alone part in some cells, in their order: none in those without a front, or through which cuts
-/// have come meanwhile.
+/// The copies that fronts alone part in some cells, in their order: none in those without a front, or through which
+/// cuts have come meanwhile.
 std::vector<std::array<CopyId, 2>> tied_copies(const Solid& solid, const CellComplex& complex,
                                                std::span<const CellId> cells);
 

@@ -11,10 +11,10 @@ using Tetrahedron = std::array<Vec3, 4>;
 
 /// The octant of a cell in which no blade has cut at the skin: the material that belongs to `vertex`, as six positively
 /// oriented tetrahedra, one for each way node - edge point - face point - centre. The eight octants of a cell tile it.
-/// Departs from the trilinear hexahedron on the same eight points: tetrahedra have positive volume for every point inside
-/// its edge, face and cell (a hexahedron folds where a cut leaves a face vertex in the chord of its edge vertices), and
-/// they are bounded by just the triangles of the surface, so that volume by surface and mass by octants agree to
-/// round-off.
+/// Departs from the trilinear hexahedron on the same eight points: tetrahedra have positive volume for every point
+/// inside its edge, face and cell (a hexahedron folds where a cut leaves a face vertex in the chord of its edge
+/// vertices), and they are bounded by just the triangles of the surface, so that volume by surface and mass by octants
+/// agree to round-off.
 std::array<Tetrahedron, 6> octant(const Solid& solid, CellId c, int vertex);
 
 /// A tetrahedron of a cell's material, and the vertex of the cube to which it belongs: the node's, or that below the

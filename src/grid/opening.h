@@ -2,10 +2,10 @@
 
 /// How far a cut stands open: where it cuts edges of the grid, both of whose sides copies follow.
 ///
-/// An edge along axis k that the cut crosses stands for h^2 of the cut's shadow along k, whatever the cut's slope, as the edges
-/// along k lie h apart in both other directions. So the volume between the sides is the sum over all cut edges of the gap times
-/// h^2 times e_k, carried into the current configuration by the cofactor of the deformation gradient. First order in h at the
-/// border of the cut.
+/// An edge along axis k that the cut crosses stands for h^2 of the cut's shadow along k, whatever the cut's slope, as
+/// the edges along k lie h apart in both other directions. So the volume between the sides is the sum over all cut
+/// edges of the gap times h^2 times e_k, carried into the current configuration by the cofactor of the deformation
+/// gradient. First order in h at the border of the cut.
 
 #include "grid/solid.h"
 

@@ -1,8 +1,8 @@
 #pragma once
 
-/// The parts that cuts leave of a cell: what of its skeleton holds together. Nodes, and where blades have cut the points
-/// of the skin too, are joined by segments that are not cut; and where blades cross, by lying on the same side of all
-/// (cut/sides.h).
+/// The parts that cuts leave of a cell: what of its skeleton holds together. Nodes, and where blades have cut the
+/// points of the skin too, are joined by segments that are not cut; and where blades cross, by lying on the same side
+/// of all (cut/sides.h).
 
 #include "grid/cuts.h"
 #include "grid/skeleton.h"

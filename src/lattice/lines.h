@@ -2,12 +2,12 @@
 
 /// The regions of lattice shape matching on a cut body, and fast sums over them (Rivers and James 2007).
 ///
-/// The material nodes of the grid, but those of crumbs, are the lattice's points; from a point one may step along an uncut edge to the
-/// next (two such points share a copy; a cut edge is no step). A *line* along an axis is a longest row of such steps.
-/// The **region** of a point r: walk at most w steps along r's z line, from there at most w along the y line, from
-/// there at most w along the x line. In the bulk this is the full box of (2 w + 1)^3 points. Cuts and skin break
-/// lines, and so trim the box: a region never reaches across a cut, and it goes around the end of a cut only where
-/// such a walk does. No point is reached twice, since a walk is fixed by its end.
+/// The material nodes of the grid, but those of crumbs, are the lattice's points; from a point one may step along an
+/// uncut edge to the next (two such points share a copy; a cut edge is no step). A *line* along an axis is a longest
+/// row of such steps. The **region** of a point r: walk at most w steps along r's z line, from there at most w along
+/// the y line, from there at most w along the x line. In the bulk this is the full box of (2 w + 1)^3 points. Cuts and
+/// skin break lines, and so trim the box: a region never reaches across a cut, and it goes around the end of a cut only
+/// where such a walk does. No point is reached twice, since a walk is fixed by its end.
 ///
 /// Sums over all regions are therefore three passes over lines: x, then y, then z, exact for every cut; sums over all
 /// regions that *hold* a point are the same passes in the order z, y, x. Departs from Rivers and James, who find

@@ -2,33 +2,37 @@
 
 /// Corners of hardly any mass, and what carries them.
 ///
-/// The problem: the force k m (g - x) lets a corner swing about its goal with the frequency sqrt(k) whatever its mass m.
-/// What starts that, a cut that moves its goal by up to a cube, has as much energy as m allows: next to none in a corner
-/// that only a sliver or a piece of skin knows, opposite to the material. So such corners swing by cubes and at any speed, for
-/// ever, in silence.
+/// The problem: the force k m (g - x) lets a corner swing about its goal with the frequency sqrt(k) whatever its mass
+/// m. What starts that, a cut that moves its goal by up to a cube, has as much energy as m allows: next to none in a
+/// corner that only a sliver or a piece of skin knows, opposite to the material. So such corners swing by cubes and at
+/// any speed, for ever, in silence.
 ///
 /// The method: a *rider* is a corner with less mass than m_ref, a cube that is grid::well_filled; its *carrier* is the
-/// nearest copy of the piece (fewest steps between copies with a corner in common) of which at least four corners have an
-/// eighth of that and more, their part of such a cube.
+/// nearest copy of the piece (fewest steps between copies with a corner in common) of which at least four corners have
+/// an eighth of that and more, their part of such a cube.
 ///
 /// 1. After a cut a rider *settles*: it is put where its regions now have it, at its goal, and keeps its velocity. Its
 ///    carrier is moved and turned back by what that takes of the masses' centre and of angular momentum.
-/// 2. In each step the rider's velocity against the carrier's rigid motion is damped, and the carrier takes the impulse at
-///    the rider's place as a rigid body does. With alpha = k dt^2 and e = x - g, w = dt v against that motion, a step is
+/// 2. In each step the rider's velocity against the carrier's rigid motion is damped, and the carrier takes the impulse
+/// at
+///    the rider's place as a rigid body does. With alpha = k dt^2 and e = x - g, w = dt v against that motion, a step
+///    is
 ///
 ///     w' = (1 - kappa) w - alpha e,   e' = e + w',
 ///
-/// of determinant 1 - kappa and trace 2 - kappa - alpha: both eigenvalues are 1 - sqrt(alpha), the critically damped case,
-/// for kappa = 2 sqrt(alpha) - alpha. Both fade as 1 - m / m_ref, so that a cut that moves on changes nothing abruptly.
+/// of determinant 1 - kappa and trace 2 - kappa - alpha: both eigenvalues are 1 - sqrt(alpha), the critically damped
+/// case, for kappa = 2 sqrt(alpha) - alpha. Both fade as 1 - m / m_ref, so that a cut that moves on changes nothing
+/// abruptly.
 ///
-/// By experiment (11 scenes in which corners ran away): damping alone with m_ref = 1/128 leaves corners of up to .07 cubes
-/// that swing after a cut at 1.0 to 1.8 times the speed allowed, and settling with it alone 9 of the 11; a reference of
-/// the carrier's affine motion instead of its rigid one lets the lightest corners run away by extrapolation.
+/// By experiment (11 scenes in which corners ran away): damping alone with m_ref = 1/128 leaves corners of up to .07
+/// cubes that swing after a cut at 1.0 to 1.8 times the speed allowed, and settling with it alone 9 of the 11; a
+/// reference of the carrier's affine motion instead of its rigid one lets the lightest corners run away by
+/// extrapolation.
 ///
-/// What they keep: momentum, angular momentum and the masses' centre, to round-off; rigid motions, which they do not see.
-/// Damping never adds energy: with M and I the carrier's mass and inertia, r_i a rider's distance from its middle and
-/// u_i^2 = m_i (1 / M + r_i^2 |I^-1|), impulses of kappa m_i w_i / (1 + u_i sum of u_j) take more from the riders than they
-/// give, as u u^T <= diag(u_i sum of u_j).
+/// What they keep: momentum, angular momentum and the masses' centre, to round-off; rigid motions, which they do not
+/// see. Damping never adds energy: with M and I the carrier's mass and inertia, r_i a rider's distance from its middle
+/// and u_i^2 = m_i (1 / M + r_i^2 |I^-1|), impulses of kappa m_i w_i / (1 + u_i sum of u_j) take more from the riders
+/// than they give, as u u^T <= diag(u_i sum of u_j).
 ///
 /// Limits: pieces without a carrier have no riders; and a carrier that is crushed to a line or to a point carries none.
 

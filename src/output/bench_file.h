@@ -1,7 +1,7 @@
 #pragma once
 
-/// The table of a benchmark, in HDF5 (table_columns.h): /bench/rows/..., one entry for each hot path and size; attributes
-/// threads, peak_flops [1/s] and bandwidth [B/s] as measured beside it. And the same as CSV.
+/// The table of a benchmark, in HDF5 (table_columns.h): /bench/rows/..., one entry for each hot path and size;
+/// attributes threads, peak_flops [1/s] and bandwidth [B/s] as measured beside it. And the same as CSV.
 
 #include "output/records.h"
 

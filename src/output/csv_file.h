@@ -1,7 +1,7 @@
 #pragma once
 
-/// Tables as comma-separated values (RFC 4180): a line of names, then a line a row. Texts stand in quotes; numbers read back as the same
-/// ones; those that are not known (NaN) are empty.
+/// Tables as comma-separated values (RFC 4180): a line of names, then a line a row. Texts stand in quotes; numbers read
+/// back as the same ones; those that are not known (NaN) are empty.
 
 #include "output/table_columns.h"
 

@@ -26,8 +26,8 @@ class ResultsFolder {
  public:
   /// Makes the folder and takes it. `names` are what the run will make in it, relative to it: "run.h5"; "frames/*.png"
   /// stands for all whose names are digits. To replace, what an earlier run made is deleted first. Throws DataError
-  /// where it cannot be made, is in use, or holds a file of such a name that is not Kerf's; ParameterError where it holds
-  /// results and nobody said what to do about them.
+  /// where it cannot be made, is in use, or holds a file of such a name that is not Kerf's; ParameterError where it
+  /// holds results and nobody said what to do about them.
   ResultsFolder(std::filesystem::path folder, Earlier earlier, const std::vector<std::string>& names);
   /// Gives the folder back.
   ~ResultsFolder();

@@ -11,7 +11,8 @@
 ///     /timing/STAGE        seconds since the output step before
 ///     /observables/NAME    attributes unit and source
 ///     /bodies/NAME/complex/I, surface/I    only where the topology changed
-///     /bodies/NAME/colours                 samples of revealed triangles, where the scene says what is inside; see surface/I
+///     /bodies/NAME/colours                 samples of revealed triangles, where the scene says what is inside; see
+///     surface/I
 ///     /bodies/NAME/slopes                  of each of these samples, where the inside has a relief
 ///     /bodies/NAME/frames/I                position, velocity, fields; attributes time, step, complex;
 ///                                          links to its complex and surface

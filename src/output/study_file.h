@@ -2,14 +2,16 @@
 
 /// The table of a study, in HDF5: one column a dataset, all of the same length, one entry a run.
 ///
-///     /                attributes as of a run's file, and title, outcome (running, completed, interrupted, failed), made_of
+///     /                attributes as of a run's file, and title, outcome (running, completed, interrupted, failed),
+///     made_of
 ///     /study/text      the study, with what --set changed and absolute file names
 ///     /study/rows/...  the columns; attributes unit and description
-///     /study/norms/... what else is asked of each row: name, unit, answer; its columns are value_NAME, reference_NAME, error_NAME
+///     /study/norms/... what else is asked of each row: name, unit, answer; its columns are value_NAME, reference_NAME,
+///     error_NAME
 ///     /study/points    points of the material at rest, n x 3 [m], where there are any
 ///     /study/displacements, /study/reference_displacements   there, n_rows x 3 n [m]
-/// Numbers that are not known (the value of a run that failed, an error without a reference) are NaN. The columns stand in a
-/// file of comma-separated values too, where what is not known is empty.
+/// Numbers that are not known (the value of a run that failed, an error without a reference) are NaN. The columns stand
+/// in a file of comma-separated values too, where what is not known is empty.
 
 #include "base/vec.h"
 #include "output/records.h"
@@ -56,7 +58,8 @@ struct StudyTable {
   Points points = {}; ///< [m]
 };
 
-/// Writes the file, or replaces it: beside the old one, which it then takes the place of. Throws DataError when it cannot be written.
+/// Writes the file, or replaces it: beside the old one, which it then takes the place of. Throws DataError when it
+/// cannot be written.
 void write_study_file(const std::filesystem::path& path, const StudyTable& table, const RunInfo& info);
 
 /// The columns as text, a line a row below a line of names with units; numbers to the last digit. Written as above.

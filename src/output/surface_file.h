@@ -36,7 +36,8 @@ class SurfaceFile {
   /// Creates the file, or empties it. `fields` are the names, units and components of what every step brings. Throws
   /// DataError when it cannot be written.
   explicit SurfaceFile(const std::filesystem::path& path, std::span<const Field> fields = {});
-  /// Opens the file of an earlier run that was made for the same fields, to go on behind its last step. Throws DataError.
+  /// Opens the file of an earlier run that was made for the same fields, to go on behind its last step. Throws
+  /// DataError.
   static SurfaceFile go_on(const std::filesystem::path& path, std::span<const Field> fields = {});
   SurfaceFile(SurfaceFile&&) noexcept;
   SurfaceFile& operator=(SurfaceFile&&) noexcept;

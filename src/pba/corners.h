@@ -9,8 +9,8 @@
 /// affine motion; its linear part is the gradient at the corner. A virtual corner takes the motion of the real corner
 /// of its copies that is the fewest edges away, the mean where there are several: the Taylor extrapolation of §2.4.4.
 ///
-/// A node that sees no phyxel takes the one that the shortest way through copies leads to (reach.h). A piece that holds no phyxel at all follows the one nearest to its
-/// nodes' mean, as one (limit: not as a body of its own).
+/// A node that sees no phyxel takes the one that the shortest way through copies leads to (reach.h). A piece that holds
+/// no phyxel at all follows the one nearest to its nodes' mean, as one (limit: not as a body of its own).
 ///
 /// Material nodes never change, so pairs of nodes and phyxels, and their sights, outlive every cut; the map is built
 /// anew from them.

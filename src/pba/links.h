@@ -18,8 +18,8 @@ struct Link {
   double area = 0;   ///< of the ways' material, where each is narrowest [m^2]
 };
 
-/// The copies that a phyxel reaches, for each: from its own one over glued faces, within its support, by ways of two faces
-/// more than in a full grid at most; ascending. What lies across a gap is near it and is not reached.
+/// The copies that a phyxel reaches, for each: from its own one over glued faces, within its support, by ways of two
+/// faces more than in a full grid at most; ascending. What lies across a gap is near it and is not reached.
 std::vector<std::vector<grid::CopyId>> reached_copies(const grid::Solid& solid, const Phyxels& phyxels,
                                                       std::span<const grid::CopyId> copies);
 

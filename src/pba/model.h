@@ -21,9 +21,9 @@
 ///
 /// The law of material::Elastic is not asked for: it is Green's strain with Hooke's law whatever its name.
 ///
-/// Links (links.h) are bonds beside those of neighbours, for parts of a piece that no neighbours join. With w_ij
-/// (V_i / m_i + V_j / m_j) = area / length, m_i = tr(A_i) / 3 with nothing in sight, the second sum makes them as stiff as
-/// the material along their way, c E area / length; no link weighs more than 1. A link is unstrained as it finds its
+/// Links (links.h) are bonds beside those of neighbours, for parts of a piece that no neighbours join. With w_ij (V_i /
+/// m_i + V_j / m_j) = area / length, m_i = tr(A_i) / 3 with nothing in sight, the second sum makes them as stiff as the
+/// material along their way, c E area / length; no link weighs more than 1. A link is unstrained as it finds its
 /// phyxels: with offset X = (F_i^-1 + F_j^-1) (x_j - x_i) / 2 for X_ij it brings hardly any energy.
 ///
 /// Limits: nodal integration passes the patch test of equilibrium only where the phyxels lie on a lattice; Green's

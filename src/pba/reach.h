@@ -3,8 +3,8 @@
 /// How phyxels and copies hang together through the material of a body.
 ///
 /// A way leads from a phyxel's copy over glued faces, one cube's edge for each. So each copy has a phyxel that it is
-/// nearest to (the graph Voronoi diagram: Erwig 2000, Networks 36, 156-163), and carries along with it the nodes that see
-/// no phyxel.
+/// nearest to (the graph Voronoi diagram: Erwig 2000, Networks 36, 156-163), and carries along with it the nodes that
+/// see no phyxel.
 
 #include "grid/solid.h"
 
@@ -35,8 +35,8 @@ struct Reached {
   std::size_t n_orphans = 0;         ///< pieces that hold no phyxel
 };
 
-/// Which phyxel carries a node that sees none. `nodes`, `rest`: the material nodes, row by row [m]; `phyxels` [m] lie in
-/// `copies`; `blind`: rows, ascending.
+/// Which phyxel carries a node that sees none. `nodes`, `rest`: the material nodes, row by row [m]; `phyxels` [m] lie
+/// in `copies`; `blind`: rows, ascending.
 Reached reach(const grid::Solid& solid, std::span<const grid::NodeId> nodes, const Points& rest, const Points& phyxels,
               std::span<const grid::CopyId> copies, std::span<const std::uint32_t> blind);
 

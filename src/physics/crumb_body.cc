@@ -116,7 +116,8 @@ dynamics::RigidMotion motion_of(const CrumbBody& crumb, const Motion& now) {
     L += mass[i] * r.cross(now.v[corners[i]] - motion.v);
   }
   motion.R = material::rotation_of(A);
-  const Vec3 omega = dynamics::angular_velocity(inertia_of(second), all * motion.x.squaredNorm(), L), to_centre = motion.R * (body.centre - X);
+  const Vec3 omega = dynamics::angular_velocity(inertia_of(second), all * motion.x.squaredNorm(), L),
+             to_centre = motion.R * (body.centre - X);
   motion.x += to_centre;
   motion.v += omega.cross(to_centre);
   motion.spin = motion.R * body.inertia * motion.R.transpose() * omega;

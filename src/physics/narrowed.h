@@ -1,7 +1,7 @@
 #pragma once
 
-/// A step among some corners alone (grid/corner_numbers.h): the integrator gets a state and loads of theirs, and the body's state
-/// takes what comes out. The others stay where they are.
+/// A step among some corners alone (grid/corner_numbers.h): the integrator gets a state and loads of theirs, and the
+/// body's state takes what comes out. The others stay where they are.
 
 #include "dynamics/stepper.h"
 #include "grid/corner_numbers.h"

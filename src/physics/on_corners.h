@@ -19,9 +19,9 @@
 
 namespace kerf::physics {
 
-/// Elements with explicit integrators: corners of hardly any mass ring for ever once a cut has moved them, take up
-/// what the body's vibrations have, and turn their copies inside out. They are damped against what carries them, as those
-/// of a lattice are (lattice/riders.h), critically for the frequency of a cube. Of the others none.
+/// Elements with explicit integrators: corners of hardly any mass ring for ever once a cut has moved them, take up what
+/// the body's vibrations have, and turn their copies inside out. They are damped against what carries them, as those of
+/// a lattice are (lattice/riders.h), critically for the frequency of a cube. Of the others none.
 inline lattice::Riders riders_of(const dynamics::ForceModel&, const CutBody&) { return {}; }
 lattice::Riders riders_of(const fem::Hexahedra& model, const CutBody& body);
 inline void damp_riders(const dynamics::ForceModel&, const lattice::Riders&, std::span<const double>,
@@ -30,8 +30,8 @@ inline void damp_riders(const dynamics::ForceModel&, const lattice::Riders&, std
 void damp_riders(const fem::Hexahedra& model, const lattice::Riders& riders, std::span<const double> mass,
                  const dynamics::Loads& loads, double dt, dynamics::State& state);
 
-/// Corners that lapse bring their heirs what they had of momentum, angular momentum and place, by mass as it was [kg]. The
-/// heirs turn for that by what the joining has taken of the kinetic energy at most: one heir has no inertia but
+/// Corners that lapse bring their heirs what they had of momentum, angular momentum and place, by mass as it was [kg].
+/// The heirs turn for that by what the joining has taken of the kinetic energy at most: one heir has no inertia but
 /// round-off, and a few that lie close together hardly any.
 void join_lapsed(std::span<const grid::Lapse> lapsed, const std::function<double(std::uint32_t)>& mass,
                  dynamics::State& state);
@@ -50,8 +50,8 @@ std::vector<std::uint8_t> touched_corners(const grid::CellComplex& complex, cons
 /// Of the corners that are counted, by number: pieces without one are left out.
 std::vector<std::uint32_t> counted_pieces(std::vector<std::uint32_t> of_corners, const grid::CornerNumbers& numbers);
 
-/// One model on the corners, with an integrator of it. Both see those that the model counts (grid/corner_numbers.h); state and
-/// loads are of all.
+/// One model on the corners, with an integrator of it. Both see those that the model counts (grid/corner_numbers.h);
+/// state and loads are of all.
 template <class Model>
 class OnCorners : public Physics {
  public:

@@ -1,8 +1,8 @@
 #pragma once
 
 /// The contract of a backend: one kind of physics of a cut body, and what a scene needs of it. Behind it a backend has
-/// particles, which are the unknowns of its State: the corners of the copies, or samples of its own. Blades, surface and
-/// images see corners only, so every backend moves the very same cut.
+/// particles, which are the unknowns of its State: the corners of the copies, or samples of its own. Blades, surface
+/// and images see corners only, so every backend moves the very same cut.
 
 #include "base/interpolation.h"
 #include "dynamics/stepper.h"
@@ -48,8 +48,8 @@ class Physics {
 
   /// Follows a cut of the body, and so does the state: new particles take what their parents have.
   virtual void follow_cut(const CutBody& body, const grid::CutChange& change, dynamics::State& state) = 0;
-  /// After follow_cut(), with the loads that there are now: lets out of what it has touched the elastic energy that it gave
-  /// (dynamics/relief.h). There were `had` [J] before.
+  /// After follow_cut(), with the loads that there are now: lets out of what it has touched the elastic energy that it
+  /// gave (dynamics/relief.h). There were `had` [J] before.
   virtual void let_out(const CutBody& body, const grid::CutChange& change, double had, const dynamics::Loads& loads,
                        dynamics::State& state) = 0;
   /// Does a step's share of what cuts have left to do. Says whether carry() is another one now.

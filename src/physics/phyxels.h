@@ -1,12 +1,12 @@
 #pragma once
 
-/// Point-based animation as a backend: the particles are phyxels, the corners follow those that they see (thesis §2.6.1),
-/// and a criterion says what the cut leaves to see (§2.3.1, §2.6.2).
+/// Point-based animation as a backend: the particles are phyxels, the corners follow those that they see (thesis
+/// §2.6.1), and a criterion says what the cut leaves to see (§2.3.1, §2.6.2).
 ///
 /// A piece may hang together by less than its phyxels can tell: by copies in which none lies, or by what a cut has left
 /// behind its front. Parts of a piece that no bond joins are linked (pba/links.h) wherever the copies join them, as
-/// stiffly as a web of that material, though not less than of a quarter of a cube, as near-empty copies of elements are.
-/// Bonds too light to hold join nothing.
+/// stiffly as a web of that material, though not less than of a quarter of a cube, as near-empty copies of elements
+/// are. Bonds too light to hold join nothing.
 ///
 /// After a cut, its faces come between pairs of phyxels, and between corners and phyxels, under a budget of pairs a
 /// step: catch_up(). What lies in different pieces is parted at once, whatever the criterion has seen. Nothing of all

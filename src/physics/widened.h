@@ -1,7 +1,7 @@
 #pragma once
 
-/// A model that sees some corners by number (grid/corner_numbers.h), as one of all corners: those that it does not see have no
-/// mass, and neither force nor stiffness.
+/// A model that sees some corners by number (grid/corner_numbers.h), as one of all corners: those that it does not see
+/// have no mass, and neither force nor stiffness.
 
 #include "base/loan.h"
 #include "dynamics/model.h"

@@ -10,8 +10,8 @@ namespace kerf::reference {
 
 namespace {
 
-/// Values and gradients of one component's shape functions in a cell, times the root of each quadrature weight, so that their
-/// products are integrals: rows are quadrature points.
+/// Values and gradients of one component's shape functions in a cell, times the root of each quadrature weight, so that
+/// their products are integrals: rows are quadrature points.
 template <int dim>
 class Shapes {
  public:

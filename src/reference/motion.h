@@ -1,7 +1,8 @@
 #pragma once
 
-/// Motion by deal.II on fitted meshes: M a + c M v + K u = f at small strain, with the matrices of equilibrium (solution.h), in time
-/// by generalised alpha (Chung and Hulbert 1993, J. Appl. Mech. 60, 371-375), of order 2; spectral radius 1 keeps the energy.
+/// Motion by deal.II on fitted meshes: M a + c M v + K u = f at small strain, with the matrices of equilibrium
+/// (solution.h), in time by generalised alpha (Chung and Hulbert 1993, J. Appl. Mech. 60, 371-375), of order 2;
+/// spectral radius 1 keeps the energy.
 
 #include "reference/problem.h"
 
@@ -20,9 +21,9 @@ struct Beginning {
   Field velocity = nullptr;     ///< [m/s]
 };
 
-/// Displacements [m] of the points at the times 0, dt, ..., n dt under loads that act from time 0 on and do not change. The mesh is
-/// adapted for equilibrium under these loads. Throws as solve(), ParameterError where a support moves or the steps cannot be,
-/// DataError for a point outside of the body.
+/// Displacements [m] of the points at the times 0, dt, ..., n dt under loads that act from time 0 on and do not change.
+/// The mesh is adapted for equilibrium under these loads. Throws as solve(), ParameterError where a support moves or
+/// the steps cannot be, DataError for a point outside of the body.
 std::vector<Points> motion(const Problem& problem, const Discretisation& discretisation, const TimeStepping& in_time,
                            const Points& points, const Beginning& beginning = {});
 

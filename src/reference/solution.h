@@ -1,9 +1,11 @@
 #pragma once
 
-/// Displacements in equilibrium, and lowest modes, by deal.II on fitted meshes: the truth that other methods are measured by.
+/// Displacements in equilibrium, and lowest modes, by deal.II on fitted meshes: the truth that other methods are
+/// measured by.
 ///
-/// Elements of FE_Q in a FESystem, degree 1 to 4, curved cells by a mapping of the same degree, hanging nodes and supports in
-/// AffineConstraints; sparse direct factorisation (UMFPACK), modes by ARPACK around a shift below all of them.
+/// Elements of FE_Q in a FESystem, degree 1 to 4, curved cells by a mapping of the same degree, hanging nodes and
+/// supports in AffineConstraints; sparse direct factorisation (UMFPACK), modes by ARPACK around a shift below all of
+/// them.
 
 #include "reference/problem.h"
 
@@ -27,12 +29,13 @@ class Solution {
   virtual ~Solution() = default;
 };
 
-/// Throws ParameterError for a degree or material that cannot be, and where a support or traction meets no face of the skin;
-/// NumericalError where the body is free to move.
+/// Throws ParameterError for a degree or material that cannot be, and where a support or traction meets no face of the
+/// skin; NumericalError where the body is free to move.
 std::unique_ptr<Solution> solve(const Problem& problem, const Discretisation& discretisation);
 
-/// The n lowest natural frequencies [1/s], ascending; those of a free body begin with zeros. Displacements and tractions that
-/// are not zero count for nothing. Throws as solve(), and NumericalError where the iteration does not end.
+/// The n lowest natural frequencies [1/s], ascending; those of a free body begin with zeros. Displacements and
+/// tractions that are not zero count for nothing. Throws as solve(), and NumericalError where the iteration does not
+/// end.
 std::vector<double> lowest_frequencies(const Problem& problem, const Discretisation& discretisation, int n);
 
 } // namespace kerf::reference

@@ -74,7 +74,8 @@ struct System {
   dealii::Vector<double> f;       ///< [N]
 };
 
-/// The consistent mass [kg] on a system's pattern; nothing stands at constrained unknowns, so that they take part in no mode.
+/// The consistent mass [kg] on a system's pattern; nothing stands at constrained unknowns, so that they take part in no
+/// mode.
 template <int dim>
 void assemble_mass(const Space<dim>& space, const System<dim>& system, dealii::SparseMatrix<double>& M);
 

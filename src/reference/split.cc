@@ -31,7 +31,8 @@ bool contains(const Face& face, const std::uint32_t vertex) {
   return std::binary_search(face.begin(), face.end(), vertex);
 }
 
-/// Gives the cells around a vertex that do not hang together by faces that are whole a vertex each; the first group keeps it.
+/// Gives the cells around a vertex that do not hang together by faces that are whole a vertex each; the first group
+/// keeps it.
 void part_at(Mesh& mesh, const std::uint32_t vertex, const std::vector<std::size_t>& cells,
              const std::vector<std::vector<Face>>& faces, const std::set<Face>& parted) {
   UnionFind groups(cells.size());

@@ -61,8 +61,8 @@ std::optional<Eigen::Vector2d> depth_range(const Eigen::AlignedBox3d& bounds) {
   return Eigen::Vector2d(std::max(0.99 * nearest, 1e-3 * farthest), 1.01 * farthest);
 }
 
-/// The pixels that the triangles may meet, and a border as wide as the mean of resolve.frag reaches; all, if a vertex is
-/// nearer to the eye than what is shown.
+/// The pixels that the triangles may meet, and a border as wide as the mean of resolve.frag reaches; all, if a vertex
+/// is nearer to the eye than what is shown.
 gl::Rectangle shown(const Camera& camera, const Batch& batch, const double nearest) {
   constexpr double border = 3;
   const double per_slope = 0.5 * camera.height / std::tan(camera.field_of_view * std::numbers::pi / 360); // [pixels]

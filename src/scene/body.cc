@@ -21,8 +21,8 @@ std::vector<std::uint8_t> held_before(const dynamics::Support& support, const gr
   return held;
 }
 
-/// A cut gives supports nothing that they did not hold: it shapes material anew, by less than a cube, and a piece that moved
-/// on long ago may have some in a region then.
+/// A cut gives supports nothing that they did not hold: it shapes material anew, by less than a cube, and a piece that
+/// moved on long ago may have some in a region then.
 void find_supports(Body& body, const grid::CutChange* const change) {
   const std::vector<dynamics::Support> before = std::exchange(body.loads.supports, {});
   const Points& rest = body.physics->rest();

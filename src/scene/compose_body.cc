@@ -132,8 +132,8 @@ std::string describe_physics(const Section& section, const BodyParameters& param
               mass, parameters.integrator);
 }
 
-/// Elements and springs know ties. Those of a front that moves are as stiff as the material that it has parted so far, on
-/// corners that may hold hardly any: explicit steps would have to be several times shorter.
+/// Elements and springs know ties. Those of a front that moves are as stiff as the material that it has parted so far,
+/// on corners that may hold hardly any: explicit steps would have to be several times shorter.
 cut::Fronts fronts_of(const BodyParameters& parameters) {
   if (parameters.backend != "fem" && parameters.backend != "mass-spring")
     return cut::Fronts::at_faces;

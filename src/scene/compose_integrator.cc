@@ -22,8 +22,8 @@ struct Implicit {
 
 /// A fifth of the 1 % to which an energy book may stay open.
 constexpr dynamics::SoundOptions dissipative{.kick = 0.01, .wanted_gain = 2e-3};
-/// Of 20 steps of a soft body that bends far, and that 16 substeps did not mend, 32 or 64 mended 7, at three times the cost
-/// of all tries before.
+/// Of 20 steps of a soft body that bends far, and that 16 substeps did not mend, 32 or 64 mended 7, at three times the
+/// cost of all tries before.
 constexpr dynamics::SoundOptions conservative{
   .most_substeps = 16, .most_gain = 0.05, .most_sum = 0.1, .kick = 0, .wanted_gain = 1e-2, .each_piece = true};
 constexpr dynamics::SoundOptions as_they_are{.most_substeps = 1};

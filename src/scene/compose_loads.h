@@ -7,7 +7,8 @@
 
 namespace kerf::scene {
 
-/// Adds the supports, loads and probes of a body's section, and the floors of the scene, to a body that has not started.
+/// Adds the supports, loads and probes of a body's section, and the floors of the scene, to a body that has not
+/// started.
 void compose_loads(const Section& section, const std::vector<const Section*>& floors, Body& body);
 
 /// After the start: throws ParameterError for a support or load that acts on nothing, a probe outside of the material,

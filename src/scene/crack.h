@@ -39,8 +39,8 @@ SectionKind crack_front_kind();
 /// Reads the fronts of a body's section. Throws ParameterError, also for a body that is not of finite elements.
 std::vector<NamedFront> compose_crack_fronts(const Section& section, double cube_edge, const std::string& backend);
 
-/// Warns, once the body is there, of lines whose ends are not on the skin and of supports within the outer tubes, as G would
-/// be wrong. Throws ParameterError where a front lies outside of the body.
+/// Warns, once the body is there, of lines whose ends are not on the skin and of supports within the outer tubes, as G
+/// would be wrong. Throws ParameterError where a front lies outside of the body.
 std::vector<std::string> check_crack_fronts(const Section& section, const Body& body);
 
 /// G of a front of the body as it stands [J/m^2]; and K [Pa m^1/2].

@@ -45,7 +45,8 @@ double to_skin(const Body& body, const Station& at, const Vec3& direction, const
   return least;
 }
 
-/// Whether a point lies on a disc or rectangle, or so near to its plane; empty for what has no outline or one unknown here.
+/// Whether a point lies on a disc or rectangle, or so near to its plane; empty for what has no outline or one unknown
+/// here.
 std::optional<bool> is_on(const cut::Shape& shape, const Vec3& p, const double near) {
   if (const auto* const disc = std::get_if<cut::Disc>(&shape)) {
     const double off = (p - disc->centre).dot(disc->normal);

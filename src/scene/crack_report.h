@@ -10,9 +10,9 @@
 
 namespace kerf::scene {
 
-/// Warns of a front whose outer tube reaches over the skin ahead of it or behind it; of one whose crack ends again before its
-/// tubes end; and, where discs and rectangles cut at once and nothing else does, of one within a cube of which none of them
-/// ends. The body is not cut yet.
+/// Warns of a front whose outer tube reaches over the skin ahead of it or behind it; of one whose crack ends again
+/// before its tubes end; and, where discs and rectangles cut at once and nothing else does, of one within a cube of
+/// which none of them ends. The body is not cut yet.
 std::vector<std::string> warn_of_fronts(const Body& body, const World& world);
 
 /// Of a body that has been cut, also by what has no known end, as blades: says which front no cut has come to, and

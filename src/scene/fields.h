@@ -1,7 +1,8 @@
 #pragma once
 
-/// Fields over a body for its files: displacement; of finite elements Green's strain and Cauchy's stress as fem/fields.h
-/// recovers them; modes of vibration, a field each. Each is known at the corners; at a vertex of the surface it is W times that.
+/// Fields over a body for its files: displacement; of finite elements Green's strain and Cauchy's stress as
+/// fem/fields.h recovers them; modes of vibration, a field each. Each is known at the corners; at a vertex of the
+/// surface it is W times that.
 
 #include "output/records.h"
 #include "scene/body.h"

@@ -2,10 +2,10 @@
 
 /// Forceps: a tool that holds a part of a body for a time and carries it with its own rigid motion.
 ///
-/// Method: while it holds, the particles of its physics whose rest position lies in its region are a support. A step from t0 to t1 takes
-/// them from where they are to pose(t1) pose(t0)^-1 of that, so all history is in the state: the first step takes them
-/// from wherever they were gripped, new corners after a cut are held as their parents were, and a step made again gives
-/// the same bits. Released, they keep the velocity of their last step.
+/// Method: while it holds, the particles of its physics whose rest position lies in its region are a support. A step
+/// from t0 to t1 takes them from where they are to pose(t1) pose(t0)^-1 of that, so all history is in the state: the
+/// first step takes them from wherever they were gripped, new corners after a cut are held as their parents were, and a
+/// step made again gives the same bits. Released, they keep the velocity of their last step.
 /// Limits: what is gripped does not deform; the jaws themselves touch nothing.
 
 #include "cut/motion.h"

@@ -9,7 +9,8 @@
 
 namespace kerf::scene {
 
-/// What a body is made of: a mesh file, or a simple body. Describes the keys of `shape`; those of all shapes while it is empty.
+/// What a body is made of: a mesh file, or a simple body. Describes the keys of `shape`; those of all shapes while it
+/// is empty.
 struct BodyShapeParameters {
   std::string shape;
   std::string mesh;

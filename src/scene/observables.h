@@ -21,7 +21,8 @@ struct ToolNames {
   std::vector<std::string> cuts; ///< what makes label 1, 2, ...: blades, then surfaces
 };
 
-/// A name that stands for several series: one for each support, tool, cut, load or probe that a scene has, and component.
+/// A name that stands for several series: one for each support, tool, cut, load or probe that a scene has, and
+/// component.
 struct ObservableGroup {
   std::string name; ///< "reactions"
   std::string unit;

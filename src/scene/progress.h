@@ -1,7 +1,7 @@
 #pragma once
 
-/// How far a run is: a bar that redraws itself in a terminal, a plain line now and then elsewhere. A step that takes long
-/// is named while it lasts, by a thread that only waits and writes.
+/// How far a run is: a bar that redraws itself in a terminal, a plain line now and then elsewhere. A step that takes
+/// long is named while it lasts, by a thread that only waits and writes.
 
 #include <chrono>
 #include <condition_variable>

@@ -133,7 +133,8 @@ bool can_go_on(const std::filesystem::path& folder, const World& world, const So
   return true;
 }
 
-/// What a step's record refers to, as it was then; where nothing is written beside the steps, no more than is made for it.
+/// What a step's record refers to, as it was then; where nothing is written beside the steps, no more than is made for
+/// it.
 struct BodyEntry {
   Points positions, velocities;
   std::vector<output::Field> fields;

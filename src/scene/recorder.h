@@ -6,8 +6,9 @@
 /// comes to what they do not hold, it writes nothing into them, but compares: so what they hold is what an undisturbed
 /// run would have written, bit by bit, or the run ends with an error.
 ///
-/// Where there are two threads, files are written beside the steps: what a step's record needs is copied, at most two records are
-/// kept, and checkpoints wait for them. What fails is told with one of the next records, at last with the run's last one.
+/// Where there are two threads, files are written beside the steps: what a step's record needs is copied, at most two
+/// records are kept, and checkpoints wait for them. What fails is told with one of the next records, at last with the
+/// run's last one.
 
 #include "base/archive.h"
 #include "base/work_thread.h"
@@ -48,7 +49,8 @@ class Recorder {
   /// output::ResultsFolder, and ParameterError where they are of another scene or other inputs.
   Recorder(const std::filesystem::path& folder, const World& world, const Source& source, output::Earlier earlier);
 
-  /// How the cost of this process until now is measured; checkpoints carry it on. What recording costs itself does not count.
+  /// How the cost of this process until now is measured; checkpoints carry it on. What recording costs itself does not
+  /// count.
   void measure(std::function<Cost()> cost) { cost_ = std::move(cost); }
   /// Of all processes that the run has taken until now.
   Cost total_cost() const;
@@ -56,9 +58,9 @@ class Recorder {
   /// Brings a world that has just been composed to its last checkpoint.
   Start resume(World& world);
 
-  /// Records step `step` of the world, with the seconds of its stages. What recording itself takes (output, images: where
-  /// they are made in threads of their own, how long they were waited for) stands in `seconds` afterwards, in place of
-  /// those stages, and so counts with the next step. The last step is always recorded in full.
+  /// Records step `step` of the world, with the seconds of its stages. What recording itself takes (output, images:
+  /// where they are made in threads of their own, how long they were waited for) stands in `seconds` afterwards, in
+  /// place of those stages, and so counts with the next step. The last step is always recorded in full.
   void record(const World& world, int step, Timings& seconds);
 
   /// Writes a checkpoint after step `step`, which has been recorded, if one is due; its seconds count as output. By the
@@ -115,7 +117,8 @@ class Recorder {
   std::int64_t ends_ = -1;                    ///< the last step that run.h5 held when it was opened
   std::vector<std::vector<double>> recorded_; ///< the series that it held
   Clock::time_point next_checkpoint_;
-  /// For images, and for run.h5 and the surface files, which one library writes; null: one thread does all. Last: they use the others.
+  /// For images, and for run.h5 and the surface files, which one library writes; null: one thread does all. Last: they
+  /// use the others.
   std::unique_ptr<WorkThread> image_thread_, file_thread_;
 };
 

@@ -32,8 +32,8 @@ struct Stretch {
 /// Of all copies but those of crumbs, which are rigid.
 Stretch largest_stretch(const Body& body);
 
-/// After the corners followed. Pieces of fewer than eight nodes are left out. Throws NumericalError that names the piece,
-/// its worst copy and its place.
+/// After the corners followed. Pieces of fewer than eight nodes are left out. Throws NumericalError that names the
+/// piece, its worst copy and its place.
 void require_sound_volume(const Body& body, Watch& watch);
 
 /// "particle 12, which rests at (0.1, 0.2, 0.3) m".

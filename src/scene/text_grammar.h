@@ -11,8 +11,8 @@
 
 namespace kerf::scene {
 
-/// `subsection Time`, or as often as one likes, each with a name of its own: `subsection Body liver`. Titled: the name may hold
-/// blanks and dots.
+/// `subsection Time`, or as often as one likes, each with a name of its own: `subsection Body liver`. Titled: the name
+/// may hold blanks and dots.
 enum class Occurrence { once, named, titled };
 
 /// A node of the grammar.

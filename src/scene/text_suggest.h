@@ -8,8 +8,8 @@
 
 namespace kerf::scene {
 
-/// Insertions, deletions, substitutions and exchanges of neighbours between two texts, ignoring case (Damerau 1964; what was
-/// exchanged is not edited again).
+/// Insertions, deletions, substitutions and exchanges of neighbours between two texts, ignoring case (Damerau 1964;
+/// what was exchanged is not edited again).
 int edit_distance(const std::string& a, const std::string& b);
 
 /// The nearest of `names`, also when only the unit in brackets is missing or wrong; nothing when none is near.

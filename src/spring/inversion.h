@@ -6,11 +6,11 @@
 ///
 ///     W = E V / 2 (J_0 - J)^2,  J = det F < J_0 = 1/2,
 ///
-/// a penalty on volume as of Teschner, Heidelberger, Mueller and Gross 2004 (A versatile and robust model for geometrically
-/// complex deformable solids, CGI), asked only where a spring's law has no say any more. F is the mean gradient over the
-/// cube, V its material's volume. Flat cubes get E V / 8, mirrored ones 9/8 E V. The energy is smooth and nothing above half
-/// the volume, so what is said of small strain (mass_spring.h) stays. Twice as much shortens the largest steps of symplectic
-/// Euler by up to a fifth (params/studies/stability.prm).
+/// a penalty on volume as of Teschner, Heidelberger, Mueller and Gross 2004 (A versatile and robust model for
+/// geometrically complex deformable solids, CGI), asked only where a spring's law has no say any more. F is the mean
+/// gradient over the cube, V its material's volume. Flat cubes get E V / 8, mirrored ones 9/8 E V. The energy is smooth
+/// and nothing above half the volume, so what is said of small strain (mass_spring.h) stays. Twice as much shortens the
+/// largest steps of symplectic Euler by up to a fifth (params/studies/stability.prm).
 
 #include "base/loan.h"
 #include "base/vec.h"

@@ -3,8 +3,9 @@
 /// Masses and springs on the corners of a cut body, the cheap baseline (thesis §2.1.5).
 ///
 /// Springs join the corners of a copy along the cube's 12 edges and 12 face diagonals; copies that share two corners
-/// share the spring, and where a cut ends between copies springs of no length tie them (grid/fronts.h). A spring of rest length L and stiffness K has the energy K/2 (l - L)^2 at length l, which is the
-/// force of (2.21). Damping (2.22) is the load's beta: a force -beta K v along each spring, K_d = beta K.
+/// share the spring, and where a cut ends between copies springs of no length tie them (grid/fronts.h). A spring of
+/// rest length L and stiffness K has the energy K/2 (l - L)^2 at length l, which is the force of (2.21). Damping (2.22)
+/// is the load's beta: a force -beta K v along each spring, K_d = beta K.
 ///
 /// A full cube of edge h gets K = E h / 10 along edges and E h / 5 along face diagonals: then uniform strain has the
 /// energy of Hooke's law with Young's modulus E and nu = 1/4 (what central forces between like neighbours can do:

@@ -1,7 +1,7 @@
 #pragma once
 
-/// What the rows of a study choose from: variants, and cases of changes, each with its changes of the scene. The values of a
-/// change's key are cases too (study/ranges.h).
+/// What the rows of a study choose from: variants, and cases of changes, each with its changes of the scene. The values
+/// of a change's key are cases too (study/ranges.h).
 
 #include "scene/parameter_file.h"
 #include "study/plan.h"

@@ -283,7 +283,8 @@ bool is_left_out(const PlannedRow& row, const std::string& path) {
   return false;
 }
 
-/// Whether a key that the case sets is read in the row's scene; told so too where the scene has another fault, which the row tells.
+/// Whether a key that the case sets is read in the row's scene; told so too where the scene has another fault, which
+/// the row tells.
 bool reads(const PlannedRow& row, const PlannedCase& one) {
   try {
     scene::compose(row.scene);

@@ -45,7 +45,8 @@ class Truths {
   std::map<const Section*, Reference> found_;
 };
 
-/// What a choice, or the study, says its answer should be: as a number, or in one of its sections; `otherwise` where it says nothing.
+/// What a choice, or the study, says its answer should be: as a number, or in one of its sections; `otherwise` where it
+/// says nothing.
 Reference said_by(const Plan& plan, const Section& section, const Reference& said, Truths& truths,
                   Reference otherwise) {
   const Section *truth = section.find("Truth"), *form = section.find("Closed form"),

@@ -120,7 +120,8 @@ Displacements printed(const std::vector<std::string>& lines) {
   return found;
 }
 
-/// Columns of fixed width: " -1", ten for the node, twelve for each number, in blocks that begin with " -4  DISP" and end with " -3".
+/// Columns of fixed width: " -1", ten for the node, twelve for each number, in blocks that begin with " -4  DISP" and
+/// end with " -3".
 Displacements stored(const std::vector<std::string>& lines) {
   Displacements found;
   bool is_displacement = false;

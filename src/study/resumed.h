@@ -1,7 +1,7 @@
 #pragma once
 
-/// Studies that go on after a kill: rows of an earlier run are taken as they are, where everything that they depend on is what
-/// it was.
+/// Studies that go on after a kill: rows of an earlier run are taken as they are, where everything that they depend on
+/// is what it was.
 
 #include "base/error.h"
 #include "output/records.h"
@@ -14,13 +14,13 @@
 
 namespace kerf::study {
 
-/// A hash of what the rows of a study depend on: the program, the study's text, the scene of each row with its changes, the
-/// files that these name. Of a file that cannot be read only its name counts: its rows fail.
+/// A hash of what the rows of a study depend on: the program, the study's text, the scene of each row with its changes,
+/// the files that these name. Of a file that cannot be read only its name counts: its rows fail.
 std::string made_of(const output::RunInfo& program, const std::string& study,
                     const std::vector<const scene::SceneText*>& scenes);
 
-/// The rows that a study's file holds; none where there is no file. `read` reads its table. Throws DataError where it cannot
-/// be read, ParameterError where it was not made of `wanted`.
+/// The rows that a study's file holds; none where there is no file. `read` reads its table. Throws DataError where it
+/// cannot be read, ParameterError where it was not made of `wanted`.
 template <class Table>
 auto earlier_rows(const std::filesystem::path& file, Table (*read)(const std::filesystem::path&),
                   const std::string& wanted) {

@@ -7,8 +7,8 @@
 ///   stopped     the run ended with a reason (NumericalError)
 ///   failed      it went on to its end, and is wrong: its energy more than doubled, or its volume is off by more than
 ///               30 % though its energy is gone. A run with exit code 0 that lies
-///   not back    its initial state was inside out or crushed, and it still is
-///   drifted     energy grew by more than 1 % in the mean over the second half of the steps, or momentum changed by more
+///   not back    its initial state was inside out or crushed, and it still is drifted     energy grew by more than 1 %
+///   in the mean over the second half of the steps, or momentum changed by more
 ///               than 1 %: nothing here gives them
 ///   damped out  less than 1e-3 of the energy is left; of equilibria this is what is asked, and they are stable
 ///   stable      none of these
@@ -25,8 +25,8 @@ namespace kerf::study {
 /// One row. Nothing that a run may throw gets out but Interrupted.
 output::StabilityRow watch(const StabilityCase& one, int n_steps);
 
-/// Runs all rows; FOLDER/stability.h5 holds those so far, but for the last second's; `done` is told each row. Those that it holds are
-/// not run again where the study is resumed.
+/// Runs all rows; FOLDER/stability.h5 holds those so far, but for the last second's; `done` is told each row. Those
+/// that it holds are not run again where the study is resumed.
 output::StabilityTable run_stability_study(const StabilityPlan& plan, const std::filesystem::path& folder,
                                            const output::RunInfo& info, output::Earlier earlier,
                                            const std::function<void(const output::StabilityRow&)>& done);

@@ -103,7 +103,8 @@ Answer in_motion(const Task& task, const reference::Problem& problem, const Fine
                                         {task.body.end_time / n_steps, n_steps, task.body.mass_damping}, task.points));
 }
 
-/// Of a body whose error is in proportion to its innermost layer, from the answers with n layers and with n - 1: Richardson's.
+/// Of a body whose error is in proportion to its innermost layer, from the answers with n layers and with n - 1:
+/// Richardson's.
 Answer extrapolated(const Answer& fine, const Answer& coarse) {
   constexpr double factor = layer_ratio / (1 - layer_ratio);
   Answer answer = fine;

@@ -5,13 +5,13 @@
 /// A cut edge gives a cut plane: its edge vertex and the normal of the cutting surface there. Face, inside the body:
 /// (a) one plane, the face's centre projected onto it (a front ends here); two planes, (b) the middle of the Bezier
 /// curve of edge vertices and the planes' intersection where they meet smoothly, (c) that intersection where they are
-/// sharp; (d), (e) later cuts of a face already split project the vertex onto the new planes, within the planes of
-/// each earlier cut. Cell, inside the body: the point nearest its centre that minimises the squared distances to all
-/// planes [GH97]; later cuts of a cell already split project it, in the same way. The skin: the input's planes are
-/// known all at once and give the quadric's minimum; that vertex never moves again (the thesis lets the skin jump:
-/// §2.8). Where blades cut at the skin, a cell is a polyhedron (grid/skeleton.h), and cuts have vertices of their own in
-/// its sides and in the cell, placed in the same way below the skin; in a triangle of the skin halfway between two cuts of
-/// its sides. So a rim runs on the skin, from cut to cut of its segments, and the skin keeps its shape.
+/// sharp; (d), (e) later cuts of a face already split project the vertex onto the new planes, within the planes of each
+/// earlier cut. Cell, inside the body: the point nearest its centre that minimises the squared distances to all planes
+/// [GH97]; later cuts of a cell already split project it, in the same way. The skin: the input's planes are known all
+/// at once and give the quadric's minimum; that vertex never moves again (the thesis lets the skin jump: §2.8). Where
+/// blades cut at the skin, a cell is a polyhedron (grid/skeleton.h), and cuts have vertices of their own in its sides
+/// and in the cell, placed in the same way below the skin; in a triangle of the skin halfway between two cuts of its
+/// sides. So a rim runs on the skin, from cut to cut of its segments, and the skin keeps its shape.
 ///
 /// Departures: the thesis has one vertex a face and component, which cannot lie on the skin and on a cut below it; and
 /// it projects plainly onto the new plane, which would bend an earlier cut that it does not meet at a right angle, and

@@ -12,8 +12,9 @@ namespace kerf::surface {
 
 namespace {
 
-/// Room for a closed surface with so many cut edges, and for some cuts, so that the first ones do not move whole tables.
-/// It has half as many vertices as triangles, by Euler; of four, one is on an edge, two are in faces and one in a cell.
+/// Room for a closed surface with so many cut edges, and for some cuts, so that the first ones do not move whole
+/// tables. It has half as many vertices as triangles, by Euler; of four, one is on an edge, two are in faces and one in
+/// a cell.
 void reserve(Surface& surface, const std::size_t n_cut_edges) {
   constexpr double entries_per_vertex = (2 + 2 * 4 + 8) / 4.0, spare = 1.125;
   const auto n_triangles =

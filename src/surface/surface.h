@@ -7,15 +7,15 @@
 /// place in its copy: linear on an edge, bilinear in a face, trilinear in a cell (§2.4.4, with corners as unknowns
 /// instead of extrapolated frames).
 ///
-/// Where blades have cut at the skin, a cell is a polyhedron with more segments (grid/skeleton.h), to which the same rule
-/// applies: for each cut segment, each of its ends and each of the polyhedron's two sides there, a triangle. The rim is
-/// where they end: on the skin's triangles, which it divides. So the skin keeps its shape, and its parts are those of
-/// the cut.
+/// Where blades have cut at the skin, a cell is a polyhedron with more segments (grid/skeleton.h), to which the same
+/// rule applies: for each cut segment, each of its ends and each of the polyhedron's two sides there, a triangle. The
+/// rim is where they end: on the skin's triangles, which it divides. So the skin keeps its shape, and its parts are
+/// those of the cut.
 ///
-/// A later cut takes no triangle away: a triangle belongs to a cut, and the first piece of a divided triangle of the skin
-/// has the place of the whole. A vertex belongs to a part of a side or cell, and of those that it falls into, the first
-/// keeps the vertex. So an update writes the cells around what is new, and appends. The order of vertices depends on the
-/// sequence of cuts, the surface does not.
+/// A later cut takes no triangle away: a triangle belongs to a cut, and the first piece of a divided triangle of the
+/// skin has the place of the whole. A vertex belongs to a part of a side or cell, and of those that it falls into, the
+/// first keeps the vertex. So an update writes the cells around what is new, and appends. The order of vertices depends
+/// on the sequence of cuts, the surface does not.
 
 #include "base/interpolation.h"
 #include "grid/solid.h"
@@ -48,7 +48,8 @@ struct SurfaceIndex {
   Table<grid::CopyId, std::uint32_t> centres;        ///< of cuts
   grid::SparseIndex<grid::CellId> first_skin_centre; ///< into skin_centres, four a cell: by Skeleton::loop
   std::vector<std::uint32_t> skin_centres;
-  /// In triangles of the skin that are cut: by cell, triangle and the first of its items; and the pieces after the first.
+  /// In triangles of the skin that are cut: by cell, triangle and the first of its items; and the pieces after the
+  /// first.
   std::unordered_map<std::uint64_t, std::uint32_t> in_skin, pieces_of_skin;
   std::unordered_map<std::uint64_t, std::uint32_t>
     centres_of_joined; ///< by cell and lowest item of a part (Cuts::joined)

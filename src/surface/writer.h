@@ -30,9 +30,9 @@ using grid::Solid;
 inline constexpr std::uint32_t unset = Id<void>::no_value;
 enum class Known { kept, renewed }; ///< what a writer does with a vertex that is there already
 
-/// Writes the vertices and triangles of cells. What cells share comes from its edge or face alone: the same bits. A vertex
-/// that belongs to several items follows the copy of the lowest: of one alone but in cells with fronts (grid/fronts.h),
-/// where the surface closes before the front.
+/// Writes the vertices and triangles of cells. What cells share comes from its edge or face alone: the same bits. A
+/// vertex that belongs to several items follows the copy of the lowest: of one alone but in cells with fronts
+/// (grid/fronts.h), where the surface closes before the front.
 class Writer {
  public:
   Writer(const Solid& solid, Surface& surface, SurfaceIndex& index, const Known known)
@@ -128,9 +128,9 @@ class Writer {
     surface_.copies[t] = surface_.copies[t + 1] = copy;
   }
 
-  /// A cell in which blades have cut at the skin, as a polyhedron (grid/skeleton.h): of each cut segment and each of its
-  /// ends, in each of the segment's two sides a triangle (cut, vertex in the side, centre); and the triangles of the
-  /// skin, in pieces where their sides are cut.
+  /// A cell in which blades have cut at the skin, as a polyhedron (grid/skeleton.h): of each cut segment and each of
+  /// its ends, in each of the segment's two sides a triangle (cut, vertex in the side, centre); and the triangles of
+  /// the skin, in pieces where their sides are cut.
   void write_parts(const grid::Segments blades) {
     blades_ = blades;
     for (const CopyId c : solid_.complex.copies_of(cell_))

@@ -42,8 +42,9 @@ std::array<std::uint8_t, 3> to_bytes(const Eigen::Array4f& colour) {
   return {image::to_byte(colour[0]), image::to_byte(colour[1]), image::to_byte(colour[2])};
 }
 
-/// The side of the squares that a triangle is halves of, area for area; of slivers, those that are as long across. Parts
-/// of a triangle with n of them a side are halves of squares n times smaller. The same bits for any order of corners.
+/// The side of the squares that a triangle is halves of, area for area; of slivers, those that are as long across.
+/// Parts of a triangle with n of them a side are halves of squares n times smaller. The same bits for any order of
+/// corners.
 double square_side(const Corners& corners) {
   double longest = 0, twice_area = 0;
   for (int i = 0; i < 3; ++i) {

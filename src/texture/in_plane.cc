@@ -56,8 +56,8 @@ float InPlane::rise(const Eigen::Vector2f& q, const Eigen::Vector2f& d) const {
   return image::sample(height_, q[0] + d[0], q[1] + d[1]) - image::sample(height_, q[0] - d[0], q[1] - d[1]);
 }
 
-/// The part of the plane's lattice around triangles, and where they lie in it: what is within `margin` points of them is
-/// asked for, and windows reach beyond that. Starts at a point that has a blend of its own.
+/// The part of the plane's lattice around triangles, and where they lie in it: what is within `margin` points of them
+/// is asked for, and windows reach beyond that. Starts at a point that has a blend of its own.
 void InPlane::lay_out(const std::span<const Corners> triangles, const double margin) {
   pixel_ = inside_.pixel();
   flat_.resize(triangles.size());

@@ -84,8 +84,8 @@ class Interior {
   std::size_t n_pairs() const;                   ///< of warps
   std::size_t n_closed_cells() const;            ///< that exemplars alone bound: there mean value weights apply
   /// From picture to picture, as points go: a fit, a warp between faces as tabulated, the other fit. Triangles that
-  /// this turns over, two in each pixel of a face, with sides of a thousandth of it: larger ones may lie across a kink of
-  /// a lattice, and seem turned over where nothing is.
+  /// this turns over, two in each pixel of a face, with sides of a thousandth of it: larger ones may lie across a kink
+  /// of a lattice, and seem turned over where nothing is.
   struct Folds {
     std::size_t n_triangles = 0, n_flipped = 0;
   };

@@ -35,9 +35,9 @@ Grey section_in(const Cell& cell, const Chart& chart, const int own) {
   return section;
 }
 
-/// Whether some pixel of a section lies half a pixel away, along the section, from the planes of all half spaces but its
-/// own. Planes that meet in a line leave nothing of each other's sections but that line where another one lies between
-/// them; round-off may give a cell the pixels on it, which are no face.
+/// Whether some pixel of a section lies half a pixel away, along the section, from the planes of all half spaces but
+/// its own. Planes that meet in a line leave nothing of each other's sections but that line where another one lies
+/// between them; round-off may give a cell the pixels on it, which are no face.
 bool has_width(const Grey& section, const Cell& cell, const Chart& chart, const int own) {
   std::vector<HalfSpace> within = cell.halves;
   for (HalfSpace& half : within)

@@ -22,10 +22,10 @@ void for_each_sample(const int n, const Function& f) {
 
 class SamplePoints {
  public:
-  /// Collects those of some triangles, by number, in their order; `corners` and `parts` are those of all. Triangles share
-  /// a corner where theirs are the same to the bit, and the points of a side where both its corners and their parts are
-  /// the same. The bits of a place on a side are the same whichever triangles have it, in whatever order. Memory is kept
-  /// for the next ones.
+  /// Collects those of some triangles, by number, in their order; `corners` and `parts` are those of all. Triangles
+  /// share a corner where theirs are the same to the bit, and the points of a side where both its corners and their
+  /// parts are the same. The bits of a place on a side are the same whichever triangles have it, in whatever order.
+  /// Memory is kept for the next ones.
   void collect(std::span<const std::size_t> triangles, std::span<const Corners> corners,
                std::span<const std::uint16_t> parts);
 

@@ -1,7 +1,7 @@
 #pragma once
 
-/// Pixels over the body's section: those of an exemplar's plane, or others that the section alone decides, so that how a
-/// picture is stored makes no difference to what is found on them.
+/// Pixels over the body's section: those of an exemplar's plane, or others that the section alone decides, so that how
+/// a picture is stored makes no difference to what is found on them.
 
 #include "texture/slice.h"
 
@@ -23,9 +23,9 @@ SectionPlane moved(const SectionPlane& plane, const Vec2& first);
 /// A point given in pixels of `from` [pixels of `plane`].
 Vec2 pixels_of(const SectionPlane& plane, const SectionPlane& from, const Vec2& pixel);
 
-/// Nearly square pixels of nearly the same area in the same plane, from the middle of an outline's box, rows along the direction in
-/// which it is longest (as long all around: along an axis of the body's), seen from a side that the body's axes decide.
-/// Those of a symmetric section are symmetric. `outline` in coordinates of the plane [m].
+/// Nearly square pixels of nearly the same area in the same plane, from the middle of an outline's box, rows along the
+/// direction in which it is longest (as long all around: along an axis of the body's), seen from a side that the body's
+/// axes decide. Those of a symmetric section are symmetric. `outline` in coordinates of the plane [m].
 SectionPlane along_section(const std::vector<Segment>& outline, const SectionPlane& plane, const Mat3& body_axes);
 
 /// A mask on other pixels of its plane, of which as many as cover it.

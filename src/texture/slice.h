@@ -48,8 +48,8 @@ inline double direction_number(const double x, const double y, const int n_direc
   return number >= n_directions ? 0 : number;
 }
 
-/// How far it is from `centre` to the border of what lies inside the slice and the half spaces, in each direction [m]; 0
-/// where there is nothing. Of several borders the one next to `guess` [m] counts, the outermost without guesses.
+/// How far it is from `centre` to the border of what lies inside the slice and the half spaces, in each direction [m];
+/// 0 where there is nothing. Of several borders the one next to `guess` [m] counts, the outermost without guesses.
 std::vector<double> radii(const std::vector<Segment>& slice, const Frame& frame, const std::vector<HalfSpace>& halves,
                           const Vec2& centre, int n_directions, const std::vector<double>& guess = {});
 

@@ -28,17 +28,18 @@ ParameterError refusal(const Exemplar& exemplar, const std::string& key, const s
   return ParameterError(Complaint{.path = key, .value = "exemplar " + exemplar.name, .rule = rule, .remedy = remedy});
 }
 
-/// Where the swept plane sees nothing in a direction, as past the end of the cell, its border stays where the row before
-/// had it. No radius is zero: what would be divided by it lies outside of the body.
+/// Where the swept plane sees nothing in a direction, as past the end of the cell, its border stays where the row
+/// before had it. No radius is zero: what would be divided by it lies outside of the body.
 void complete(std::vector<double>& radii, const std::vector<double>& before, const double least) {
   for (std::size_t k = 0; k < radii.size(); ++k)
     radii[k] = std::max(radii[k] > 0 || before.empty() ? radii[k] : before[k], least);
 }
 
-/// Radii of a border that no ray meets at less than 27 degrees: where it does, and where it jumps from an arm to a bay, a
-/// spiral takes the place of the bay, r ~ exp(-2 angle). So the ratio of two radii changes with the angle by at most its
-/// fourfold, and what is next to each other is drawn apart by at most sqrt(1 + 4^2) times that ratio, also where arms of
-/// two sections do not lie in the same directions. Other borders stay: an ellipse up to 4.2 times as long as wide.
+/// Radii of a border that no ray meets at less than 27 degrees: where it does, and where it jumps from an arm to a bay,
+/// a spiral takes the place of the bay, r ~ exp(-2 angle). So the ratio of two radii changes with the angle by at most
+/// its fourfold, and what is next to each other is drawn apart by at most sqrt(1 + 4^2) times that ratio, also where
+/// arms of two sections do not lie in the same directions. Other borders stay: an ellipse up to 4.2 times as long as
+/// wide.
 std::vector<double> without_jumps(std::vector<double> radii) {
   constexpr double slope = 2;
   const int n = static_cast<int>(radii.size());
@@ -130,7 +131,8 @@ void Source::prepare_turning(const Face& face, const Exemplar& exemplar) {
   outward_.normalize();
 }
 
-/// A plane that turns reaches a point from one side only: what lies beyond the axis would be taken for its mirror image.
+/// A plane that turns reaches a point from one side only: what lies beyond the axis would be taken for its mirror
+/// image.
 void Source::require_one_side(const Face& face, const Exemplar& exemplar, const Chart& chart) const {
   double least = 0;
   for (int r = 0; r < face.pixels.height; ++r)

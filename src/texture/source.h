@@ -5,8 +5,9 @@
 /// The plane of a face is swept through the cell until it contains the point p; then the ray from the swept barycentre
 /// to p is taken back to the face, and the source point divides it in the same ratio between barycentre and boundary.
 /// Distances to the boundary are tabulated by sweep and direction, the boundary being the outermost one where a ray
-/// meets several, without its jumps (source.cc). In between their squares are bilinear: sections of what is round shrink
-/// like the root of what is left of the sweep. Continuous, and exact in the face itself, whatever the table's resolution.
+/// meets several, without its jumps (source.cc). In between their squares are bilinear: sections of what is round
+/// shrink like the root of what is left of the sweep. Continuous, and exact in the face itself, whatever the table's
+/// resolution.
 ///
 /// A face that is one component of several keeps its source points: its boundary is followed from that of the component
 /// itself, and what would lie beside the component, over another one or in a bay, is drawn to its border.
@@ -40,7 +41,8 @@ class Source {
       return {local, (plane_.origin + local[0] * plane_.x + local[1] * plane_.y - p).norm()};
     return {local, std::sqrt(swept.t * swept.t + (local - swept.local).squaredNorm())}; // it has gone along the normal
   }
-  /// The same for eight points, to round-off: of each its coordinates, then those of its source point, and the distance.
+  /// The same for eight points, to round-off: of each its coordinates, then those of its source point, and the
+  /// distance.
   void find(const Lanes* points, Lanes& x, Lanes& y, Lanes& distances) const;
 
  private:

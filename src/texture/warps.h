@@ -3,8 +3,8 @@
 /// Warps between the faces of a cell (thesis §3.4.3.1.1), as tables of where a pixel of one face goes on the others.
 ///
 /// Two faces of a cell are aligned by the rotation that takes the one through the cell into the other, about the line
-/// in which their planes meet, or along the normal where they are parallel; then their boxes are made to match, one axis
-/// being that line, or where there is none the direction in which the two are longest; then features are matched
+/// in which their planes meet, or along the normal where they are parallel; then their boxes are made to match, one
+/// axis being that line, or where there is none the direction in which the two are longest; then features are matched
 /// (warp/match.h), each way: a warp is midway between what one match found and what undoes the other. So how a picture
 /// is stored, and which exemplar stands first, makes no difference but by interpolation.
 

@@ -2,13 +2,13 @@
 
 /// The extended visibility criterion (thesis §2.6.2, §2.6.3, equations 2.38 and 2.39): of the part of a pair's
 /// visibility disk that lies in the body, the share that no face occludes. A mask a pair remembers the closed texels:
-/// those outside of the body and the occluded ones; faces only add to them, so each face is drawn once into each disk it
-/// may occlude, in any order.
+/// those outside of the body and the occluded ones; faces only add to them, so each face is drawn once into each disk
+/// it may occlude, in any order.
 ///
 /// Departures: (2.39) divides by the texels of the whole disk. Where it reaches out of the body no cut occludes it, so
 /// bonds across a cut stayed all along the skin, and an edge crack was held two thirds closed. Here a texel is outside
-/// when the skin occludes it, which §2.7 takes as the first cut; that is looked up when a cut first comes near the pair.
-/// A pair without a texel in the body, across a gap between two parts, keeps its whole disk.
+/// when the skin occludes it, which §2.7 takes as the first cut; that is looked up when a cut first comes near the
+/// pair. A pair without a texel in the body, across a gap between two parts, keeps its whole disk.
 /// The texels of (i, j) and (j, i) lie differently in the same disk, so their weights differ by some texels. Keep one
 /// pair for both where the weights must be the same.
 

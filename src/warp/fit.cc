@@ -37,8 +37,8 @@ Vec2 at(const Curve& curve, const double number) {
   return curve[i] + (place - static_cast<double>(i)) * (curve[(i + 1) % curve.size()] - curve[i]);
 }
 
-/// Numbers of partners once around, of m points, as means over some neighbours: so steps from one point to the next, and
-/// which of two as good ones round-off has taken, do not count.
+/// Numbers of partners once around, of m points, as means over some neighbours: so steps from one point to the next,
+/// and which of two as good ones round-off has taken, do not count.
 std::vector<double> smoothed(const std::vector<int>& partners, const int m) {
   constexpr int n_rounds = 4;
   const std::size_t n = partners.size();

@@ -146,8 +146,8 @@ LatticeMap midway(const LatticeMap& a, const LatticeMap& b) {
   return middle;
 }
 
-/// Of two maps that were found each by itself: themselves, either one with what undoes it, or what lies midway, whichever
-/// costs least. One that has grasped at the wrong feature is so put right by the other.
+/// Of two maps that were found each by itself: themselves, either one with what undoes it, or what lies midway,
+/// whichever costs least. One that has grasped at the wrong feature is so put right by the other.
 BothWays settled(const BothWays& found, const Level& level) {
   const BothWays by_there{found.there, undone(found.there)}, by_back{undone(found.back), found.back};
   const BothWays middle{midway(by_there.there, by_back.there), midway(by_there.back, by_back.back)};

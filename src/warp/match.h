@@ -43,10 +43,10 @@ struct BothWays {
   LatticeMap there, back;
 };
 
-/// The maps from pixels of `a` to pixels of `b` and back over the whole rectangle. On each level both are found, each by
-/// itself; the next one starts from those of them, and of what undoes them, that cost least. No triangle of their lattices
-/// is flipped. Throws ParameterError if the pictures differ in size or are smaller than 4 x 4, or if a pin starts or ends
-/// outside.
+/// The maps from pixels of `a` to pixels of `b` and back over the whole rectangle. On each level both are found, each
+/// by itself; the next one starts from those of them, and of what undoes them, that cost least. No triangle of their
+/// lattices is flipped. Throws ParameterError if the pictures differ in size or are smaller than 4 x 4, or if a pin
+/// starts or ends outside.
 BothWays match(const Picture& a, const Picture& b, const MatchOptions& options);
 
 } // namespace kerf::warp

@@ -1,5 +1,5 @@
-// Between cuts the steps of a run allocate nothing, also while blades move: every intermediate value has its memory from the
-// steps before. And there is not much of it.
+// Between cuts the steps of a run allocate nothing, also while blades move: every intermediate value has its memory
+// from the steps before. And there is not much of it.
 
 #include "base/parallel.h"
 #include "tests/scene/trials.h"

@@ -1,6 +1,6 @@
-// Damaged files: whatever stands in a scene, a study, a mesh or a file of results, the program says what is wrong in a line
-// and ends with exit code 1, 2 or 3, or it works. Never by a signal, an exception that nobody knows, or with no end of
-// memory. `./kerf test -L long -R Mutations` tries 300; every test run some.
+// Damaged files: whatever stands in a scene, a study, a mesh or a file of results, the program says what is wrong in a
+// line and ends with exit code 1, 2 or 3, or it works. Never by a signal, an exception that nobody knows, or with no
+// end of memory. `./kerf test -L long -R Mutations` tries 300; every test run some.
 
 #include "tests/apps/program.h"
 #include "tests/support/vandal.h"
@@ -14,7 +14,8 @@ using support::Vandal;
 
 class Mutations : public Program, public testing::WithParamInterface<int> {
  protected:
-  /// Ends in a known way within some seconds, or ends when it is told to: a number that makes a scene large is no mistake.
+  /// Ends in a known way within some seconds, or ends when it is told to: a number that makes a scene large is no
+  /// mistake.
   void expect_known_end(const Words& arguments, const std::string& what) const {
     const Result result = kerf(arguments, "set -- timeout -k 10 20 \"$0\" \"$@\" && exec \"$@\"");
     EXPECT_EQ(result.signal, 0) << what;

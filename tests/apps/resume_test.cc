@@ -167,8 +167,8 @@ TEST_F(Resume, KeepsWhatIntegratorsRemember) {
   }
 }
 
-/// Killed while a checkpoint is half written, before it is on the disk, before it takes its name, and just after: the one
-/// before serves, or the new one.
+/// Killed while a checkpoint is half written, before it is on the disk, before it takes its name, and just after: the
+/// one before serves, or the new one.
 TEST_F(Resume, AKillInTheMiddleOfACheckpointLeavesTheOneBefore) {
   write("scene.prm", busy_scene("fem"));
   ASSERT_EQ(kerf({"run", "scene.prm", "--output", "whole"}).exit_code, 0) << read_text(folder / "stderr");

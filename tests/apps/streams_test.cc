@@ -1,4 +1,5 @@
-// What stdin, stdout and stderr may be where somebody else starts the program: closed, a pipe that nobody reads, a full disk.
+// What stdin, stdout and stderr may be where somebody else starts the program: closed, a pipe that nobody reads, a full
+// disk.
 
 #include "output/reader.h"
 #include "tests/apps/program.h"

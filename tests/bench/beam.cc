@@ -1,7 +1,7 @@
-/// Implicit Euler on a cantilever of 1 x 0.2 x 0.2 m with its skin at half cells: E = 1e5 Pa, 1000 kg/m^3, g = 0.981 m/s^2,
-/// mass damping 2/s, steps of 1/60 s to 1e-6. Seconds a step (CPU, median) and iterations, for cells over its height and
-/// Poisson's ratio as given: bench_beam CELLS [NU [CUTS [THREADS]]], CUTS = slits into it from above. Then what follows a
-/// cut of its middle layer: the model's update, and by how much the next step takes longer.
+/// Implicit Euler on a cantilever of 1 x 0.2 x 0.2 m with its skin at half cells: E = 1e5 Pa, 1000 kg/m^3, g = 0.981
+/// m/s^2, mass damping 2/s, steps of 1/60 s to 1e-6. Seconds a step (CPU, median) and iterations, for cells over its
+/// height and Poisson's ratio as given: bench_beam CELLS [NU [CUTS [THREADS]]], CUTS = slits into it from above. Then
+/// what follows a cut of its middle layer: the model's update, and by how much the next step takes longer.
 
 #include "base/parallel.h"
 #include "dynamics/implicit_euler.h"

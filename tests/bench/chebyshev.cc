@@ -1,6 +1,6 @@
-/// What deal.II's Chebyshev smoother costs beside the one of fem/level.h, on the same level, with the same product and the
-/// same diagonal blocks: three steps from zero. CPU time, medians of alternating runs: bench_chebyshev CELLS, over an edge
-/// of a cube.
+/// What deal.II's Chebyshev smoother costs beside the one of fem/level.h, on the same level, with the same product and
+/// the same diagonal blocks: three steps from zero. CPU time, medians of alternating runs: bench_chebyshev CELLS, over
+/// an edge of a cube.
 
 #include "base/parallel.h"
 #include "fem/level.h"

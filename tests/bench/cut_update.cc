@@ -1,8 +1,9 @@
 /// What a cut costs by the size of the body, at equal cut area: a blade 16 cubes wide goes 16 cubes deep into boxes of
 /// ever more cells, in steps of 0.9 cubes, as scene/body.cc takes it in, stage by stage; at rest and while the body
 /// drifts and turns with the blade. Cutting has a stage of its own that goes with all corners and not with what is cut,
-/// fitting boxes to them: it is timed on boxes beside the cutter's, and taken off. And what all tables take of memory by the cell. Prints microseconds a touched cell
-/// (a cell around an edge that is cut in the step): CPU time of one thread, stage by stage the best of several runs.
+/// fitting boxes to them: it is timed on boxes beside the cutter's, and taken off. And what all tables take of memory
+/// by the cell. Prints microseconds a touched cell (a cell around an edge that is cut in the step): CPU time of one
+/// thread, stage by stage the best of several runs.
 
 #include "base/parallel.h"
 #include "cut/cutter.h"

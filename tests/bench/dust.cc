@@ -1,7 +1,8 @@
-/// What a step costs of a body that is cut into some 1,000 pieces, over one of the same body whole: all that a run does in a
-/// step but writing, while nothing is being cut. A box hangs from the ceiling, strained by waves of eight cubes, and sways; the other one is cut before by planes. Steps of both are taken in turn. Prints the median of a step's time of both [ms] and of their
-/// ratio, by the processor's clock, one thread; and what the pieces have more of: copies, corners, triangles; and the mean
-/// iterations of the linear solver in a step.
+/// What a step costs of a body that is cut into some 1,000 pieces, over one of the same body whole: all that a run does
+/// in a step but writing, while nothing is being cut. A box hangs from the ceiling, strained by waves of eight cubes,
+/// and sways; the other one is cut before by planes. Steps of both are taken in turn. Prints the median of a step's
+/// time of both [ms] and of their ratio, by the processor's clock, one thread; and what the pieces have more of:
+/// copies, corners, triangles; and the mean iterations of the linear solver in a step.
 ///
 ///     bench_dust [MIX [BACKEND [STEPS [KEY=VALUE ...]]]]
 ///

@@ -3,10 +3,11 @@
 ///     bench_texture_error [brain|facing|middles|onion|wood|citrus|all] [FOLDER [STIFFNESS [PIXELS LEVELS [CELLS]]]]
 ///
 /// A brain of which one of nine sections is left out at a time and painted from the others; and solids whose colour is
-/// known everywhere, painted on planes between 2 to 9 parallel exemplars. By method: PSNR [dB] and SSIM against
-/// the truth, distance of the histograms of luminance, and the power of octaves (wavelengths around 4, 8, 16, 32
-/// pixels) over the truth's; then, as measures of sharpness, the distance of the histogram from that of the exemplars
-/// themselves, and power over theirs. FOLDER gets pictures: truth, nearest, blend, first order, exact inverse, small features.
+/// known everywhere, painted on planes between 2 to 9 parallel exemplars. By method: PSNR [dB] and SSIM against the
+/// truth, distance of the histograms of luminance, and the power of octaves (wavelengths around 4, 8, 16, 32 pixels)
+/// over the truth's; then, as measures of sharpness, the distance of the histogram from that of the exemplars
+/// themselves, and power over theirs. FOLDER gets pictures: truth, nearest, blend, first order, exact inverse, small
+/// features.
 
 #include "base/parallel.h"
 #include "image/compare.h"

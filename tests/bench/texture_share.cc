@@ -1,10 +1,10 @@
 /// What colours cost while a liver is cut: params/liver.prm with three sections of a brain drawn to its own, at 1 mm,
 /// without and with small features and relief. Share of colour in the time of the frames that reveal faces: the mean of
-/// all their time, the median and the worst of them; and what the worst one filled. Nothing is written or drawn. The same
-/// steps are run several times, and of each frame the shortest times count: what else the machine does makes them longer.
-/// Times are the processor's: colour is timed on an atlas of our own, which is filled once more when the next frame has
-/// been: what it reads is then as cold as it was. Scenes that are named are measured instead, with the insides that they
-/// have.
+/// all their time, the median and the worst of them; and what the worst one filled. Nothing is written or drawn. The
+/// same steps are run several times, and of each frame the shortest times count: what else the machine does makes them
+/// longer. Times are the processor's: colour is timed on an atlas of our own, which is filled once more when the next
+/// frame has been: what it reads is then as cold as it was. Scenes that are named are measured instead, with the
+/// insides that they have.
 ///
 ///     bench_texture_share [THREADS [RUNS [SCENE...]]]
 

@@ -18,11 +18,12 @@ std::string name_of(const testing::TestParamInfo<std::string>& backend) {
 /// Euler never adds. A later cut shifts the vertices of earlier ones in the same cells, and with them material from one
 /// copy to another: momentum goes with it, and where the other copy's corners had hardly any mass before and are fast
 /// or far away, a stroke adds energy: in 10^4 strokes .1 % of the first at most with elements, 2 % with shape matching,
-/// whose splinters may go with another node then. Phyxels of a piece that lose their last bond get a weak one back, which
-/// may be stretched by then, and throws a phyxel away when the piece goes on to fall apart: 40 % in the worst stroke, though
-/// never more energy than at first. Strokes end in the skin too, and so many pieces of it are left without a node:
-/// up to three for each node. A crumb weighs what its material does, which is not quite what its phyxels stand for: masses
-/// of points change by up to 10 %.
+/// whose splinters may go with another node then. Phyxels of a piece that lose their last bond get a weak one back,
+/// which may be stretched by then, and throws a phyxel away when the piece goes on to fall apart: 40 % in the worst
+/// stroke, though never more energy than at first. Strokes end in the skin too, and so many pieces of it are left
+/// without a node:
+/// up to three for each node. A crumb weighs what its material does, which is not quite what its phyxels stand for:
+/// masses of points change by up to 10 %.
 void expect_carried_on(const Ground& ground, const std::string& backend) {
   EXPECT_TRUE(ground.is_finite);
   EXPECT_LE(ground.most_energy, backend == "lattice" ? 1.1 : 1.0001);

@@ -105,7 +105,8 @@ std::set<grid::CellId> cells_with_fronts(const Body& body) {
   return cells;
 }
 
-/// Blades that stop in the body, turn, come back and meet what others have cut, slow and fast, while it rests or swings.
+/// Blades that stop in the body, turn, come back and meet what others have cut, slow and fast, while it rests or
+/// swings.
 TEST(Advance, LeavesThePiecesMassAndSurfaceAsTheyWere) {
   support::Random random(7);
   std::array<std::size_t, 2> n_fronts{};
@@ -145,8 +146,8 @@ Blade winding(support::Random& random) {
   return blade;
 }
 
-/// What fronts had divided ahead of a blade is joined where the blade has gone on otherwise: copies, corners and surface of
-/// a completed cut are those without fronts.
+/// What fronts had divided ahead of a blade is joined where the blade has gone on otherwise: copies, corners and
+/// surface of a completed cut are those without fronts.
 TEST(Advance, LeavesACompletedCutAsItIsWithoutFronts) {
   support::Random random(11);
   std::size_t n_begun = 0, n_lapsed = 0, n_lapsed_copies = 0, n_left = 0, n_same = 0;

@@ -10,8 +10,8 @@
 
 namespace kerf::cut {
 
-/// Volumes of what planes leave of a solid whose skin is closed, ascending [m^3]: by corefinement with each plane in turn.
-/// Nothing where the skin intersects itself at a plane.
+/// Volumes of what planes leave of a solid whose skin is closed, ascending [m^3]: by corefinement with each plane in
+/// turn. Nothing where the skin intersects itself at a plane.
 std::optional<std::vector<double>> volumes_between(const geometry::TriangleMesh& skin,
                                                    const std::vector<support::Plane>& planes);
 

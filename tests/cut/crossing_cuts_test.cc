@@ -171,8 +171,8 @@ TEST(AtSkin, TheOrderOfThreeCutsLeavesTheSameNodesTogether) {
   EXPECT_EQ(n_bridged, 0);
 }
 
-/// Pairs of copies in one cell, or in two with a common face, that lie on the same sides of all planes that have cut, and
-/// yet in two pieces: material of one piece for a Boolean, as what lies between planes is convex.
+/// Pairs of copies in one cell, or in two with a common face, that lie on the same sides of all planes that have cut,
+/// and yet in two pieces: material of one piece for a Boolean, as what lies between planes is convex.
 int n_parted_though_one(const Patient& patient, const std::vector<support::Plane>& planes) {
   const Body& body = patient.body;
   const auto pieces = grid::pieces(body.complex);
@@ -197,9 +197,9 @@ int n_parted_though_one(const Patient& patient, const std::vector<support::Plane
 }
 
 /// Two planes that cross at a small angle, by blades and at once: four pieces. Where the wedge between them is thinner
-/// than a cube, nodes lie in it here and there: those of one cell hang together, and of cells with a common face, all of
-/// them; others, where the wedge passes through a cell in which it has neither a node nor a point of the skin, may be
-/// splinters of it.
+/// than a cube, nodes lie in it here and there: those of one cell hang together, and of cells with a common face, all
+/// of them; others, where the wedge passes through a cell in which it has neither a node nor a point of the skin, may
+/// be splinters of it.
 class SmallAngle : public testing::TestWithParam<int> {};
 
 TEST_P(SmallAngle, LeavesFourPiecesAndFewSplinters) {
@@ -270,8 +270,8 @@ std::size_t n_glued_by_intervals(const Body& body) {
   return n;
 }
 
-/// Whether cuts end at faces or inside cells: complex and surface, which follow a blade that crosses an earlier cut, are
-/// in every 16th step those that are built from what is cut.
+/// Whether cuts end at faces or inside cells: complex and surface, which follow a blade that crosses an earlier cut,
+/// are in every 16th step those that are built from what is cut.
 TEST(AtSkin, WhatASmallAngleJoinsIsAsBuilt) {
   Random random(112);
   std::size_t n_joined = 0, n_across_faces = 0;
@@ -308,8 +308,8 @@ struct Falling {
     walls = {low + 1.5 * h, high - 1.5 * h};
   }
 
-  /// By so much of a cube in each step, and then some steps of rest. `drawn`: how far the body is drawn along in each step
-  /// until then [m].
+  /// By so much of a cube in each step, and then some steps of rest. `drawn`: how far the body is drawn along in each
+  /// step until then [m].
   void pass(const Blade& blade, const int n_steps, const double step, int n_rest = 0,
             const Vec3& drawn = Vec3::Zero()) {
     Cutter cutter = patient.cutter(blade.label);
@@ -374,7 +374,8 @@ int n_steps_of(const Blade& blade, const double step) {
   return static_cast<int>(std::ceil(blade.key_frames[1].position.norm() / (step * h)));
 }
 
-/// What a slow blade frees before it has passed a cell may have fallen by some cubes when that tells what it belongs to.
+/// What a slow blade frees before it has passed a cell may have fallen by some cubes when that tells what it belongs
+/// to.
 TEST_P(SmallAngle, LeavesFourPiecesThoughTheyFallMeanwhile) {
   Random random(113);
   int n_bodies = 0, n_of_four = 0, n_as_built = 0;
@@ -397,7 +398,8 @@ TEST_P(SmallAngle, LeavesFourPiecesThoughTheyFallMeanwhile) {
 INSTANTIATE_TEST_SUITE_P(Short, SmallAngle, testing::Values(8));
 INSTANTIATE_TEST_SUITE_P(Long, SmallAngle, testing::Values(80));
 
-/// A blade that rests has come as far as it does: no cell waits for it, whether it is still in the body or just beside it.
+/// A blade that rests has come as far as it does: no cell waits for it, whether it is still in the body or just beside
+/// it.
 TEST(RestingBlades, LeaveNoCellWaiting) {
   Random random(114);
   for (int i = 0; i < 4; ++i)
@@ -417,8 +419,8 @@ TEST(RestingBlades, LeaveNoCellWaiting) {
 
 class RestingBlade : public testing::TestWithParam<int> {};
 
-/// A blade stops less than a cube beside the body, whose pieces then fall past it; or it rests all the time, and the body
-/// is drawn over it.
+/// A blade stops less than a cube beside the body, whose pieces then fall past it; or it rests all the time, and the
+/// body is drawn over it.
 TEST_P(RestingBlade, LeavesFourPieces) {
   constexpr double step = 0.2;
   Random random(115);

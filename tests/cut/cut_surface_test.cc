@@ -291,8 +291,8 @@ TEST(CutSurface, DiscsMakeCracks) {
   }
 }
 
-/// A rectangle cuts the edges that the disc around it cuts and that lie between its sides, as the two triangles that fill it
-/// do, and ends at its rim.
+/// A rectangle cuts the edges that the disc around it cuts and that lie between its sides, as the two triangles that
+/// fill it do, and ends at its rim.
 TEST(CutSurface, RectanglesMakeCracks) {
   constexpr double h = 1. / 32, a = 0.5, b = 0.3;
   Random random(47);

@@ -1,6 +1,6 @@
-/// Surfaces of bodies that planes have cut, above all where the cuts meet the skin: vertices of a cut lie on its plane, no
-/// triangle is without area, none is long, no vertex holds two fans of triangles together; needles are counted. The long test
-/// takes all closed meshes of the folder that KERF_STROKE_MESHES names:
+/// Surfaces of bodies that planes have cut, above all where the cuts meet the skin: vertices of a cut lie on its plane,
+/// no triangle is without area, none is long, no vertex holds two fans of triangles together; needles are counted. The
+/// long test takes all closed meshes of the folder that KERF_STROKE_MESHES names:
 ///
 ///   KERF_STROKE_MESHES=folder ./kerf test -L long -R Rims
 

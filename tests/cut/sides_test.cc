@@ -1,5 +1,5 @@
-/// The volumes on both sides of a plane that cuts a body converge with order 2 to those of the exact Boolean of the mesh
-/// that was read, whatever the grid makes of its skin. The long test takes all closed meshes of the folder that
+/// The volumes on both sides of a plane that cuts a body converge with order 2 to those of the exact Boolean of the
+/// mesh that was read, whatever the grid makes of its skin. The long test takes all closed meshes of the folder that
 /// KERF_STROKE_MESHES names:
 ///
 ///   KERF_STROKE_MESHES=folder ./kerf test -L long -R Sides
@@ -16,7 +16,8 @@
 namespace kerf::cut {
 namespace {
 
-/// Root mean square over lattice offsets of the error on one side, and of that on the other; parts of the volume of all.
+/// Root mean square over lattice offsets of the error on one side, and of that on the other; parts of the volume of
+/// all.
 double error(const geometry::TriangleMesh& mesh, const support::Plane& plane, const double below, const double all,
              const double h, support::Random& random) {
   constexpr int n_offsets = 6;

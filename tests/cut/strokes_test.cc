@@ -151,8 +151,8 @@ Case make_case(const geometry::TriangleMesh& mesh, const Tool tool, const unsign
 
 /// Bodies of 8 to 14 cubes, blades that advance by .05 to 10 cubes a step, one to three at once. One leaves all pieces
 /// from 1e-3 cubes on, and so do scissors; a bent one those from a tenth of a cube on, as its bend may pass between two
-/// smaller ones within a cell. Several, in planes that cross, may leave a splinter more or less where a cell is in all of
-/// them, since a segment keeps its first cut, and more than one where a wedge is thinner than a cube: they leave all
+/// smaller ones within a cell. Several, in planes that cross, may leave a splinter more or less where a cell is in all
+/// of them, since a segment keeps its first cut, and more than one where a wedge is thinner than a cube: they leave all
 /// pieces from half a cube on, and seldom another one.
 void stroke(const geometry::TriangleMesh& mesh, const std::string& name, const Tool tool, const unsigned seed,
             Counted& counted) {
@@ -186,8 +186,8 @@ void stroke(const geometry::TriangleMesh& mesh, const std::string& name, const T
   std::cout << std::endl;
 }
 
-/// A tip of the wedge between two of three blades, without material, is parted from the wedge by one of them and from the
-/// next piece by the other: it hangs on the wedge, on whose side of all cuts it lies, and not on both.
+/// A tip of the wedge between two of three blades, without material, is parted from the wedge by one of them and from
+/// the next piece by the other: it hangs on the wedge, on whose side of all cuts it lies, and not on both.
 TEST(ThreeBlades, LeaveNoBridgeAtATip) {
   const auto liver = unit_mesh(support::checkout() + "/params/meshes/liver_25k.off");
   ASSERT_TRUE(liver);

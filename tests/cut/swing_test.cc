@@ -1,6 +1,6 @@
-/// A blade that saws its way through a body that sags and swings leaves no crumb that the stroke, pulled back to rest, did
-/// not cut free, and parts the body as that does. The long test takes more bodies, and all closed meshes of the folder
-/// that KERF_STROKE_MESHES names:
+/// A blade that saws its way through a body that sags and swings leaves no crumb that the stroke, pulled back to rest,
+/// did not cut free, and parts the body as that does. The long test takes more bodies, and all closed meshes of the
+/// folder that KERF_STROKE_MESHES names:
 ///
 ///   KERF_STROKE_MESHES=folder ./kerf test -L long -R Swing
 

@@ -29,7 +29,8 @@ TEST(ImplicitEuler, IsItsOwnFormula) {
   }
 }
 
-/// Free fall is guessed exactly from the second step on, and rest under a load from the first: nothing is left to solve.
+/// Free fall is guessed exactly from the second step on, and rest under a load from the first: nothing is left to
+/// solve.
 TEST(ImplicitEuler, FallsAndRestsWithoutIterations) {
   for (const double anchor : {0.0, 40.0}) {
     Chain model({1, 2, 3}, {.anchor = anchor, .neighbour = 500});

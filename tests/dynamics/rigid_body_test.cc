@@ -99,7 +99,8 @@ TEST(RigidBody, FliesByTheClosedForm) {
     }
 }
 
-/// Masses in one place have an inertia of round-off about their mean, and turn about nothing; those in a row not about it.
+/// Masses in one place have an inertia of round-off about their mean, and turn about nothing; those in a row not about
+/// it.
 TEST(AngularVelocity, KnowsNoAxisWithoutInertia) {
   const Vec3 place(0.1, 0.7, 0.3), along = Vec3(1, 2, -2) / 3, L(1e-3, -2e-3, 5e-4);
   for (const double length : {0.0, 0.2}) {

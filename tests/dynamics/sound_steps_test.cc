@@ -290,8 +290,8 @@ TEST(ImplicitEuler, DoesNotStretchWhatTurns) {
   EXPECT_NEAR(length_after(Trust::tested), 2, 0.02);
 }
 
-/// The same beside a bar whose ends fly at each other, of which one correction is right: nothing joins the two, and what the
-/// first one lacks is little beside what the second one does.
+/// The same beside a bar whose ends fly at each other, of which one correction is right: nothing joins the two, and
+/// what the first one lacks is little beside what the second one does.
 TEST(ImplicitEuler, JudgesEachPieceByItself) {
   const auto length_after = [](const std::vector<std::uint32_t>& piece) {
     Truss bars({Vec3(-1, 0, 0), Vec3(1, 0, 0), Vec3(0, 0, 0), Vec3(1e4, 0, 0)}, {{0, 1}, {2, 3}}, 1e6);
@@ -308,8 +308,8 @@ TEST(ImplicitEuler, JudgesEachPieceByItself) {
 }
 
 /// Masses fly into springs that stiffen by c |d|^2 and that their tangents do not see: half the work of what one
-/// correction leaves out of balance, c (dt v)^4, is energy from nothing. Going on takes it back, and costs nothing where
-/// the tangent was right.
+/// correction leaves out of balance, c (dt v)^4, is energy from nothing. Going on takes it back, and costs nothing
+/// where the tangent was right.
 TEST(ImplicitEuler, GivesNoEnergyByAnUnfinishedSolution) {
   const auto gain = [](const double cubic, const Trust trust) {
     Chain model({1, 1}, {.anchor = 1e-3, .cubic = cubic});

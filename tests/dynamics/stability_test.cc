@@ -85,8 +85,8 @@ State let_go(Stepper& stepper, const Chain& model, const double dt) {
   return state;
 }
 
-/// What no step resolves comes to its balance and is as slow as steps let it be. With the acceleration of the balance of
-/// forces it swung by 1 m and ran at its own 1,000 m/s.
+/// What no step resolves comes to its balance and is as slow as steps let it be. With the acceleration of the balance
+/// of forces it swung by 1 m and ran at its own 1,000 m/s.
 TEST(Newmark, WhatACutLetsGoDoesNotRing) {
   constexpr double frequency = 1e3, dt = 0.02;
   for (const double rho : {-1.0, 0.8, 1.0}) { // -1: Newmark's
@@ -101,7 +101,8 @@ TEST(Newmark, WhatACutLetsGoDoesNotRing) {
   }
 }
 
-/// What steps resolve moves with an error of second order, and keeps its energy even if something is cut in each of them.
+/// What steps resolve moves with an error of second order, and keeps its energy even if something is cut in each of
+/// them.
 TEST(Newmark, WhatACutLetsGoSwingsAsItShould) {
   constexpr double frequency = 3, end = 2;
   Chain model({1}, {.anchor = frequency * frequency});

@@ -55,8 +55,8 @@ std::vector<std::uint32_t> places(const Batching& batching, const std::uint32_t 
   return all;
 }
 
-/// A copy more, and a partial cube that becomes full: of that chunk alone is anything made anew, and all lanes hold their elements,
-/// those beside too.
+/// A copy more, and a partial cube that becomes full: of that chunk alone is anything made anew, and all lanes hold
+/// their elements, those beside too.
 TEST(Batches, OfOtherChunksStayWhereTheyAre) {
   const material::Elastic material{.density = 1000, .youngs_modulus = 1e5, .poissons_ratio = 0.3};
   RowOfCubes row;

@@ -23,7 +23,8 @@ Matrix24 by_quadrature(const std::vector<WeightedPoint<Vec3>>& rule, const doubl
 /// Both parts before they are kept in single precision.
 Matrix24 in_double(const Moments& moments, const double h, const Strain strain = Strain::trilinear) {
   const Centred positive = centred(without_negative_squares(moments));
-  return h * (hourglass_stiffness(positive, rubber, strain) + mean_stiffness(moments[0], mean_gradients(centred(moments)), rubber));
+  return h * (hourglass_stiffness(positive, rubber, strain) +
+              mean_stiffness(moments[0], mean_gradients(centred(moments)), rubber));
 }
 
 const std::vector<Sample>& samples() {

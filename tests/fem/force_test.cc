@@ -282,8 +282,8 @@ TEST(Mass, OfVolumeFractionsIsTheOctants) {
   }
 }
 
-/// A velocity field linear in X has twice its kinetic energy in p^T M p, exact for every shape of the material that is not
-/// folded (surface/fold.h), and rows sum to the lumped mass.
+/// A velocity field linear in X has twice its kinetic energy in p^T M p, exact for every shape of the material that is
+/// not folded (surface/fold.h), and rows sum to the lumped mass.
 TEST(Mass, ConsistentOneIntegratesLinearFields) {
   Draw draw(70);
   Body body = make_block({2, 2, 2}, 0.2, draw, {0.2, 0.8});
@@ -313,8 +313,8 @@ TEST(Mass, ConsistentOneIntegratesLinearFields) {
   EXPECT_LT(n_folded, 0.05 * model.n_elements());
 }
 
-/// Lumped masses and their coupling, element by element against the matrices themselves; as a product and as entries; built
-/// at once and after cuts.
+/// Lumped masses and their coupling, element by element against the matrices themselves; as a product and as entries;
+/// built at once and after cuts.
 TEST(Mass, CouplingMakesTheConsistentMatrixOfTheLumpedOne) {
   Draw draw(71);
   Body body = make_block({3, 2, 3}, 0.2, draw, {0.2, 0.8});

@@ -252,8 +252,8 @@ TEST(GhostPenalty, SpectraDoNotDependOnWhereACutLies) {
   EXPECT_GT(spectra_of(body, 0).frequency, 1e3);
 }
 
-/// The penalty falls by a factor for each copy that lies between it and a well-filled one, and not as the mass there does:
-/// a far corner that nothing holds would swing until its copy is inside out.
+/// The penalty falls by a factor for each copy that lies between it and a well-filled one, and not as the mass there
+/// does: a far corner that nothing holds would swing until its copy is inside out.
 TEST(GhostPenalty, HoldsCornersFarFromWellFilledCopies) {
   for (const Family& family : families) {
     support::Body body = family.body(1e-12);

@@ -13,8 +13,8 @@
 namespace kerf::fem {
 namespace {
 
-/// 8 x 8 x 8 cubes, each with material of its own, of which one changes: one of the 64 coarse elements is summed anew, and all
-/// are what they are without those before.
+/// 8 x 8 x 8 cubes, each with material of its own, of which one changes: one of the 64 coarse elements is summed anew,
+/// and all are what they are without those before.
 TEST(LevelElements, TakeOverWhatHasNotChanged) {
   constexpr int n = 8;
   Draw draw(353);

@@ -259,8 +259,8 @@ TEST(Multigrid, KnowsSkinsThatAreHeld) {
   EXPECT_LE(counts[2], 12);
 }
 
-/// A block of which more and more edges are cut, three tenths of them after two rounds, until it is dust: random cuts leave
-/// a sponge, which coarse cubes know less of than of a body that a blade has cut.
+/// A block of which more and more edges are cut, three tenths of them after two rounds, until it is dust: random cuts
+/// leave a sponge, which coarse cubes know less of than of a body that a blade has cut.
 TEST(Multigrid, SeesCutsOnEveryLevel) {
   std::vector<int> counts;
   Draw draw(330);
@@ -395,7 +395,8 @@ TEST(Multigrid, HalvesKnowNothingOfEachOther) {
   EXPECT_GT(here, 0);
 }
 
-/// A disc whose front lies inside cells, most of them hardly passed: ties as stiff as the cells that they hold together.
+/// A disc whose front lies inside cells, most of them hardly passed: ties as stiff as the cells that they hold
+/// together.
 TEST(Multigrid, KnowsTies) {
   std::array<int, 2> counts{};
   for (const cut::Fronts fronts : {cut::Fronts::at_faces, cut::Fronts::inside_cells}) {

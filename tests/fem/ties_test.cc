@@ -66,7 +66,8 @@ TEST(Ties, PullByTheGradientOfTheirEnergy) {
   EXPECT_NEAR(sum, 0, 1e-12 * trace); // rigid translations cost nothing
 }
 
-/// What is tied hangs together, so all of it is in a crumb or nothing: and a crumb is rigid. Its corners have no number.
+/// What is tied hangs together, so all of it is in a crumb or nothing: and a crumb is rigid. Its corners have no
+/// number.
 TEST(Ties, OfACrumbAreNone) {
   support::Body body = support::with_copies(support::with_placed_skin(support::block({12, 6, 6})));
   cut::Cutter cutter(2, cut::Release::queued, cut::Fronts::inside_cells);

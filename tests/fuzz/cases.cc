@@ -107,8 +107,8 @@ void require_on_plane(const Subject& subject, const cut::Plane& plane, const std
   }
 }
 
-/// Where nothing had been cut before, and no shaving stays where a folded body lets the plane pass twice (cut/shreds.h), a
-/// plane leaves no nodes joined across it: not by edges, nor by the skin.
+/// Where nothing had been cut before, and no shaving stays where a folded body lets the plane pass twice
+/// (cut/shreds.h), a plane leaves no nodes joined across it: not by edges, nor by the skin.
 void require_parted(const Subject& subject, const cut::Plane& plane) {
   const Items& items = subject.specimen.items;
   constexpr std::int8_t unknown = 0, above = 1, below = 2, both = 3;

@@ -28,8 +28,8 @@ struct Outcome {
   std::uint64_t digest = 0; ///< of all that came out, bit by bit
 };
 
-/// Draws a specimen and runs the case on it. Whatever is thrown is a failure, by `judge` too, which sees what is left of
-/// the body in the end.
+/// Draws a specimen and runs the case on it. Whatever is thrown is a failure, by `judge` too, which sees what is left
+/// of the body in the end.
 Outcome run(const Case& one, const std::vector<Specimen>& specimens, Tally& tally,
             const std::function<void(const grid::Solid&)>& judge = {});
 

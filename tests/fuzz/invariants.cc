@@ -192,8 +192,8 @@ void require_pieces(const Items& items, const grid::Solid& solid, const HeldByCe
     complain("the number of pieces is wrong");
 }
 
-/// Item by item: the copies on both sides of a face that hold an item of it are one along the whole face; and where cuts
-/// cross those that hold the same interval.
+/// Item by item: the copies on both sides of a face that hold an item of it are one along the whole face; and where
+/// cuts cross those that hold the same interval.
 Links glued_slots(const Items& items, const grid::Solid& solid, const HeldByCell& held) {
   Links links;
   for (const CellId below : ids<CellId>(solid.grid.n_cells()))

@@ -24,9 +24,9 @@ class Violation : public std::runtime_error {
 /// corners are the slots that gluing joins, no more and no fewer.
 void require_sound_complex(const grid::Solid& solid, const Items& items);
 
-/// Every corner has one parent, whatever copy is asked, an instance of the same node, or several where copies are joined;
-/// real corners have real ones. A copy comes from that which had its items, or the nodes under points of the skin that
-/// are new. Returns which corners before went on together.
+/// Every corner has one parent, whatever copy is asked, an instance of the same node, or several where copies are
+/// joined; real corners have real ones. A copy comes from that which had its items, or the nodes under points of the
+/// skin that are new. Returns which corners before went on together.
 UnionFind require_sound_parents(const grid::CellComplex& before, const grid::CellComplex& after,
                                 const Table<grid::CornerId, grid::CornerId>& parents);
 

@@ -40,8 +40,8 @@ bool is_cut_at_skin(const grid::Solid& solid, const Items& items, grid::CellId c
 /// Of all segments of a body, of one cell, that are not cut.
 ItemLinks links(const grid::Solid& solid, const Items& items);
 ItemLinks links(const grid::Solid& solid, const Items& items, grid::CellId cell);
-/// Of what hangs together across the cell's upper face along an axis: parts to which the same interval of a segment there
-/// belongs. An item of the cell, and one of the cell above.
+/// Of what hangs together across the cell's upper face along an axis: parts to which the same interval of a segment
+/// there belongs. An item of the cell, and one of the cell above.
 ItemLinks links_above(const grid::Solid& solid, const Items& items, grid::CellId cell, int axis);
 
 } // namespace kerf::fuzz

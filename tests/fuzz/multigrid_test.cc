@@ -38,8 +38,8 @@ class Judge {
       blocks_[i] += mass_factor_ * model_.lumped_mass()[i] * Mat3::Identity();
   }
 
-  /// Iterations to 1e-6; none where the body is so small, or so much dust, that there is no multigrid. Throws for what is
-  /// not symmetric or not positive.
+  /// Iterations to 1e-6; none where the body is so small, or so much dust, that there is no multigrid. Throws for what
+  /// is not symmetric or not positive.
   std::optional<int> iterations() {
     dynamics::Preconditioner* const own =
       model_.preconditioner({mass_factor_, 1, model_.lumped_mass(), trace_, {}, constraints_});

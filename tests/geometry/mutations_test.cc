@@ -1,4 +1,5 @@
-// Damaged meshes in this very process, so that the sanitizers see it: each is read, or refused with a word about its file.
+// Damaged meshes in this very process, so that the sanitizers see it: each is read, or refused with a word about its
+// file.
 
 #include "base/error.h"
 #include "geometry/shapes.h"

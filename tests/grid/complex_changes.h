@@ -24,7 +24,8 @@ inline CopyId copy_before(const Body& body, const CellComplex& before, const Cop
 
 /// One parent a corner, an instance of the same node, whichever copy is asked; real stays real; pieces only split; what
 /// is not named as changed has not.
-inline void expect_change(const Body& body, const CellComplex& before, const CellComplex& after, const CutChange& change) {
+inline void expect_change(const Body& body, const CellComplex& before, const CellComplex& after,
+                          const CutChange& change) {
   ASSERT_EQ(change.n_copies_before, before.n_copies());
   ASSERT_EQ(change.n_corners_before, before.n_corners());
   ASSERT_EQ(change.parents.size(), after.n_corners() - before.n_corners());

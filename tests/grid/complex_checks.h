@@ -138,6 +138,8 @@ inline void expect_pieces_of_material(const Body& body, const CellComplex& compl
 }
 
 /// Built again, and up to names after an update.
-inline void expect_same(const CellComplex& a, const CellComplex& b) { ASSERT_TRUE(support::renaming(a, b).has_value()); }
+inline void expect_same(const CellComplex& a, const CellComplex& b) {
+  ASSERT_TRUE(support::renaming(a, b).has_value());
+}
 
 } // namespace kerf::grid

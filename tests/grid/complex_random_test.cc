@@ -1,5 +1,5 @@
-/// The complex of copies against a slow one made from the definitions of grid/complex.h, built and brought up to date, on
-/// random cut sets and on embedded bodies.
+/// The complex of copies against a slow one made from the definitions of grid/complex.h, built and brought up to date,
+/// on random cut sets and on embedded bodies.
 
 #include "cut/embed.h"
 #include "geometry/solid.h"

@@ -35,8 +35,8 @@ TEST(Complex, OfAnUncutBodyIsItsGrid) {
 }
 
 TEST(Complex, HasTwoCopiesAtTheFaceOfAFront) {
-  // Four nodes in a ring, its lower x edge cut, and the skin around that: the cell through the ring holds one component,
-  // the one below it two.
+  // Four nodes in a ring, its lower x edge cut, and the skin around that: the cell through the ring holds one
+  // component, the one below it two.
   Body body = support::block({2, 1, 2});
   body.cuts.add(body.grid, {*body.grid.find_edge({1, 1, 1}, 0), 0.5, Vec3::UnitX(), 1});
   for (const SkinCut& cut : support::plane_skin_cuts(body, {Vec3::UnitX(), 1.5}))

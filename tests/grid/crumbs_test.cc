@@ -217,8 +217,8 @@ CutChange join_interval(Body& body, const CopyId c, const int face) {
   return join(body, body.complex.copies[c].cell, {body.complex.copies[c].items(), of_line & -of_line});
 }
 
-/// Cuts make crumbs, and joins take them back: what comes from one crumb alone stays one, all else is what the definition
-/// names. Who follows hears of each copy that was in a crumb, or is now.
+/// Cuts make crumbs, and joins take them back: what comes from one crumb alone stays one, all else is what the
+/// definition names. Who follows hears of each copy that was in a crumb, or is now.
 TEST(Crumbs, BecomeMaterialAgainWhereTheyAreJoined) {
   std::size_t n_ended = 0, n_of_two = 0, n_stay = 0;
   for (unsigned seed = 1; seed <= 3; ++seed) {
@@ -279,7 +279,8 @@ TEST(Crumbs, BecomeMaterialAgainWhereTheyAreJoined) {
   EXPECT_GT(n_stay, 50u);
 }
 
-/// An interval on a face joins a crumb to what is none, and parts it from that again, by changes of the other's copy alone.
+/// An interval on a face joins a crumb to what is none, and parts it from that again, by changes of the other's copy
+/// alone.
 TEST(Crumbs, BecomeMaterialAgainWhereOthersAreJoinedToThem) {
   std::size_t n_ended = 0, n_again = 0;
   for (unsigned seed = 1; seed <= 4; ++seed) {

@@ -145,7 +145,8 @@ void place_anywhere(Random& random, Body& body, const double probability) {
   }
 }
 
-/// Wherever the blades cut and their vertices lie: what they leave of a cell is the cell, and so at each of its corners.
+/// Wherever the blades cut and their vertices lie: what they leave of a cell is the cell, and so at each of its
+/// corners.
 TEST(Material, OfTheCopiesOfACellIsThatOfTheCell) {
   Random random(31);
   std::size_t n_cells = 0, n_parts = 0;

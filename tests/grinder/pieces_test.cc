@@ -1,7 +1,7 @@
 /// The same strokes cut the same pieces, whatever law, time step and Newton iterations move the body, for as long as it
-/// moves the same to a tenth of a cube. What is compared is the number of pieces with at least eight material nodes. A cell is
-/// cut at two edges at most in a step, and what is left of it in the next ones (thesis §2.4.3): so pieces may come up to two
-/// steps later with the longer step.
+/// moves the same to a tenth of a cube. What is compared is the number of pieces with at least eight material nodes. A
+/// cell is cut at two edges at most in a step, and what is left of it in the next ones (thesis §2.4.3): so pieces may
+/// come up to two steps later with the longer step.
 ///
 ///   KERF_GRINDER_MESHES=folder ./kerf test -L long -R SamePieces
 

@@ -69,8 +69,8 @@ Watch::Watch(const Scene& scene, const scene::Body& body)
     n_recuts_(body.n_recuts) {}
 
 /// What falls has g t. What has sagged and is let go recoils: by no more than g t again, as no more momentum has come
-/// in, or where stress waves of its own weight meet by g L / c each; or by c times the strain that was let go, twice that at
-/// a free end (one-dimensional waves). Blades give no momentum to what they cut.
+/// in, or where stress waves of its own weight meet by g L / c each; or by c times the strain that was let go, twice
+/// that at a free end (one-dimensional waves). Blades give no momentum to what they cut.
 std::optional<Failure> Watch::watch_speeds(const scene::Body& body, const Look& look, const int step,
                                            const double time) {
   const double usual = gravity_ * time + recoil_, limit = 2 * usual;

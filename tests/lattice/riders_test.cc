@@ -112,8 +112,8 @@ TEST(Riders, SettleWithoutMovingTheWhole) {
   }
 }
 
-/// Off its goal by a cube, a corner over a skin that is 1e-3 cubes deep is back after 20 steps: (1 + n r) (1 - r)^n of it
-/// is left, r = sqrt(alpha). As a corner with mass does, it would swing on and on.
+/// Off its goal by a cube, a corner over a skin that is 1e-3 cubes deep is back after 20 steps: (1 + n r) (1 - r)^n of
+/// it is left, r = sqrt(alpha). As a corner with mass does, it would swing on and on.
 TEST(Riders, ComeBackWithoutSwinging) {
   const support::Body body = shallow_block(1e-3);
   const double dt = 1e-3, alpha = 0.2;

@@ -33,8 +33,8 @@ double shape_integral(const fem::Moments& m, const int a) {
   return sum;
 }
 
-/// Moments come from a quadrature of monomials; here it is products in barycentric coordinates. Less than nothing, under a
-/// hollow skin (surface/fold.h), counts as nothing.
+/// Moments come from a quadrature of monomials; here it is products in barycentric coordinates. Less than nothing,
+/// under a hollow skin (surface/fold.h), counts as nothing.
 TEST(Shares, CornersWeighTheIntegralsOfTheirShapeFunctions) {
   const Body body = rough_block(10, {0.02, 0.98});
   std::vector<double> mass(body.complex.n_corners(), 0.0), expected = mass;

@@ -1,5 +1,5 @@
-// Damaged files of results in this very process, so that the sanitizers see it: each is read, or refused with an error that says
-// which file.
+// Damaged files of results in this very process, so that the sanitizers see it: each is read, or refused with an error
+// that says which file.
 
 #include "base/archive.h"
 #include "base/error.h"

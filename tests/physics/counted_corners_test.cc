@@ -17,8 +17,8 @@ using grid::Counted;
 constexpr double h = 0.1;
 constexpr int n_x = 9, n_across = 5;
 
-/// A bar of 9 x 5 x 5 nodes whose last layers are cut off, and into pieces of one node each; the next layer hangs on by every
-/// other row.
+/// A bar of 9 x 5 x 5 nodes whose last layers are cut off, and into pieces of one node each; the next layer hangs on by
+/// every other row.
 struct Bar {
   GrowingCut cut{support::block({n_x, n_across, n_across}, h)};
 
@@ -196,7 +196,8 @@ TEST(CountedCorners, HaveTheForcesThatTheyHaveAmongAll) {
   expect_same<WidenedForceModel, lattice::Matching>(bar, lattice::MatchingOptions{});
 }
 
-/// Steps are the same too, with supports and loads at both kinds of corners; and crumbs take none of the solver's iterations.
+/// Steps are the same too, with supports and loads at both kinds of corners; and crumbs take none of the solver's
+/// iterations.
 TEST(CountedCorners, StepAsAmongAll) {
   for (const auto& backend : backends) {
     std::vector<Points> ends;

@@ -206,8 +206,8 @@ Vec3 momentum(const Physics& physics, const std::span<const double> mass, const 
   return sum;
 }
 
-/// Crumbs fly on their own for a while, and are joined to the body: they are material again, which bears stress, with the
-/// mass and the momentum of all. What is not joined flies on.
+/// Crumbs fly on their own for a while, and are joined to the body: they are material again, which bears stress, with
+/// the mass and the momentum of all. What is not joined flies on.
 TEST(Crumbs, BecomeMaterialAgain) {
   for (const auto& backend : backends) {
     Dust dust;

@@ -170,8 +170,8 @@ TEST(OnCorners, CornersThatLapseGiveNoEnergy) {
   }
 }
 
-/// A cut leaves slivers above a plane of nodes, whose corners ring: with an integrator that takes no energy that is damped,
-/// from the first cut on. It takes energy alone, and the body's momentum stays.
+/// A cut leaves slivers above a plane of nodes, whose corners ring: with an integrator that takes no energy that is
+/// damped, from the first cut on. It takes energy alone, and the body's momentum stays.
 TEST(OnCorners, LightCornersOfElementsAreDampedOnceCut) {
   GrowingCut block(whole_block());
   Elements physics(

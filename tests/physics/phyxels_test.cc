@@ -97,8 +97,8 @@ TEST(Phyxels, CarryForcesWithTheirSumAfterAnyCuts) {
   EXPECT_GT(grid::n_pieces(block.body.complex), 2u);
 }
 
-/// Whatever is cut, phyxels of one piece are joined by bonds of some weight whose direction the model knows, or by links:
-/// what the copies hold together does not drift apart.
+/// Whatever is cut, phyxels of one piece are joined by bonds of some weight whose direction the model knows, or by
+/// links: what the copies hold together does not drift apart.
 TEST(Phyxels, PiecesStayTogether) {
   support::Random random(7);
   GrowingCut block(whole_block());

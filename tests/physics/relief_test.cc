@@ -58,7 +58,8 @@ const std::vector<std::pair<std::string, MakePhysics>>& backends() {
 }
 
 /// Bent over its length by `bend` [1/m], and each particle off its place by about `noise` [m].
-void crumple(const Physics& physics, const double bend, const double noise, support::Random& random, dynamics::State& state) {
+void crumple(const Physics& physics, const double bend, const double noise, support::Random& random,
+             dynamics::State& state) {
   for (std::size_t i = 0; i < state.x.size(); ++i) {
     const Vec3& X = physics.rest()[i];
     state.x[i] = X + Vec3(0, 0, bend * X[0] * X[0]) + noise * support::random_vector(random);
@@ -95,7 +96,8 @@ TEST(Relief, LetsOutWhatCutsGive) {
       const auto physics = make(block.seen());
       dynamics::State state = state_at_rest(*physics);
       for (int batch = 0; batch < 9; ++batch) {
-        // Points give something where a bend is smooth, the lattice where it is steep, enhanced elements where noise is most.
+        // Points give something where a bend is smooth, the lattice where it is steep, enhanced elements where noise is
+        // most.
         const bool is_steep = batch % 3 != 2;
         crumple(*physics, is_steep ? 2 : 0.6, batch % 3 == 0 ? 0 : 0.01, random, state);
         const double had = physics->model().energy(state.x);

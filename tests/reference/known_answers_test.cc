@@ -1,5 +1,5 @@
-// The truth that studies are measured by, itself measured: values that two degrees agree on, limits, frequencies, and Kerf's own
-// elements.
+// The truth that studies are measured by, itself measured: values that two degrees agree on, limits, frequencies, and
+// Kerf's own elements.
 
 #include "tests/reference/problems.h"
 #include "tests/verification/beams.h"
@@ -107,8 +107,8 @@ TEST(Modes, OfABar) {
     EXPECT_NEAR(found[static_cast<std::size_t>(k)] / (std::sqrt(1000) * (2 * k + 1) / 4), 1, 1e-5) << k;
 }
 
-/// Six without deformation, then pairs of bending: 22.3733 / (2 pi) sqrt(E I / (rho A L^4)) for a slender beam, of which shear and
-/// rotary inertia take some (Euler and Bernoulli's is 3.2488 per second here).
+/// Six without deformation, then pairs of bending: 22.3733 / (2 pi) sqrt(E I / (rho A L^4)) for a slender beam, of
+/// which shear and rotary inertia take some (Euler and Bernoulli's is 3.2488 per second here).
 TEST(Modes, OfAFreeBeam) {
   Problem p;
   p.mesh = extruded(rectangles(equal(0, 1, 8), equal(0, 0.1, 1)), equal(0, 0.1, 1));

@@ -25,8 +25,8 @@ inline Problem cooks_membrane(const int n) {
   return p;
 }
 
-/// The clamped beam of tests/verification/beams.h under its weight, the half with y < 0; n cells, shrinking by 0.3, from each
-/// singular edge at the clamp.
+/// The clamped beam of tests/verification/beams.h under its weight, the half with y < 0; n cells, shrinking by 0.3,
+/// from each singular edge at the clamp.
 inline Problem heavy_cantilever(const int n) {
   Problem p;
   std::vector<double> x = graded(0, 0.2, n + 1, 0.3);
@@ -42,8 +42,8 @@ inline Problem heavy_cantilever(const int n) {
   return p;
 }
 
-/// A penny of radius 1 in the middle of a cube of edge 2 R, both of whose ends are pulled by 1 Pa: the quarter x, y > 0, in layers
-/// that shrink by 0.15 towards the front. E = 1 Pa, nu = 0.3.
+/// A penny of radius 1 in the middle of a cube of edge 2 R, both of whose ends are pulled by 1 Pa: the quarter x, y >
+/// 0, in layers that shrink by 0.15 towards the front. E = 1 Pa, nu = 0.3.
 inline Problem penny(const double R, const int n_layers) {
   const std::vector<double> near = graded(0, 0.6, n_layers, 0.15);
   std::vector<double> radii, z;

@@ -19,7 +19,8 @@ Region at(const int axis, const double value) {
   return [=](const Vec3& X) { return std::abs(X[axis] - value) < 1e-9; };
 }
 
-/// u = (sin x sinh y, cos x cosh y, z^2 y) / 4 in a block, held at its skin; what force keeps it there follows from Hooke's law.
+/// u = (sin x sinh y, cos x cosh y, z^2 y) / 4 in a block, held at its skin; what force keeps it there follows from
+/// Hooke's law.
 Vec3 wave(const Vec3& X) {
   return Vec3(std::sin(X[0]) * std::sinh(X[1]), std::cos(X[0]) * std::cosh(X[1]), X[2] * X[2] * X[1]) / 4;
 }

@@ -48,8 +48,8 @@ void say(const std::string& what, const double value) {
 const std::string all_of_cuts =
   "cut areas, cut extents, cut openings, cut volumes, energy release rates, stress intensities";
 
-/// A crack from a side in a plate under tension (Tada, Paris and Irwin 2000, The Stress Analysis of Cracks Handbook: K =
-/// F(a / W) sigma sqrt(pi a), with F of Gross and Srawley, to .5 %). The front lies between layers of nodes.
+/// A crack from a side in a plate under tension (Tada, Paris and Irwin 2000, The Stress Analysis of Cracks Handbook: K
+/// = F(a / W) sigma sqrt(pi a), with F of Gross and Srawley, to .5 %). The front lies between layers of nodes.
 double edge_crack(const int n, const double inner, const double outer) {
   constexpr double sigma = 1e3, E = 1e6, nu = 0.3;
   const double h = 1. / n, a = 0.4, ratio = a;
@@ -86,8 +86,8 @@ TEST(Crack, AnEdgeCrackHasItsStressIntensity) {
   EXPECT_NEAR(edge_crack(20, 2, 3), fine, 1e-3);
 }
 
-/// Arms of a beam that is split to a = 1 m, of height H: G = 12 P^2 a^2 / (E b^2 H^3) (1 + .673 H / a)^2, as in the tests of
-/// elements.
+/// Arms of a beam that is split to a = 1 m, of height H: G = 12 P^2 a^2 / (E b^2 H^3) (1 + .673 H / a)^2, as in the
+/// tests of elements.
 double split_beam(const int n) {
   constexpr double H = 0.2, a = 1, E = 1e6, P = 0.1;
   const double h = H / n, b = 2 * h, pressure = P / (b * H);
@@ -113,8 +113,8 @@ TEST(Crack, ASplitBeamHasItsEnergyReleaseRate) {
   EXPECT_LT(std::abs(fine), 0.015);
 }
 
-/// A penny-shaped crack under tension in a body without end (Sneddon 1946): G = 4 (1 - nu^2) sigma^2 a / (pi E), opening in the
-/// middle 8 (1 - nu^2) sigma a / (pi E), volume 16 (1 - nu^2) sigma a^3 / (3 E).
+/// A penny-shaped crack under tension in a body without end (Sneddon 1946): G = 4 (1 - nu^2) sigma^2 a / (pi E),
+/// opening in the middle 8 (1 - nu^2) sigma a / (pi E), volume 16 (1 - nu^2) sigma a^3 / (3 E).
 void penny(const int n) {
   constexpr double sigma = 1e3, E = 1e6, nu = 0.3;
   const double h = 1. / n;
@@ -144,8 +144,8 @@ void penny(const int n) {
 /// tests/verification/plates_test.cc, and so the opening.
 TEST(Crack, APennyHasItsEnergyReleaseRateAndOpening) { penny(5); }
 
-/// How far the mouth of a crack from the side of a plate opens by points that see each other by a criterion, with 14 cubes
-/// over the width, 2 through the thickness: the scene of the study.
+/// How far the mouth of a crack from the side of a plate opens by points that see each other by a criterion, with 14
+/// cubes over the width, 2 through the thickness: the scene of the study.
 double mouth_of_points(const std::string& criterion) {
   std::ifstream scene(support::checkout() + "/params/compare/edge_crack.prm");
   const Trial plate(

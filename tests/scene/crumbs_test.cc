@@ -33,8 +33,8 @@ const Keys backends = {"fem", "lattice", "mass-spring", "pba"};
 
 std::string gravity() { return section("Gravity", {"Acceleration [m/s^2] = 0, 0, -9.81"}); }
 
-/// A cube is ground to 125 crumbs, which are thrown and turned. From then on momentum, angular momentum and energy stay what
-/// they are, to round-off; the solver has nothing to do.
+/// A cube is ground to 125 crumbs, which are thrown and turned. From then on momentum, angular momentum and energy stay
+/// what they are, to round-off; the solver has nothing to do.
 TEST(CrumbsScene, DustInFlightKeepsAllThatItHas) {
   for (const auto& backend : backends) {
     World world = world_of(steps(0.01, 60) + cube_of(backend) + grind());

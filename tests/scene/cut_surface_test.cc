@@ -156,8 +156,8 @@ TEST(CutSurfaceScene, AMeshThroughItselfCutsWhereItCrossesOddly) {
   EXPECT_NEAR(value(body, "mass"), 8, 1e-11);
 }
 
-/// Open sheets that reach beyond the cube on all sides, waved and tilted so that they pass the skin between its edges: no
-/// bridge is left. A sheet that ends inside parts nothing.
+/// Open sheets that reach beyond the cube on all sides, waved and tilted so that they pass the skin between its edges:
+/// no bridge is left. A sheet that ends inside parts nothing.
 TEST(CutSurfaceScene, AnOpenMeshThroughTheBodyPartsIt) {
   const auto sheet = [](const double reach, const double amplitude, const double tilt, const double height) {
     constexpr int n = 24;

@@ -79,7 +79,8 @@ TEST(Held, ACutGivesSupportsNothingThatIsFree) {
       const dynamics::Support& support = body.loads.supports[0];
       n_held += support.corners.size();
       for (std::size_t i = 0; i < support.corners.size(); ++i)
-        EXPECT_LT((body.state.x[support.corners[i]] - support.rest[i]).norm(), 1e-9) << "seed " << seed << ", cut " << k;
+        EXPECT_LT((body.state.x[support.corners[i]] - support.rest[i]).norm(), 1e-9)
+          << "seed " << seed << ", cut " << k;
     }
     const auto& corners = body.loads.supports[0].corners;
     n_let_go += particles_in(body, body.regions[0].region).size() - corners.size();

@@ -131,8 +131,9 @@ TEST(InitialState, AFreeBodyFindsItsRestInStaticsBesideSlivers) {
   EXPECT_NEAR(value(world.bodies[0], "volume") / value(world.bodies[0], "rest volume"), 1, 1e-5);
 }
 
-/// What a bar of `n` cubes, free at both ends, sounds: the first wave along it is an eigenvector of the cubes' equations, and
-/// Newmark's rule makes a frequency w of tan(w dt / 2) 2 / dt. Returns it over that of the bar, pi c / L.
+/// What a bar of `n` cubes, free at both ends, sounds: the first wave along it is an eigenvector of the cubes'
+/// equations, and Newmark's rule makes a frequency w of tan(w dt / 2) 2 / dt. Returns it over that of the bar, pi c /
+/// L.
 double tone_of_a_bar(const std::string& mass, const int n) {
   constexpr double dt = 5e-4, side = 1, c = 31.622776601683793;
   const std::string initial = section("Initial state", {"Displacement [m] = 1e-4*cos(pi*x); 0; 0"});
@@ -152,8 +153,8 @@ double tone_of_a_bar(const std::string& mass, const int n) {
   return std::tan(0.5 * angle) * 2 / dt / (std::numbers::pi * c / side);
 }
 
-/// Closed forms of an endless row of cubes: lumped sin(k h / 2) 2 / h, consistent sqrt(6 (1 - cos k h) / (2 + cos k h)) / h, over
-/// k; they are 1.3 % apart. The ends of this one lie in the middle of cubes.
+/// Closed forms of an endless row of cubes: lumped sin(k h / 2) 2 / h, consistent sqrt(6 (1 - cos k h) / (2 + cos k h))
+/// / h, over k; they are 1.3 % apart. The ends of this one lie in the middle of cubes.
 TEST(ConsistentMass, ABarHasTheFrequenciesOfItsMassMatrix) {
   constexpr int n = 8;
   const double kh = std::numbers::pi / n;

@@ -1,4 +1,5 @@
-// What is inside of a body, in a scene: built only where the scene asks for it, coloured as cuts reveal it, written out.
+// What is inside of a body, in a scene: built only where the scene asks for it, coloured as cuts reveal it, written
+// out.
 
 #include "base/error.h"
 #include "image/file.h"

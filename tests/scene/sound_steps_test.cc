@@ -64,8 +64,8 @@ TEST(SoundScene, ASpinLosesWhatTheMethodTakesAndNoMore) {
   }
 }
 
-/// A soft cube that turns by a third of a radian a step: where corrections are mixed, each takes fewer iterations of conjugate
-/// gradients, and they come to the same places.
+/// A soft cube that turns by a third of a radian a step: where corrections are mixed, each takes fewer iterations of
+/// conjugate gradients, and they come to the same places.
 TEST(SoundScene, MixedCorrectionsTakeFewerIterationsWhereABodyTurns) {
   World world = world_of(cube_scene());
   Body& body = world.bodies[0];
@@ -88,9 +88,9 @@ TEST(SoundScene, MixedCorrectionsTakeFewerIterationsWhereABodyTurns) {
     EXPECT_LT((mixed.x[i] - plain.x[i]).norm(), 1e-4 * 0.2) << i; // of its edge
 }
 
-/// Three blades cross in a cube of points and leave parts that single pairs hold together: those that come back when a cut
-/// takes others away bring hardly any energy, as they are stretched least. By their length at rest alone one of them
-/// brought half of all there was.
+/// Three blades cross in a cube of points and leave parts that single pairs hold together: those that come back when a
+/// cut takes others away bring hardly any energy, as they are stretched least. By their length at rest alone one of
+/// them brought half of all there was.
 TEST(SoundScene, PairsThatHoldPointsTogetherBringNoEnergy) {
   const auto blade = [](const std::string& name, const std::string& edge, const double from, const double to,
                         const std::string& positions) {
@@ -119,8 +119,8 @@ TEST(SoundScene, PairsThatHoldPointsTogetherBringNoEnergy) {
     EXPECT_LT(work[i] - work[i - 1], 0.15 * (elastic[i] + kinetic[i])) << "step " << i;
 }
 
-/// A bar is cut in two in flight. Its long piece is drawn out as fast as one correction tells rightly; the short one turns by
-/// half a radian in a step, and keeps its volume all the same.
+/// A bar is cut in two in flight. Its long piece is drawn out as fast as one correction tells rightly; the short one
+/// turns by half a radian in a step, and keeps its volume all the same.
 TEST(SoundScene, AShortPieceTurnsBesideALongOneThatSwings) {
   World world =
     world_of(steps(1.0 / 60, 3) + section("Body bar", bar_keys(), material(1e6, 0)) +
@@ -198,8 +198,8 @@ TEST(SoundScene, ACopyDrawnOutEndsTheRun) {
   }
 }
 
-/// What is cut off a bar at small strain, and tumbles, grows with each turn, as that law takes rotations for strains: it is
-/// told. With another law it falls as it is.
+/// What is cut off a bar at small strain, and tumbles, grows with each turn, as that law takes rotations for strains:
+/// it is told. With another law it falls as it is.
 TEST(SoundScene, SmallStrainThatTurnsEndsTheRun) {
   const auto why = [](const std::string& law) {
     World world = world_of(steps(0.02, 30) + section("Gravity", {"Acceleration [m/s^2] = 0, 0, -9.81"}) +
@@ -213,9 +213,9 @@ TEST(SoundScene, SmallStrainThatTurnsEndsTheRun) {
   EXPECT_EQ(why("corotational"), "");
 }
 
-/// A cube with a spike on each side, of which a ball takes the inside: spikes hang together by webs along the cube's edges
-/// that are thinner than the points are apart. They hang nearly as far down as those of elements; where nothing but
-/// weak bonds held them, they fell for three times that way.
+/// A cube with a spike on each side, of which a ball takes the inside: spikes hang together by webs along the cube's
+/// edges that are thinner than the points are apart. They hang nearly as far down as those of elements; where nothing
+/// but weak bonds held them, they fell for three times that way.
 TEST(SoundScene, PointsHangByThinWebs) {
   const output::TemporaryFolder folder;
   const auto path = folder / "star.off";

@@ -269,8 +269,8 @@ std::string free_cylinder(const std::string& law, const double up, const double 
 }
 
 /// Its ends' faces differ by some per cent in what the grid makes of their rims, so its loads are hardly in balance: it
-/// is relieved of what would move it. Its energy is sigma^2 V / (2 E), and that of the crack (Sneddon 1946) beside it, which
-/// stands up to one cube short.
+/// is relieved of what would move it. Its energy is sigma^2 V / (2 E), and that of the crack (Sneddon 1946) beside it,
+/// which stands up to one cube short.
 TEST(StaticScene, ABodyThatOnlyBalancedLoadsHoldFindsItsEquilibrium) {
   constexpr double sigma = 100, nu = 0.25, a = 0.2, volume = std::numbers::pi / 4;
   const double whole = sigma * sigma * volume / (2 * E),

@@ -41,7 +41,8 @@ TEST(ClosedForm, Bars) {
     1250);
 }
 
-/// The bar of params/compare, whose bending and shear were worked out by hand: .0246015 + .000972, with nu = 1/4 .0011947.
+/// The bar of params/compare, whose bending and shear were worked out by hand: .0246015 + .000972, with nu = 1/4
+/// .0011947.
 TEST(ClosedForm, BeamsAndTheirLayers) {
   const auto sinks = [](const std::string& more) {
     return evaluated("clamped beam under its weight", beam + "  set Weight [N/m^3] = 100\n" + more).value;

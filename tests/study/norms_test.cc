@@ -1,4 +1,5 @@
-// What a study asks of its rows beside one number: more of them, displacements at points, repetitions; and what rows are measured by.
+// What a study asks of its rows beside one number: more of them, displacements at points, repetitions; and what rows
+// are measured by.
 
 #include "output/reader.h"
 #include "study/measure.h"
@@ -93,7 +94,8 @@ TEST(Norms, AreAskedBesideTheAnswer) {
   EXPECT_NE(aligned(table).find("way_of_the_fall"), std::string::npos);
 }
 
-/// A row that falls half as far differs by half at each point; the row that others are measured by says nothing of itself.
+/// A row that falls half as far differs by half at each point; the row that others are measured by says nothing of
+/// itself.
 TEST(Points, AreComparedWithThoseOfARow) {
   const CubeStudy study;
   const std::string points =

@@ -1,9 +1,9 @@
 #pragma once
 
-/// The material of a solid on a lattice much finer than its grid, and what strokes cut free of it: told from the blades'
-/// motion relative to the material alone, whatever the grid has made of it. A link between two neighbours is cut where
-/// a blade meets it, as the body carries it along: the same as asking whether the stroke, pulled back to rest, passes
-/// between them.
+/// The material of a solid on a lattice much finer than its grid, and what strokes cut free of it: told from the
+/// blades' motion relative to the material alone, whatever the grid has made of it. A link between two neighbours is
+/// cut where a blade meets it, as the body carries it along: the same as asking whether the stroke, pulled back to
+/// rest, passes between them.
 
 #include "cut/moving_edge.h"
 #include "cut/near_sweep.h"

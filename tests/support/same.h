@@ -39,8 +39,8 @@ inline std::size_t n_in_use(const grid::CellComplex& complex) {
     std::ranges::count_if(complex.copies, [](const grid::Copy& copy) { return !copy.is_lapsed(); }));
 }
 
-/// Nothing when the complexes differ. The copies of a cell are told apart by their parts, and come in a fixed order. What
-/// has lapsed does not count.
+/// Nothing when the complexes differ. The copies of a cell are told apart by their parts, and come in a fixed order.
+/// What has lapsed does not count.
 inline std::optional<Renaming> renaming(const grid::CellComplex& a, const grid::CellComplex& b) {
   if (n_in_use(a) != n_in_use(b) || a.n_corners() - a.lapsed.size() != b.n_corners() - b.lapsed.size() ||
       a.first_copy.size() != b.first_copy.size())

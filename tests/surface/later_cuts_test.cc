@@ -144,7 +144,8 @@ TEST(LaterCuts, LeaveEarlierPlanesFlatUnderTheSkin) {
   EXPECT_GT(static_cast<double>(all.n_met), 0.95 * static_cast<double>(all.n_vertices));
 }
 
-/// The same by blades, in steps: the skin that a later one parts around cuts of an earlier one leaves them where they are.
+/// The same by blades, in steps: the skin that a later one parts around cuts of an earlier one leaves them where they
+/// are.
 TEST(LaterCuts, OfBladesLeaveEarlierPlanesFlat) {
   Random random(53);
   Flatness all;

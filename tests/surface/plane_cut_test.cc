@@ -107,8 +107,8 @@ double volume_below_in(const Surface& surface, const Plane& plane) {
   return six_volumes / 6;
 }
 
-/// Any body: what is below the plane is what the plane leaves of the surface that the body had, but for hollow points of
-/// the skin that no material lies behind (cut/shreds.h), which the Cutter leaves whole.
+/// Any body: what is below the plane is what the plane leaves of the surface that the body had, but for hollow points
+/// of the skin that no material lies behind (cut/shreds.h), which the Cutter leaves whole.
 TEST(PlaneCut, OfAnyBodyGivesWhatLiesBelow) {
   Random random(38);
   const Body liver = support::embedded(support::liver_mesh(), 0.012, Vec3::Constant(0.4));

@@ -213,8 +213,8 @@ TEST(Sweeps, ThatCannotTurnAreRefused) {
   expect_refused(exemplars, "Centre [m]", "crosses a face");
 }
 
-/// An arch along its plane: rays from its middle leave it, and those to its ends meet it again. Where the swept section's
-/// arms end in other directions, neighbours must stay neighbours.
+/// An arch along its plane: rays from its middle leave it, and those to its ends meet it again. Where the swept
+/// section's arms end in other directions, neighbours must stay neighbours.
 /// How far two points of the arch, a thousandth of a pixel apart, are drawn apart at most on the first face, as a
 /// multiple of that; of points inside of it.
 double furthest_apart(const Interior& inside) {

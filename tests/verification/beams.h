@@ -55,22 +55,23 @@ using fem::MassMatrix;
 /// 2001 compares coefficients), axial with Love's lateral inertia, torsion by Saint-Venant with J = 0.140577 t^4.
 BeamResult frequency(Vibration kind, double slenderness, int n_over_thickness, MassMatrix mass, const BeamModel& model);
 
-/// Two arms of height `arm` at the end x = 0 of a beam, clamped at its other end, nu = 0, nodes midway above the cut. The
-/// front of the cut lies `front` h beyond the last nodes that it passes, those at x = a.
+/// Two arms of height `arm` at the end x = 0 of a beam, clamped at its other end, nu = 0, nodes midway above the cut.
+/// The front of the cut lies `front` h beyond the last nodes that it passes, those at x = a.
 struct DoubleCantilever {
   double a = 4, arm = 1; ///< multiples of the cube edge [m]
   int n_over_arm = 4;
   double front = 0.01; ///< in (0, 1) [1]
 };
-/// The arms pulled apart by P, spread evenly over each arm's end: the elements' energy release rate, in tubes of a / 2 and
-/// .9 a around the front, over 12 P^2 c^2/(E b^2 arm^3) (1 + 0.673 arm/c)^2 with c = a + front h (Foote and Buchwald
-/// 1985, Int. J. Fracture 29, 125-134; here without their terms for a force that acts at a point). Elements of degree
-/// 7, in layers that shrink by 0.3 towards the front, give 0.6732 for c / arm = 2 and 4: the formula is good to 2e-4.
+/// The arms pulled apart by P, spread evenly over each arm's end: the elements' energy release rate, in tubes of a / 2
+/// and .9 a around the front, over 12 P^2 c^2/(E b^2 arm^3) (1 + 0.673 arm/c)^2 with c = a + front h (Foote and
+/// Buchwald 1985, Int. J. Fracture 29, 125-134; here without their terms for a force that acts at a point). Elements of
+/// degree 7, in layers that shrink by 0.3 towards the front, give 0.6732 for c / arm = 2 and 4: the formula is good to
+/// 2e-4.
 BeamResult double_cantilever(const DoubleCantilever& beam, const BeamModel& model);
 /// The same by work: half of what that of P grows by as c grows from an arm less to an arm more.
 BeamResult double_cantilever_by_work(const DoubleCantilever& beam, const BeamModel& model);
-/// The arms pulled apart likewise: the work of P after a blade has come from x = 0 to the front in so many steps, over that
-/// after a rectangle has cut as far at once.
+/// The arms pulled apart likewise: the work of P after a blade has come from x = 0 to the front in so many steps, over
+/// that after a rectangle has cut as far at once.
 BeamResult blade_over_rectangle(const DoubleCantilever& beam, int n_steps, const BeamModel& model);
 /// The arms pushed apart by a pressure of 1 Pa on the faces of the cut, E = 1 Pa: opening at x = 0 between the middles
 /// of the arms [m]. The cell that holds the front is one element, as in a mesh that is fitted to x = a.

@@ -131,7 +131,8 @@ TEST(DoubleCantilever, EnergyReleaseRateConvergesToFooteAndBuchwalds) {
   EXPECT_LT(std::abs(errors[2]), 0.35 * std::abs(errors[1]));
 }
 
-/// The integral over a domain is what the energies of cracks of other lengths say: what it errs by is the elements' own.
+/// The integral over a domain is what the energies of cracks of other lengths say: what it errs by is the elements'
+/// own.
 TEST(DoubleCantilever, EnergyReleaseRateIsThatByWork) {
   for (const double front : {0.01, 0.5}) {
     const DoubleCantilever beam{.n_over_arm = 4, .front = front};

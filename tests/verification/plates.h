@@ -25,10 +25,9 @@ PlateResult cooks_membrane(int n_over_length, double offset, const fem::Hexahedr
 /// Its material.
 fem::HexahedraOptions cook_material(fem::Strain strain);
 
-/// A disc cut (radius r, centre and plane off the lattice) in the middle of a cube of edge 2 R under a tension sigma along
-/// the disc's normal. Sneddon 1946: the faces open by w(s) = 8 (1 - nu^2) sigma sqrt(r^2 - s^2) / (pi E), twice what
-/// one face
-/// moves, in a body without end.
+/// A disc cut (radius r, centre and plane off the lattice) in the middle of a cube of edge 2 R under a tension sigma
+/// along the disc's normal. Sneddon 1946: the faces open by w(s) = 8 (1 - nu^2) sigma sqrt(r^2 - s^2) / (pi E), twice
+/// what one face moves, in a body without end.
 struct Penny {
   int n_over_radius = 3;
   double half_width = 4;                ///< R / r [1]

@@ -63,8 +63,8 @@ TEST(PennyShapedCut, OpensAsItShouldWhereverItsFrontLies) {
   }
 }
 
-/// The grid shifted along the crack's normal, and in its plane: 4 % of the work of a penny of four cubes, 1.3 % of one of
-/// eight, where radii err by a thirtieth of a cube.
+/// The grid shifted along the crack's normal, and in its plane: 4 % of the work of a penny of four cubes, 1.3 % of one
+/// of eight, where radii err by a thirtieth of a cube.
 TEST(PennyShapedCut, HardlyFeelsWhereTheGridLies) {
   double least = 10, most = 0;
   for (int i = 0; i < 6; ++i)

@@ -69,6 +69,7 @@ Points deformed(const Body& body, const Points& u);
 std::vector<dynamics::Support> hold_rigid_motion(const Points& rest);
 
 fem::HexahedraOptions hooke(double youngs_modulus, double nu, fem::Strain strain = fem::Strain::enhanced,
-                            fem::Boundary boundary = fem::Boundary::octants, double ghost_weight = fem::GhostPenaltyOptions().weight);
+                            fem::Boundary boundary = fem::Boundary::octants,
+                            double ghost_weight = fem::GhostPenaltyOptions().weight);
 
 } // namespace kerf::verification

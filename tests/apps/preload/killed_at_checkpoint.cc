@@ -1,6 +1,6 @@
-// Loaded before the C library: ends the process as kill -9 does, in the middle of writing a checkpoint. KERF_KILL names the
-// moment, and the number of the checkpoint, from 1: "write 2" (half of what is to be written is), "fsync 2", "rename 2"
-// (before), "renamed 2" (after).
+// Loaded before the C library: ends the process as kill -9 does, in the middle of writing a checkpoint. KERF_KILL names
+// the moment, and the number of the checkpoint, from 1: "write 2" (half of what is to be written is), "fsync 2",
+// "rename 2" (before), "renamed 2" (after).
 
 #include <dlfcn.h>
 #include <sys/types.h>
