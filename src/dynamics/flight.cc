@@ -64,8 +64,8 @@ __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default"))) vo
                     lanes.R[3 * i + 2][l] * lanes.omega[2][l];
 }
 
-/// Turns R by a step of the midpoint rule, whose momentum Newton's method finds as in rigid_body.cc. Puts into `angle` by
-/// how much [rad].
+/// Turns R by a step of the midpoint rule, whose momentum Newton's method finds as in rigid_body.cc. Puts into `angle`
+/// by how much [rad].
 __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default"))) void turn_all(
   const double dt, const double factor, Lanes& lanes, double* const angle) {
   constexpr int most = 30;
@@ -116,7 +116,8 @@ __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default"))) vo
   }
   for (int l = 0; l < n_lanes; ++l) {
     const double x = middle[0][l], y = middle[1][l], z = middle[2][l];
-    const double a = half * (J[0][l] * x + J[1][l] * y + J[2][l] * z), b = half * (J[1][l] * x + J[3][l] * y + J[4][l] * z),
+    const double a = half * (J[0][l] * x + J[1][l] * y + J[2][l] * z),
+                 b = half * (J[1][l] * x + J[3][l] * y + J[4][l] * z),
                  c = half * (J[2][l] * x + J[4][l] * y + J[5][l] * z);
     const double aa = a * a, bb = b * b, cc = c * c, one = 1 / (1 + aa + bb + cc), two = 2 * one;
     const double C[9] = {one * (1 + aa - bb - cc), two * (a * b - c),        two * (a * c + b),
@@ -155,8 +156,8 @@ void for_each_eight(const std::size_t n, const Asked& is_asked, const Function& 
     f(std::span<const std::size_t>(eight.data(), k));
 }
 
-/// A body's motion as put_points() reads it: columns of R, of what turns with it (omega x R), and where its centre is and how
-/// it moves, a zero after each three.
+/// A body's motion as put_points() reads it: columns of R, of what turns with it (omega x R), and where its centre is
+/// and how it moves, a zero after each three.
 struct Carrier {
   alignas(32) double R[3][4] = {}, W[3][4] = {}, x[4] = {}, v[4] = {};
 };

@@ -1,7 +1,7 @@
 #pragma once
 
-/// Many rigid bodies at once, eight side by side: what rigid_body.h does of each, to round-off. What becomes of a body does
-/// not depend on those beside it.
+/// Many rigid bodies at once, eight side by side: what rigid_body.h does of each, to round-off. What becomes of a body
+/// does not depend on those beside it.
 
 #include "base/function_ref.h"
 #include "dynamics/rigid_body.h"
