@@ -9,6 +9,7 @@
 #include "scene/inputs.h"
 #include "scene/run.h"
 
+#include <algorithm>
 #include <cstdio>
 
 namespace kerf::apps {
@@ -50,12 +51,15 @@ void print_body(const scene::Body& body, const scene::Watch& watch) {
 
 void print_cut(const scene::World& world, const grid::CutLabel label, const std::string& what,
                const std::string& remedy) {
-  std::size_t n = 0, n_passed = 0;
+  std::size_t n = 0, n_passed = 0, n_of_skin = 0;
   for (const scene::Body& body : world.bodies) {
     n += body.cutter->counts().n_cut_edges[label - 1];
     n_passed += body.cutter->n_passed_cells(label);
+    n_of_skin += static_cast<std::size_t>(std::ranges::count(body.solid.cuts.skin_cuts(), label, &grid::SkinCut::label));
   }
   const std::string why = n > 0          ? ""
+                          : n_of_skin > 0
+                            ? ": it cut " + std::to_string(n_of_skin) + " parts of the skin between them"
                           : n_passed > 0 ? ": it passed between them. Use a smaller cube edge, or cut deeper"
                                          : ": it never met a body. " + remedy;
   std::printf("%s: cut %zu grid edges%s\n", what.c_str(), n, why.c_str());

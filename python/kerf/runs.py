@@ -65,6 +65,10 @@ class Body:
         self._group = group
         self._kept = {}  # of the last topology that was read
 
+    @property
+    def file_name(self):
+        return self._group.file.filename
+
     def __len__(self):
         return len(self._group["frames"]) if "frames" in self._group else 0
 

@@ -5,6 +5,7 @@ Source: VTKHDF format specification, docs.vtk.org (vtk_file_formats/vtkhdf_file_
 """
 
 import os
+import pathlib
 
 import h5py
 import numpy as np
@@ -55,6 +56,14 @@ def append_step(vtk, volume, topology):
         append(vtk, f"Steps/{path}", np.full(shape, value, np.int64))
 
 
+def frame(body, index):
+    """A frame of the run. Raises Complaint about the run's file where that is damaged."""
+    try:
+        return body.volume(index)
+    except (OSError, RuntimeError, KeyError, ValueError) as error:
+        raise files.complaint(body.file_name, f"frame {index} of body {body.name} cannot be read ({error})") from error
+
+
 def write(path, body):
     """All frames of a body, beside the name, which the file then takes. Raises Complaint where that cannot be."""
     if len(body) == 0:
@@ -67,7 +76,7 @@ def write(path, body):
             vtk.attrs.create("Type", np.bytes_("UnstructuredGrid"))
             last = None
             for index in range(len(body)):
-                volume = body.volume(index)
+                volume = frame(body, index)
                 if volume.topology != last:
                     topology, last = append_topology(vtk, volume), volume.topology
                 append_step(vtk, volume, topology)
@@ -75,3 +84,5 @@ def write(path, body):
         os.replace(beside, path)
     except OSError as error:
         raise files.complaint(path, f"cannot be written ({error})", "Choose another place with --output") from error
+    finally:
+        pathlib.Path(beside).unlink(missing_ok=True)

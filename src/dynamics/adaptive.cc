@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 namespace kerf::dynamics {
 
@@ -16,10 +17,17 @@ void add(StepReport& sum, const StepReport& part) {
   sum.residual = std::max(sum.residual, part.residual);
 }
 
-double largest_difference(const State& a, const State& b, const double dt) {
+double largest_difference(const std::span<const double> mass, const State& a, const State& b, const double dt) {
+  double all = 0, n = 0; // of those that have mass
+  for (const double m : mass) {
+    all += m;
+    n += m > 0 ? 1 : 0;
+  }
   double largest = 0;
-  for (std::size_t i = 0; i < a.x.size(); ++i)
-    largest = std::max(largest, (a.x[i] - b.x[i]).norm() + dt * (a.v[i] - b.v[i]).norm());
+  for (std::size_t i = 0; i < a.x.size(); ++i) {
+    const double weight = n * mass[i] < all ? std::sqrt(n * mass[i] / all) : 1;
+    largest = std::max(largest, weight * ((a.x[i] - b.x[i]).norm() + dt * (a.v[i] - b.v[i]).norm()));
+  }
   return largest;
 }
 
@@ -35,7 +43,7 @@ double AdaptiveStepper::try_substep(State& state, const Loads& loads, const doub
   } catch (const NumericalError&) { // too long for the solver, perhaps
     return std::numeric_limits<double>::infinity();
   }
-  const double error = largest_difference(whole, state, dt);
+  const double error = largest_difference(model_.lumped_mass(), whole, state, dt);
   return std::isfinite(error) ? error / (parameters_.tolerance * h) : std::numeric_limits<double>::infinity();
 }
 
@@ -65,7 +73,8 @@ StepReport AdaptiveStepper::step(State& state, const Loads& loads, const double 
       next = std::min(factor, safety) * h;
       if (next < parameters_.shortest)
         throw NumericalError("the error stays above " + to_text(parameters_.tolerance) + " m/s in substeps of " +
-                             to_text(h) + " s. Use a larger error tolerance");
+                             to_text(h) + " s. Use a larger error tolerance, or solve closer: a smaller CG tolerance, and a "
+                             "smaller Newton tolerance where it is not 0");
     }
   }
   now.time = end;

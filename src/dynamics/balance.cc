@@ -43,6 +43,7 @@ NewtonReport BalanceSolver::solve(const Loads& loads, const Constraints& constra
                         1 + loads.stiffness_damping * omega};
   x = balance.start;
   way_ = 0;
+  inertia_.reset();
   if (options_.trust == Trust::tested)
     flies_ = *flying(problem);
   NewtonReport report;
@@ -51,12 +52,13 @@ NewtonReport BalanceSolver::solve(const Loads& loads, const Constraints& constra
   int most = options_.max_iterations;
   double first = 0;
   Verdict verdict = Verdict::taken;
-  Loan<Vec3> guess = std::move(balance.guess);
+  const bool has_guess = !balance.guess.empty();
   for (;;) {
     double scale = linearise_at(problem, x);
     if (options_.tolerance > 0) {
       const double left = norm(residual_);
-      first = std::max(first, left);
+      if (!has_guess)
+        first = std::max(first, left);
       const double most_force = std::max(first, balanced_forces_);
       report.residual = most_force > 0 ? left / most_force : 0;
       report.converged = left <= std::max(options_.tolerance * most_force, round_off_of_forces(x));
@@ -66,7 +68,7 @@ NewtonReport BalanceSolver::solve(const Loads& loads, const Constraints& constra
     const bool is_enough = verdict == Verdict::goes_on && report.n_newton >= options_.max_iterations;
     if (report.n_newton == most || (is_enough && works_little(problem, x, scale)))
       break;
-    report.n_linear += correct(problem, x, std::exchange(guess, Loan<Vec3>::none()), scale);
+    report.n_linear += correct(problem, x, std::exchange(balance.guess, Loan<Vec3>::none()), scale);
     ++report.n_newton;
     if (report.n_newton == 1 && options_.trust == Trust::tested && line_search == LineSearch::none) {
       Loan<Vec3> end = moved(x, 1, correction_);
@@ -176,6 +178,8 @@ double BalanceSolver::assemble_residual(const Problem& problem, const Points& x)
   }
   const auto load_force = [&](const std::size_t i) { return Problem::of_corner(of_loads, i); };
   residual_.resize(n);
+  if (!inertia_)
+    inertia_ = inertia_of_guess(problem);
   const Loan<Vec3> more = coupled_inertia(problem, x);
   const double square_of_scale = sum_of(n, [&](const std::size_t begin, const std::size_t end) {
     double sum = 0;
@@ -187,8 +191,7 @@ double BalanceSolver::assemble_residual(const Problem& problem, const Points& x)
       if (!constraints.is_free(i))
         residual_[i] = constraints.freedom(i).project * residual_[i];
       const Mat3& S = scaling_[i];
-      sum += (S * force[i]).squaredNorm() + (S * weight).squaredNorm() + (S * load_force(i)).squaredNorm() +
-             (S * (mass[i] * problem.acceleration_at_start(i))).squaredNorm();
+      sum += (S * force[i]).squaredNorm() + (S * weight).squaredNorm() + (S * load_force(i)).squaredNorm();
     }
     return sum;
   });
@@ -199,12 +202,26 @@ double BalanceSolver::assemble_residual(const Problem& problem, const Points& x)
     balanced_forces_ = std::sqrt(sum_of(n, [&](const std::size_t begin, const std::size_t end) {
       double sum = 0;
       for (std::size_t i = begin; i < end; ++i)
-        sum += force[i].squaredNorm() + load_force(i).squaredNorm() + (mass[i] * loads.gravity).squaredNorm() +
-               (mass[i] * problem.acceleration_at_start(i)).squaredNorm();
+        sum += force[i].squaredNorm() + load_force(i).squaredNorm() + (mass[i] * loads.gravity).squaredNorm();
       return sum;
-    }));
+    }) + inertia_->plain);
   scaled_round_off_ = scaled_round_off_at(x);
-  return std::sqrt(square_of_scale);
+  return std::sqrt(square_of_scale + inertia_->scaled);
+}
+
+BalanceSolver::InertiaSquares BalanceSolver::inertia_of_guess(const Problem& problem) const {
+  const Points& guess = problem.balance.guess;
+  const auto sum = [&](const auto& square) {
+    return sum_of(problem.mass.size(), [&](const std::size_t begin, const std::size_t end) {
+      double all = 0;
+      for (std::size_t i = begin; i < end; ++i)
+        all += square(i, problem.mass[i] * (problem.acceleration_at_start(i) +
+                                            problem.balance.mass_factor * Problem::of_corner(guess, i)));
+      return all;
+    });
+  };
+  return {sum([&](const std::size_t i, const Vec3& f) { return (scaling_[i] * f).squaredNorm(); }),
+          options_.tolerance > 0 ? sum([](std::size_t, const Vec3& f) { return f.squaredNorm(); }) : 0};
 }
 
 double BalanceSolver::round_off_of_forces(const Points& x) const {

@@ -156,6 +156,13 @@ class BalanceSolver {
       return acceleration(x, i) + loads.mass_damping * velocity(x, i);
     }
   };
+  /// Of mass times acceleration in the motion that is guessed, by which forces are measured beside others: that of the
+  /// start would grow with the velocity of a body in flight, and with shorter steps.
+  struct InertiaSquares {
+    double scaled = 0; ///< in the measure of residuals
+    double plain = 0;  ///< [N^2]
+  };
+  InertiaSquares inertia_of_guess(const Problem& problem) const;
   /// Of a first correction: taken, gone on from with a line search, or thrown away for a start with one.
   enum class Verdict { taken, goes_on, refused };
   /// What a trial does to the incremental potential along the correction.
@@ -232,6 +239,7 @@ class BalanceSolver {
   Points damping_; // where the residual is; empty: none
   Points residual_, correction_;
   double balanced_forces_ = 0;  // their norm, where a tolerance asks for it [N]
+  std::optional<InertiaSquares> inertia_; // of the step; none before its first linearisation
   double scaled_round_off_ = 0; // where the residual is
   LoadTangent tangent_;
   std::vector<double> size_;  // of A's diagonal blocks: their traces [N/m]

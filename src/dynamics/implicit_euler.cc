@@ -54,8 +54,8 @@ StepReport ImplicitEuler::step(State& state, const Loads& loads, const double dt
   };
   if (std::ranges::any_of(constraints.held(), has_moved))
     balance.velocity = Loan<Vec3>(n);
-  const Points* const change = remembered(state, change_of_velocity);
-  balance.guess_is_free_motion = !change && balance.velocity.empty();
+  const Points* const a = remembered(state, last_acceleration); // of the last step, which may have been another length
+  balance.guess_is_free_motion = !a && balance.velocity.empty();
   parallel_for(
     n,
     [&](const std::size_t i) {
@@ -63,18 +63,18 @@ StepReport ImplicitEuler::step(State& state, const Loads& loads, const double dt
       if (!balance.velocity.empty())
         balance.velocity[i] = v;
       balance.acceleration[i] = (v - state.v[i]) / dt;
-      balance.guess[i] = dt * (state.v[i] + (change ? (*change)[i] : Vec3(Vec3::Zero())));
+      balance.guess[i] = dt * (a ? Vec3(state.v[i] + dt * (*a)[i]) : state.v[i]);
     },
     worth);
   Loan<Vec3> x = Loan<Vec3>::with_room(n);
   const StepReport report = accepted(solver_.solve(loads, constraints, std::move(balance), x));
-  Points& changed = state.history[change_of_velocity];
-  changed.resize(n);
+  Points& accelerations = state.history[last_acceleration];
+  accelerations.resize(n);
   parallel_for(
     n,
     [&](const std::size_t i) {
       const Vec3 v = (x[i] - state.x[i]) / dt;
-      changed[i] = v - state.v[i];
+      accelerations[i] = (v - state.v[i]) / dt;
       state.v[i] = v;
     },
     worth);

@@ -27,6 +27,8 @@ double power_of(const Load& load, const State& state) {
   return sum;
 }
 
+} // namespace
+
 double damping_power(ForceModel& model, const Loads& loads, const State& state) {
   double sum = 2 * loads.mass_damping * kinetic_energy(model, state.v);
   if (auto* elastic = dynamic_cast<ElasticModel*>(&model); elastic && loads.stiffness_damping > 0) {
@@ -38,8 +40,6 @@ double damping_power(ForceModel& model, const Loads& loads, const State& state) 
   }
   return sum;
 }
-
-} // namespace
 
 Points mean_acceleration(const State& before, const State& after) {
   Points a(after.v.size(), Vec3::Zero());
@@ -84,7 +84,7 @@ Vec3 load_force(const Load& load, const State& state) {
 }
 
 Power power(ForceModel& model, const Loads& loads, const State& state, const Points& acceleration) {
-  Power power{.dissipated = damping_power(model, loads, state)};
+  Power power;
   for (const auto& load : loads.acting) {
     if (load->nature() == Nature::dissipative)
       power.dissipated -= power_of(*load, state);

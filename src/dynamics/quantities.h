@@ -33,12 +33,16 @@ Vec3 external_force(const ForceModel& model, const Loads& loads, const State& st
 /// Force of one load on the body [N].
 Vec3 load_force(const Load& load, const State& state);
 
+/// What Rayleigh damping takes a second [W].
+double damping_power(ForceModel& model, const Loads& loads, const State& state);
+
 /// Energy a second [W].
 struct Power {
-  double dissipated = 0; ///< by damping and by dissipative loads
+  double dissipated = 0; ///< by dissipative loads
   double supports = 0;   ///< work of the reactions
   double loads = 0;      ///< work of driving loads
 };
+/// Damping (damping_power) is left out.
 Power power(ForceModel& model, const Loads& loads, const State& state, const Points& acceleration);
 
 /// Adds what flowed during a step, by the trapezoidal rule, to State::numbers "dissipated energy [J]", "work of

@@ -30,7 +30,7 @@ struct State {
 };
 
 /// Names that are looked for in every step: longer than what a string holds in itself.
-inline const std::string change_of_velocity = "change of velocity", energy_gained = "energy gained [J]";
+inline const std::string last_acceleration = "acceleration of the last step", energy_gained = "energy gained [J]";
 
 /// Makes one state the other, in the memory that it has.
 inline void assign(State& to, const State& from) {
@@ -57,7 +57,7 @@ inline const Points* remembered(const State& state, const std::string& name) {
 }
 
 /// To be called when forces have changed at once, by a cut for one: what was remembered of them is no longer true. The
-/// change of velocity stays: it is where the next step begins to look.
+/// mean acceleration of the last step stays: it is where the next step begins to look.
 inline void forget_forces(State& state) { state.history.erase("acceleration"); }
 
 /// Of what integrators remember beside x and v, nothing: the next step starts anew.

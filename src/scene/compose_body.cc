@@ -18,6 +18,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <unistd.h>
 
 namespace kerf::scene {
 
@@ -86,11 +87,17 @@ std::string how_to_reach(const geometry::TriangleMesh& mesh, const double cube_e
 
 cut::Embedding embed_mesh(const Section& section, const BodyParameters& parameters,
                           const geometry::TriangleMesh& mesh) {
-  constexpr double most_cells = 1e8;
-  const double n_cells = geometry::volume(mesh) / std::pow(parameters.cube_edge, 3);
+  constexpr double most_cells = 1e8, bytes_a_cell = 500; // at least, with the cheapest physics
+  const double n_cells = geometry::volume(mesh) / std::pow(parameters.cube_edge, 3),
+               memory = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
   if (n_cells > most_cells)
     throw section.complaint("Cube edge [m]",
                             line("would fill the body with ", n_cells, " cells, more than ", most_cells),
+                            "Use larger cubes, or check " + size_keys(parameters));
+  if (memory > 0 && n_cells * bytes_a_cell > memory)
+    throw section.complaint("Cube edge [m]",
+                            line("would fill the body with ", n_cells, " cells, which take at least ",
+                                 1e-9 * n_cells * bytes_a_cell, " GB of memory; this machine has ", 1e-9 * memory),
                             "Use larger cubes, or check " + size_keys(parameters));
   try {
     return cut::embed(mesh, parameters.cube_edge, parameters.lattice_offset);

@@ -128,8 +128,8 @@ Integrator with_adaptive_step(const Section& body, const Implicit& implicit) {
   const auto parameters = read_if_written<dynamics::AdaptiveParameters>(body, "Adaptive step");
   Integrator adaptive = implicit.integrator;
   adaptive.make = [=](ElasticModel& model, const PiecesOfParticles& pieces) {
-    return std::make_unique<dynamics::AdaptiveStepper>(sound(implicit.integrator.make, as_they_are)(model, pieces),
-                                                       implicit.order, parameters);
+    return std::make_unique<dynamics::AdaptiveStepper>(
+      model, sound(implicit.integrator.make, as_they_are)(model, pieces), implicit.order, parameters);
   };
   return adaptive;
 }

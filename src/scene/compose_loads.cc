@@ -3,6 +3,7 @@
 #include "base/union_find.h"
 #include "dynamics/floor.h"
 #include "dynamics/handle.h"
+#include "dynamics/newton_parameters.h"
 #include "dynamics/rigid_modes.h"
 #include "dynamics/skin_support.h"
 #include "dynamics/surface_load.h"
@@ -199,12 +200,14 @@ void require_resolved_friction(const Section& section, const std::vector<const S
     return;
   std::string kind = parameters.integrator;
   kind[0] = static_cast<char>(std::toupper(kind[0]));
-  if (read_if_written<dynamics::NewtonParameters>(section, kind).n_newton >= enough)
+  const auto by_default = kind == "Implicit Euler" ? dynamics::NewtonParameters() : dynamics::converged_newton();
+  const Section* const of_kind = section.find(kind);
+  if ((of_kind ? of_kind->read<dynamics::NewtonParameters>() : by_default).n_newton >= enough)
     return;
   const std::string key = "Newton iterations [1]", rule = line("friction of a floor needs ", enough, " or more"),
                     set = line("set ", key, " = 6");
-  if (const Section* written = section.find(kind))
-    throw written->complaint(key, rule, "Write '" + set + "', or 'set Friction [1] = 0' in the Floor");
+  if (of_kind)
+    throw of_kind->complaint(key, rule, "Write '" + set + "', or 'set Friction [1] = 0' in the Floor");
   throw section.complaint(key + " of '" + kind + "': " + rule,
                           "Write 'subsection " + kind + "' with '" + set + "', or 'set Friction [1] = 0' in the Floor");
 }

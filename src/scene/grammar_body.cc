@@ -83,7 +83,9 @@ void BodyParameters::describe(Parameters& p) {
 
 void DampingParameters::describe(Parameters& p) {
   p.number("Mass damping [1/s]", mass, non_negative, "Rayleigh's alpha: a force -alpha M v.");
-  p.number("Stiffness damping [s]", stiffness, non_negative, "Rayleigh's beta: a force -beta K v.");
+  p.number("Stiffness damping [s]", stiffness, non_negative,
+           "Rayleigh's beta: a force -beta K v. K of any law but the corotational, and of points and springs, knows "
+           "the stress: there a spin omega is braked too, by beta omega^3.");
 }
 
 void SupportParameters::describe(Parameters& p) {

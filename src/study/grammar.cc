@@ -29,10 +29,11 @@ void StudyParameters::describe(Parameters& p) {
   p.text("Body", body, "The body that is asked. Empty: the first of the scene.");
   AnswerParameters::describe(p);
   p.text("Order over", order_over,
-         "The change whose cases differ in h: orders of convergence are told between rows that differ in it alone.");
+         "The change whose cases differ in h, or in the time step: orders of convergence are told between rows that "
+         "differ in it alone.");
   p.text("Reference row", reference_row,
          "The row that those without another reference are measured by: its name as tables have it, 'fem, 7', or "
-         "'finest': of the rows that orders are told between the one with the smallest h.");
+         "'finest': of the rows that orders are told between the one with the smallest h, or time step.");
   p.choice("Times", times, {"count", "do not count"},
            "Rows whose times count run one at a time, whatever --jobs says, so that none is beside another. Those of "
            "rows that do not are unknown.");

@@ -29,13 +29,18 @@ output::StudyTable empty_table(const Plan& plan, const std::string& made_of, con
   return table;
 }
 
+/// By cubes; where these are the same, by time steps.
+bool is_finer(const output::StudyRow& a, const output::StudyRow& b) {
+  return a.h != b.h ? a.h < b.h : a.dt < b.dt;
+}
+
 /// The completed row that another is measured by; none where it is not there.
 const output::StudyRow* reference_row(const std::string& name, const std::vector<output::StudyRow>& rows,
                                       const output::StudyRow& row) {
   const output::StudyRow* found = nullptr;
   for (const output::StudyRow& other : rows)
     if (other.outcome == "completed" &&
-        (other.name == name || (name == "finest" && other.family == row.family && (!found || other.h < found->h))))
+        (other.name == name || (name == "finest" && other.family == row.family && (!found || is_finer(other, *found)))))
       found = &other;
   return found;
 }
@@ -78,8 +83,9 @@ void tell_orders(std::vector<output::StudyRow>& rows) {
     if (!std::isfinite(row.error))
       continue;
     const output::StudyRow*& last = before[row.family];
-    if (last && last->h != row.h)
-      row.order = std::log(std::abs(last->error / row.error)) / std::log(last->h / row.h);
+    const double ratio = !last ? 1 : last->h != row.h ? last->h / row.h : last->dt / row.dt;
+    if (ratio != 1)
+      row.order = std::log(std::abs(last->error / row.error)) / std::log(ratio);
     last = &row;
   }
 }

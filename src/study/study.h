@@ -59,11 +59,12 @@ output::StudyRow run_row(const Plan& plan, std::size_t k, const std::filesystem:
                          const output::RunInfo& info, output::Earlier earlier);
 
 /// Fills what is not known of the references of rows from the row that the study names, or 'finest': of each family the
-/// completed one with the smallest h. Then tells errors anew. An empty name: nothing.
+/// completed one with the smallest h, or the smallest time step where h is the same. Then tells errors anew. An empty name: nothing.
 void tell_references(const std::string& name, std::vector<output::StudyRow>& rows);
 
 /// Fills the orders: log |e_1 / e_2| / log(h_1 / h_2) in each row of a family but its first, for the rows of the family
-/// that have errors, in the order in which they stand; unknown (NaN) where h is the same.
+/// that have errors, in the order in which they stand; where h is the same, by time steps dt; unknown (NaN) where these
+/// are the same too.
 void tell_orders(std::vector<output::StudyRow>& rows);
 
 /// The rows as aligned text for people, with a line of units; '-' for what is not known.

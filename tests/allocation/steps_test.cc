@@ -111,11 +111,11 @@ struct Trial {
 class Allocations : public testing::TestWithParam<Trial> {};
 
 TEST_P(Allocations, NoneInAStepWithoutACut) {
-  EXPECT_EQ(allocations_in_a_step(cut_bar(GetParam().keys, GetParam().dt), 12), 0u);
+  EXPECT_EQ(allocations_in_a_step(cut_bar(GetParam().keys, GetParam().dt), 30), 0u);
 }
 
 TEST_P(Allocations, NoneInAStepInWhichABladeMovesFarFromTheBody) {
-  EXPECT_EQ(allocations_in_a_step(cut_bar_and_blade(GetParam().keys, GetParam().dt), 12), 0u);
+  EXPECT_EQ(allocations_in_a_step(cut_bar_and_blade(GetParam().keys, GetParam().dt), 30), 0u);
 }
 
 /// The most that there is at a time of a body and its implicit steps, a cell. Cells with skin are a fifth of this cube.

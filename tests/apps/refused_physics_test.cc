@@ -199,6 +199,10 @@ TEST_F(RefusedPhysics, FrictionByOneNewtonIteration) {
   refuse(
     scene_with("  set Integrator = Newmark\n  subsection Newmark\n    set Newton iterations [1] = 2\n  end\n", floor),
     "Newton iterations", {"Body cube/Newmark/Newton iterations [1] = '2'", "friction of a floor needs 3 or more"});
+  for (const std::string integrator : {"Newmark", "BDF2", "generalised alpha"}) { // whose default is more
+    write("scene.prm", scene_with("  set Integrator = " + integrator + "\n", floor));
+    EXPECT_EQ(kerf({"check", "scene.prm"}).exit_code, 0) << integrator;
+  }
 }
 
 /// Told at the first step, with the file's line, and the step that would do.

@@ -43,7 +43,7 @@ TEST_F(StudyProgram, PrintsAndWritesItsTable) {
     EXPECT_NE(result.out.find(part), std::string::npos) << "no '" << part << "' in: " << result.out;
   const auto table = output::read_study_file(folder / "out/study.h5");
   ASSERT_EQ(table.rows.size(), 2u);
-  EXPECT_NEAR(table.rows[1].value, -3.924, 1e-9);
+  EXPECT_NEAR(table.rows[1].value, -3.924, 1e-8);
   EXPECT_TRUE(std::filesystem::exists(folder / "out/rows/springs/run.h5"));
 }
 

@@ -15,7 +15,7 @@ namespace {
 const double stiffness = 40;
 
 AdaptiveStepper adaptive(ElasticModel& model, const Integrator& integrator, const double tolerance) {
-  return AdaptiveStepper(integrator.make(model), integrator.order, {.tolerance = tolerance});
+  return AdaptiveStepper(model, integrator.make(model), integrator.order, {.tolerance = tolerance});
 }
 
 struct Outcome {
@@ -112,7 +112,7 @@ TEST(Adaptive, GivesUpWithTheTolerance) {
   State state = model.state();
   state.x[0] += Vec3(0.1, 0, 0);
   const State before = state;
-  AdaptiveStepper stepper(integrators()[4].make(model), 1, {.tolerance = 1e-6, .shortest = 1e-4});
+  AdaptiveStepper stepper(model, integrators()[4].make(model), 1, {.tolerance = 1e-6, .shortest = 1e-4});
   EXPECT_THROW(stepper.step(state, {}, 0.1), NumericalError);
   EXPECT_EQ(state.x, before.x);
   EXPECT_EQ(state.time, before.time);

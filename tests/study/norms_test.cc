@@ -163,5 +163,18 @@ TEST(ReferenceRow, FinestIsThatOfTheFamily) {
   EXPECT_EQ(rows[0].error, -0.5) << "what is known stays";
 }
 
+/// Where cubes are the same, the finest row is that of the shortest step, and orders are in time.
+TEST(ReferenceRow, IsTheOneWithTheShortestStepWhereCubesAreTheSame) {
+  std::vector<output::StudyRow> rows = {row_of("coarse", "a", 0.1, 1.4), row_of("fine", "a", 0.1, 1.1),
+                                        row_of("finest", "a", 0.1, 1)};
+  for (const int k : {0, 1, 2})
+    rows[k].dt = std::pow(0.25, k);
+  tell_references("finest", rows);
+  tell_orders(rows);
+  EXPECT_DOUBLE_EQ(rows[0].error, 1.4 - 1);
+  EXPECT_EQ(rows[1].reference_source, "the row finest");
+  EXPECT_NEAR(rows[1].order, 1, 1e-12);
+}
+
 } // namespace
 } // namespace kerf::study

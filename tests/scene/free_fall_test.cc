@@ -1,0 +1,84 @@
+// Bodies that fly: what solvers leave must not depend on how fast they fly, nor be taken for energy or for an error of
+// time.
+
+#include "tests/scene/trials.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace kerf::scene {
+namespace {
+
+/// A ball whose skin leaves near-empty cubes.
+std::string ball(const std::string& integrator, const std::string& inside = "") {
+  return section("Body ball",
+                 {"Shape = ball", "Centre [m] = 0.01, 0.02, 0", "Radius [m] = 0.1", "Cube edge [m] = 0.03",
+                  "Integrator = " + integrator},
+                 material(5e4, 0.4, "corotational") + inside);
+}
+
+std::string fall(const double dt, const int n) { return steps(dt, n) + "subsection Gravity\nend\n"; }
+
+/// Two halves that fall side by side, in no strain but round-off. Of 60 steps up to 40 were taken again, as what
+/// Newton's method leaves was taken for a gain.
+TEST(FreeFall, OfACutBodyTakesNoStepAgain) {
+  const std::string cut = section(
+    "Cut surface plane",
+    {"Time [s] = 0.02", "Shape = plane", "Point [m] = 0.012, 0, 0", "Normal [1] = 1, 0.1, 0"});
+  for (const std::string integrator : {"Newmark", "generalised alpha", "BDF2"}) {
+    World world = world_of(fall(0.005, 60) + ball(integrator) + cut);
+    Timings seconds;
+    int n_again = 0;
+    for (int step = 1; step <= 60; ++step) {
+      advance(world, step, seconds);
+      n_again += world.bodies[0].report.n_rejected > 0 ? 1 : 0;
+    }
+    EXPECT_EQ(value(world.bodies[0], "pieces"), 2);
+    EXPECT_LE(n_again, 2) << integrator;
+  }
+}
+
+/// With defaults: errors of corners of hardly any mass, which solvers leave, were taken for errors of time, and
+/// substeps fell below the shortest.
+TEST(FreeFall, IsFollowedByAdaptiveSteps) {
+  for (const std::string integrator : {"implicit Euler", "Newmark", "generalised alpha", "BDF2"}) {
+    World world = world_of(fall(0.005, 4) + ball(integrator, section("Adaptive step", {})));
+    const auto lowest = [&] {
+      return std::ranges::min(world.bodies[0].state.x, {}, [](const Vec3& p) { return p[2]; })[2];
+    };
+    const double start = lowest(), t = 0.02;
+    Timings seconds;
+    for (int step = 1; step <= 4; ++step) {
+      ASSERT_NO_THROW(advance(world, step, seconds)) << integrator;
+      EXPECT_LT(world.bodies[0].report.n_substeps + world.bodies[0].report.n_rejected, 40) << integrator;
+    }
+    EXPECT_NEAR(start - lowest(), 0.5 * 9.81 * t * t, 1e-3 * t) << integrator;
+  }
+}
+
+/// What is left by conjugate gradients is measured by what strains a body, not by how fast it flies.
+TEST(FreeFall, TrembleAsTheyDoAtRest) {
+  const std::string wave = section("Initial state", {"Displacement [m] = .004*sin(30*y); 0; .004*sin(30*x)"});
+  for (const std::string integrator : {"implicit Euler", "Newmark", "BDF2"}) {
+    const std::string scene = steps(0.002, 10) + ball(integrator, wave);
+    World stands = world_of(scene), flies = world_of(scene);
+    const Vec3 velocity(0, 0, 500);
+    for (Vec3& v : flies.bodies[0].state.v)
+      v += velocity;
+    Timings seconds;
+    for (int step = 1; step <= 10; ++step) {
+      advance(stands, step, seconds);
+      advance(flies, step, seconds);
+    }
+    double apart = 0;
+    for (std::size_t i = 0; i < stands.bodies[0].state.x.size(); ++i)
+      apart = std::max(apart,
+                       (flies.bodies[0].state.x[i] - 0.02 * velocity - stands.bodies[0].state.x[i]).norm());
+    EXPECT_LT(apart, 4e-5) << integrator;
+    std::printf("%s: %.1e m apart\n", integrator.c_str(), apart);
+  }
+}
+
+} // namespace
+} // namespace kerf::scene
