@@ -20,7 +20,15 @@ fem::Boundary boundary_named(const std::string& name) {
                                      : fem::Boundary::octants;
 }
 
-PhysicsMaker make_elements(const Section& section, const BodyParameters& parameters) {
+/// Where stiffness damping acts within a step it calms light corners, and they need not follow others: it would act on
+/// their way, which is not that of the velocity that they are led by, and give energy.
+fem::Inertia inertia_of(const Integrator& integrator, const Section& section, const double time_step) {
+  const bool is_calmed = integrator.inertia == fem::Inertia::gathered &&
+                         read_if_written<DampingParameters>(section, "Damping").stiffness > time_step;
+  return is_calmed ? fem::Inertia::lumped : integrator.inertia;
+}
+
+PhysicsMaker make_elements(const Section& section, const BodyParameters& parameters, const double time_step) {
   const Integrator integrator = compose_integrator(section, parameters.integrator);
   const auto& implicit = implicit_integrator_names();
   if (parameters.mass == "consistent" && parameters.integrator != "modal" &&
@@ -32,7 +40,7 @@ PhysicsMaker make_elements(const Section& section, const BodyParameters& paramet
     .material = read_if_written<material::Elastic>(section, "Material"),
     .boundary = boundary_named(parameters.integration),
     .strain = parameters.element == "enhanced" ? fem::Strain::enhanced : fem::Strain::trilinear,
-    .inertia = integrator.inertia,
+    .inertia = inertia_of(integrator, section, time_step),
     .mass = parameters.mass == "consistent" ? fem::MassMatrix::consistent : fem::MassMatrix::lumped,
     .counted = grid::Counted::deforming};
   return [=](const CutBody& body) {
@@ -139,7 +147,7 @@ PhysicsMaker physics_maker(const Section& section, const BodyParameters& paramet
     return make_lattice(section, parameters, time_step);
   if (parameters.backend == "mass-spring")
     return make_springs(section, parameters);
-  return make_elements(section, parameters);
+  return make_elements(section, parameters, time_step);
 }
 
 } // namespace kerf::scene
