@@ -452,7 +452,7 @@ void Hexahedra::make_multigrid() {
 
 dynamics::Preconditioner* Hexahedra::preconditioner(const dynamics::LinearEquation& equation) {
   constexpr std::size_t worth_levels = 200; // corners
-  constexpr double stiff = 30;              // K over M from which on conjugate gradients alone take longer
+  constexpr double stiff = 8;               // K over M from which on conjugate gradients alone take longer
   if (numbers_.size() < worth_levels)
     return nullptr;
   double inertia = 0;
