@@ -58,6 +58,7 @@
 #include <Eigen/SparseCore>
 
 #include <array>
+#include <optional>
 #include <string>
 
 namespace kerf::dynamics {

@@ -213,7 +213,7 @@ EnergyChange energy_change(const ForceModel& model, const Pieces& pieces, Elasti
                work = work_on(model, loads, before, after), dt = after.time - before.time,
                exchanged = std::abs(kinetic_1 - kinetic_0) + std::abs(gravity_1 - gravity_0);
   constexpr double drowned = 1e-9; // see balance.cc: of energies whose difference counts
-  constexpr double solved = 1e-5;  // forces are in balance to a millionth of what they are, by default
+  constexpr double solved = 1e-5;  // ten times what the default leaves of forces, over those that balance
   const double sizes = kinetic_0 + kinetic_1 + std::abs(elastic_0) + std::abs(elastic_1) + std::abs(gravity_0) +
                        std::abs(gravity_1) + std::abs(load_0) + std::abs(load_1);
   return {

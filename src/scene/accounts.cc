@@ -60,7 +60,7 @@ void Accounts::after_step(physics::Physics& physics, const dynamics::Loads& load
   auto at_begin = dynamics::power(physics.model(), loads, from, none);
   auto at_end = dynamics::power(physics.model(), loads, to, none);
   // Half-way, where the way of a step in which a body turns is one by a rotation; at its ends it is a strain as well.
-  dynamics::State half_way = from;
+  dynamics::State half_way{state.x, from.v, state.time};
   for (std::size_t i = 0; i < state.x.size(); ++i)
     half_way.x[i] = 0.5 * (before_.x[i] + state.x[i]);
   const double by_damping = dynamics::damping_power(physics.model(), loads, half_way);

@@ -16,8 +16,10 @@
 
 #include <Eigen/Geometry>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <sys/resource.h>
 #include <unistd.h>
 
 namespace kerf::scene {
@@ -85,19 +87,26 @@ std::string how_to_reach(const geometry::TriangleMesh& mesh, const double cube_e
               offset[0], ", ", offset[1], ", ", offset[2], "'");
 }
 
+/// What this machine has, or what `ulimit -v` leaves of it [B].
+double memory() {
+  const double all = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
+  rlimit limit{};
+  const bool is_limited = getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY;
+  return is_limited ? std::min(all, static_cast<double>(limit.rlim_cur)) : all;
+}
+
 cut::Embedding embed_mesh(const Section& section, const BodyParameters& parameters,
                           const geometry::TriangleMesh& mesh) {
   constexpr double most_cells = 1e8, bytes_a_cell = 500; // at least, with the cheapest physics
-  const double n_cells = geometry::volume(mesh) / std::pow(parameters.cube_edge, 3),
-               memory = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
+  const double n_cells = geometry::volume(mesh) / std::pow(parameters.cube_edge, 3);
   if (n_cells > most_cells)
     throw section.complaint("Cube edge [m]",
                             line("would fill the body with ", n_cells, " cells, more than ", most_cells),
                             "Use larger cubes, or check " + size_keys(parameters));
-  if (memory > 0 && n_cells * bytes_a_cell > memory)
+  if (n_cells * bytes_a_cell > memory())
     throw section.complaint("Cube edge [m]",
                             line("would fill the body with ", n_cells, " cells, which take at least ",
-                                 1e-9 * n_cells * bytes_a_cell, " GB of memory; this machine has ", 1e-9 * memory),
+                                 1e-9 * n_cells * bytes_a_cell, " GB of memory, and there are ", 1e-9 * memory()),
                             "Use larger cubes, or check " + size_keys(parameters));
   try {
     return cut::embed(mesh, parameters.cube_edge, parameters.lattice_offset);
