@@ -62,11 +62,40 @@ samples on the clock: leave the machine alone meanwhile.
   --force                    replaces the results of an earlier one
 )";
 
+const char* const of_weights = R"(usage: kerf weights WEIGHTS.prm [options]
+Weights of a point near simple cuts by every criterion of visibility, as images, and of a pair as a cut grows, as a table.
+
+  --set "Section/Key=value"  changes a key of the file; as often as wanted        none
+  --output DIR               folder of the images and of weights.h5               results/WEIGHTS
+  --force                    deletes what Kerf has made in the folder, and begins anew
+)";
+
+const char* const of_texture = R"(usage: kerf texture SCENE.prm --plane "x, y, z; normal x, y, z" [options]
+What is inside of a body, on any plane, as a picture, without a simulation.
+
+  --plane "POINT; NORMAL"    the plane at rest, in m; "POINT; NORMAL; DIRECTION" says where columns run to as well
+  --body NAME                one with a subsection Interior                       the first such
+  --pixel M                  side of a pixel [m]                                  that of the exemplars
+  --output FILE.png          or .jpg                                              texture.png
+  --set "Section/Key=value"  changes a key of the scene; as often as wanted       none
+  --threads N                1 to 1024                                            as many as there are processors
+)";
+
+const char* const of_params = R"(usage: kerf params [study]
+Prints every section and key of a scene, or of a study, with its default, its rule and what it means; and the
+observables that a scene can have.
+)";
+
+const char* const of_table = R"(usage: kerf table --output FILE.h5
+Writes the Splitting Cubes table: which triangles each cut of a cube has.
+)";
+
 } // namespace
 
 std::string help_of(const std::string& command) {
   static const std::map<std::string, const char*> pages = {
-    {"run", of_run}, {"check", of_check}, {"study", of_study}, {"bench", of_bench}};
+    {"run", of_run},         {"check", of_check},     {"study", of_study},   {"bench", of_bench},
+    {"weights", of_weights}, {"texture", of_texture}, {"params", of_params}, {"table", of_table}};
   const auto page = pages.find(command);
   return page == pages.end() ? "" : page->second + std::string(exit_codes);
 }

@@ -17,6 +17,16 @@ int parse_number(const std::string& option, const std::string& text) {
   return n;
 }
 
+/// An empty name comes of a variable that a script has not set: results would go where they are not looked for.
+std::filesystem::path folder_named(const std::string& name) {
+  if (name.empty())
+    throw ParameterError(Complaint{.path = "--output",
+                                   .value = name,
+                                   .rule = "must name a folder",
+                                   .remedy = "Leave it out for results/SCENE"});
+  return name;
+}
+
 void add_scene(const std::string& scene, const Scenes scenes, SceneArguments& parsed) {
   if (!parsed.scenes.empty() && scenes != Scenes::several)
     throw ParameterError(Complaint{
@@ -51,7 +61,7 @@ SceneArguments parse_scene_arguments(const Arguments& arguments, const Scenes sc
     if (argument == "--set")
       parsed.overrides.push_back(value());
     else if (argument == "--output")
-      parsed.output = value();
+      parsed.output = folder_named(value());
     else if (argument == "--threads")
       parsed.n_threads = parse_number(argument, value());
     else if (argument == "--jobs" && scenes != Scenes::one)

@@ -317,7 +317,7 @@ int BalanceSolver::correct_by_cg(const Problem& problem, Loan<Vec3> guess, const
               .error = of_own * way_,
               .of_way = has_guess ? of_own : 0};
   if (stop.of_way > 0 && !problem.balance.guess_is_free_motion)
-    stop.from = potential_of_free_motion(problem);
+    stop.from = {[&] { return potential_of_free_motion(problem); }, [&] { return inertia_of_way(problem); }};
   const Product A = [&](const auto p, const auto y) { apply(problem, p, y); }, J = [&](const auto r, const auto z) {
     apply_inverse_blocks(r, z);
     problem.balance.free.relieve_motion(z);
@@ -351,15 +351,30 @@ void BalanceSolver::put_elastic(const Problem& problem, Loan<Vec3> unsolved) {
     elastic_[p] = (all[p] - problem.mass_factor * inertia[p]) / problem.stiffness_factor;
 }
 
+Vec3 BalanceSolver::free_motion(const Problem& problem, const std::size_t i) {
+  return problem.constraints.freedom(i).project *
+         (-1 / problem.balance.mass_factor * problem.acceleration_at_start(i));
+}
+
+double BalanceSolver::inertia_of_way(const Problem& problem) const {
+  if (problem.coupling) {
+    Loan<Vec3> way(correction_.size());
+    for (std::size_t i = 0; i < way.size(); ++i)
+      way[i] = correction_[i] - free_motion(problem, i);
+    return std::sqrt(problem.mass_factor * product(way, momenta(model_, way)));
+  }
+  return std::sqrt(problem.mass_factor * sum_of(correction_.size(), [&](const std::size_t begin, const std::size_t end) {
+                     double sum = 0;
+                     for (std::size_t i = begin; i < end; ++i)
+                       sum += problem.mass[i] * (correction_[i] - free_motion(problem, i)).squaredNorm();
+                     return sum;
+                   }));
+}
+
 double BalanceSolver::potential_of_free_motion(const Problem& problem) {
   Loan<Vec3> d(residual_.size()), Ad(residual_.size());
-  const double factor = -1 / problem.balance.mass_factor;
   parallel_for(
-    d.size(),
-    [&](const std::size_t i) {
-      d[i] = problem.constraints.freedom(i).project * (factor * problem.acceleration_at_start(i));
-    },
-    worth);
+    d.size(), [&](const std::size_t i) { d[i] = free_motion(problem, i); }, worth);
   apply(problem, flat(*d), flat(*Ad));
   return product(d, Ad) - 2 * product(residual_, d);
 }

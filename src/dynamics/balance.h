@@ -221,8 +221,13 @@ class BalanceSolver {
   void apply_inverse_blocks(std::span<const double> r, std::span<double> z) const;
   /// The model's, for A; null: none.
   Preconditioner* preconditioner(const Problem& problem);
-  /// d.Ad - 2 r.d of the displacement d with which nothing accelerates.
+  /// The displacement of a corner with which nothing accelerates.
+  static Vec3 free_motion(const Problem& problem, std::size_t i);
+  /// d.Ad - 2 r.d of that.
   double potential_of_free_motion(const Problem& problem);
+  /// Of the way from there to the correction, in the energy norm, what the masses say: most of it in a motion that
+  /// steps resolve.
+  double inertia_of_way(const Problem& problem) const;
   void correct_directly(const Problem& problem, const Points& x, Tangent kind);
   /// Mixes the correction with those before, where that leads downhill and far; returns how much of it to take.
   double mixed_search(const Problem& problem, const Points& x, Mixing& mixing);

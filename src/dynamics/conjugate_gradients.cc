@@ -24,19 +24,20 @@ class Estimate {
   Estimate(const CgStop& stop, const std::size_t delay) : stop_(stop), delay_(delay) {}
 
   /// y.Ay - 2 b.y of the x that was given.
-  void start_at(const double given) { farther_ = stop_.from.value_or(given) - given; }
+  void start_at(const double given) { given_ = given; }
   /// The start is nearer than what was given by so much, in squares.
   void start_nearer(const double excess) { all_ += excess; }
   void take_off(const double alpha, const double rz) {
     all_ += alpha * rz;
     last_[n_++ % delay_] = alpha * rz;
+    least_.reset();
     largest_alpha_ = std::max(largest_alpha_, alpha);
   }
-  double way() const { return std::sqrt(square_of_way()); }
+  double way() { return std::sqrt(square_of_way()); }
   /// By what the last iterations took: those left before them.
-  bool says_enough() const {
+  bool says_enough() {
     constexpr double bound_is_low = 10; // squared: what these iterations left may be more than what they took
-    return n_ >= delay_ && bound_is_low * std::accumulate(last_.begin(), last_.begin() + delay_, 0.0) <= most();
+    return n_ >= delay_ && is_little(bound_is_low * std::accumulate(last_.begin(), last_.begin() + delay_, 0.0));
   }
   /// By r.Jr of the iterate at hand, to be called once for each before r.Br is known, where B is more than J.
   bool foresees_enough(const double square) {
@@ -49,12 +50,28 @@ class Estimate {
     const double bound_is_low = n_ == 1 ? 10 : 4; // squared, see the header
     const double factor = n_ == 1 ? rz / rz_[1] : std::max(rz / rz_[1], rz_[1] / rz_[0]);
     rz_ = {rz_[1], rz};
-    return n_ >= 1 && factor < 1 && bound_is_low * largest_alpha_ * rz <= (1 - factor) * most();
+    return n_ >= 1 && factor < 1 && is_little(bound_is_low * largest_alpha_ * rz / (1 - factor));
   }
 
  private:
-  double square_of_way() const { return std::max(0.0, all_ + farther_); }
-  double most() const { return std::max(stop_.error * stop_.error, stop_.of_way * stop_.of_way * square_of_way()); }
+  double square_of_way() {
+    if (stop_.from && !farther_) {
+      if (!least_)
+        least_ = stop_.from->least();
+      return *least_ * *least_;
+    }
+    return std::max(0.0, all_ + farther_.value_or(0));
+  }
+  /// Of a square of the error.
+  bool is_little(const double square) {
+    if (square <= most())
+      return true;
+    if (!stop_.from || farther_ || stop_.of_way == 0)
+      return false;
+    farther_ = stop_.from->potential() - given_;
+    return square <= most();
+  }
+  double most() { return std::max(stop_.error * stop_.error, stop_.of_way * stop_.of_way * square_of_way()); }
 
   CgStop stop_;
   std::size_t delay_;
@@ -62,7 +79,9 @@ class Estimate {
   std::array<double, 2> rz_ = {0, 0}; // of the last two iterates
   double square_ = 0;                 // r.Jr of the last one
   std::size_t n_ = 0;
-  double all_ = 0, farther_ = 0, largest_alpha_ = 0;
+  double all_ = 0, given_ = 0, largest_alpha_ = 0;
+  std::optional<double> least_;   // way of the iterate at hand; none before it is asked for
+  std::optional<double> farther_; // y than what was given, in squares; none before it is asked for
 };
 
 } // namespace
@@ -110,7 +129,7 @@ CgReport conjugate_gradients(const CgEquation& equation, const std::span<const d
     for (std::size_t i = begin; i < end; ++i)
       r[i] = b[i] - Ap[i];
   });
-  CgReport report{.way = estimate.way()};
+  CgReport report;
   double rz = 0; // r.Br
   const auto measure = [&] {
     (equation.J ? equation.J : equation.B)(r, z);
@@ -132,6 +151,10 @@ CgReport conjugate_gradients(const CgEquation& equation, const std::span<const d
         p[i] = z[i] + beta * p[i];
     });
   };
+  const auto with_way = [&] {
+    report.way = estimate.way();
+    return report;
+  };
   measure();
   while (!report.converged && report.n_iterations < max_iterations) {
     equation.A(p, Ap);
@@ -140,7 +163,7 @@ CgReport conjugate_gradients(const CgEquation& equation, const std::span<const d
       report.indefinite = true;
       if (report.n_iterations == 0 && std::all_of(x.begin(), x.end(), is_zero))
         std::copy(p.begin(), p.end(), x.begin());
-      return report;
+      return with_way();
     }
     const double alpha = rz / pAp;
     parallel_ranges(n, worth_blocks * block, [&](const std::size_t begin, const std::size_t end) {
@@ -151,10 +174,9 @@ CgReport conjugate_gradients(const CgEquation& equation, const std::span<const d
     });
     estimate.take_off(alpha, rz);
     ++report.n_iterations;
-    report.way = estimate.way();
     measure();
   }
-  return report;
+  return with_way();
 }
 
 CgReport patient_conjugate_gradients(const CgEquation& equation, const std::span<const double> b, const CgStop& stop,

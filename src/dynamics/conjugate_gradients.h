@@ -34,19 +34,24 @@ T sum_in_blocks(const std::size_t n, const T& zero, const OfRange& of_range) {
 double sum_of(std::size_t n, FunctionRef<double(std::size_t begin, std::size_t end)> of_range);
 double dot(std::span<const double> a, std::span<const double> b);
 
+/// From where a way counts: some y.
+struct WayFrom {
+  std::function<double()> potential; ///< y.Ay - 2 b.y, which takes a product: asked for where the other says too little
+  std::function<double()> least;     ///< |x - y|_A of the x at hand, at least
+};
+
 /// Where to stop: at whichever comes first. Errors are in the energy norm |e|_A = sqrt(e.Ae).
 struct CgStop {
   double residual = 0; ///< of b - A x, in the measure of the equation
   double error = 0;    ///< of x
   double of_way = 0;   ///< error of x over the way to the solution [1]
-  /// y.Ay - 2 b.y of the y from which the way counts; none: from the x that was given.
-  std::optional<double> from = {};
+  std::optional<WayFrom> from = {}; ///< none: from the x that was given
 };
 
 struct CgReport {
   int n_iterations = 0;
   double residual = 0;     ///< of b - A x, in the measure of the equation
-  double way = 0;          ///< |x - y|_A for the y of the stop
+  double way = 0;          ///< |x - y|_A for the y of the stop; where its potential was not asked for, at least that
   bool converged = false;  ///< as the stop says
   bool indefinite = false; ///< stopped by a direction that the matrix does not resist
 };

@@ -1,6 +1,7 @@
 #pragma once
 
-/// Linear equations by a sparse factorisation: L D L^T of a symmetric matrix, L U of any other (Eigen).
+/// Linear equations by a sparse factorisation: L L^T of a positive matrix (CHOLMOD, which deal.II brings), L D L^T of
+/// any other symmetric one, L U of the rest (Eigen).
 
 #include "dynamics/constraints.h"
 

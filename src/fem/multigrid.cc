@@ -308,39 +308,43 @@ void Multigrid::put_rotations(const std::span<const Lanes9<double>> finest) {
 /// The rotations of means over children by volume.
 void Multigrid::put_coarse_rotations(const std::size_t l, const std::span<const Lanes9<double>> finest) {
   const Level& fine = levels_[l - 1];
-  const Batching& batching = *fine.batching;
-  const BatchedElements<float>& elements = fine.elements;
-  Loan<std::uint32_t> places(fine.to_coarse.parent.size(), AnyValues()); // of copies: batch and lane
-  batching.for_each([&](const std::size_t i) {
-    for (std::uint32_t lane = 0; lane < n_lanes; ++lane)
-      if (const std::uint32_t c = batching.batches()[i].copies[lane]; c != BatchOfCopies::none)
-        places[c] = static_cast<std::uint32_t>(n_lanes * i + lane);
-  });
-  const auto rotation = [&](const std::uint32_t c) {
-    if (l > 1)
-      return fine.rotations[c];
-    Mat3 R;
-    for (int k = 0; k < 9; ++k)
-      R.data()[k] = finest[places[c] / n_lanes].row[k][places[c] % n_lanes];
-    return R;
-  };
-  const auto volume = [&](const std::uint32_t c) -> double {
-    const std::uint32_t partial = batching.batches()[places[c] / n_lanes].partial;
-    return partial == BatchOfCopies::none ? elements.cube.volume
-                                          : elements.partial[partial].volume[places[c] % n_lanes];
-  };
   Level& coarse = levels_[l];
+  const Loan<Mat3> sums = l == 1 ? sums_of_finest_rotations(finest) : Loan<Mat3>::none();
+  const auto sum_of_children = [&](const std::size_t c) {
+    Mat3 sum = Mat3::Zero();
+    for (const std::uint32_t child : fine.to_coarse.children.of(c))
+      sum += fine.made_of[child].volume * fine.rotations[child];
+    return sum;
+  };
   coarse.rotations.resize(coarse.cells.n_copies());
   parallel_for(
     coarse.rotations.size(),
     [&](const std::size_t c) {
-      Mat3 sum = Mat3::Zero();
-      for (const std::uint32_t child : fine.to_coarse.children.of(c))
-        sum += volume(child) * rotation(child);
+      const Mat3 sum = l == 1 ? sums[c] : sum_of_children(c);
       const double all = coarse.made_of[c].volume;
       coarse.rotations[c] = all > 0 ? material::rotation_of(sum / all) : Mat3(Mat3::Identity());
     },
     256);
+}
+
+/// By parent, times volumes. In the order of batches, as they lie in memory.
+Loan<Mat3> Multigrid::sums_of_finest_rotations(const std::span<const Lanes9<double>> finest) const {
+  const Level& fine = levels_[0];
+  const BatchedElements<float>& elements = fine.elements;
+  Loan<Mat3> sums(levels_[1].cells.n_copies(), Mat3::Zero());
+  for (std::size_t i = 0; i < finest.size(); ++i) {
+    const BatchOfCopies& batch = fine.batching->batches()[i];
+    for (std::size_t lane = 0; lane < n_lanes; ++lane) {
+      if (batch.copies[lane] == BatchOfCopies::none)
+        continue;
+      const double volume = batch.partial == BatchOfCopies::none ? elements.cube.volume
+                                                                 : elements.partial[batch.partial].volume[lane];
+      Mat3& sum = sums[fine.to_coarse.parent[batch.copies[lane]]];
+      for (int k = 0; k < 9; ++k)
+        sum.data()[k] += volume * finest[i].row[k][lane];
+    }
+  }
+  return sums;
 }
 
 void Multigrid::put_masses(const dynamics::LinearEquation& equation) {

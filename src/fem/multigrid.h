@@ -22,6 +22,7 @@
 /// Departs from Galerkin: a coarse cube turns as a whole, and masses and penalties are lumped; laws other than
 /// Hooke's are replaced by his.
 
+#include "base/loan.h"
 #include "dynamics/preconditioner.h"
 #include "fem/batches.h"
 #include "fem/coarsening.h"
@@ -84,6 +85,7 @@ class Multigrid : public dynamics::Preconditioner {
   static void put_batches(double h, const material::Elastic& material, Level& coarse);
   void put_rotations(std::span<const Lanes9<double>> finest);
   void put_coarse_rotations(std::size_t l, std::span<const Lanes9<double>> finest);
+  Loan<Mat3> sums_of_finest_rotations(std::span<const Lanes9<double>> finest) const;
   void put_masses(const dynamics::LinearEquation& equation);
   void hold(const dynamics::LinearEquation& equation);
 

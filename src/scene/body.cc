@@ -10,14 +10,18 @@ namespace kerf::scene {
 
 namespace {
 
-/// 1 for each corner that a support held before a cut, or that comes from such a one.
-std::vector<std::uint8_t> held_before(const dynamics::Support& support, const grid::CutChange& change) {
-  std::vector<std::uint8_t> held(change.n_corners_before, 0);
+/// The corners that a support held before a cut, or that come from such ones [ascending].
+std::vector<std::uint32_t> held_before(const dynamics::Support& support, const grid::CutChange& change) {
+  std::vector<std::uint8_t> is_held(change.n_corners_before, 0);
   for (const auto i : support.corners)
-    held[i] = 1;
-  grid::inherit(change, held);
+    is_held[i] = 1;
+  grid::inherit(change, is_held);
   for (const grid::Lapse& lapse : change.lapsed)
-    held[lapse.heir.value] |= held[lapse.corner.value];
+    is_held[lapse.heir.value] |= is_held[lapse.corner.value];
+  std::vector<std::uint32_t> held;
+  for (std::uint32_t i = 0; i < is_held.size(); ++i)
+    if (is_held[i] != 0)
+      held.push_back(i);
   return held;
 }
 
@@ -29,11 +33,9 @@ void find_supports(Body& body, const grid::CutChange* const change) {
   for (std::size_t r = 0; r < body.regions.size(); ++r) {
     const SupportRegion& region = body.regions[r];
     dynamics::Support support{{}, {}, region.displacement, region.rotation, region.held};
-    support.corners = particles_in(body, region.region);
-    if (change && body.physics->particles_are_corners()) {
-      const std::vector<std::uint8_t> held = held_before(before[r], *change);
-      std::erase_if(support.corners, [&](const std::uint32_t i) { return held[i] == 0; });
-    }
+    support.corners = change && body.physics->particles_are_corners()
+                        ? particles_in(body, region.region, held_before(before[r], *change))
+                        : particles_in(body, region.region);
     for (const auto i : support.corners)
       support.rest.push_back(rest[i]);
     body.loads.supports.push_back(std::move(support));

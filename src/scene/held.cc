@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <atomic>
+#include <numeric>
+#include <utility>
 
 namespace kerf::scene {
 
@@ -24,11 +26,15 @@ bool has_material_in(const Region& region, const grid::Solid& solid, const grid:
 } // namespace
 
 std::vector<std::uint32_t> particles_in(const Body& body, const Region& region) {
+  std::vector<std::uint32_t> all(body.physics->rest().size());
+  std::iota(all.begin(), all.end(), 0);
+  return particles_in(body, region, std::move(all));
+}
+
+std::vector<std::uint32_t> particles_in(const Body& body, const Region& region, std::vector<std::uint32_t> among) {
   const Points& rest = body.physics->rest();
-  std::vector<std::uint32_t> inside;
-  for (std::uint32_t i = 0; i < rest.size(); ++i)
-    if (contains(region, rest[i]))
-      inside.push_back(i);
+  std::vector<std::uint32_t> inside = std::move(among);
+  std::erase_if(inside, [&](const auto i) { return !contains(region, rest[i]); });
   if (!body.physics->particles_are_corners() || inside.empty())
     return inside;
 

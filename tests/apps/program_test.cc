@@ -80,10 +80,21 @@ TEST_F(ProgramTest, HelpsBesideACommandAndSaysWhatItIs) {
   EXPECT_EQ(page.find("kerf study"), std::string::npos) << page;
   for (const char* option : {"--set", "--output", "--threads", "--jobs", "--force", "--resume"})
     EXPECT_NE(page.find(std::string("\n  ") + option), std::string::npos) << option;
+  for (const char* command : {"check", "study", "bench", "weights", "texture", "params", "table"}) {
+    const std::string own = kerf({command, "--help"}).out;
+    EXPECT_TRUE(own.starts_with(std::string("usage: kerf ") + command)) << own;
+    EXPECT_NE(own.find("exit codes"), std::string::npos) << own;
+  }
   const Result version = kerf({"--version"});
   EXPECT_EQ(version.exit_code, 0);
   EXPECT_TRUE(std::regex_search(version.out, std::regex(R"(^kerf \d+\.\d+\.\d+, commit .*deal\.II \d)")))
     << version.out;
+}
+
+TEST_F(ProgramTest, RefusesAnEmptyFolder) {
+  const Result result = kerf({"run", "no.prm", "--output", ""});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_NE(result.err.find("--output = '': must name a folder"), std::string::npos) << result.err;
 }
 
 TEST_F(ProgramTest, SumsUpTheRun) {
