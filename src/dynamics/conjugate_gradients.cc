@@ -64,9 +64,11 @@ class Estimate {
   }
   /// Of a square of the error.
   bool is_little(const double square) {
-    if (square <= most())
+    constexpr double far = 100; // squared: a way so many times what is known of it is rare
+    const double known = most();
+    if (square <= known)
       return true;
-    if (!stop_.from || farther_ || stop_.of_way == 0)
+    if (!stop_.from || farther_ || stop_.of_way == 0 || (known > 0 && square > far * known))
       return false;
     farther_ = stop_.from->potential() - given_;
     return square <= most();

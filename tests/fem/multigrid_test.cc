@@ -343,8 +343,20 @@ TEST(Multigrid, CountsTheWayFromWhereItIsTold) {
   for (Vec3& x : near)
     x *= 0.99;
   Points x = near;
-  const auto of_all = dynamics::conjugate_gradients(cg, flat(b), {.of_way = 1e-3, .from = 0}, 60, flat(x));
+  int n_asked = 0;
+  const auto from_zero = [&](const double least) {
+    return dynamics::WayFrom{[&] { return ++n_asked, 0.0; }, [=] { return least; }};
+  };
+  const auto of_all =
+    dynamics::conjugate_gradients(cg, flat(b), {.of_way = 1e-3, .from = from_zero(0)}, 60, flat(x));
   EXPECT_NEAR(of_all.way, full.way, 1e-3 * full.way);
+  EXPECT_EQ(n_asked, 1);
+  x = near; // where it is known that the way is long enough, no potential is asked for
+  const auto of_least =
+    dynamics::conjugate_gradients(cg, flat(b), {.of_way = 1e-3, .from = from_zero(10 * full.way)}, 60, flat(x));
+  EXPECT_LE(of_least.n_iterations, of_all.n_iterations);
+  EXPECT_EQ(of_least.way, 10 * full.way);
+  EXPECT_EQ(n_asked, 1);
   x = near;
   const auto of_rest = dynamics::conjugate_gradients(cg, flat(b), {.of_way = 1e-3}, 60, flat(x));
   EXPECT_NEAR(of_rest.way, 0.01 * full.way, 1e-5 * full.way);
