@@ -5,6 +5,8 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
+#include <dlfcn.h>
+
 #include <memory>
 
 namespace kerf {
@@ -30,6 +32,21 @@ void parallel_ranges(const std::size_t n, const std::size_t worth,
   tbb::parallel_for(
     tbb::blocked_range<std::size_t>(0, n, grain),
     [&](const tbb::blocked_range<std::size_t>& range) { f(range.begin(), range.end()); }, tbb::simple_partitioner());
+}
+
+namespace {
+
+/// Calls a function of a library, if one that is loaded has it.
+void call_if_there(const char* const name, const int argument) {
+  if (void* const found = dlsym(RTLD_DEFAULT, name))
+    reinterpret_cast<void (*)(int)>(found)(argument);
+}
+
+} // namespace
+
+void keep_libraries_to_one_thread() {
+  call_if_there("openblas_set_num_threads", 1);
+  call_if_there("omp_set_max_active_levels", 0); // regions that ask for threads themselves stay without
 }
 
 } // namespace kerf

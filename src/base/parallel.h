@@ -24,4 +24,9 @@ void parallel_for(const std::size_t n, const Function& f, const std::size_t wort
   });
 }
 
+/// Keeps what libraries do for the calling thread to that thread: BLAS (OpenBLAS) and what has OpenMP inside (CHOLMOD).
+/// Our loops are parallel already; threads beside theirs wait for each other, on a busy machine six times as long as
+/// the work takes, and one thread gives the same bits everywhere.
+void keep_libraries_to_one_thread();
+
 } // namespace kerf

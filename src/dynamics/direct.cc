@@ -1,6 +1,7 @@
 #include "dynamics/direct.h"
 
 #include "base/error.h"
+#include "base/parallel.h"
 
 #include <Eigen/CholmodSupport>
 #include <Eigen/SparseCholesky>
@@ -106,6 +107,7 @@ Eigen::VectorXd solution(const Matrix& A, const Eigen::VectorXd& b) {
 } // namespace
 
 void solve_directly(const Matrix& A, const Constraints& constraints, const Points& force, Points& d) {
+  keep_libraries_to_one_thread();
   const Matrix T = free_directions(constraints);
   Matrix reduced = T.transpose() * A * T;
   const Eigen::VectorXd scale = scaling(reduced);

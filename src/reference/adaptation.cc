@@ -1,4 +1,5 @@
 #include "base/error.h"
+#include "base/parallel.h"
 #include "reference/space.h"
 
 #include <deal.II/grid/grid_refinement.h>
@@ -15,6 +16,7 @@ Vector equilibrium(const Space<dim>& space) {
   dealii::SparseDirectUMFPACK factors;
   Vector u(space.dofs.n_dofs());
   try {
+    keep_libraries_to_one_thread();
     factors.initialize(system.K);
     factors.vmult(u, system.f);
   } catch (const dealii::ExceptionBase& error) {

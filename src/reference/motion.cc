@@ -1,6 +1,7 @@
 #include "reference/motion.h"
 
 #include "base/error.h"
+#include "base/parallel.h"
 #include "reference/space.h"
 
 #include <deal.II/grid/grid_tools.h>
@@ -77,6 +78,7 @@ class Motion {
     A.copy_from(M_);
     A *= 1 - weights_.mass + (1 - weights_.force) * g * dt * in_time.mass_damping;
     A.add((1 - weights_.force) * b * dt * dt, system_.K);
+    keep_libraries_to_one_thread();
     inverse_.initialize(A);
   }
 

@@ -1,6 +1,7 @@
 #include "reference/solution.h"
 
 #include "base/error.h"
+#include "base/parallel.h"
 #include "reference/space.h"
 
 #include <deal.II/base/quadrature_lib.h>
@@ -118,6 +119,7 @@ std::vector<double> lowest_eigenvalues(const Problem& problem, const Discretisat
   const double shift = low(problem);
   shifted.add(shift, M);
   dealii::SparseDirectUMFPACK inverse;
+  keep_libraries_to_one_thread();
   inverse.initialize(shifted);
   const auto n_wanted = static_cast<unsigned int>(n);
   dealii::SolverControl control(static_cast<unsigned int>(space.dofs.n_dofs()), 1e-12);
