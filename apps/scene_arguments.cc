@@ -21,7 +21,6 @@ int parse_number(const std::string& option, const std::string& text) {
 std::filesystem::path folder_named(const std::string& name) {
   if (name.empty())
     throw ParameterError(Complaint{.path = "--output",
-                                   .value = name,
                                    .rule = "must name a folder",
                                    .remedy = "Leave it out for results/SCENE"});
   return name;

@@ -245,8 +245,8 @@ void Cutter::join(Solid& solid, const Added& added, const Points& x, std::vector
     std::vector<grid::Joined> groups;
     if (solid.cuts.front(c) == nullptr) {
       const grid::Segments unsettled = passage.cuts_in(solid, c, x, passed_.size(), left_);
-      groups =
-        near_each_other(solid, c, unsettled != 0 ? without_cuts(solid, c, unsettled) : on_same_sides(solid, c), x);
+      groups = near_each_other(
+        solid, c, unsettled != 0 ? undivided(solid, c, without_cuts(solid, c, unsettled)) : on_same_sides(solid, c), x);
       if (unsettled != 0)
         unsettled_.insert(c);
     }

@@ -225,6 +225,21 @@ std::vector<Joined> without_cuts(const Solid& solid, const CellId c, const Segme
   return groups;
 }
 
+std::vector<Joined> undivided(const Solid& solid, const CellId c, const std::vector<Joined>& groups) {
+  const grid::Parts parts = grid::parts_of(grid::without_joined(grid::cuts_of(solid, c)));
+  std::vector<Joined> result;
+  for (const Joined& group : groups) {
+    std::map<grid::CopyId, Items> of_copies;
+    for (const grid::Part& part : parts)
+      if ((part.items() & group.items) != 0)
+        of_copies[copy_of(solid, c, part.items())] |= part.items();
+    for (const auto& [copy, items] : of_copies)
+      result.push_back(
+        {items, of_copies.size() == 1 ? group.intervals : group.intervals & solid.complex.copies[copy].intervals});
+  }
+  return result;
+}
+
 std::vector<Joined> near_each_other(const Solid& solid, const CellId c, std::vector<Joined> groups, const Points& x) {
   const grid::Parts parts = grid::parts_of(grid::without_joined(grid::cuts_of(solid, c)));
   for (Joined& group : groups) {

@@ -28,6 +28,9 @@ std::vector<grid::Joined> on_same_sides(const grid::Solid& solid, grid::CellId c
 /// What hangs together in a cell without some of its cuts, with the intervals that belong to it by on_same_sides().
 std::vector<grid::Joined> without_cuts(const grid::Solid& solid, grid::CellId c, grid::Segments cuts);
 
+/// Of these groups what is one copy still, by copies: cuts that wait join nothing that was parted before they came.
+std::vector<grid::Joined> undivided(const grid::Solid& solid, grid::CellId c, const std::vector<grid::Joined>& groups);
+
 /// Of these groups what can be one: parts that are one copy already, or whose copies' corners have moved apart by less
 /// than a quarter of a cube, with the corners at `x` [m]; and of intervals those beyond which, across a face, lies no
 /// copy that has moved away so far. A copy is turned inside out where one of its faces moves by a cube against the
