@@ -51,8 +51,9 @@ void print_body(const scene::Body& body, const scene::Watch& watch) {
 
 void print_cut(const scene::World& world, const grid::CutLabel label, const std::string& what,
                const std::string& remedy) {
-  std::size_t n = 0, n_passed = 0, n_of_skin = 0;
+  std::size_t n = 0, n_passed = 0, n_of_skin = 0, n_left_whole = 0; // the last of all cuts
   for (const scene::Body& body : world.bodies) {
+    n_left_whole += body.cutter->counts().n_left_whole;
     n += body.cutter->counts().n_cut_edges[label - 1];
     n_passed += body.cutter->n_passed_cells(label);
     n_of_skin += static_cast<std::size_t>(std::ranges::count(body.solid.cuts.skin_cuts(), label, &grid::SkinCut::label));
@@ -61,6 +62,7 @@ void print_cut(const scene::World& world, const grid::CutLabel label, const std:
                           : n_of_skin > 0
                             ? ": it cut " + std::to_string(n_of_skin) + " parts of the skin between them"
                           : n_passed > 0 ? ": it passed between them. Use a smaller cube edge, or cut deeper"
+                          : n_left_whole > 0 ? ": none, or what it met was left whole. " + remedy
                                          : ": it never met a body. " + remedy;
   std::printf("%s: cut %zu grid edges%s\n", what.c_str(), n, why.c_str());
 }

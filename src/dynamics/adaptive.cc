@@ -25,7 +25,7 @@ double largest_difference(const std::span<const double> mass, const State& a, co
   }
   double largest = 0;
   for (std::size_t i = 0; i < a.x.size(); ++i) {
-    const double weight = n * mass[i] < all ? std::sqrt(n * mass[i] / all) : 1;
+    const double weight = n * mass[i] < all ? n * mass[i] / all : 1;
     largest = std::max(largest, weight * ((a.x[i] - b.x[i]).norm() + dt * (a.v[i] - b.v[i]).norm()));
   }
   return largest;

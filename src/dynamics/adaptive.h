@@ -6,10 +6,11 @@
 /// is 2^p - 1 times the error of the halves for a one-step integrator of order p (Hairer, Norsett, Wanner, Solving
 /// ODEs I, II.4), and 1.7 times for BDF2, whose whole and halves meet different ratios of steps: e itself bounds
 /// both. The halves are kept when |e_x| + dt |e_v| <= tolerance h for every corner, with the step dt for a time
-/// scale; what a corner of less than the mean mass m errs by counts sqrt(m_i / m) times, as in the energy of the error:
-/// where near-empty cubes alone know a corner, what solvers leave shows most, and means least; a substep below dt / 1000 whose error does not fall with h has met a jump of a force and is kept too. The
-/// next substep is 0.9 (tolerance h / error)^(1/p) times as long, within 1/4 .. 1.2 (BDF2 goes no further in one). It
-/// costs three solutions a substep kept.
+/// scale. What a corner of less than the mean mass m errs by counts m_i / m times, as in the momentum of the error:
+/// where near-empty cubes alone know a corner, a cut and what solvers leave throw it most, its own motion is faster
+/// than any step, and it means least to the others. A substep below dt / 1000 whose error does not fall with h has met
+/// a jump of a force and is kept too. The next substep is 0.9 (tolerance h / error)^(1/p) times as long, within
+/// 1/4 .. 1.2 (BDF2 goes no further in one). It costs three solutions a substep kept.
 ///
 /// Generalised alpha below rho_inf = 1 remembers an acceleration whose time depends on the step, and pays for each
 /// change of it with an error of first order: Newmark and BDF2 need fewer substeps for small tolerances.

@@ -135,9 +135,11 @@ StepReport QuasiStatic::step(State& state, const Loads& loads, const double dt) 
       part *= 0.5;
       ++report.n_rejected;
       if (part < 1.0 / 1024)
-        throw NumericalError("no equilibrium found: " + std::string("Newton's method left ") +
-                             to_text(newton.residual) + " of the forces out of balance at " + to_text(100 * s) +
-                             " % of the load" + (newton.failure.empty() ? "" : ": " + newton.failure));
+        throw NumericalError("no equilibrium found at " + to_text(100 * s) + " % of the load" +
+                             (newton.residual > 0 ? ": Newton's method left " + to_text(newton.residual) +
+                                                      " of the forces out of balance"
+                                                  : "") +
+                             (newton.failure.empty() ? "" : ": " + newton.failure));
     }
   }
   state.x = std::move(x);
