@@ -14,20 +14,30 @@ using dynamics::RigidMotion;
 
 namespace {
 
-/// What the particles of each crumb weigh [kg].
-std::vector<double> mass_of_particles(const CrumbParticles& particles, const std::size_t n_crumbs) {
-  std::vector<double> sums(n_crumbs, 0.0);
+/// Of the particles of a crumb.
+struct Weight {
+  double mass = 0;             ///< [kg]
+  Vec3 moment = Vec3::Zero(); ///< mass times rest position [kg m]
+};
+std::vector<Weight> weights_of(const CrumbParticles& particles, const std::size_t n_crumbs) {
+  std::vector<Weight> weights(n_crumbs);
   for (std::size_t i = 0; i < particles.crumb.size(); ++i)
-    if (particles.crumb[i] != CrumbParticles::none)
-      sums[particles.crumb[i]] += particles.mass[i];
-  return sums;
+    if (particles.crumb[i] != CrumbParticles::none) {
+      auto& [mass, moment] = weights[particles.crumb[i]];
+      mass += particles.mass[i];
+      moment += particles.mass[i] * particles.rest[i];
+    }
+  return weights;
 }
 
 /// Gives a crumb the mass of its particles, or none to speak of: a backend that has its own has given them all of the
-/// body's, some of it for material across the cut, and none is to be made or lost.
-void weigh(const double mass, CrumbBody& crumb) {
+/// body's, some of it for material across the cut, and none is to be made or lost. Its centre is theirs, or becoming a
+/// crumb would change momentum where it turns.
+void weigh(const Weight& weight, CrumbBody& crumb) {
   constexpr double nothing = 1e-12;
-  const double factor = std::max(nothing, mass / crumb.body.mass);
+  const double factor = std::max(nothing, weight.mass / crumb.body.mass);
+  if (weight.mass > 0)
+    crumb.body.centre = weight.moment / weight.mass;
   crumb.body.mass *= factor;
   crumb.body.inertia *= factor;
   for (double& of_corner : crumb.mass_of_corners)
@@ -43,7 +53,7 @@ void Crumbs::follow(const grid::Solid& solid, const CrumbParticles* const partic
   std::vector<Crumb> crumbs;
   Motions motions;
   std::optional<Motion> now;
-  const auto weights = particles ? mass_of_particles(*particles, solid.crumbs.all.size()) : std::vector<double>();
+  const auto weights = particles ? weights_of(*particles, solid.crumbs.all.size()) : std::vector<Weight>();
   auto before = crumbs_.begin(); // both lists are by ascending name
   for (const grid::Crumb& crumb : solid.crumbs.all) {
     while (before != crumbs_.end() && before->name < crumb.name)
@@ -114,6 +124,17 @@ void Crumbs::place_corners(const dynamics::State& state, Points& corners) const 
   for (std::size_t b = 0; b < crumbs_.size(); ++b)
     for (std::size_t i = 0; i < crumbs_[b].corners.size(); ++i)
       corners[crumbs_[b].corners[i]] = dynamics::place(crumbs_[b].body, state.crumbs[b], crumbs_[b].rest_of_corners[i]);
+}
+
+void Crumbs::put_velocities(const dynamics::State& state, Points& of_corners) const {
+  for (std::size_t b = 0; b < crumbs_.size(); ++b) {
+    const RigidMotion& motion = state.crumbs[b];
+    const Vec3 omega = dynamics::angular_velocity(crumbs_[b].body, motion);
+    for (std::size_t i = 0; i < crumbs_[b].corners.size(); ++i) {
+      const Vec3 place = dynamics::place(crumbs_[b].body, motion, crumbs_[b].rest_of_corners[i]);
+      of_corners[crumbs_[b].corners[i]] = motion.v + omega.cross(place - motion.x);
+    }
+  }
 }
 
 std::vector<RigidMotion> Crumbs::at_rest() const {

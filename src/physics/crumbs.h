@@ -51,6 +51,8 @@ class Crumbs {
   void put(const Motion& of_corners, dynamics::State& state) const;
   /// Puts the corners of crumbs where they are.
   void place_corners(const dynamics::State& state, Points& corners) const;
+  /// Gives them their velocities.
+  void put_velocities(const dynamics::State& state, Points& of_corners) const;
 
   /// Of all crumbs, where they rest.
   std::vector<dynamics::RigidMotion> at_rest() const;

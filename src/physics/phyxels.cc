@@ -220,6 +220,7 @@ void Phyxels::follow_cut(const CutBody& body, const grid::CutChange& change, dyn
       const Interpolation carried = carry(corners_themselves(corners_.size()));
       for (std::size_t i = 0; i < corners_.size(); ++i)
         now.v.push_back(carried.at(i, state.v));
+      crumbs_.put_velocities(state, now.v);
       grid::inherit(change, now.x);
       grid::inherit(change, now.v);
       return now;
