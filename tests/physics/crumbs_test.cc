@@ -199,6 +199,40 @@ TEST(Crumbs, GoOnAsTheyMoved) {
   }
 }
 
+/// A cut that meets a crumb gives it another name. It goes on as it did, whatever moves beside it.
+TEST(Crumbs, GoOnUnderAnotherName) {
+  for (const auto& backend : backends) {
+    Dust dust;
+    const auto physics = make(backend, dust.block.seen());
+    auto state = state_at_rest(*physics);
+    physics->follow_cut(dust.block.seen(), dust.cut(), state);
+    for (std::size_t b = 0; b < state.crumbs.size(); ++b) {
+      state.crumbs[b].v = Vec3(0.2, 0.1 * double(b % 3), -0.3);
+      state.crumbs[b].spin = physics->crumbs().body(b).inertia * Vec3(1, 0.5, double(b % 2));
+    }
+    physics->step(state, {}, 0.01);
+    physics->follow(state);
+    const auto before = state.crumbs;
+    grid::Crumbs& named = dust.block.body.crumbs;
+    for (grid::Crumb& crumb : named.all)
+      for (const grid::CopyId c : crumb.copies)
+        named.of_copy[c.value] = crumb.name + named.n_named;
+    for (grid::Crumb& crumb : named.all)
+      crumb.name += named.n_named;
+    named.n_named *= 2;
+    grid::CutChange nothing;
+    nothing.n_copies_before = dust.block.body.complex.n_copies();
+    nothing.n_corners_before = dust.block.body.complex.n_corners();
+    physics->follow_cut(dust.block.seen(), nothing, state);
+    ASSERT_EQ(state.crumbs.size(), before.size());
+    for (std::size_t b = 0; b < before.size(); ++b) {
+      EXPECT_LT((state.crumbs[b].x - before[b].x).norm(), 1e-9) << backend << ", crumb " << b;
+      EXPECT_LT((state.crumbs[b].v - before[b].v).norm(), 1e-9) << backend << ", crumb " << b;
+      EXPECT_LT((state.crumbs[b].spin - before[b].spin).norm(), 1e-6 * before[b].spin.norm()) << backend;
+    }
+  }
+}
+
 Vec3 momentum(const Physics& physics, const std::span<const double> mass, const dynamics::State& state) {
   Vec3 sum = physics.crumbs().momentum(state);
   for (std::size_t i = 0; i < state.v.size(); ++i)
