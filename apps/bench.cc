@@ -59,6 +59,8 @@ void read_option(const std::string& option, const std::string& value, BenchArgum
     parsed.options.n_samples = static_cast<int>(number_in(option, value, 1, 1000));
   else if (option == "--threads")
     parsed.n_threads = static_cast<int>(number_in(option, value, 1, 1024));
+  else if (option == "--output" && value.empty())
+    refuse(option, "", "must name a folder", "Leave it out for results/bench");
   else if (option == "--output")
     parsed.output = value;
   else if (option == "--against")

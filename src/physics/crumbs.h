@@ -28,7 +28,7 @@ namespace kerf::physics {
 /// The particles of a backend that has its own.
 struct CrumbParticles {
   std::vector<std::uint32_t> crumb; ///< in grid::Crumbs::all, of each particle; `none`
-  std::span<const double> mass;     ///< [kg]
+  std::span<const double> mass;     ///< [kg]; a crumb weighs what its own do, and has their centre of mass
   const Points& rest;               ///< [m]
 
   static constexpr std::uint32_t none = 0xffffffff;
@@ -51,7 +51,7 @@ class Crumbs {
   void put(const Motion& of_corners, dynamics::State& state) const;
   /// Puts the corners of crumbs where they are.
   void place_corners(const dynamics::State& state, Points& corners) const;
-  /// Gives them their velocities.
+  /// Gives the corners of crumbs their velocities [m/s].
   void put_velocities(const dynamics::State& state, Points& of_corners) const;
 
   /// Of all crumbs, where they rest.
