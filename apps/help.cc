@@ -67,7 +67,7 @@ Weights of a point near simple cuts by every criterion of visibility, as images,
 
   --set "Section/Key=value"  changes a key of the file; as often as wanted        none
   --output DIR               folder of the images and of weights.h5               results/WEIGHTS
-  --force                    deletes what Kerf has made in the folder, and begins anew
+Images and table of an earlier call there are replaced.
 )";
 
 const char* const of_texture = R"(usage: kerf texture SCENE.prm --plane "x, y, z; normal x, y, z" [options]
