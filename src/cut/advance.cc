@@ -1,5 +1,6 @@
 #include "cut/advance.h"
 
+#include "base/function_ref.h"
 #include "grid/fronts.h"
 #include "grid/parts.h"
 
@@ -134,12 +135,17 @@ class Sweep {
   NearSweep near_;
 };
 
-bool is_cut_beside(const Solid& solid, const CellId c) {
+/// One across a face.
+bool has_neighbour(const Solid& solid, const CellId c, const FunctionRef<bool(CellId)> is_such) {
   for (int face = 0; face < grid::cube::n_faces; ++face)
-    if (const CellId next = solid.grid.neighbour(c, face);
-        next.valid() && grid::cuts_of_copies(solid, next).blades != 0)
+    if (const CellId next = solid.grid.neighbour(c, face); next.valid() && is_such(next))
       return true;
   return false;
+}
+
+bool is_cut_beside(const Solid& solid, const CellId c) {
+  return has_neighbour(solid, c,
+                       [&](const CellId next) { return grid::cuts_of_copies(solid, next).blades != 0; });
 }
 
 /// The part of a section that what is drawn covers, with its lag.
@@ -179,12 +185,14 @@ std::vector<Front> Advance::take(const Solid& solid, const PendingCuts& pending)
   std::vector<Front> fronts;
   FrontsOfCells begun;
   std::set<CellId> later;
+  const auto waits = [&](const CellId c) {
+    return std::ranges::any_of(solid.grid.edges(c), [&](const grid::EdgeId e) { return pending.waits(e); });
+  };
   for (const CellId c : touched_) {
     Cell& cell = cells_.at(c);
-    const auto edges = solid.grid.edges(c);
     if (grid::whole_parts_of(grid::cuts_of(solid, c)).n > 1)
       cells_.erase(c);
-    else if (std::ranges::any_of(edges, [&](const grid::EdgeId e) { return pending.waits(e); }))
+    else if (waits(c))
       later.insert(c);
     else if (const Front* const earlier = solid.cuts.front(c)) {
       Front moved = *earlier;
@@ -197,6 +205,8 @@ std::vector<Front> Advance::take(const Solid& solid, const PendingCuts& pending)
   for (auto& [c, front] : begun)
     if (begin(solid, front, begun))
       fronts.push_back(front);
+    else if (has_neighbour(solid, c, waits)) // which may be what it lacks
+      later.insert(c);
   touched_ = std::move(later);
   std::ranges::sort(fronts, {}, &Front::cell);
   return fronts;

@@ -11,7 +11,7 @@
 /// cut one beside it. The part of the section of plane and material that it covers is how far the cut has come. Corners
 /// ahead of a front are parted too (is_corner_ahead, course.h).
 ///
-/// Cells in which cuts wait (pending.h) get no front before they are cut.
+/// Cells in which cuts wait (pending.h) get no front before they are cut; those beside them are asked again then.
 ///
 /// Errors: a texel is .04 cubes wide; within a cell the map of its copy is taken as affine. A blade that turns leaves
 /// the fronts that it had, until it cuts their cells: then they are taken back (course.h).

@@ -42,6 +42,32 @@ TEST(Advance, LeavesTheFrontsOfARectangle) {
   }
 }
 
+/// Whichever way it comes, however it steps and wherever it stops: where cuts waited, cells beside them are asked again
+/// (a crack was a cube short where a blade came from below and stopped just before a layer of nodes).
+TEST(Advance, LeavesThemWhicheverWayItComes) {
+  for (int axis = 0; axis < 3; ++axis)
+    for (const bool is_down : {false, true})
+      for (const double end : {4.995, 5.005, 5.5, 6.1})
+        for (const double step : {0.7, 1.87, 2.4}) {
+          const Vec3 along = Vec3::Unit(axis), edge = Vec3::Unit((axis + 1) % 3), normal = Vec3::Unit((axis + 2) % 3);
+          const auto place = [&](const double s) {
+            return Vec3((is_down ? 10 - s : s) * along + 5.4 * normal + 5 * edge);
+          };
+          Cutting moving(block(), Fronts::inside_cells);
+          const Blade blade = {"blade", {-20 * edge, 20 * edge}, {{0, place(-2)}, {end + 2, place(end)}}};
+          double t = 0;
+          for (; t < end + 2; t += step)
+            moving.step(blade, t, t + step);
+          for (int k = 0; k < 4; ++k, t += step)
+            moving.step(blade, t, t + step);
+          ASSERT_EQ(moving.cutter.n_waiting(), 0u);
+          Cutting at_once(block(), Fronts::inside_cells);
+          at_once.cut(Rectangle{0.5 * (place(-2) + place(end)), place(end) - place(-2), 40 * edge});
+          EXPECT_EQ(moving.body.complex.tied.size(), at_once.body.complex.tied.size())
+            << axis << is_down << " " << end << " " << step;
+        }
+}
+
 /// For explicit steps.
 TEST(Advance, IsLeftOutWhereSurfacesAloneEndInsideCells) {
   Cutting moving(block(), Fronts::of_surfaces_inside_cells), at_once(block(), Fronts::of_surfaces_inside_cells);
