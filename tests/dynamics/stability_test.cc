@@ -226,6 +226,34 @@ TEST(StableStep, KnowsDamping) {
     }
 }
 
+/// Stiff handles lead a mass along a curved way with what it takes to move it, 1.8 N (26 N where the handle is ahead of
+/// where a balance between two times has the mass).
+TEST(Integrators, StiffLoadsLeadByWhatItTakes) {
+  constexpr double mass = 3, stiffness = 1.5e7, acceleration = 0.6, dt = 0.005;
+  for (std::size_t which = 4; which < integrators().size(); ++which) { // the implicit ones
+    const Integrator& integrator = integrators()[which];
+    Chain model({mass}, {});
+    Interpolation point;
+    const std::uint32_t corner = 0;
+    const double one = 1;
+    point.add_point({&corner, 1}, {&one, 1});
+    const auto target = [&](const double t) { return Vec3(0.3 * t, 0, 0.5 * acceleration * t * t); };
+    Loads loads;
+    loads.acting.push_back(std::make_unique<HandleSpring>(point, stiffness, target));
+    State state = model.state();
+    state.v[0] = Vec3(0.3, 0, 0);
+    const auto stepper = integrator.make(model);
+    double sum = 0;
+    constexpr int n_steps = 400, n_last = 100;
+    for (int i = 0; i < n_steps; ++i) {
+      stepper->step(state, loads, dt);
+      if (i >= n_steps - n_last)
+        sum += stiffness * (target(state.time) - state.x[0]).z() / n_last;
+    }
+    EXPECT_NEAR(sum, mass * acceleration, 0.05 * mass * acceleration) << integrator.name;
+  }
+}
+
 TEST(StableStep, KnowsSupportsAndLoads) {
   Chain model({0.2, 0.2}, {.neighbour = 75});
   Loads loads;
