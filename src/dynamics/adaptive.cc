@@ -74,7 +74,8 @@ StepReport AdaptiveStepper::step(State& state, const Loads& loads, const double 
       if (next < parameters_.shortest)
         throw NumericalError("the error stays above " + to_text(parameters_.tolerance) + " m/s in substeps of " +
                              to_text(h) + " s. Use a larger error tolerance, or solve closer: a smaller CG tolerance, and a "
-                             "smaller Newton tolerance where it is not 0");
+                             "smaller Newton tolerance where it is not 0. Supports that start with a jump of their "
+                             "velocity ask for ever shorter steps");
     }
   }
   now.time = end;

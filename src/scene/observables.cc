@@ -271,7 +271,7 @@ const std::vector<Observable>& body_observables() {
      [](const Body& b) { return b.accounts ? b.accounts->work_of_cut() : 0.0; }},
     {"missing energy", "J",
      "energy at the start and all work since, less what was dissipated and what is there: what the integrator lost; in "
-     "statics what a growing cut released (accounts.h)",
+     "statics what a growing cut released, and what a load did that was put on within one step (accounts.h)",
      energy_missing},
     {"momentum x", "kg m/s", "sum of m v over the particles", [](const Body& b) { return momentum(b)[0]; }},
     {"momentum y", "kg m/s", "sum of m v over the particles", [](const Body& b) { return momentum(b)[1]; }},

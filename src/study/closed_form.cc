@@ -1,6 +1,7 @@
 #include "study/closed_form.h"
 
 #include "scene/composing.h"
+#include "study/units.h"
 
 #include <algorithm>
 #include <cmath>
@@ -158,7 +159,7 @@ Reference evaluate_closed_form(const scene::Section& section, const std::string&
   const auto p = section.read<ClosedFormParameters>();
   const auto form = std::find_if(closed_forms().begin(), closed_forms().end(),
                                  [&](const ClosedForm& candidate) { return candidate.name == p.name; });
-  if (form->unit != unit)
+  if (!is_same_unit(form->unit, unit))
     throw section.complaint("Name", "this is a number in " + form->unit + ", the answer's unit is " + unit,
                             "Choose another form, or ask for another answer");
   const std::vector<std::pair<std::string, double>> needed = {

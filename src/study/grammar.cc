@@ -17,7 +17,7 @@ void AnswerParameters::describe(Parameters& p) {
            "The number that stands for the series. Frequency: of its passages upwards through its mean, in 1/s.");
   p.number("Last part [1]", last_part, {.min = 0, .max = 1, .min_excluded = true},
            "Part of the run's duration, at its end, that the mean is taken over.");
-  p.text("Unit", unit, "Of the answer and its references; must be that of the series, and 1/s for a frequency.");
+  p.text("Unit", unit, "Of the answer and its references; must be that of the series, and 1/s or Hz for a frequency.");
   p.require_last();
 }
 

@@ -7,6 +7,7 @@
 #include "scene/inputs.h"
 #include "scene/run.h"
 #include "study/memory.h"
+#include "study/units.h"
 
 #include <algorithm>
 #include <bit>
@@ -45,7 +46,7 @@ void require_series(const scene::Section& section, const AnswerParameters& asked
   std::string names;
   const std::string unit = asked.take == "frequency" ? "1/s" : asked.unit;
   for (const scene::Observable& series : body.observables) {
-    if (series.name == name && asked.take != "frequency" && series.unit != asked.unit)
+    if (series.name == name && asked.take != "frequency" && !is_same_unit(series.unit, asked.unit))
       throw section.complaint("Unit", "the series '" + name + "' has the unit " + series.unit,
                               "Write 'set Unit = " + series.unit + "', and references in it");
     if (series.name == name)
@@ -58,7 +59,7 @@ void require_series(const scene::Section& section, const AnswerParameters& asked
 }
 
 void require_answer(const scene::Section& section, const AnswerParameters& asked, const scene::Body& body) {
-  if (asked.take == "frequency" && asked.unit != "1/s")
+  if (asked.take == "frequency" && !is_same_unit(asked.unit, "1/s"))
     throw section.complaint("Unit", "a frequency has the unit 1/s", "Write 'set Unit = 1/s', and references in it");
   require_series(section, asked, body, "Answer", asked.answer);
   if (!asked.minus.empty())

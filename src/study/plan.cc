@@ -8,6 +8,7 @@
 #include "study/closed_form.h"
 #include "study/reference_file.h"
 #include "study/truth.h"
+#include "study/units.h"
 
 #include <algorithm>
 #include <array>
@@ -103,7 +104,7 @@ std::vector<Norm> read_norms(const Section& root) {
     const std::string unit = truth == "elastic energy"     ? "J"
                              : truth == "lowest frequency" ? "1/s"
                                                            : norm.parameters.unit;
-    if (unit != norm.parameters.unit)
+    if (!is_same_unit(unit, norm.parameters.unit))
       throw section->complaint("Unit", "the " + truth + " of the section Truth has the unit " + unit,
                                "Write 'set Unit = " + unit + "'");
     norms.push_back(std::move(norm));

@@ -41,6 +41,12 @@ TEST(ClosedForm, Bars) {
     1250);
 }
 
+/// The frequencies of modes are in Hz.
+TEST(ClosedForm, TonesAreInHertzToo) {
+  const std::string bar = steel + "  set Length [m] = 1\n  set Density [kg/m^3] = 8000\n";
+  EXPECT_DOUBLE_EQ(evaluated("tone of a bar along its axis", bar, "Hz").value, 1250);
+}
+
 /// The bar of params/compare, whose bending and shear were worked out by hand: .0246015 + .000972, with nu = 1/4
 /// .0011947.
 TEST(ClosedForm, BeamsAndTheirLayers) {
