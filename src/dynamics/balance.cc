@@ -111,7 +111,7 @@ double BalanceSolver::square_of_scaled_residual() const {
   return sum_of(residual_.size(), [&](const std::size_t begin, const std::size_t end) {
     double sum = 0;
     for (std::size_t i = begin; i < end; ++i)
-      sum += (scaling_[i] * residual_[i]).squaredNorm();
+      sum += scaled(i, residual_[i]).squaredNorm();
     return sum;
   });
 }
@@ -139,17 +139,20 @@ void BalanceSolver::move_to(const Problem& problem, const Points& x) {
 }
 
 void BalanceSolver::factorise(const Problem& problem) {
-  std::vector<Mat3>& blocks = scaling_; // until they are inverted
-  model_.stiffness_diagonal(blocks);
-  const auto for_each_corner = [&](const auto& f) { parallel_for(blocks.size(), f, worth); };
-  for_each_corner([&](const std::size_t i) {
-    blocks[i] = problem.stiffness_factor * blocks[i] + problem.mass_factor * problem.mass[i] * Mat3::Identity();
-  });
-  tangent_.add_diagonal(blocks);
-  size_.resize(blocks.size());
-  for_each_corner([&](const std::size_t i) {
-    size_[i] = blocks[i].trace();
-    scaling_[i] = inverse_factor(blocks[i], problem.constraints.freedom(i));
+  const std::size_t n = problem.mass.size();
+  Loan<Mat3> of_loads = Loan<Mat3>::none();
+  if (!tangent_.empty()) {
+    of_loads = Loan<Mat3>(n, Mat3::Zero());
+    tangent_.add_diagonal(of_loads);
+  }
+  size_.resize(n);
+  scaling_.resize(n);
+  model_.stiffness_diagonal([&](const std::size_t i, const Mat3& of_stiffness) {
+    Mat3 block = problem.stiffness_factor * of_stiffness + problem.mass_factor * problem.mass[i] * Mat3::Identity();
+    if (!of_loads.empty())
+      block += of_loads[i];
+    size_[i] = block.trace();
+    scaling_[i] = inverse_factor(block, problem.constraints.freedom(i)).cast<float>();
   });
 }
 
@@ -190,7 +193,7 @@ double BalanceSolver::assemble_residual(const Problem& problem, const Points& x)
         residual_[i] -= more[i];
       if (!constraints.is_free(i))
         residual_[i] = constraints.freedom(i).project * residual_[i];
-      const Mat3& S = scaling_[i];
+      const Mat3 S = scaling_[i].cast<double>();
       sum += (S * force[i]).squaredNorm() + (S * weight).squaredNorm() + (S * load_force(i)).squaredNorm();
     }
     return sum;
@@ -220,7 +223,7 @@ BalanceSolver::InertiaSquares BalanceSolver::inertia_of_guess(const Problem& pro
       return all;
     });
   };
-  return {sum([&](const std::size_t i, const Vec3& f) { return (scaling_[i] * f).squaredNorm(); }),
+  return {sum([&](const std::size_t i, const Vec3& f) { return scaled(i, f).squaredNorm(); }),
           options_.tolerance > 0 ? sum([](std::size_t, const Vec3& f) { return f.squaredNorm(); }) : 0};
 }
 
@@ -271,9 +274,16 @@ void BalanceSolver::apply(const Problem& problem, const std::span<const double> 
     worth);
 }
 
-void BalanceSolver::apply_inverse_blocks(const std::span<const double> r, const std::span<double> z) const {
+/// Nothing along directions that are held, of which single precision would leave something.
+Vec3 BalanceSolver::by_inverse_block(const Problem& problem, const std::size_t corner, const Vec3& force) const {
+  const Vec3 all = scaling_[corner].cast<double>().transpose() * scaled(corner, force);
+  return problem.constraints.is_free(corner) ? all : Vec3(problem.constraints.freedom(corner).project * all);
+}
+
+void BalanceSolver::apply_inverse_blocks(const Problem& problem, const std::span<const double> r,
+                                         const std::span<double> z) const {
   parallel_for(
-    scaling_.size(), [&](const std::size_t i) { at(z, i) = scaling_[i].transpose() * (scaling_[i] * at(r, i)); },
+    scaling_.size(), [&](const std::size_t i) { at(z, i) = by_inverse_block(problem, i, at(r, i)); },
     worth);
 }
 
@@ -295,7 +305,7 @@ int BalanceSolver::correct(const Problem& problem, const Points& x, Loan<Vec3> g
   }
   if (options_.line_search != LineSearch::none && !(product(residual_, correction_) > 0))
     for (std::size_t i = 0; i < correction_.size(); ++i) // the scaled force itself always leads downhill
-      correction_[i] = scaling_[i].transpose() * (scaling_[i] * residual_[i]);
+      correction_[i] = by_inverse_block(problem, i, residual_[i]);
   problem.balance.free.relieve_motion(flat(correction_));
   return n_iterations;
 }
@@ -317,9 +327,10 @@ int BalanceSolver::correct_by_cg(const Problem& problem, Loan<Vec3> guess, const
               .error = of_own * way_,
               .of_way = has_guess ? of_own : 0};
   if (stop.of_way > 0 && !problem.balance.guess_is_free_motion)
-    stop.from = {[&] { return potential_of_free_motion(problem); }, [&] { return inertia_of_way(problem); }};
+    stop.from = {[&](const auto product) { return potential_of_free_motion(problem, product); },
+                 [&] { return inertia_of_way(problem); }};
   const Product A = [&](const auto p, const auto y) { apply(problem, p, y); }, J = [&](const auto r, const auto z) {
-    apply_inverse_blocks(r, z);
+    apply_inverse_blocks(problem, r, z);
     problem.balance.free.relieve_motion(z);
   };
   Preconditioner* const own = options_.equation == Equation::regular ? preconditioner(problem) : nullptr;
@@ -371,12 +382,12 @@ double BalanceSolver::inertia_of_way(const Problem& problem) const {
                    }));
 }
 
-double BalanceSolver::potential_of_free_motion(const Problem& problem) {
-  Loan<Vec3> d(residual_.size()), Ad(residual_.size());
+double BalanceSolver::potential_of_free_motion(const Problem& problem, const std::span<double> Ad) {
+  Loan<Vec3> d(residual_.size());
   parallel_for(
     d.size(), [&](const std::size_t i) { d[i] = free_motion(problem, i); }, worth);
-  apply(problem, flat(*d), flat(*Ad));
-  return product(d, Ad) - 2 * product(residual_, d);
+  apply(problem, flat(*d), Ad);
+  return dot(flat(*d), Ad) - 2 * product(residual_, d);
 }
 
 void BalanceSolver::correct_directly(const Problem& problem, const Points& x, const Tangent kind) {

@@ -218,13 +218,16 @@ class BalanceSolver {
   /// `unsolved`: what conjugate gradients left of the residual.
   void put_elastic(const Problem& problem, Loan<Vec3> unsolved);
   /// z = S^T S r.
-  void apply_inverse_blocks(std::span<const double> r, std::span<double> z) const;
+  void apply_inverse_blocks(const Problem& problem, std::span<const double> r, std::span<double> z) const;
+  /// A corner's force in the measure of residuals.
+  Vec3 scaled(const std::size_t corner, const Vec3& force) const { return scaling_[corner].cast<double>() * force; }
+  Vec3 by_inverse_block(const Problem& problem, std::size_t corner, const Vec3& force) const;
   /// The model's, for A; null: none.
   Preconditioner* preconditioner(const Problem& problem);
   /// The displacement of a corner with which nothing accelerates.
   static Vec3 free_motion(const Problem& problem, std::size_t i);
-  /// d.Ad - 2 r.d of that.
-  double potential_of_free_motion(const Problem& problem);
+  /// d.Ad - 2 r.d of that; Ad is written.
+  double potential_of_free_motion(const Problem& problem, std::span<double> Ad);
   /// Of the way from there to the correction, in the energy norm, what the masses say: most of it in a motion that
   /// steps resolve.
   double inertia_of_way(const Problem& problem) const;
@@ -249,7 +252,8 @@ class BalanceSolver {
   double scaled_round_off_ = 0; // where the residual is
   LoadTangent tangent_;
   std::vector<double> size_;  // of A's diagonal blocks: their traces [N/m]
-  std::vector<Mat3> scaling_; // L^-1 of them from the free directions' basis, a row of zeros for each that is held
+  std::vector<Eigen::Matrix3f>
+    scaling_; // L^-1 of them from the free directions' basis, a row of zeros for each that is held; single is enough
   std::vector<double> load_product_, mass_product_;
   double way_ = 0; // from free motion to the first iterate, in the energy norm; 0: unknown
   Pieces pieces_;

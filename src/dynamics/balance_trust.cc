@@ -40,7 +40,7 @@ Loan<std::uint8_t> BalanceSolver::seen(const double scale) const {
   if (pieces_.n() == 1)
     squares[0] = square_of_scaled_residual();
   for (std::size_t i = 0; i < residual_.size() && pieces_.n() > 1; ++i)
-    squares[pieces_.of(i)] += (scaling_[i] * residual_[i]).squaredNorm();
+    squares[pieces_.of(i)] += scaled(i, residual_[i]).squaredNorm();
   const double least = std::max(options_.cg_tolerance * scale, scaled_round_off_);
   Loan<std::uint8_t> is_seen(squares.size());
   std::ranges::transform(*squares, is_seen->begin(),

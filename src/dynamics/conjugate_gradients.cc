@@ -20,8 +20,9 @@ constexpr std::size_t worth_blocks = 3; // from which on a second thread pays
 /// Of the error, by what iterations take off its square.
 class Estimate {
  public:
-  /// `delay`: how many of the last iterations an error is told by, 8 at most.
-  Estimate(const CgStop& stop, const std::size_t delay) : stop_(stop), delay_(delay) {}
+  /// `delay`: how many of the last iterations an error is told by, 8 at most. `room`: for a product.
+  Estimate(const CgStop& stop, const std::size_t delay, const std::span<double> room)
+    : stop_(stop), delay_(delay), room_(room) {}
 
   /// y.Ay - 2 b.y of the x that was given.
   void start_at(const double given) { given_ = given; }
@@ -70,13 +71,14 @@ class Estimate {
       return true;
     if (!stop_.from || farther_ || stop_.of_way == 0 || (known > 0 && square > far * known))
       return false;
-    farther_ = stop_.from->potential() - given_;
+    farther_ = stop_.from->potential(room_) - given_;
     return square <= most();
   }
   double most() { return std::max(stop_.error * stop_.error, stop_.of_way * stop_.of_way * square_of_way()); }
 
   CgStop stop_;
   std::size_t delay_;
+  std::span<double> room_;
   std::array<double, 8> last_ = {};
   std::array<double, 2> rz_ = {0, 0}; // of the last two iterates
   double square_ = 0;                 // r.Jr of the last one
@@ -114,7 +116,8 @@ CgReport conjugate_gradients(const CgEquation& equation, const std::span<const d
   Loan<Vec3> lent_z(n_triples), lent_p(n_triples, Vec3::Zero()), lent_Ap(n_triples, Vec3::Zero());
   const std::span<double> r = left.empty() ? flat(*lent_r).first(n) : left, z = flat(*lent_z).first(n),
                           p = flat(*lent_p).first(n), Ap = flat(*lent_Ap).first(n);
-  Estimate estimate(stop, equation.J ? 3 : 8); // one iteration with more than block Jacobi is worth many
+  // One iteration with more than block Jacobi is worth many. Between iterations nobody asks for Ap.
+  Estimate estimate(stop, equation.J ? 3 : 8, Ap);
   const auto is_zero = [](const double value) { return value == 0; };
   double excess = 0; // of the error's square over that of zero
   if (!std::all_of(x.begin(), x.end(), is_zero)) {

@@ -36,8 +36,9 @@ double dot(std::span<const double> a, std::span<const double> b);
 
 /// From where a way counts: some y.
 struct WayFrom {
-  std::function<double()> potential; ///< y.Ay - 2 b.y, which takes a product: asked for where the other says too little
-  std::function<double()> least;     ///< |x - y|_A of the x at hand, at least
+  /// y.Ay - 2 b.y, which takes a product, and room for it: asked for where the other says too little.
+  std::function<double(std::span<double> product)> potential;
+  std::function<double()> least; ///< |x - y|_A of the x at hand, at least
 };
 
 /// Where to stop: at whichever comes first. Errors are in the energy norm |e|_A = sqrt(e.Ae).

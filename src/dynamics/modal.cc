@@ -56,8 +56,7 @@ class Pencil {
     project(y);
   }
   std::vector<Mat3> stiffness_diagonal() const {
-    std::vector<Mat3> blocks;
-    model_.stiffness_diagonal(blocks);
+    std::vector<Mat3> blocks = stiffness_blocks(model_);
     tangent_.add_diagonal(blocks);
     return blocks;
   }

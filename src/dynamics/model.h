@@ -2,6 +2,7 @@
 
 /// What integrators ask of a physics. Positions and forces are 3 n numbers, corner by corner.
 
+#include "base/function_ref.h"
 #include "base/vec.h"
 
 #include <Eigen/SparseCore>
@@ -69,12 +70,20 @@ class ElasticModel : public ForceModel {
   virtual void linearise(const Points& x) = 0;
   /// y = K p [N] for p [m].
   virtual void apply_stiffness(std::span<const double> p, std::span<double> y) const = 0;
-  /// The diagonal 3 x 3 blocks of K [N/m], one a corner.
-  virtual void stiffness_diagonal(std::vector<Mat3>& blocks) const = 0;
+  /// Calls put(corner, block) with the diagonal 3 x 3 block of K at each corner [N/m], several at a time.
+  using PutBlock = FunctionRef<void(std::size_t corner, const Mat3& block)>;
+  virtual void stiffness_diagonal(PutBlock put) const = 0;
   /// An approximate inverse (preconditioner.h) at the linearisation point, good until the next one; null where the
   /// inverse of the equation's diagonal blocks is as good.
   virtual Preconditioner* preconditioner(const LinearEquation&) { return nullptr; }
 };
+
+/// The diagonal 3 x 3 blocks of K [N/m], one a corner.
+inline std::vector<Mat3> stiffness_blocks(const ElasticModel& model) {
+  std::vector<Mat3> blocks(model.lumped_mass().size());
+  model.stiffness_diagonal([&](const std::size_t corner, const Mat3& block) { blocks[corner] = block; });
+  return blocks;
+}
 
 /// Which derivative of the forces.
 enum class Tangent {

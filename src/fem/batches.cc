@@ -162,20 +162,18 @@ void put(const Element& element, const double bound, const std::size_t lane, Par
 
 template <class T>
 BatchedElements<T> batched(const Batching& batching, const double h, const material::Elastic& material,
-                           const Element& full, const PartialElements& partial, const SharedHourglass& hourglass) {
-  BatchedElements<T> all{constants<T>(h, material, full),
-                         {},
-                         hourglass ? hourglass : std::make_shared<std::vector<HourglassOfCubes>>(),
-                         {},
-                         {}};
+                           const Element& full, const PartialElements& partial, const SharedParts& shared) {
+  BatchedElements<T> all{constants<T>(h, material, full), {}, shared, {}};
+  const bool have_rotations = !shared.rotations->empty();
   std::vector<std::uint32_t> all_partial;
   for (std::uint32_t i = 0; i < batching.batches().size(); ++i)
     if (batching.batches()[i].partial != BatchOfCopies::none)
       all_partial.push_back(i);
   follow(batching, all_partial, partial, all);
-  for (Lanes9<T>& rotations : all.rotations)
-    for (int k = 0; k < 3; ++k)
-      std::fill_n(rotations.row[4 * k], n_lanes, T(1));
+  if (!have_rotations)
+    for (Lanes9& rotations : *shared.rotations)
+      for (int k = 0; k < 3; ++k)
+        std::fill_n(rotations.row[4 * k], n_lanes, 1.0f);
   return all;
 }
 
@@ -183,14 +181,14 @@ template <class T>
 void follow(const Batching& batching, const std::span<const std::uint32_t> renewed, const PartialElements& partial,
             BatchedElements<T>& elements) {
   elements.partial.resize(batching.n_places());
-  elements.hourglass->resize(batching.n_places());
-  elements.rotations.resize(batching.batches().size());
+  elements.shared.hourglass->resize(batching.n_places());
+  elements.shared.rotations->resize(batching.batches().size());
   parallel_for(
     renewed.size(),
     [&](const std::size_t i) {
       const BatchOfCopies& batch = batching.batches()[renewed[i]];
       PartialCubes<T>& cubes = elements.partial[batch.partial];
-      HourglassOfCubes& hourglass = (*elements.hourglass)[batch.partial];
+      HourglassOfCubes& hourglass = (*elements.shared.hourglass)[batch.partial];
       cubes = {};
       hourglass = {};
       for (std::size_t lane = 0; lane < n_lanes; ++lane)
@@ -214,9 +212,9 @@ void add_diagonal(const Batching& batching, const BatchedElements<T>& elements, 
 }
 
 template BatchedElements<double> batched(const Batching&, double, const material::Elastic&, const Element&,
-                                         const PartialElements&, const SharedHourglass&);
+                                         const PartialElements&, const SharedParts&);
 template BatchedElements<float> batched(const Batching&, double, const material::Elastic&, const Element&,
-                                        const PartialElements&, const SharedHourglass&);
+                                        const PartialElements&, const SharedParts&);
 template void follow(const Batching&, std::span<const std::uint32_t>, const PartialElements&, BatchedElements<double>&);
 template void follow(const Batching&, std::span<const std::uint32_t>, const PartialElements&, BatchedElements<float>&);
 template void add_product(const Batching&, const BatchedElements<double>&, const Row<double>*, Row<double>*);

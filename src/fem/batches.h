@@ -117,31 +117,35 @@ class Batching {
   std::size_t n_places_ = 0, n_rows_ = 0;
 };
 
-template <class T>
 struct alignas(64) Lanes9 {
-  T row[9][n_lanes];
+  float row[9][n_lanes];
 };
 template <class T>
 struct alignas(64) LanesOfTangent {
   T row[n_tangent_pairs][n_lanes];
 };
 
-using SharedHourglass = std::shared_ptr<std::vector<HourglassOfCubes>>;
+/// What is kept once, in single precision, for elements in either: R K R^T is symmetric and positive for any R.
+struct SharedParts {
+  std::shared_ptr<std::vector<HourglassOfCubes>> hourglass =
+    std::make_shared<std::vector<HourglassOfCubes>>(); ///< by BatchOfCopies::partial
+  std::shared_ptr<std::vector<Lanes9>> rotations = std::make_shared<std::vector<Lanes9>>(); ///< by batch
+};
 
 /// What elements are made of, in numbers T.
 template <class T>
 struct BatchedElements {
   CubeConstants<T> cube;
   std::vector<PartialCubes<T>> partial;    // by BatchOfCopies::partial
-  SharedHourglass hourglass;               // likewise; those in other numbers may have the same
-  std::vector<Lanes9<T>> rotations;        // by batch
+  SharedParts shared;
   std::vector<LanesOfTangent<T>> tangents; // by batch; none where the law is Hooke's
 
   Batch<T> batch(const Batching& batching, const std::size_t i) const {
     const BatchOfCopies& b = batching.batches()[i];
     const bool is_full = b.partial == BatchOfCopies::none;
-    return {b.corners, rotations[i].row, is_full ? nullptr : &partial[b.partial],
-            is_full ? nullptr : &(*hourglass)[b.partial], tangents.empty() ? nullptr : tangents[i].row, b.is_row};
+    return {b.corners, (*shared.rotations)[i].row, is_full ? nullptr : &partial[b.partial],
+            is_full ? nullptr : &(*shared.hourglass)[b.partial], tangents.empty() ? nullptr : tangents[i].row,
+            b.is_row};
   }
 };
 
@@ -151,10 +155,10 @@ struct PartialElements {
   /// `diagonal` counts elements whose own bound (jacobi_bound) is more than this by as much more [1].
   double bound = std::numeric_limits<double>::infinity();
 };
-/// All rotations are the identity. `hourglass`: where another one has it.
+/// All rotations are the identity, unless other elements have them already.
 template <class T>
 BatchedElements<T> batched(const Batching& batching, double h, const material::Elastic& material, const Element& full,
-                           const PartialElements& partial, const SharedHourglass& hourglass = nullptr);
+                           const PartialElements& partial, const SharedParts& shared = {});
 /// After a cut: `renewed` is what Batching::update() has returned. Rotations are lost.
 template <class T>
 void follow(const Batching& batching, std::span<const std::uint32_t> renewed, const PartialElements& partial,

@@ -53,22 +53,21 @@ std::vector<std::vector<std::uint32_t>> joined(const Weights& rows, const std::s
 
 } // namespace
 
-PointSprings coarsened(const PointSprings& fine, const Weights& prolongation, const std::size_t n_coarse) {
+PointSprings coarsened(const PointSprings& fine, const Coarsening& coarsening) {
   PointSprings coarse{{}, fine.blocks};
-  std::vector<std::uint32_t> place(n_coarse, none);
+  std::vector<std::uint32_t> place(coarsening.coarse.n_corners, none);
   Weights& rows = coarse.rows;
   for (std::size_t i = 0; i < fine.blocks.size(); ++i) {
     for (std::uint32_t k = fine.rows.begin[i]; k < fine.rows.begin[i + 1]; ++k) {
-      const std::uint32_t corner = fine.rows.column[k];
-      for (std::uint32_t l = prolongation.begin[corner]; l < prolongation.begin[corner + 1]; ++l) {
-        std::uint32_t& p = place[prolongation.column[l]];
+      coarsening.for_each_weight(fine.rows.column[k], [&](const std::uint32_t corner, const float weight) {
+        std::uint32_t& p = place[corner];
         if (p == none) {
           p = static_cast<std::uint32_t>(rows.column.size());
-          rows.column.push_back(prolongation.column[l]);
+          rows.column.push_back(corner);
           rows.weight.push_back(0);
         }
-        rows.weight[p] += fine.rows.weight[k] * prolongation.weight[l];
-      }
+        rows.weight[p] += fine.rows.weight[k] * weight;
+      });
     }
     for (std::size_t k = rows.begin.back(); k < rows.column.size(); ++k)
       place[rows.column[k]] = none;

@@ -9,6 +9,13 @@
 
 namespace kerf::fem {
 
+/// A sparse matrix of weights, row by row.
+struct Weights {
+  std::vector<std::uint32_t> begin = {0}; ///< of each row, and the end
+  std::vector<std::uint32_t> column;
+  std::vector<float> weight;
+};
+
 /// The square of w u in the measure of a block, for a row w of weights.
 struct PointSprings {
   Weights rows;
@@ -17,7 +24,7 @@ struct PointSprings {
   bool empty() const { return blocks.empty(); }
 };
 /// For motions of coarse cubes.
-PointSprings coarsened(const PointSprings& fine, const Weights& prolongation, std::size_t n_coarse);
+PointSprings coarsened(const PointSprings& fine, const Coarsening& coarsening);
 
 /// Corners at both ends of edges that springs hold between them, a few together: opposite motions of the two ends meet
 /// no spring, but blocks of one corner each, which have to bound it.

@@ -1,5 +1,6 @@
 #include "fem/coarse_elements.h"
 
+#include <array>
 #include <bit>
 
 namespace kerf::fem {
@@ -9,13 +10,18 @@ namespace {
 using MatrixOfModes = Eigen::Matrix<double, n_hourglass, n_hourglass>;
 using GradientsOfModes = std::array<Vec3, 4>; // of the hourglass modes
 
-/// How much of a child's mode n a coarse mode m is.
-double part_of_mode(const int m, const int n, const int octant) {
-  if ((n & ~m) != 0)
-    return 0;
-  const bool is_odd = std::popcount(unsigned(m & ~n & ~octant)) % 2 != 0;
-  return (is_odd ? -1.0 : 1.0) / (1 << std::popcount(unsigned(m)));
+/// How much of a child's mode n a coarse mode m is, by octant, m, n.
+using PartsOfModes = std::array<std::array<std::array<double, 8>, 8>, 8>;
+constexpr PartsOfModes parts_of_modes() {
+  PartsOfModes parts{};
+  for (unsigned octant = 0; octant < 8; ++octant)
+    for (unsigned m = 0; m < 8; ++m)
+      for (unsigned n = 0; n < 8; ++n)
+        if ((n & ~m) == 0)
+          parts[octant][m][n] = (std::popcount(m & ~n & ~octant) % 2 != 0 ? -1.0 : 1.0) / (1 << std::popcount(m));
+  return parts;
 }
+constexpr PartsOfModes parts = parts_of_modes();
 
 /// Adds V (lambda g_m,i g_n,j + mu (delta_ij g_m . g_n + g_m,j g_n,i)).
 void add_mean_part(const double volume, const GradientsOfModes& g, const material::Elastic& material,
@@ -30,6 +36,7 @@ void add_mean_part(const double volume, const GradientsOfModes& g, const materia
 /// T^T K T for the parts T of the coarse hourglass modes in those of the child.
 void add_hourglass_part(const Child& child, MatrixOfModes& K) {
   const auto& packed = child.element->hourglass;
+  const auto& of_octant = parts[child.octant];
   const auto block = [&](const int k, const int l) {
     Mat3 B;
     for (int i = 0; i < 3; ++i)
@@ -44,8 +51,8 @@ void add_hourglass_part(const Child& child, MatrixOfModes& K) {
       const Mat3 B = block(k, l);
       for (int m = 0; m < 4; ++m)
         for (int n = 0; n < 4; ++n) {
-          const double part = part_of_mode(hourglass_modes[m], hourglass_modes[k], child.octant) *
-                              part_of_mode(hourglass_modes[n], hourglass_modes[l], child.octant);
+          const double part =
+            of_octant[hourglass_modes[m]][hourglass_modes[k]] * of_octant[hourglass_modes[n]][hourglass_modes[l]];
           if (part != 0)
             K.block<3, 3>(3 * m, 3 * n) += part * B;
         }
@@ -54,11 +61,12 @@ void add_hourglass_part(const Child& child, MatrixOfModes& K) {
 
 GradientsOfModes gradients_in(const Child& child, const double h) {
   GradientsOfModes g;
+  const auto& of_octant = parts[child.octant];
   for (int m = 0; m < 4; ++m) {
     for (int k = 0; k < 3; ++k)
-      g[m][k] = part_of_mode(hourglass_modes[m], linear_modes[k], child.octant) / (4 * h);
+      g[m][k] = of_octant[hourglass_modes[m]][linear_modes[k]] / (4 * h);
     for (int n = 0; n < 4; ++n)
-      g[m] += part_of_mode(hourglass_modes[m], hourglass_modes[n], child.octant) * child.element->mode_gradient[n];
+      g[m] += of_octant[hourglass_modes[m]][hourglass_modes[n]] * child.element->mode_gradient[n];
   }
   return g;
 }

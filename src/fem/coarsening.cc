@@ -160,36 +160,9 @@ void find_corners(const CellsView& fine, const Glued& glued, Coarsening& result)
   result.coarse.n_corners = joined.number(result.coarse.corners);
 }
 
-/// The coarse vertices that a vertex of a fine cube lies between, and how near each is.
-struct RowOfWeights {
-  std::uint32_t n = 0;
-  std::array<std::uint32_t, 8> vertex = {};
-  std::array<float, 8> weight = {};
-};
-/// By octant, and vertex of the fine cube.
-using TableOfWeights = std::array<std::array<RowOfWeights, 8>, 8>;
-TableOfWeights table_of_weights() {
-  TableOfWeights table;
-  for (unsigned octant = 0; octant < 8; ++octant)
-    for (unsigned fine = 0; fine < 8; ++fine)
-      for (unsigned v = 0; v < 8; ++v) {
-        float weight = 1;
-        for (unsigned axis = 0; axis < 3; ++axis) {
-          const unsigned halves = (octant >> axis & 1) + (fine >> axis & 1); // from the lower vertex
-          weight *= 0.5f * static_cast<float>((v >> axis & 1) != 0 ? halves : 2 - halves);
-        }
-        RowOfWeights& row = table[octant][fine];
-        if (weight > 0) {
-          row.vertex[row.n] = v;
-          row.weight[row.n++] = weight;
-        }
-      }
-  return table;
-}
-
 /// Of each corner the lowest of the 8 copy + vertex that have it.
-Loan<std::uint32_t> users(const CellsView& cells) {
-  Loan<std::uint32_t> user(cells.n_corners, none);
+std::vector<std::uint32_t> users(const CellsView& cells) {
+  std::vector<std::uint32_t> user(cells.n_corners, none);
   parallel_for(
     cells.n_copies(),
     [&](const std::size_t c) {
@@ -203,33 +176,6 @@ Loan<std::uint32_t> users(const CellsView& cells) {
     },
     worth);
   return user;
-}
-
-/// Every copy with a corner says the same of it.
-void find_weights(const CellsView& fine, Coarsening& result) {
-  static const TableOfWeights table = table_of_weights();
-  const Loan<std::uint32_t> user = users(fine);
-  const auto row_of = [&](const std::uint32_t i) -> const RowOfWeights& { return table[result.octant[i / 8]][i % 8]; };
-  Weights& weights = result.prolongation;
-  weights.begin.resize(fine.n_corners + 1);
-  for (std::size_t corner = 0; corner < fine.n_corners; ++corner)
-    weights.begin[corner + 1] = weights.begin[corner] + (user[corner] == none ? 0 : row_of(user[corner]).n);
-  weights.column.resize(weights.begin.back());
-  weights.weight.resize(weights.begin.back());
-  parallel_for(
-    fine.n_corners,
-    [&](const std::size_t corner) {
-      const std::uint32_t i = user[corner];
-      if (i == none)
-        return;
-      const RowOfWeights& row = row_of(i);
-      const std::uint32_t* const corners = result.coarse.corners.data() + 8 * std::size_t(result.parent[i / 8]);
-      for (std::uint32_t k = 0; k < row.n; ++k) {
-        weights.column[weights.begin[corner] + k] = corners[row.vertex[k]];
-        weights.weight[weights.begin[corner] + k] = row.weight[k];
-      }
-    },
-    worth);
 }
 
 } // namespace
@@ -246,35 +192,51 @@ Children::Children(const std::span<const std::uint32_t> parent, const std::size_
       all[end[parent[c]]++] = c;
 }
 
-/// Rows go in one part a thread: what a part puts into a column comes after what those before it do.
-Weights transposed(const Weights& weights, const std::size_t n_columns) {
-  const std::size_t n_rows = weights.begin.size() - 1,
-                    n_parts = n_rows < worth ? 1 : static_cast<std::size_t>(n_threads());
-  const auto part = [&](const std::size_t p) { return p * n_rows / n_parts; };
-  Loan<std::uint32_t> place(n_parts * n_columns, 0); // of each part in each column
-  parallel_for(n_parts, [&](const std::size_t p) {
-    for (std::uint32_t k = weights.begin[part(p)]; k < weights.begin[part(p + 1)]; ++k)
-      ++place[p * n_columns + weights.column[k]];
-  });
-  Weights result;
-  result.begin.resize(n_columns + 1);
-  for (std::size_t column = 0; column < n_columns; ++column) {
-    std::uint32_t end = result.begin[column];
-    for (std::size_t p = 0; p < n_parts; ++p)
-      end += std::exchange(place[p * n_columns + column], end);
-    result.begin[column + 1] = end;
-  }
-  result.column.resize(weights.column.size());
-  result.weight.resize(weights.column.size());
-  parallel_for(n_parts, [&](const std::size_t p) {
-    for (std::size_t row = part(p); row < part(p + 1); ++row)
-      for (std::uint32_t k = weights.begin[row]; k < weights.begin[row + 1]; ++k) {
-        const std::uint32_t i = place[p * n_columns + weights.column[k]]++;
-        result.column[i] = static_cast<std::uint32_t>(row);
-        result.weight[i] = weights.weight[k];
+const Coarsening::Table& Coarsening::weights() {
+  static const Table table = [] {
+    Table made;
+    for (unsigned place = 0; place < 64; ++place)
+      for (unsigned v = 0; v < 8; ++v) {
+        float weight = 1;
+        for (unsigned axis = 0; axis < 3; ++axis) {
+          const unsigned halves = (place >> (3 + axis) & 1) + (place >> axis & 1); // from the lower vertex
+          weight *= 0.5f * static_cast<float>((v >> axis & 1) != 0 ? halves : 2 - halves);
+        }
+        VertexWeights& row = made[place];
+        if (weight > 0) {
+          row.vertex[row.n] = v;
+          row.weight[row.n++] = weight;
+        }
       }
-  });
-  return result;
+    return made;
+  }();
+  return table;
+}
+
+void Coarsening::ask(const CellsView& fine) {
+  user_ = users(fine);
+  begin_.assign(coarse.n_copies() + 1, 0);
+  const auto for_each = [&](const std::size_t c, const auto& f) {
+    for (const std::uint32_t child : children.of(c))
+      for (std::uint32_t i = 8 * child; i < 8 * child + 8; ++i)
+        if (user_[fine.corners[i]] == i)
+          f(i);
+  };
+  parallel_for(
+    coarse.n_copies(), [&](const std::size_t c) { for_each(c, [&](std::uint32_t) { ++begin_[c + 1]; }); }, worth / 8);
+  std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
+  corner_.resize(begin_.back());
+  place_.resize(begin_.back());
+  parallel_for(
+    coarse.n_copies(),
+    [&](const std::size_t c) {
+      std::uint32_t at = begin_[c];
+      for_each(c, [&](const std::uint32_t i) {
+        corner_[at] = fine.corners[i];
+        place_[at++] = place_of(i);
+      });
+    },
+    worth / 8);
 }
 
 Coarsening coarsened(const CellsView& fine) {
@@ -282,8 +244,7 @@ Coarsening coarsened(const CellsView& fine) {
   const Glued glued(fine);
   find_copies(fine, glued, result);
   find_corners(fine, glued, result);
-  find_weights(fine, result);
-  result.restriction = transposed(result.prolongation, result.coarse.n_corners);
+  result.ask(fine);
   return result;
 }
 

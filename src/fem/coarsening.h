@@ -8,6 +8,7 @@
 
 #include "base/vec.h"
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -41,13 +42,12 @@ struct CellsView {
   bool is_used(const std::size_t copy) const { return corners[8 * copy] != CellsOfLevel::unused; }
 };
 
-/// A sparse matrix of weights, row by row.
-struct Weights {
-  std::vector<std::uint32_t> begin = {0}; ///< of each row, and the end
-  std::vector<std::uint32_t> column;
-  std::vector<float> weight;
+/// A vertex of a fine cube among the vertices of the coarse one, trilinear.
+struct VertexWeights {
+  std::uint32_t n = 0;
+  std::array<std::uint32_t, 8> vertex = {}; ///< ascending
+  std::array<float, 8> weight = {};
 };
-Weights transposed(const Weights& weights, std::size_t n_columns);
 
 /// Fine copies by their parents, ascending.
 struct Children {
@@ -60,12 +60,45 @@ struct Children {
   }
 };
 
-struct Coarsening {
+/// Every copy with a fine corner says the same of where it lies among the coarse ones; its lowest copy is asked.
+class Coarsening {
+ public:
   CellsOfLevel coarse;
   std::vector<std::uint32_t> parent; ///< the coarse copy of each fine one; `unused` of those that are not used
   Children children;                 ///< of each coarse copy
   std::vector<std::uint8_t> octant;  ///< in which part of it: bits of the axes
-  Weights prolongation, restriction; ///< trilinear: a row for each fine corner; its transpose
+
+  /// Calls f(fine corner, weights of the coarse copy's vertices) for those that are asked of a coarse copy. Each corner
+  /// that is used is asked of one.
+  template <class Function>
+  void for_each_corner(const std::size_t coarse_copy, const Function& f) const {
+    for (std::uint32_t i = begin_[coarse_copy]; i < begin_[coarse_copy + 1]; ++i)
+      f(corner_[i], weights()[place_[i]]);
+  }
+  /// Calls f(coarse corner, weight) for those that a fine corner lies among: none where no copy uses it.
+  template <class Function>
+  void for_each_weight(const std::uint32_t fine_corner, const Function& f) const {
+    const std::uint32_t user = user_[fine_corner];
+    if (user == CellsOfLevel::unused)
+      return;
+    const std::uint32_t* const corners = coarse.corners.data() + 8 * std::size_t(parent[user / 8]);
+    const VertexWeights& row = weights()[place_of(user)];
+    for (std::uint32_t k = 0; k < row.n; ++k)
+      f(corners[row.vertex[k]], row.weight[k]);
+  }
+
+ private:
+  friend Coarsening coarsened(const CellsView& fine);
+  using Table = std::array<VertexWeights, 64>; // by place: 8 octant + vertex of the fine cube
+  static const Table& weights();
+  std::uint8_t place_of(const std::uint32_t user) const {
+    return static_cast<std::uint8_t>(8 * octant[user / 8] + user % 8);
+  }
+  void ask(const CellsView& fine);
+
+  std::vector<std::uint32_t> user_;          // of each fine corner: the lowest 8 copy + vertex that has it
+  std::vector<std::uint32_t> begin_, corner_; // by coarse copy: the fine corners that are asked of it
+  std::vector<std::uint8_t> place_;          // of each of these
 };
 Coarsening coarsened(const CellsView& fine);
 

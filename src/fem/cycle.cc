@@ -25,20 +25,6 @@ struct Levels {
   Level& operator[](const unsigned level) const { return *finest_first[finest() - level]; }
 };
 
-/// to += W from.
-void multiply_add(const Weights& W, const Row<float>* const from, Row<float>* const to) {
-  constexpr std::size_t worth = 8192; // rows from which on a second thread pays
-  parallel_for(
-    W.begin.size() - 1,
-    [&](const std::size_t i) {
-      Four sum = {};
-      for (std::uint32_t k = W.begin[i]; k < W.begin[i + 1]; ++k)
-        sum += W.weight[k] * load(from[W.column[k]]);
-      add(to[i], sum);
-    },
-    worth);
-}
-
 class Operator : public dealii::MGMatrixBase<Vector> {
  public:
   explicit Operator(const Levels& levels) : levels_(levels) {}
@@ -85,11 +71,36 @@ class Transfer : public dealii::MGTransferBase<Vector> {
     prolongate_and_add(to, fine, coarse);
   }
   void prolongate_and_add(const unsigned to, Vector& fine, const Vector& coarse) const override {
-    multiply_add(levels_[to].to_coarse.prolongation, rows(coarse), rows(fine));
-    levels_[to].project(rows(fine));
+    const Coarsening& coarsening = levels_[to].to_coarse;
+    const Row<float>* const from = rows(coarse);
+    Row<float>* const sums = rows(fine);
+    levels_[to - 1].for_each_copy([&](const std::uint32_t copy) {
+      Four of_copy[8];
+      for (int v = 0; v < 8; ++v)
+        of_copy[v] = load(from[coarsening.coarse.corners[8 * std::size_t(copy) + v]]);
+      coarsening.for_each_corner(copy, [&](const std::uint32_t corner, const VertexWeights& weights) {
+        Four sum = {};
+        for (std::uint32_t k = 0; k < weights.n; ++k)
+          sum += weights.weight[k] * of_copy[weights.vertex[k]];
+        add(sums[corner], sum);
+      });
+    });
+    levels_[to].project(sums);
   }
   void restrict_and_add(const unsigned from, Vector& coarse, const Vector& fine) const override {
-    multiply_add(levels_[from].to_coarse.restriction, rows(fine), rows(coarse));
+    const Coarsening& coarsening = levels_[from].to_coarse;
+    const Row<float>* const values = rows(fine);
+    Row<float>* const sums = rows(coarse);
+    levels_[from - 1].for_each_copy_in_order([&](const std::uint32_t copy) {
+      Four of_copy[8] = {};
+      coarsening.for_each_corner(copy, [&](const std::uint32_t corner, const VertexWeights& weights) {
+        const Four value = load(values[corner]);
+        for (std::uint32_t k = 0; k < weights.n; ++k)
+          of_copy[weights.vertex[k]] += weights.weight[k] * value;
+      });
+      for (int v = 0; v < 8; ++v)
+        add(sums[coarsening.coarse.corners[8 * std::size_t(copy) + v]], of_copy[v]);
+    });
   }
 
  private:

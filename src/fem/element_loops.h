@@ -87,10 +87,19 @@ struct ElementLoops : RowLoops<T, W> {
     for (int i = 0; i < 3; ++i)
       v[i] = R[i] * x + R[3 + i] * y + R[6 + i] * z;
   }
+  typedef float Floats __attribute__((vector_size(sizeof(float) * W)));
+  [[gnu::always_inline]] static V load_floats(const float* const values) {
+    return __builtin_convertvector(*reinterpret_cast<const Floats*>(values), V);
+  }
   [[gnu::always_inline]] static void load_nine(const T (*const rows)[n_lanes], const int lane, V (&M)[9]) {
 #pragma GCC unroll 9
     for (int i = 0; i < 9; ++i)
       M[i] = load(rows[i] + lane);
+  }
+  [[gnu::always_inline]] static void load_rotation(const Batch<T>& batch, const int lane, V (&R)[9]) {
+#pragma GCC unroll 9
+    for (int i = 0; i < 9; ++i)
+      R[i] = load_floats(batch.rotation[i] + lane);
   }
 
   // --- What meets modes --------------------------------------------------------------------------------------------
@@ -166,9 +175,8 @@ struct ElementLoops : RowLoops<T, W> {
   template <bool is_partial>
   [[gnu::always_inline]] static V hourglass_pair(const CubeConstants<T>& cube, const Batch<T>& batch, const int lane,
                                                  const int pair) {
-    typedef float Floats __attribute__((vector_size(sizeof(float) * W)));
     if constexpr (is_partial)
-      return __builtin_convertvector(*reinterpret_cast<const Floats*>(batch.hourglass->pair[pair] + lane), V);
+      return load_floats(batch.hourglass->pair[pair] + lane);
     else
       return cube.hourglass[pair] - V{};
   }
@@ -200,7 +208,7 @@ struct ElementLoops : RowLoops<T, W> {
                                                    const Row<T>* const p, Row<T>* const y) {
     V c[8][3], R[9], G[9], P[9], f[8][3];
     read_modes(batch, lane, p, c);
-    load_nine(batch.rotation, lane, R);
+    load_rotation(batch, lane, R);
 #pragma GCC unroll 7
     for (int m = 1; m < 8; ++m)
       turn_back(R, c[m]);
@@ -222,7 +230,7 @@ struct ElementLoops : RowLoops<T, W> {
                                                  const Row<T>* const p, Row<T>* const y) {
     V c[8][3], R[9], G[9], P[9], f[8][3];
     read_modes(batch, lane, p, c);
-    load_nine(batch.rotation, lane, R);
+    load_rotation(batch, lane, R);
     mean_gradient<is_partial>(cube, batch, lane, c, G);
     law_tangent(batch, lane, G, P);
 #pragma GCC unroll 4
@@ -306,7 +314,7 @@ struct ElementLoops : RowLoops<T, W> {
                                                  Row<T>* const blocks) {
     V D[8][6], R[9], b[3] = {V{}, V{}, V{}};
     hourglass_blocks<is_partial>(cube, batch, lane, D);
-    load_nine(batch.rotation, lane, R);
+    load_rotation(batch, lane, R);
     const V v = volume<is_partial>(cube, batch, lane);
     for (int a = 0; a < 8; ++a) {
       node_gradient<is_partial>(cube, batch, lane, a, b);
@@ -356,7 +364,7 @@ struct ElementLoops : RowLoops<T, W> {
   [[gnu::always_inline]] static void diagonal_of_full(const FullBlocks& of, const Batch<T>& batch, const int lane,
                                                       Row<T>* const blocks) {
     V R[9], same[6], pair[3][6];
-    load_nine(batch.rotation, lane, R);
+    load_rotation(batch, lane, R);
 #pragma GCC unroll 6
     for (int ij = 0; ij < 6; ++ij) {
       const int i = block_row[ij], j = block_column[ij];

@@ -358,17 +358,17 @@ std::optional<double> Hexahedra::force(const Points& x, Points& forces, const Wi
   Loan<double> energies(with_energy == WithEnergy::always || is_hookean() ? batching_->batches().size() : 0);
   batching_->for_each_in_order([&](const std::size_t i) {
     const Turns turns = this->turns(i, rows);
-    Lanes9<double> stress{};
+    alignas(64) double stress[9][n_lanes] = {};
     if (!is_hookean())
       for_each_lane(i, [&](const std::size_t lane, const std::uint32_t copy) {
         const Mat3 P = elements_[copy].volume *
                        std::visit([&](const auto& law) { return Mat3(law.stress(gradient_of(turns, lane))); }, law_);
         for (int k = 0; k < 9; ++k)
-          stress.row[k][lane] = P.data()[k];
+          stress[k][lane] = P.data()[k];
       });
     alignas(64) double of_lanes[n_lanes];
     force_kernels().force(batched_.cube, batched_.batch(*batching_, i), turns, mean_part(),
-                          is_hookean() ? nullptr : stress.row, spins, rows, sums,
+                          is_hookean() ? nullptr : stress, spins, rows, sums,
                           energies.empty() ? nullptr : of_lanes);
     if (!energies.empty())
       add_energies(i, turns, of_lanes, energies[i]);
@@ -390,7 +390,7 @@ void Hexahedra::linearise(const Points& x) {
   batched_.tangents.resize(is_hookean() ? 0 : n);
   batching_->for_each([&](const std::size_t i) {
     const Turns turns = this->turns(i, rows);
-    std::copy_n(turns.R[0], 9 * n_lanes, batched_.rotations[i].row[0]);
+    std::copy_n(turns.R[0], 9 * n_lanes, (*batched_.shared.rotations)[i].row[0]);
     if (is_hookean())
       return;
     for_each_lane(i, [&](const std::size_t lane, const std::uint32_t copy) {
@@ -414,19 +414,20 @@ void Hexahedra::apply_stiffness(const std::span<const double> p, const std::span
   ties_.add_product(p, y);
 }
 
-void Hexahedra::stiffness_diagonal(std::vector<Mat3>& blocks) const {
-  blocks.resize(numbers_.size());
-  Loan<double> penalty = ghost_penalty_.diagonal(blocks.size());
+void Hexahedra::stiffness_diagonal(const PutBlock put) const {
+  Loan<double> penalty = ghost_penalty_.diagonal(numbers_.size());
   ties_.add_diagonal(penalty);
   const TwoRows lent(batching_->n_rows());
   Row<double>* const sums = lent.first; // two a corner
   clear(sums, 2 * batching_->n_rows());
   add_diagonal(*batching_, batched_, sums);
   parallel_for(
-    blocks.size(),
+    numbers_.size(),
     [&](const std::size_t i) {
       const Row<double>&d = sums[2 * i], &s = sums[2 * i + 1];
-      blocks[i] << d.x + penalty[i], s.x, s.z, s.x, d.y + penalty[i], s.y, s.z, s.y, d.z + penalty[i];
+      Mat3 block;
+      block << d.x + penalty[i], s.x, s.z, s.x, d.y + penalty[i], s.y, s.z, s.y, d.z + penalty[i];
+      put(i, block);
     },
     worth);
 }
@@ -442,7 +443,7 @@ void Hexahedra::make_multigrid() {
                 [this](const std::uint32_t copy) -> const Element& { return elements_[copy]; },
                 batching_,
                 former_levels_.coarse.empty() ? batched<float>(*batching_, h_, material_, elements_.full(),
-                                                               partial_elements(bound), batched_.hourglass)
+                                                               partial_elements(bound), batched_.shared)
                                               : std::move(former_levels_.finest),
                 ghost_penalty_.faces(),
                 ties_.all()},
@@ -464,7 +465,7 @@ dynamics::Preconditioner* Hexahedra::preconditioner(const dynamics::LinearEquati
     make_multigrid();
   if (multigrid_->n_levels() == 1)
     return nullptr;
-  multigrid_->prepare(equation, batched_.rotations);
+  multigrid_->prepare(equation);
   return multigrid_.get();
 }
 
@@ -473,7 +474,8 @@ Matrix24 Hexahedra::element_matrix(const std::size_t copy, const Points& x, cons
   const Turned state = turned_element(copy, x);
   const bool is_exact = kind == dynamics::Tangent::exact;
   Matrix24 K = stiffness(element, material_, is_hookean() ? Part::whole : Part::hourglass);
-  K = is_exact ? hessian(element, K, state, frame_) : turned_stiffness(K, state.R);
+  const Mat3 as_kept = state.R.cast<float>().cast<double>(); // as products have it
+  K = is_exact ? hessian(element, K, state, frame_) : turned_stiffness(K, as_kept);
   if (is_hookean())
     return K;
   const Tangent A = std::visit(

@@ -87,7 +87,7 @@ class Hexahedra : public dynamics::ElasticModel, public dynamics::StiffnessMatri
   void force(const Points& x, Points& forces) const override;
   void linearise(const Points& x) override;
   void apply_stiffness(std::span<const double> p, std::span<double> y) const override;
-  void stiffness_diagonal(std::vector<Mat3>& blocks) const override;
+  void stiffness_diagonal(PutBlock put) const override;
   /// Multigrid, where that pays.
   dynamics::Preconditioner* preconditioner(const dynamics::LinearEquation& equation) override;
   Eigen::SparseMatrix<double> stiffness_matrix(const Points& x, dynamics::Tangent kind) const override;

@@ -57,7 +57,7 @@ struct CubeConstants {
 template <class T>
 struct Batch {
   const std::uint32_t (*corners)[n_lanes]; ///< 8 rows; lanes that are not used have a corner of their own
-  const T (*rotation)[n_lanes];            ///< 9 rows, 3 x 3 column by column
+  const float (*rotation)[n_lanes];        ///< 9 rows, 3 x 3 column by column
   const PartialCubes<T>* partial;          ///< null: full cubes
   const HourglassOfCubes* hourglass;       ///< of partial ones
   const T (*tangent)[n_lanes];             ///< 45 rows, pairs of the law's tangent times the volume; null: Hooke's

@@ -97,19 +97,19 @@ std::vector<GhostLine> coarsened(const std::span<const GhostLine> fine, const Ce
   return lines;
 }
 
-/// The two corners of a tie are one node, so their rows go through the same coarse nodes in the same order; those of
-/// crumbs (grid/crumbs.h) are empty.
-std::vector<Tie> coarsened(const std::span<const Tie> fine, const Weights& prolongation) {
+/// The two corners of a tie are one node, so they lie among the same coarse nodes, which come in the same order; those
+/// of crumbs (grid/crumbs.h) among none.
+std::vector<Tie> coarsened(const std::span<const Tie> fine, const Coarsening& coarsening) {
   std::map<std::array<std::uint32_t, 2>, double> stiffness; // by corners
-  const auto row = [&](const std::uint32_t corner) {
-    return std::span(prolongation.column)
-      .subspan(prolongation.begin[corner], prolongation.begin[corner + 1] - prolongation.begin[corner]);
-  };
   for (const Tie& tie : fine) {
-    const auto of_a = row(tie.a), of_b = row(tie.b);
-    for (std::size_t i = 0; i < std::min(of_a.size(), of_b.size()); ++i)
-      if (of_a[i] != of_b[i])
-        stiffness[{of_a[i], of_b[i]}] += double(prolongation.weight[prolongation.begin[tie.a] + i]) * tie.stiffness;
+    std::array<std::uint32_t, 8> of_b;
+    std::size_t n = 0, i = 0;
+    coarsening.for_each_weight(tie.b, [&](const std::uint32_t corner, float) { of_b[n++] = corner; });
+    coarsening.for_each_weight(tie.a, [&](const std::uint32_t corner, const float weight) {
+      if (i < n && corner != of_b[i])
+        stiffness[{corner, of_b[i]}] += double(weight) * tie.stiffness;
+      ++i;
+    });
   }
   std::vector<Tie> ties;
   for (const auto& [corners, k] : stiffness)

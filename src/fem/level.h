@@ -25,7 +25,7 @@ std::vector<GhostLine> lines_of(std::span<const GhostFace> faces);
 std::vector<GhostLine> coarsened(std::span<const GhostLine> fine, const CellsView& cells, const Coarsening& coarsening);
 
 /// For motions of coarse cubes: sums of squares of mean jumps, at most. None between corners that are one.
-std::vector<Tie> coarsened(std::span<const Tie> fine, const Weights& prolongation);
+std::vector<Tie> coarsened(std::span<const Tie> fine, const Coarsening& coarsening);
 
 /// A symmetric 3 x 3 block at a corner [N/m].
 struct Spring {
@@ -59,6 +59,17 @@ struct Level {
   /// Of vectors: a row for each corner, and what batches have for lanes that are not used (kernels.h).
   std::size_t n_rows() const { return batching->n_rows(); }
 
+  /// Calls f(copy) for each, several at a time.
+  template <class Function>
+  void for_each_copy(const Function& f) const {
+    batching->for_each([&](const std::size_t i) { for_each_copy(i, f); });
+  }
+  /// Calls f(copy) for each; those that share a corner never at once, and in the order of sums.
+  template <class Function>
+  void for_each_copy_in_order(const Function& f) const {
+    batching->for_each_in_order([&](const std::size_t i) { for_each_copy(i, f); });
+  }
+
   /// When cells, batches and lines are there.
   void resize();
   /// From rotations, masses and springs.
@@ -78,6 +89,12 @@ struct Level {
   void project(Row<float>* rows) const;
 
  private:
+  template <class Function>
+  void for_each_copy(const std::size_t batch, const Function& f) const {
+    for (const std::uint32_t copy : batching->batches()[batch].copies)
+      if (copy != BatchOfCopies::none)
+        f(copy);
+  }
   template <class Function>
   void for_each_corner(const Function& f) const;
   Mat3 inverse_block(std::size_t corner) const;

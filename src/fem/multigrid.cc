@@ -23,18 +23,18 @@ constexpr std::size_t worth = 8192; // corners from which on a second thread pay
 constexpr std::size_t few = 48;     // corners that are factorised as they are
 
 /// Blocks at coarse corners, of the sum of the fine ones.
-Loan<Spring> restricted(const std::vector<Spring>& fine, const Weights& prolongation, const std::size_t n_coarse) {
-  Loan<std::uint32_t> place(n_coarse, CellsOfLevel::unused);
+Loan<Spring> restricted(const std::vector<Spring>& fine, const Coarsening& coarsening) {
+  Loan<std::uint32_t> place(coarsening.coarse.n_corners, CellsOfLevel::unused);
   Loan<Spring> coarse;
   for (const Spring& spring : fine)
-    for (std::uint32_t k = prolongation.begin[spring.corner]; k < prolongation.begin[spring.corner + 1]; ++k) {
-      std::uint32_t& p = place[prolongation.column[k]];
+    coarsening.for_each_weight(spring.corner, [&](const std::uint32_t corner, const float weight) {
+      std::uint32_t& p = place[corner];
       if (p == CellsOfLevel::unused) {
         p = static_cast<std::uint32_t>(coarse.size());
-        coarse->push_back({prolongation.column[k], Mat3::Zero()});
+        coarse->push_back({corner, Mat3::Zero()});
       }
-      coarse[p].block += double(prolongation.weight[k]) * spring.block;
-    }
+      coarse[p].block += double(weight) * spring.block;
+    });
   return coarse;
 }
 
@@ -85,7 +85,7 @@ struct Multigrid::Coarsest {
   Eigen::LLT<Eigen::MatrixXd> dense;
   Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> sparse;
 
-  void factorise(const Multigrid::Level& level, std::span<const Mat3> rotations);
+  void factorise(const Multigrid::Level& level, const CellsOfLevel& cells);
   void solve(Multigrid::Level& level, const Row<float>* b, Row<float>* x);
   Eigen::MatrixXd matrix;
   Eigen::VectorXd right, solution;
@@ -97,7 +97,6 @@ struct Multigrid::Coarsest {
 
 struct Multigrid::Level : fem::Level {
   // Of coarse levels.
-  CellsOfLevel cells;
   LevelElements made_of;
   std::vector<Mat3> rotations; // of each copy
 };
@@ -148,24 +147,24 @@ void add_entries(const Level& level, const CellsOfLevel& cells, const FunctionRe
 
 } // namespace
 
-void Multigrid::Coarsest::factorise(const Multigrid::Level& level, const std::span<const Mat3> rotations) {
+void Multigrid::Coarsest::factorise(const Multigrid::Level& level, const CellsOfLevel& cells) {
   if (is_too_large(level))
     return;
   const auto matrix = [&](const std::size_t c) {
-    return turned_stiffness(stiffness(level.made_of[c], material), rotations[c]);
+    return turned_stiffness(stiffness(level.made_of[c], material), level.rotations[c]);
   };
   const auto n = static_cast<Eigen::Index>(3 * level.n_corners);
   if (is_dense(level)) {
     Eigen::MatrixXd& A = this->matrix;
     A.setZero(n, n);
-    add_entries(level, level.cells, matrix, [&](const std::uint32_t i, const std::uint32_t j, const Mat3& block) {
+    add_entries(level, cells, matrix, [&](const std::uint32_t i, const std::uint32_t j, const Mat3& block) {
       A.block<3, 3>(3 * i, 3 * j) += block;
     });
     dense.compute(A);
     return;
   }
   std::vector<Eigen::Triplet<double>> entries;
-  add_entries(level, level.cells, matrix, [&](const std::uint32_t i, const std::uint32_t j, const Mat3& block) {
+  add_entries(level, cells, matrix, [&](const std::uint32_t i, const std::uint32_t j, const Mat3& block) {
     for (int a = 0; a < 3; ++a)
       for (int b = 0; b < 3; ++b)
         entries.emplace_back(3 * i + a, 3 * j + b, block(a, b));
@@ -210,7 +209,7 @@ Multigrid::Multigrid(FinestLevel finest, const FormerLevels& former) {
   while (levels_.back().n_corners > few) {
     Level& fine = levels_.back();
     const std::size_t n = levels_.size();
-    const CellsView cells = n == 1 ? finest.cells : CellsView(fine.cells);
+    const CellsView cells = n == 1 ? finest.cells : CellsView(cells_of(n - 1));
     Coarsening coarsening = coarsened(cells);
     if (double(coarsening.coarse.n_corners) > stands_still * double(fine.n_corners))
       break;
@@ -229,11 +228,10 @@ Multigrid::Multigrid(FinestLevel finest, const FormerLevels& former) {
     }
     h *= 2;
     coarse.lines = coarsened(fine.lines, cells, coarsening);
-    coarse.ties = coarsened(fine.ties, coarsening.prolongation);
-    coarse.cells = std::move(coarsening.coarse);
-    coarse.n_corners = coarse.cells.n_corners;
+    coarse.ties = coarsened(fine.ties, coarsening);
+    coarse.n_corners = coarsening.coarse.n_corners;
+    put_batches(h, finest.material, coarsening.coarse, coarse);
     fine.to_coarse = std::move(coarsening);
-    put_batches(h, finest.material, coarse);
     coarse.resize();
     levels_.push_back(std::move(coarse));
   }
@@ -246,16 +244,19 @@ Multigrid::Multigrid(FinestLevel finest, const FormerLevels& former) {
   });
 }
 
-void Multigrid::put_batches(const double h, const material::Elastic& material, Level& coarse) {
+const CellsOfLevel& Multigrid::cells_of(const std::size_t coarse) const { return levels_[coarse - 1].to_coarse.coarse; }
+
+void Multigrid::put_batches(const double h, const material::Elastic& material, const CellsOfLevel& cells,
+                            Level& coarse) {
   const LevelElements& elements = coarse.made_of;
-  std::vector<std::uint32_t> order(coarse.cells.n_copies()), ends;
+  std::vector<std::uint32_t> order(cells.n_copies()), ends;
   std::iota(order.begin(), order.end(), 0);
   for (std::size_t end = 0; end < order.size();) {
     end = std::min(end + Batching::chunk_size, order.size());
     ends.push_back(static_cast<std::uint32_t>(end));
   }
   coarse.batching = std::make_shared<Batching>(
-    CopiesInOrder{order, ends, elements.kind, coarse.cells.corners.data(), coarse.cells.n_corners});
+    CopiesInOrder{order, ends, elements.kind, cells.corners.data(), cells.n_corners});
   coarse.bound = elements.full.bound;
   coarse.elements =
     batched<float>(*coarse.batching, h, material, elements.full,
@@ -272,14 +273,14 @@ FormerLevels Multigrid::give_way() {
   return former;
 }
 
-void Multigrid::prepare(const dynamics::LinearEquation& equation, const std::span<const Lanes9<double>> rotations) {
+void Multigrid::prepare(const dynamics::LinearEquation& equation) {
   stiffness_factor_ = equation.stiffness_factor;
-  put_rotations(rotations);
+  put_rotations();
   for (Level& level : levels_)
     level.make_diagonal();
   put_masses(equation);
   hold(equation);
-  coarsest_->factorise(levels_.back(), levels_.back().rotations);
+  coarsest_->factorise(levels_.back(), levels_.size() > 1 ? cells_of(levels_.size() - 1) : CellsOfLevel());
   for (Level& level : levels_)
     level.invert_diagonal([&](const std::uint32_t corner, const Mat3& block) { // of the finest one
       const Mat3 S = dynamics::inverse_factor(block, equation.constraints.freedom(corner));
@@ -287,36 +288,33 @@ void Multigrid::prepare(const dynamics::LinearEquation& equation, const std::spa
     });
 }
 
-void Multigrid::put_rotations(const std::span<const Lanes9<double>> finest) {
-  const auto in_single = [](const double value) { return static_cast<float>(value); };
-  Level& fine = levels_[0];
-  fine.batching->for_each([&](const std::size_t i) {
-    std::transform(finest[i].row[0], finest[i].row[0] + 9 * n_lanes, fine.elements.rotations[i].row[0], in_single);
-  });
+/// Of the coarse elements.
+void Multigrid::put_rotations() {
   for (std::size_t l = 1; l < levels_.size(); ++l) {
-    put_coarse_rotations(l, finest);
+    put_coarse_rotations(l);
     Level& level = levels_[l];
+    std::vector<Lanes9>& rotations = *level.elements.shared.rotations;
     level.batching->for_each([&](const std::size_t i) {
       for (std::size_t lane = 0; lane < n_lanes; ++lane)
         if (const std::uint32_t c = level.batching->batches()[i].copies[lane]; c != BatchOfCopies::none)
           for (int k = 0; k < 9; ++k)
-            level.elements.rotations[i].row[k][lane] = in_single(level.rotations[c].data()[k]);
+            rotations[i].row[k][lane] = static_cast<float>(level.rotations[c].data()[k]);
     });
   }
 }
 
 /// The rotations of means over children by volume.
-void Multigrid::put_coarse_rotations(const std::size_t l, const std::span<const Lanes9<double>> finest) {
+void Multigrid::put_coarse_rotations(const std::size_t l) {
   const Level& fine = levels_[l - 1];
   Level& coarse = levels_[l];
-  const Loan<Mat3> sums = l == 1 ? sums_of_finest_rotations(finest) : Loan<Mat3>::none();
+  const Loan<Mat3> sums = l == 1 ? sums_of_finest_rotations() : Loan<Mat3>::none();
   const auto sum_of_children = [&](const std::size_t c) {
     Mat3 sum = Mat3::Zero();
     for (const std::uint32_t child : fine.to_coarse.children.of(c))
       sum += fine.made_of[child].volume * fine.rotations[child];
     return sum;
   };
-  coarse.rotations.resize(coarse.cells.n_copies());
+  coarse.rotations.resize(cells_of(l).n_copies());
   parallel_for(
     coarse.rotations.size(),
     [&](const std::size_t c) {
@@ -328,11 +326,12 @@ void Multigrid::put_coarse_rotations(const std::size_t l, const std::span<const 
 }
 
 /// By parent, times volumes. In the order of batches, as they lie in memory.
-Loan<Mat3> Multigrid::sums_of_finest_rotations(const std::span<const Lanes9<double>> finest) const {
+Loan<Mat3> Multigrid::sums_of_finest_rotations() const {
   const Level& fine = levels_[0];
   const BatchedElements<float>& elements = fine.elements;
-  Loan<Mat3> sums(levels_[1].cells.n_copies(), Mat3::Zero());
-  for (std::size_t i = 0; i < finest.size(); ++i) {
+  Loan<Mat3> sums(cells_of(1).n_copies(), Mat3::Zero());
+  const std::vector<Lanes9>& rotations = *elements.shared.rotations;
+  for (std::size_t i = 0; i < rotations.size(); ++i) {
     const BatchOfCopies& batch = fine.batching->batches()[i];
     for (std::size_t lane = 0; lane < n_lanes; ++lane) {
       if (batch.copies[lane] == BatchOfCopies::none)
@@ -341,7 +340,7 @@ Loan<Mat3> Multigrid::sums_of_finest_rotations(const std::span<const Lanes9<doub
                                                                  : elements.partial[batch.partial].volume[lane];
       Mat3& sum = sums[fine.to_coarse.parent[batch.copies[lane]]];
       for (int k = 0; k < 9; ++k)
-        sum.data()[k] += volume * finest[i].row[k][lane];
+        sum.data()[k] += volume * rotations[i].row[k][lane];
     }
   }
   return sums;
@@ -353,16 +352,16 @@ void Multigrid::put_masses(const dynamics::LinearEquation& equation) {
   parallel_for(
     finest.n_corners, [&](const std::size_t i) { finest.mass[i] = float(factor * equation.mass[i]); }, worth);
   for (std::size_t l = 0; l + 1 < levels_.size(); ++l) {
-    const Weights& restriction = levels_[l].to_coarse.restriction;
-    parallel_for(
-      levels_[l + 1].n_corners,
-      [&](const std::size_t j) {
-        float sum = 0;
-        for (std::uint32_t k = restriction.begin[j]; k < restriction.begin[j + 1]; ++k)
-          sum += restriction.weight[k] * levels_[l].mass[restriction.column[k]];
-        levels_[l + 1].mass[j] = sum;
-      },
-      worth);
+    const Coarsening& coarsening = levels_[l].to_coarse;
+    std::vector<float>& coarse = levels_[l + 1].mass;
+    std::ranges::fill(coarse, 0);
+    levels_[l + 1].for_each_copy_in_order([&](const std::uint32_t copy) {
+      const std::uint32_t* const corners = coarsening.coarse.corners.data() + 8 * std::size_t(copy);
+      coarsening.for_each_corner(copy, [&](const std::uint32_t corner, const VertexWeights& weights) {
+        for (std::uint32_t k = 0; k < weights.n; ++k)
+          coarse[corners[weights.vertex[k]]] += weights.weight[k] * levels_[l].mass[corner];
+      });
+    });
   }
 }
 
@@ -394,10 +393,10 @@ void Multigrid::hold(const dynamics::LinearEquation& equation) {
       springs->push_back({i, coarse});
   }
   for (std::size_t l = 1; l < levels_.size(); ++l) {
-    springs = restricted(springs, levels_[l - 1].to_coarse.prolongation, levels_[l].n_corners);
+    springs = restricted(springs, levels_[l - 1].to_coarse);
     levels_[l].springs = *springs;
     if (!levels_[l].points.empty() || !finest.points.empty())
-      levels_[l].points = coarsened(levels_[l - 1].points, levels_[l - 1].to_coarse.prolongation, levels_[l].n_corners);
+      levels_[l].points = coarsened(levels_[l - 1].points, levels_[l - 1].to_coarse);
   }
 }
 

@@ -73,8 +73,8 @@ class Multigrid : public dynamics::Preconditioner {
   /// For one that takes its place; it is of no use any more.
   FormerLevels give_way();
 
-  /// Takes over an equation. `rotations`: of the finest batches, at the linearisation point.
-  void prepare(const dynamics::LinearEquation& equation, std::span<const Lanes9<double>> rotations);
+  /// Takes over an equation, with the finest elements' rotations as they are now.
+  void prepare(const dynamics::LinearEquation& equation);
 
   void apply(std::span<const double> r, std::span<double> z) override;
 
@@ -82,10 +82,12 @@ class Multigrid : public dynamics::Preconditioner {
   struct Level;
   struct Coarsest;
 
-  static void put_batches(double h, const material::Elastic& material, Level& coarse);
-  void put_rotations(std::span<const Lanes9<double>> finest);
-  void put_coarse_rotations(std::size_t l, std::span<const Lanes9<double>> finest);
-  Loan<Mat3> sums_of_finest_rotations(std::span<const Lanes9<double>> finest) const;
+  /// Of a coarse level.
+  const CellsOfLevel& cells_of(std::size_t coarse) const;
+  static void put_batches(double h, const material::Elastic& material, const CellsOfLevel& cells, Level& coarse);
+  void put_rotations();
+  void put_coarse_rotations(std::size_t l);
+  Loan<Mat3> sums_of_finest_rotations() const;
   void put_masses(const dynamics::LinearEquation& equation);
   void hold(const dynamics::LinearEquation& equation);
 

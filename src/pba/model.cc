@@ -238,8 +238,7 @@ void PhyxelModel::apply_stiffness(const std::span<const double> p, const std::sp
     value = -value;
 }
 
-void PhyxelModel::stiffness_diagonal(std::vector<Mat3>& blocks) const {
-  blocks.resize(phyxels_.size());
+void PhyxelModel::stiffness_diagonal(const PutBlock put) const {
   parallel_for(
     phyxels_.size(),
     [&](const std::size_t i) {
@@ -256,7 +255,7 @@ void PhyxelModel::stiffness_diagonal(std::vector<Mat3>& blocks) const {
       }
       const Vec3 g = fits_[i].inverse * sum;
       K += phyxels_.volume[i] * block(linearised_[i], fits_[i].used * g);
-      blocks[i] = K + (penalty + kappa_[i] * (total - g.dot(sum))) * Mat3::Identity();
+      put(i, K + (penalty + kappa_[i] * (total - g.dot(sum))) * Mat3::Identity());
     },
     worth);
 }

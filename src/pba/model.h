@@ -90,7 +90,7 @@ class PhyxelModel : public dynamics::ElasticModel {
   void force(const Points& x, Points& forces) const override;
   void linearise(const Points& x) override;
   void apply_stiffness(std::span<const double> p, std::span<double> y) const override;
-  void stiffness_diagonal(std::vector<Mat3>& blocks) const override;
+  void stiffness_diagonal(PutBlock put) const override;
 
   /// Deformation gradient at each phyxel [1], completed where it is not known.
   void deformation(const Points& x, std::vector<Mat3>& F) const;

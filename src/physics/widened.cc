@@ -39,11 +39,12 @@ void WidenedElasticModel::apply_stiffness(const std::span<const double> p, const
     y[3 * std::size_t(numbers_.corner(i / 3)) + i % 3] = product[i];
 }
 
-void WidenedElasticModel::stiffness_diagonal(std::vector<Mat3>& blocks) const {
-  std::vector<Mat3> of_numbers;
-  by_number_.stiffness_diagonal(of_numbers);
-  blocks.assign(lumped_mass().size(), Mat3::Zero());
-  numbers_.spread(of_numbers, blocks);
+void WidenedElasticModel::stiffness_diagonal(const PutBlock put) const {
+  Loan<Mat3> blocks(lumped_mass().size(), Mat3::Zero());
+  by_number_.stiffness_diagonal(
+    [&](const std::size_t number, const Mat3& block) { blocks[numbers_.corner(number)] = block; });
+  for (std::size_t corner = 0; corner < blocks.size(); ++corner)
+    put(corner, blocks[corner]);
 }
 
 } // namespace kerf::physics

@@ -82,7 +82,7 @@ class WidenedElasticModel : public WidenedForces<dynamics::ElasticModel> {
 
   void linearise(const Points& x) override { by_number_.linearise(*gathered(x)); }
   void apply_stiffness(std::span<const double> p, std::span<double> y) const override;
-  void stiffness_diagonal(std::vector<Mat3>& blocks) const override;
+  void stiffness_diagonal(PutBlock put) const override;
 };
 
 } // namespace kerf::physics

@@ -211,8 +211,8 @@ void MassSpring::apply_stiffness(const std::span<const double> p, const std::spa
   inversion_->add_product(p, y);
 }
 
-void MassSpring::stiffness_diagonal(std::vector<Mat3>& blocks) const {
-  blocks.resize(mass_.size());
+void MassSpring::stiffness_diagonal(const PutBlock put) const {
+  Loan<Mat3> blocks(mass_.size());
   parallel_for(
     mass_.size(),
     [&](const std::size_t c) {
@@ -223,6 +223,8 @@ void MassSpring::stiffness_diagonal(std::vector<Mat3>& blocks) const {
     },
     worth_corners);
   inversion_->add_diagonal(blocks);
+  parallel_for(
+    blocks.size(), [&](const std::size_t c) { put(c, blocks[c]); }, worth_corners);
 }
 
 } // namespace kerf::spring

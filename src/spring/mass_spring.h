@@ -57,7 +57,7 @@ class MassSpring : public dynamics::ElasticModel,
   /// 2002).
   void linearise(const Points& x) override;
   void apply_stiffness(std::span<const double> p, std::span<double> y) const override;
-  void stiffness_diagonal(std::vector<Mat3>& blocks) const override;
+  void stiffness_diagonal(PutBlock put) const override;
   Eigen::SparseMatrix<double> stiffness_matrix(const Points& x, dynamics::Tangent kind) const override;
 
   std::size_t n_springs() const { return springs_.size(); }

@@ -75,10 +75,9 @@ class Chain : public ElasticModel {
     }
   }
 
-  void stiffness_diagonal(std::vector<Mat3>& blocks) const override {
-    blocks = blocks_;
+  void stiffness_diagonal(const PutBlock put) const override {
     for (std::size_t i = 0; i < mass_.size(); ++i)
-      blocks[i] += springs_.neighbour * ((i > 0) + (i + 1 < mass_.size())) * Mat3::Identity();
+      put(i, blocks_[i] + springs_.neighbour * ((i > 0) + (i + 1 < mass_.size())) * Mat3::Identity());
   }
 
  private:

@@ -44,11 +44,13 @@ class Truss : public ElasticModel, public StiffnessMatrix {
     Eigen::Map<Eigen::VectorXd>(y.data(), P.size()) = stiffness_matrix(at_, Tangent::positive) * P;
   }
 
-  void stiffness_diagonal(std::vector<Mat3>& blocks) const override {
-    blocks.assign(rest_.size(), Mat3::Zero());
+  void stiffness_diagonal(const PutBlock put) const override {
+    std::vector<Mat3> blocks(rest_.size(), Mat3::Zero());
     for (const Bar& bar : bars_)
       for (const auto end : bar)
         blocks[end] += block(at_, bar, Tangent::positive);
+    for (std::size_t i = 0; i < blocks.size(); ++i)
+      put(i, blocks[i]);
   }
 
   Eigen::SparseMatrix<double> stiffness_matrix(const Points& x, const Tangent kind) const override {

@@ -162,9 +162,25 @@ TEST(Batches, OfCubesInARowHaveTheSameProduct) {
 TEST(Batches, OfAPartialCellAreAKilobyte) {
   const std::size_t of_lanes = sizeof(PartialCubes<double>) + sizeof(PartialCubes<float>) + sizeof(HourglassOfCubes);
   EXPECT_LE(sizeof(Element) + of_lanes / n_lanes, 1024u);
-  const auto shared = std::make_shared<std::vector<HourglassOfCubes>>();
-  const BatchedElements<double> model = batched<double>({}, 0.1, {}, {}, {}, shared);
-  EXPECT_EQ(batched<float>({}, 0.1, {}, {}, {}, model.hourglass).hourglass, shared);
+  const BatchedElements<double> model = batched<double>({}, 0.1, {}, {}, {});
+  EXPECT_EQ(batched<float>({}, 0.1, {}, {}, {}, model.shared).shared.hourglass, model.shared.hourglass);
+}
+
+/// The preconditioner's elements turn with the model's, and do not take their rotations away.
+TEST(Batches, RotationsAreKeptOnce) {
+  const material::Elastic material{.density = 1000, .youngs_modulus = 1e5, .poissons_ratio = 0.3};
+  const Element full = make_element(full_cube_moments(), 0.1, material, {});
+  const std::vector<std::uint32_t> order = {0}, ends = {1}, corners = {0, 1, 2, 3, 4, 5, 6, 7};
+  const std::vector<Kind> kinds = {Kind::full};
+  const Batching batching({order, ends, kinds, corners.data(), 8});
+  const BatchedElements<double> model = batched<double>(batching, 0.1, material, full, {});
+  ASSERT_EQ(model.shared.rotations->size(), 1u);
+  float& first = (*model.shared.rotations)[0].row[0][0];
+  EXPECT_EQ(first, 1);
+  first = 0.5;
+  const BatchedElements<float> other = batched<float>(batching, 0.1, material, full, {}, model.shared);
+  EXPECT_EQ(other.shared.rotations, model.shared.rotations);
+  EXPECT_EQ(first, 0.5);
 }
 
 } // namespace

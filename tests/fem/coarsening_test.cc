@@ -35,10 +35,33 @@ Body slit_block() {
   return body;
 }
 
-void expect_same(const Weights& a, const Weights& b) {
-  EXPECT_EQ(a.begin, b.begin);
-  EXPECT_EQ(a.column, b.column);
-  EXPECT_EQ(a.weight, b.weight);
+struct Weight {
+  std::uint32_t fine, coarse; // corners
+  float weight;
+
+  auto operator<=>(const Weight&) const = default;
+};
+
+/// Of all corners, by fine corner.
+std::vector<Weight> weights_of(const Coarsening& coarsening, const CellsOfLevel& cells) {
+  std::vector<Weight> weights;
+  for (std::uint32_t corner = 0; corner < cells.n_corners; ++corner)
+    coarsening.for_each_weight(corner, [&](const std::uint32_t coarse, const float weight) {
+      weights.push_back({corner, coarse, weight});
+    });
+  return weights;
+}
+
+/// The same, in the order in which they are asked of coarse copies.
+std::vector<Weight> weights_by_copy(const Coarsening& coarsening) {
+  std::vector<Weight> weights;
+  for (std::size_t copy = 0; copy < coarsening.coarse.n_copies(); ++copy)
+    coarsening.for_each_corner(copy, [&](const std::uint32_t corner, const VertexWeights& of_vertices) {
+      for (std::uint32_t k = 0; k < of_vertices.n; ++k)
+        weights.push_back(
+          {corner, coarsening.coarse.corners[8 * copy + of_vertices.vertex[k]], of_vertices.weight[k]});
+    });
+  return weights;
 }
 
 TEST(Coarsening, IsTheSameWithAnyNumberOfThreads) {
@@ -53,8 +76,8 @@ TEST(Coarsening, IsTheSameWithAnyNumberOfThreads) {
     EXPECT_EQ(shared.children.all, alone.children.all);
     EXPECT_EQ(shared.coarse.place, alone.coarse.place);
     EXPECT_EQ(shared.coarse.corners, alone.coarse.corners);
-    expect_same(shared.prolongation, alone.prolongation);
-    expect_same(shared.restriction, alone.restriction);
+    EXPECT_EQ(weights_of(shared, cells), weights_of(alone, cells));
+    EXPECT_EQ(weights_by_copy(shared), weights_by_copy(alone));
   }
   set_n_threads(1);
 }
@@ -63,17 +86,26 @@ TEST(Coarsening, IsTheSameWithAnyNumberOfThreads) {
 TEST(Coarsening, WeightsAreThoseOfEveryCopyWithACorner) {
   const CellsOfLevel cells = cells_of(slit_block());
   const Coarsening coarsening = coarsened(cells);
-  const auto& [begin, column, weight] = coarsening.prolongation;
   for (std::size_t i = 0; i < cells.corners.size(); ++i) {
-    const std::uint32_t corner = cells.corners[i], parent = coarsening.parent[i / 8];
+    const std::uint32_t parent = coarsening.parent[i / 8];
     double sum = 0;
-    for (std::uint32_t k = begin[corner]; k < begin[corner + 1]; ++k) {
+    coarsening.for_each_weight(cells.corners[i], [&](const std::uint32_t corner, const float weight) {
       const auto of_parent = std::span(coarsening.coarse.corners).subspan(8 * std::size_t(parent), 8);
-      ASSERT_NE(std::ranges::find(of_parent, column[k]), of_parent.end()) << i;
-      sum += weight[k];
-    }
+      ASSERT_NE(std::ranges::find(of_parent, corner), of_parent.end()) << i;
+      sum += weight;
+    });
     ASSERT_EQ(sum, 1) << i;
   }
+}
+
+TEST(Coarsening, EveryCornerIsAskedOfOneCopy) {
+  const CellsOfLevel cells = cells_of(slit_block());
+  const Coarsening coarsening = coarsened(cells);
+  std::vector<Weight> by_copy = weights_by_copy(coarsening), by_corner = weights_of(coarsening, cells);
+  ASSERT_GT(by_corner.size(), cells.n_corners);
+  std::ranges::sort(by_copy);
+  std::ranges::sort(by_corner);
+  EXPECT_EQ(by_copy, by_corner);
 }
 
 } // namespace

@@ -209,8 +209,7 @@ TEST(Force, PositiveMatrixIsThatOfTheProducts) {
     model.apply_stiffness(dynamics::flat(d), dynamics::flat(y));
     const Eigen::VectorXd expected = K * Eigen::Map<const Eigen::VectorXd>(d[0].data(), K.cols());
     EXPECT_LT((Eigen::Map<const Eigen::VectorXd>(y[0].data(), K.cols()) - expected).norm(), 1e-13 * expected.norm());
-    std::vector<Mat3> blocks;
-    model.stiffness_diagonal(blocks);
+    const std::vector<Mat3> blocks = dynamics::stiffness_blocks(model);
     for (std::size_t c = 0; c < blocks.size(); ++c)
       EXPECT_LT((blocks[c] - K.block<3, 3>(3 * c, 3 * c)).norm(), 1e-13 * K.norm()) << name_of(one.options);
   }
@@ -227,8 +226,7 @@ TEST(Force, IsFiniteForEveryState) {
       model.force(x, f);
       model.linearise(x);
       EXPECT_TRUE(std::isfinite(model.energy(x)));
-      std::vector<Mat3> blocks;
-      model.stiffness_diagonal(blocks);
+      const std::vector<Mat3> blocks = dynamics::stiffness_blocks(model);
       for (std::size_t c = 0; c < f.size(); ++c)
         EXPECT_TRUE(f[c].allFinite() && blocks[c].allFinite()) << name_of(one.options) << scale.transpose();
       const Eigen::SparseMatrix<double> K = model.stiffness_matrix(x, dynamics::Tangent::exact);

@@ -99,7 +99,7 @@ struct Equation {
            const Interpolation& points = {}, const double stiffness = 0)
     : model(of), constraints(loads, x.size()), mass_factor(mass), springs(points, stiffness) {
     model.linearise(x);
-    model.stiffness_diagonal(blocks);
+    blocks = dynamics::stiffness_blocks(model);
     springs.tangent.add_diagonal(blocks);
     for (std::size_t i = 0; i < blocks.size(); ++i)
       blocks[i] += mass_factor * model.lumped_mass()[i] * Mat3::Identity();
@@ -345,7 +345,7 @@ TEST(Multigrid, CountsTheWayFromWhereItIsTold) {
   Points x = near;
   int n_asked = 0;
   const auto from_zero = [&](const double least) {
-    return dynamics::WayFrom{[&] { return ++n_asked, 0.0; }, [=] { return least; }};
+    return dynamics::WayFrom{[&](std::span<double>) { return ++n_asked, 0.0; }, [=] { return least; }};
   };
   const auto of_all =
     dynamics::conjugate_gradients(cg, flat(b), {.of_way = 1e-3, .from = from_zero(0)}, 60, flat(x));

@@ -84,8 +84,7 @@ TEST(Stiffness, ProductsAreThoseOfASymmetricMatrix) {
   const Eigen::VectorXd expected = K * Eigen::Map<const Eigen::VectorXd>(p[0].data(), K.cols());
   EXPECT_LT((Eigen::Map<const Eigen::VectorXd>(y[0].data(), K.cols()) - expected).norm(), 1e-14 * expected.norm());
 
-  std::vector<Mat3> blocks;
-  model.stiffness_diagonal(blocks);
+  const std::vector<Mat3> blocks = dynamics::stiffness_blocks(model);
   ASSERT_EQ(blocks.size(), p.size());
   for (std::size_t c = 0; c < blocks.size(); ++c)
     EXPECT_LT((blocks[c] - K.block<3, 3>(3 * c, 3 * c)).norm(), 1e-14 * K.norm());
@@ -120,7 +119,7 @@ TEST(Stiffness, TurnsWithTheBody) {
   for (Eigen::Index a = 0; a < turned.rows(); a += 3)
     for (Eigen::Index b = 0; b < turned.cols(); b += 3)
       turned.block<3, 3>(a, b) = (Q.transpose() * turned.block<3, 3>(a, b) * Q).eval();
-  EXPECT_LT((turned - at_rest).norm(), 1e-13 * at_rest.norm());
+  EXPECT_LT((turned - at_rest).norm(), 1e-6 * at_rest.norm()); // rotations are kept in single precision
 }
 
 TEST(Stiffness, IsTheDerivativeOfTheForceAtRest) {
@@ -168,7 +167,7 @@ struct AnyElements {
         m *= 1 + (e % 8 == 0 ? 0 : 0.1 * draw(-1, 1));
       elements.push_back(e % 8 == 0 ? full : make_element(moments, 0.3, rubber, {}));
       order.push_back(e);
-      rotations.push_back(draw.rotation());
+      rotations.push_back(draw.rotation().cast<float>().cast<double>()); // as they are kept
       for (int a = 0; a < 8; ++a)
         corners.push_back(static_cast<std::uint32_t>(draw(0, n_corners)));
       const material::Tangent A = material::Tangent::Random();
@@ -192,7 +191,7 @@ struct AnyElements {
   }
   void put(const std::size_t batch, const std::size_t lane, const std::uint32_t e) {
     for (int k = 0; k < 9; ++k)
-      batched.rotations[batch].row[k][lane] = T(rotations[e].data()[k]);
+      (*batched.shared.rotations)[batch].row[k][lane] = float(rotations[e].data()[k]);
     if (!batched.tangents.empty())
       for (int i = 0; i < 9; ++i)
         for (int j = 0; j <= i; ++j)

@@ -19,11 +19,10 @@ std::vector<double> answers(Hexahedra& model, const Points& x) {
   std::vector<double> all = {model.energy(x), model.volume(), static_cast<double>(model.n_partial())};
   const auto add = [&](const std::span<const double> values) { all.insert(all.end(), values.begin(), values.end()); };
   Points f, y(x.size());
-  std::vector<Mat3> blocks;
   model.force(x, f);
   model.linearise(x);
   model.apply_stiffness(dynamics::flat(x), dynamics::flat(y));
-  model.stiffness_diagonal(blocks);
+  const std::vector<Mat3> blocks = dynamics::stiffness_blocks(model);
   add(model.lumped_mass());
   add(dynamics::flat(f));
   add(dynamics::flat(y));

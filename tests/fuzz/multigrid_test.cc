@@ -25,7 +25,7 @@ class Judge {
       loads_(held_below(grid::rest_positions(solid))),
       constraints_(loads_, solid.complex.n_corners()),
       random_(random) {
-    model_.stiffness_diagonal(blocks_);
+    blocks_ = dynamics::stiffness_blocks(model_);
     double stiffness = 0, mass = 0;
     for (std::size_t i = 0; i < blocks_.size(); ++i) {
       stiffness += blocks_[i].trace();

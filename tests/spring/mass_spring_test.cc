@@ -114,8 +114,7 @@ TEST(MassSpring, StiffnessIsSymmetricAndNowhereNegative) {
     EXPECT_LT((K - K.transpose()).norm(), 1e-12 * K.norm());
     const Eigen::VectorXd eigenvalues = support::spectrum(K);
     EXPECT_GT(eigenvalues[0], -1e-12 * K.norm()) << noise;
-    std::vector<Mat3> blocks;
-    model.stiffness_diagonal(blocks);
+    const std::vector<Mat3> blocks = dynamics::stiffness_blocks(model);
     for (std::size_t c = 0; c < blocks.size(); ++c)
       EXPECT_LT((blocks[c] - K.block<3, 3>(3 * c, 3 * c)).norm(), 1e-12 * K.norm());
   }
