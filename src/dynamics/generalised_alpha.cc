@@ -155,9 +155,13 @@ Balance GeneralisedAlpha::balance(const AlphaCoefficients& c, const State& state
   }
   Loan<Vec3> end(state.x);
   constraints.place(state.time + dt, end);
-  for (const auto& held : constraints.held())
+  Loan<Vec3> first(*b.velocity), last(*b.velocity); // as everywhere, velocities lie between those at both ends
+  constraints.place_velocity(state.time, part_of_step * dt, first);
+  constraints.place_velocity(state.time + dt, part_of_step * dt, last);
+  for (const auto& held : constraints.held()) {
     b.start[held.corner] += (1 - alpha_f) * (end[held.corner] - state.x[held.corner]);
-  constraints.place_velocity(b.time, part_of_step * dt, b.velocity);
+    b.velocity[held.corner] = (1 - alpha_f) * last[held.corner] + alpha_f * first[held.corner];
+  }
   return b;
 }
 

@@ -18,6 +18,32 @@ Support support_of(const Chain& model, const std::uint32_t corner, const Mat3& h
   return {{corner}, {model.rest()[corner]}, still, {}, held};
 }
 
+/// Key frames that lie as close as steps lead a body as the smooth motion does that they are taken from, with damping
+/// too: where a balance lies between two times, so do velocities.
+TEST(Integrators, FollowKeyFramesAsTheSmoothMotion) {
+  constexpr double dt = 0.01;
+  const auto smooth = [](const double t) { return Vec3(0, 0, 0.4 * t * t); };
+  const auto polygon = [&](const double t) {
+    const double k = std::floor(t / dt), part = t / dt - k;
+    return Vec3((1 - part) * smooth(k * dt) + part * smooth((k + 1) * dt));
+  };
+  for (std::size_t which = 5; which <= 9; ++which) { // Newmark and generalised alpha
+    Points ends;
+    for (const bool is_smooth : {true, false}) {
+      Chain model({1, 2}, {.neighbour = 300});
+      Loads loads{.stiffness_damping = 0.02, .supports = {}};
+      loads.supports = {support_of(model, 0, Mat3::Identity())};
+      loads.supports[0].displacement = is_smooth ? std::function<Vec3(double)>(smooth) : polygon;
+      State state = model.state();
+      const auto stepper = integrators()[which].make(model);
+      for (int i = 0; i < 50; ++i)
+        stepper->step(state, loads, dt);
+      ends.push_back(state.x[1]);
+    }
+    EXPECT_LT((ends[0] - ends[1]).norm(), 1e-9) << integrators()[which].name;
+  }
+}
+
 TEST(Constraints, CombineWhatSupportsHold) {
   Chain model({1, 1, 1, 1}, {});
   Loads loads;
