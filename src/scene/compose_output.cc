@@ -101,9 +101,10 @@ void compose_observables(const Section& section, World& world) {
     }
     if (n == 0)
       throw section.complaint("Names", "'" + name + "' has nothing to report: the scene has none of what it is about",
-                              name == "reactions" ? "Add a support that holds corners; one that holds the skin is a load: ask for 'load forces'"
-                                                  : "Remove it, or add the support, forceps, cut, load, probe or crack "
-                                                    "front");
+                              name == "reactions"
+                                ? "Remove it, or add a support that holds corners; one that holds the skin is a load: "
+                                  "ask for 'load forces'"
+                                : "Remove it, or add the support, forceps, cut, load, probe or crack front");
   }
 }
 

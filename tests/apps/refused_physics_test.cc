@@ -145,6 +145,10 @@ TEST_F(RefusedPhysics, ObservablesOfWhatIsNotThere) {
   for (const std::string name : {"reactions", "tool forces", "load forces", "probes", "probe strains"})
     refuse(scene_with("", "subsection Observables\n  set Names = volume, " + name + "\nend\n"), "Names",
            {"Observables/Names = 'volume, " + name + "'", "'" + name + "' has nothing to report", "Remove it, or add"});
+  refuse(scene_with("  subsection Support wall\n    set Hold at = skin\n    set Lower [m] = -1, -1, -1\n"
+                    "    set Upper [m] = 0.01, 1, 1\n  end\n",
+                    "subsection Observables\n  set Names = reactions\nend\n"),
+         "Names", {"one that holds the skin is a load: ask for 'load forces'"});
 }
 
 TEST_F(RefusedPhysics, LoadsThatAreNoExpressions) {
