@@ -153,6 +153,8 @@ Balance GeneralisedAlpha::balance(const AlphaCoefficients& c, const State& state
     b.velocity[i] = state.v[i] - b.velocity_factor * b.guess[i];
     b.guess[i] += 0.5 * (1 - alpha_f) * dt * dt * follower.led(a);
   }
+  if (constraints.held().empty())
+    return b;
   Loan<Vec3> end(state.x);
   constraints.place(state.time + dt, end);
   Loan<Vec3> first(*b.velocity), last(*b.velocity); // as everywhere, velocities lie between those at both ends

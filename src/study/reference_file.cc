@@ -1,6 +1,7 @@
 #include "study/reference_file.h"
 
 #include "scene/composing.h"
+#include "study/units.h"
 
 #include <filesystem>
 #include <fstream>
@@ -78,7 +79,7 @@ std::size_t column_of(const ReferenceFileParameters& p, const std::string& head,
     names += (names.empty() ? "" : ", ") + name;
     if (name != p.column)
       continue;
-    if (!its_unit.empty() && its_unit != unit && !section.writes("Factor [1]"))
+    if (!its_unit.empty() && !is_same_unit(its_unit, unit) && !section.writes("Factor [1]"))
       throw section.complaint("Column", "has the unit " + its_unit + ", and the study " + unit,
                               "Write 'set Factor [1] = ...', which makes one of the other");
     return i;

@@ -43,6 +43,8 @@ TEST_F(ReferenceFile, OfSeparatedValues) {
   EXPECT_EQ(read("  set File = a.csv\n  set Column = tip, z\n  set Line [1] = 2\n").value, -2.5e-3);
   EXPECT_EQ(read("  set File = a.csv\n  set Column = time\n  set Factor [1] = 2\n").value, 2);
   EXPECT_EQ(read("  set File = a.csv\n  set Column = tip, z\n").source, "a.csv, column tip, z");
+  write("tones.csv", "mode,tone [Hz]\n1,16.7\n");
+  EXPECT_EQ(read("  set File = tones.csv\n  set Column = tone\n", "1/s").value, 16.7) << "another name of the unit";
   expect_refused("  set File = a.csv\n  set Column = tip\n", "Name one of the file's: time, tip, z, force");
   expect_refused("  set File = a.csv\n  set Column = time\n", "has the unit s, and the study m");
   expect_refused("  set File = a.csv\n  set Column = tip, z\n  set Line [1] = 4\n", "3 lines");
