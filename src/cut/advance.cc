@@ -159,26 +159,41 @@ double passed(const Front& front, const Raster& section, const Raster& swept) {
 void Advance::sweep(const BladePath& path, const Solid& solid, const Points& x_before, const Points& x,
                     const EdgeBoxes& boxes, const grid::CutLabel label) {
   const Sweep sweep(path, solid, x_before, x);
+  const bool rests = path.lines.front() == path.lines.back();
   for (const std::uint32_t k : boxes.blocks([&](const EdgeBoxes::Block& block) { return sweep.is_near(block); }))
     boxes.for_each_cell(k, [&](const CellId c) {
       const bool is_whole = !solid.complex.copies[solid.complex.first_copy[c]].next.valid();
       if ((is_whole || cells_.contains(c)) && sweep.is_near(c))
-        sweep.for_each_piece(c, [&](const Polygon& piece) { add(solid, c, piece, label); });
+        sweep.for_each_piece(c, [&](const Polygon& piece) { add(solid, c, piece, label, rests); });
     });
 }
 
-void Advance::add(const Solid& solid, const CellId c, const Polygon& piece, const grid::CutLabel label) {
+void Advance::add(const Solid& solid, const CellId c, const Polygon& piece, const grid::CutLabel label,
+                  const bool rests) {
   Cell& cell = cells_.emplace(c, Cell{label}).first->second;
   if (cell.label != label)
     return;
   if (const Front* const front = solid.cuts.front(c))
     draw(piece, InPlane(front->point, front->normal, solid.grid.h()), cell.swept);
   else {
-    if (cell.pieces.size() == most_pieces)
-      cell.pieces.erase(cell.pieces.begin());
-    cell.pieces.push_back(piece);
+    std::vector<Polygon>& pieces = rests ? cell.at_rest : cell.pieces;
+    if (pieces.size() == most_pieces)
+      pieces.erase(pieces.begin());
+    pieces.push_back(piece);
   }
   touched_.insert(c);
+}
+
+/// By how the blade has moved, or else by all that it has met.
+std::optional<Front> Advance::front_in(const Solid& solid, const CellId c) const {
+  const auto& [label, pieces, at_rest, section, swept] = cells_.at(c);
+  auto front = pieces.empty() ? std::nullopt : front_ahead(solid, c, pieces, label);
+  if (!front && !at_rest.empty()) {
+    std::vector<Polygon> all = pieces;
+    all.insert(all.end(), at_rest.begin(), at_rest.end());
+    front = front_ahead(solid, c, all, label);
+  }
+  return front;
 }
 
 std::vector<Front> Advance::take(const Solid& solid, const PendingCuts& pending) {
@@ -199,7 +214,7 @@ std::vector<Front> Advance::take(const Solid& solid, const PendingCuts& pending)
       moved.passed = passed(moved, cell.section, cell.swept);
       if (moved.passed > earlier->passed)
         fronts.push_back(moved);
-    } else if (const auto front = front_ahead(solid, c, cell.pieces, cell.label))
+    } else if (const auto front = front_in(solid, c))
       begun.emplace(c, *front);
   }
   for (auto& [c, front] : begun)
@@ -217,8 +232,9 @@ bool Advance::begin(const Solid& solid, Front& front, const FrontsOfCells& begun
   Cell& cell = cells_.at(front.cell);
   const InPlane in_plane(front.point, front.normal, solid.grid.h());
   Raster swept;
-  for (const Polygon& piece : cell.pieces)
-    draw(piece, in_plane, swept);
+  for (const auto& pieces : {cell.pieces, cell.at_rest})
+    for (const Polygon& piece : pieces)
+      draw(piece, in_plane, swept);
   const Raster section = section_of(solid, front, in_plane);
   front.passed = passed(front, section, swept);
   if (front.passed < least_passed && is_corner_ahead(solid, front, begun))
@@ -226,7 +242,7 @@ bool Advance::begin(const Solid& solid, Front& front, const FrontsOfCells& begun
   if (front.passed < least_passed || !((section & swept).any() || is_cut_beside(solid, front.cell)) ||
       !fits_in(solid, front, begun))
     return false;
-  cell = {cell.label, {}, section, swept};
+  cell = {cell.label, {}, {}, section, swept};
   return true;
 }
 

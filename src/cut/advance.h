@@ -3,7 +3,8 @@
 /// How far moving blades have come in cells that they have not parted: the fronts that they leave (grid/fronts.h).
 ///
 /// A cell is parted along the plane in which the blade will go through it, where that is certain (course.h); else it
-/// stays whole until it is cut.
+/// stays whole until it is cut. A blade that rests while material moves across it does not tell where it goes, unless
+/// it has come into the cell so.
 ///
 /// What the blade sweeps is drawn onto a raster in that plane, where a point that is passed twice counts once; what
 /// leaves the plane by a quarter of a cube does not count. As elements are too stiff at a front, what is drawn is taken
@@ -41,13 +42,15 @@ class Advance {
  private:
   struct Cell {
     grid::CutLabel label = 1;
-    std::vector<Polygon> pieces = {}; ///< of strips, rest frame [m]; until there is a front
-    Raster section = {}, swept = {};  ///< from then on
+    std::vector<Polygon> pieces = {}, at_rest = {}; ///< of strips of a blade that moves, and rests, rest frame [m];
+                                                    ///< until there is a front
+    Raster section = {}, swept = {};                ///< from then on
 
-    void archive(Archive& a) { a(label, pieces, section, swept); }
+    void archive(Archive& a) { a(label, pieces, at_rest, section, swept); }
   };
 
-  void add(const grid::Solid& solid, grid::CellId c, const Polygon& piece, grid::CutLabel label);
+  void add(const grid::Solid& solid, grid::CellId c, const Polygon& piece, grid::CutLabel label, bool rests);
+  std::optional<grid::Front> front_in(const grid::Solid& solid, grid::CellId c) const;
   bool begin(const grid::Solid& solid, grid::Front& front, const FrontsOfCells& begun);
 
   std::map<grid::CellId, Cell> cells_;

@@ -34,7 +34,7 @@ bool is_corner_ahead(const grid::Solid& solid, const grid::Front& front, const F
 bool fits_in(const grid::Solid& solid, const grid::Front& front, const FrontsOfCells& begun);
 
 /// Does the front still say how its cell is to be parted? Not when its own blade has parted the cell, or has cut it
-/// otherwise.
-bool is_ahead(const grid::Solid& solid, const grid::Front& front);
+/// otherwise; what material does that moves across a blade that `rests` is not the blade's way.
+bool is_ahead(const grid::Solid& solid, const grid::Front& front, bool rests);
 
 } // namespace kerf::cut

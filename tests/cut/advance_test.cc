@@ -68,6 +68,58 @@ TEST(Advance, LeavesThemWhicheverWayItComes) {
         }
 }
 
+/// Where corners are once a wound from the side x = 0 to `end` gapes, and the body has moved on: what lies above and
+/// below the plane through z turns away from it.
+Points gaping(const Body& body, const double end, const double z, const double gape, const Vec3& shift) {
+  const Points rest = grid::rest_positions(body);
+  Points x = rest;
+  const auto put = [&](const std::uint32_t corner, const bool is_above) {
+    const double opening = gape * std::max(0.0, end - rest[corner].x());
+    x[corner] = rest[corner] + shift + (is_above ? opening : -opening) * Vec3::UnitZ();
+  };
+  for (const bool is_real : {false, true})
+    for (const grid::Copy& copy : body.complex.copies) {
+      const auto has = [&](const int v) { return (copy.nodes >> v & 1) != 0; };
+      const auto is_above = [&](const int v) { return rest[copy.corners[v].value].z() > z; };
+      int n_above = 0;
+      for (int v = 0; v < 8; ++v)
+        n_above += !has(v) ? 0 : is_above(v) ? 1 : -1;
+      for (int v = 0; v < 8; ++v)
+        if (has(v) == is_real)
+          put(copy.corners[v].value, is_real ? is_above(v) : n_above > 0);
+    }
+  return x;
+}
+
+/// The blade has come in a step, cuts wait, and the body gives way meanwhile: what moves across a blade that rests does
+/// not tell where it goes (a bar that sagged about one hung together by single cells, 20 % too stiff).
+TEST(Advance, LeavesThemWhereABodyGivesWayUnderABladeThatRests) {
+  support::Random random(31);
+  constexpr int n = 200;
+  int n_waited = 0, n_lacking = 0;
+  for (int i = 0; i < n; ++i) {
+    const double tilt = support::uniform(random, -0.05, 0.05);
+    const double height = support::uniform(random, 4.2, 4.8), end = support::uniform(random, 4.1, 6.9);
+    const auto place = [&](const double s) { return Vec3(s, 5, height + 0.06 * (s - end)); };
+    const Vec3 edge = Vec3::UnitY() + tilt * Vec3::UnitZ();
+    Cutting moving(block(), Fronts::inside_cells);
+    const Blade blade = {"blade", {-20 * edge, 20 * edge}, {{0, place(-2)}, {1, place(end)}}};
+    moving.step(blade, 0, 1);
+    n_waited += moving.cutter.n_waiting() > 0;
+    for (int k = 1; k < 8; ++k) {
+      const double part = std::min(k, 4) / 4.0;
+      moving.step(blade, k, k + 1, gaping(moving.body, end, height, 0.3 * part, part * Vec3(0.6, 0, 0.2)));
+    }
+    ASSERT_EQ(moving.cutter.n_waiting(), 0u);
+    Cutting at_once(block(), Fronts::inside_cells);
+    at_once.cut(Rectangle{0.5 * (place(-2) + place(end)), place(end) - place(-2), 40 * edge});
+    n_lacking += moving.body.complex.tied.size() < at_once.body.complex.tied.size();
+  }
+  std::cout << n_lacking << " of " << n << " lack a front\n";
+  EXPECT_GT(n_waited, n / 2);
+  EXPECT_LE(n_lacking, n / 16); // where the wound's side comes upon the blade: 34 when that told where it went
+}
+
 /// For explicit steps.
 TEST(Advance, IsLeftOutWhereSurfacesAloneEndInsideCells) {
   Cutting moving(block(), Fronts::of_surfaces_inside_cells), at_once(block(), Fronts::of_surfaces_inside_cells);
@@ -177,7 +229,7 @@ Blade winding(support::Random& random) {
 TEST(Advance, LeavesACompletedCutAsItIsWithoutFronts) {
   support::Random random(11);
   std::size_t n_begun = 0, n_lapsed = 0, n_lapsed_copies = 0, n_left = 0, n_same = 0;
-  constexpr int n_bodies = 24;
+  constexpr int n_bodies = 36, n_led = 24; // by the blade; the others move through one that rests
   for (int i = 0; i < n_bodies; ++i) {
     const Body whole =
       support::with_copies(support::with_placed_skin(support::ball(3 + 0.05 * i, 1, support::random_offset(random))));
@@ -185,10 +237,21 @@ TEST(Advance, LeavesACompletedCutAsItIsWithoutFronts) {
     const Blade blade = winding(random);
     const double height = i % 2 == 0 ? 0 : 0.3;
     const int n_steps = std::array{7, 17, 40}[i % 3];
+    Blade still = blade;
+    still.key_frames.resize(1);
+    const auto place = [&](const Body& body, const double t) {
+      Points x = swung(body, height, t);
+      if (i >= n_led)
+        for (Vec3& p : x)
+          p -= pose(blade, t).position - pose(blade, 0).position;
+      return x;
+    };
+    for (Cutting* const cutting : {&with, &without})
+      cutting->cutter.stand(place(cutting->body, 0));
     for (int k = 0; k < n_steps || with.cutter.n_waiting() + without.cutter.n_waiting() > 0; ++k) {
+      const double t0 = std::min(1.0, double(k) / n_steps), t1 = std::min(1.0, double(k + 1) / n_steps);
       for (Cutting* const cutting : {&with, &without})
-        cutting->step(blade, std::min(1.0, double(k) / n_steps), std::min(1.0, double(k + 1) / n_steps),
-                      swung(cutting->body, height, double(k) / n_steps));
+        cutting->step(i < n_led ? blade : still, t0, t1, place(cutting->body, i < n_led ? t0 : t1));
       n_begun += with.body.cuts.fronts().size();
     }
     SCOPED_TRACE(i);
@@ -207,8 +270,8 @@ TEST(Advance, LeavesACompletedCutAsItIsWithoutFronts) {
   }
   std::cout << n_same << " of " << n_bodies << " bodies the same; " << n_begun << " fronts in all steps, " << n_lapsed
             << " corners lapsed, " << n_left << " fronts left\n";
-  EXPECT_GE(n_same, n_bodies - 2u);
-  EXPECT_GT(n_begun, 400u);
+  EXPECT_GE(n_same, n_bodies - 4u);
+  EXPECT_GT(n_begun, 1200u);
   EXPECT_GT(n_lapsed, 10u);
   EXPECT_GT(n_lapsed_copies, 10u);
 }
