@@ -205,11 +205,12 @@ std::vector<Front> Advance::take(const Solid& solid, const PendingCuts& pending)
   };
   for (const CellId c : touched_) {
     Cell& cell = cells_.at(c);
-    if (grid::whole_parts_of(grid::cuts_of(solid, c)).n > 1)
+    const Front* const earlier = solid.cuts.front(c);
+    if (earlier ? !is_ahead(solid, *earlier) : grid::whole_parts_of(grid::cuts_of(solid, c)).n > 1)
       cells_.erase(c);
     else if (waits(c))
       later.insert(c);
-    else if (const Front* const earlier = solid.cuts.front(c)) {
+    else if (earlier) {
       Front moved = *earlier;
       moved.passed = passed(moved, cell.section, cell.swept);
       if (moved.passed > earlier->passed)

@@ -165,19 +165,10 @@ bool fits_in(const Solid& solid, const Front& front, const FrontsOfCells& begun)
   return agrees_with_neighbours(solid, front, begun) && !leaves_shreds(solid, front, begun);
 }
 
-bool is_ahead(const Solid& solid, const Front& front, const bool rests) {
+bool is_ahead(const Solid& solid, const Front& front) {
   grid::CellCuts cuts = grid::cuts_of(solid, front.cell);
   cuts.blades = grid::cut_by(solid, front.cell, front.label);
-  if (grid::whole_parts_of(cuts).n > 1)
-    return false;
-  const grid::Parts parts = grid::whole_parts_of(grid::with(cuts, front.ahead));
-  const auto part_of = [&](const int item) {
-    return std::ranges::find_if(parts, [&](const grid::Part& part) { return (part.items() >> item & 1) != 0; });
-  };
-  for (grid::Segments left = rests ? 0 : cuts.blades; left != 0; left &= left - 1)
-    if (const auto& [a, b] = cuts.skeleton().segment[std::countr_zero(left)].ends; part_of(a) == part_of(b))
-      return false;
-  return parts.n == 2;
+  return std::ranges::count_if(grid::whole_parts_of(cuts), [](const grid::Part& part) { return part.nodes != 0; }) < 2;
 }
 
 } // namespace kerf::cut

@@ -33,8 +33,8 @@ bool is_corner_ahead(const grid::Solid& solid, const grid::Front& front, const F
 /// Can the cell have this front, if others have those of `begun`?
 bool fits_in(const grid::Solid& solid, const grid::Front& front, const FrontsOfCells& begun);
 
-/// Does the front still say how its cell is to be parted? Not when its own blade has parted the cell, or has cut it
-/// otherwise; what material does that moves across a blade that `rests` is not the blade's way.
-bool is_ahead(const grid::Solid& solid, const grid::Front& front, bool rests);
+/// Does the front still say how its cell is to be parted? Until its own blade has come between the cell's nodes, also
+/// where that has gone on otherwise: what has come apart may gape, and would snap together.
+bool is_ahead(const grid::Solid& solid, const grid::Front& front);
 
 } // namespace kerf::cut

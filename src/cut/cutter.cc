@@ -210,17 +210,13 @@ Cutter::Added Cutter::add(Solid& solid, const SweepCuts& cuts) {
 }
 
 CutChange Cutter::part(Solid& solid, const Added& added, const std::span<const grid::Front> fronts, const Points& x) {
-  const auto rests = [&](const grid::CutLabel label) {
-    const auto edge = std::ranges::find(edges_, label, &StandingEdge::label);
-    return edge != edges_.end() && edge->rests();
-  };
   std::vector<grid::CellId> cells;
   for (const grid::Front& front : fronts) {
     solid.cuts.set(front);
     cells.push_back(front.cell);
   }
   for (const grid::CellId c : grid::touched_cells(solid.grid, added.edges, added.segments))
-    if (const grid::Front* const front = solid.cuts.front(c); front && !is_ahead(solid, *front, rests(front->label))) {
+    if (const grid::Front* const front = solid.cuts.front(c); front && !is_ahead(solid, *front)) {
       solid.cuts.take_back_front(c);
       cells.push_back(c);
     }

@@ -23,12 +23,12 @@
 /// for which it is the same to .01 to .03 cubes, and to .09 for a front across the diagonals of faces. Who finds fronts
 /// lets the cut go on by that much (front_lag, cut/fronts.h).
 ///
-/// A front is provisional: when its blade cuts the cell, it is taken back, as far as it said otherwise (complex.h), and
-/// what the blade leaves is the same as without.
+/// A front is provisional: when its blade has come between the cell's nodes, the cell is parted as that has cut it
+/// (complex.h). Until then copies are not joined again, however the blade goes on, as they may gape.
 ///
-/// A surface, or another blade, may leave a third part of the cell, of skin without a node. That is no front: it is
-/// held to what it belongs to, by springs as stiff as its own material is: stiffer ones would do no more, and conjugate
-/// gradients would feel them.
+/// What else is cut may leave a third part of the cell, of skin without a node. That is no front: it is held to what it
+/// belongs to, by springs as stiff as its own material is: stiffer ones would do no more, and conjugate gradients would
+/// feel them.
 ///
 /// Departs from the source, in which the jump vanishes at the front by the shape functions of the element: these need
 /// the front's shape in the cell, and another integration for each.
