@@ -40,7 +40,25 @@ double slope_squared(const std::span<const double> mass, const Constraints& cons
   return sum;
 }
 
-/// Loads under which nothing moves but what is marked (1), and neither held by supports nor carried by crumbs.
+/// A load that somebody else owns.
+class SameLoad : public Load {
+ public:
+  explicit SameLoad(const Load& load) : load_(load) {}
+
+  Nature nature() const override { return load_.nature(); }
+  double energy(const double time, const Points& x) const override { return load_.energy(time, x); }
+  void add_force(const Moment& moment, Points& forces) const override { load_.add_force(moment, forces); }
+  void add_tangent(const Tangent kind, const Moment& moment, const double velocity_factor,
+                   LoadTangent& tangent) const override {
+    load_.add_tangent(kind, moment, velocity_factor, tangent);
+  }
+
+ private:
+  const Load& load_;
+};
+
+/// The loads with a potential, and supports under which nothing moves but what is marked (1), and neither held by
+/// others nor carried by crumbs.
 Loads held_but(const std::span<const std::uint8_t> is_marked, const State& state, const Loads& loads) {
   const auto is_held = held_corners(loads, state.x.size());
   Support rest{{}, {}, [](double) { return Vec3(Vec3::Zero()); }};
@@ -52,6 +70,9 @@ Loads held_but(const std::span<const std::uint8_t> is_marked, const State& state
   Loads held;
   held.supports.push_back(std::move(rest));
   held.carried = loads.carried;
+  for (const auto& load : loads.acting)
+    if (load->nature() == Nature::conservative)
+      held.acting.push_back(std::make_unique<SameLoad>(*load));
   return held;
 }
 
@@ -116,6 +137,7 @@ double Relief::flow(const std::span<const std::uint8_t> is_marked, const Loads& 
   const Constraints constraints(held, state.x.size());
   Loan<Vec3> forces = Loan<Vec3>::with_room(state.x.size());
   model_.force(state.x, forces);
+  add_load_forces(held, {state.time, state.x, Points(state.x.size(), Vec3::Zero())}, forces);
   const auto mass = model_.lumped_mass();
   const double slope = slope_squared(mass, constraints, forces, gravity);
   if (!(slope > 0))
@@ -132,13 +154,15 @@ double Relief::flow(const std::span<const std::uint8_t> is_marked, const Loads& 
     Loan<Vec3> x(state.x.size());
     try {
       Balance flow{
-        .mass_factor = 1 / (tau * tau), .start = Loan<Vec3>(state.x), .acceleration = Loan<Vec3>(*away)};
+        .time = state.time, .mass_factor = 1 / (tau * tau), .start = Loan<Vec3>(state.x), .acceleration = Loan<Vec3>(*away)};
       report.n_iterations += solver.solve(held, constraints, std::move(flow), x).n_linear;
     } catch (const NumericalError&) { // no further
       break;
     }
     const double had = excess, left = model_.energy(x) - excess_.most;
-    if (!(left + std::max(0.0, lift(mass, gravity, state.x, x)) < had))
+    const double asked = lift(mass, gravity, state.x, x) + load_energy(held, state.time, x) -
+                         load_energy(held, state.time, state.x);
+    if (!(left + std::max(0.0, asked) < had))
       break;
     excess = left;
     state.x.swap(x);
@@ -160,9 +184,10 @@ StepReport Relief::step(State& state, const Loads& loads, double) {
   if (excess > 0)
     excess = flow(std::vector<std::uint8_t>(state.x.size(), 1), loads, gravity, excess, after, report);
   keep_moments(pieces, model_.lumped_mass(), loads, state, after);
-  const double taken = first - excess, turned = kinetic_energy(model_, after.v) - kinetic_energy(model_, state.v);
-  if (turned <= taken) // else it has hardly any inertia, and turns by more than was let out
-    state = std::move(after);
+  const double taken = first - excess, turned = kinetic_energy(model_, after.v) - kinetic_energy(model_, state.v),
+               pulled = load_energy(loads, state.time, after.x) - load_energy(loads, state.time, state.x);
+  if (turned + std::max(0.0, pulled) <= taken) // else it has hardly any inertia, and turns by more than was let out, or
+    state = std::move(after);                  // has been shifted away from a handle
   return report;
 }
 

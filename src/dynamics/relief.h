@@ -11,8 +11,9 @@
 ///
 ///     M (x' - x) / tau^2 = f(x'),
 ///
-/// each of which takes energy, until there is no more than there was. In pieces that are held f has gravity too, and a
-/// step that lifts them by more than it lets out is not taken: else what hangs would rise by what its cut gave. With e
+/// each of which takes energy, until there is no more than there was. f has the loads with a potential too, as handles
+/// that strain the body, and in pieces that are held gravity; a step that these ask for more than it lets out is not
+/// taken: else what hangs would rise by what its cut gave, and what a handle holds would snap away from it. With e
 /// the excess, the first has tau^2 = e / f.M^-1 f, the way down the slope that would take it; each further one four
 /// times that tau. What the touched cannot let out by themselves the whole body does, in the same way. Then every piece
 /// that nothing holds is shifted, and its velocities are turned, so that its masses' centre and its angular momentum

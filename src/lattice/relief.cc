@@ -3,6 +3,8 @@
 #include "base/loan.h"
 #include "dynamics/forces.h"
 
+#include <algorithm>
+
 namespace kerf::lattice {
 
 void Relief::settle(const std::span<const std::uint8_t> is_held, dynamics::State& state) const {
@@ -38,7 +40,10 @@ dynamics::StepReport Relief::step(dynamics::State& state, const dynamics::Loads&
     const double had = energy;
     const Points start = state.x;
     go(1);
-    if (energy + dynamics::lift(model_.lumped_mass(), gravity, start, state.x) >= had) { // what hangs would be lifted
+    const double asked = dynamics::lift(model_.lumped_mass(), gravity, start, state.x) +
+                         dynamics::load_energy(loads, state.time, state.x) -
+                         dynamics::load_energy(loads, state.time, start);
+    if (energy + asked >= had) { // what hangs would be lifted, or torn from what it hangs on
       state.x = start;
       energy = had;
       break;
@@ -49,7 +54,9 @@ dynamics::StepReport Relief::step(dynamics::State& state, const dynamics::Loads&
     }
   }
   dynamics::keep_moments(pieces, model_.lumped_mass(), loads, before, state);
-  if (kinetic_energy(model_, state.v) - kinetic_energy(model_, before.v) > first - energy) // see dynamics::Relief
+  const double turned = kinetic_energy(model_, state.v) - kinetic_energy(model_, before.v),
+               pulled = load_energy(loads, state.time, state.x) - load_energy(loads, state.time, before.x);
+  if (turned + std::max(0.0, pulled) > first - energy) // see dynamics::Relief
     state = before;
   return {};
 }

@@ -1,6 +1,7 @@
 // What a cut gives is let out: of bodies that are bent and crumpled, with every backend.
 
 #include "dynamics/forces.h"
+#include "dynamics/handle.h"
 #include "dynamics/implicit_euler.h"
 #include "dynamics/quantities.h"
 #include "physics/on_corners.h"
@@ -187,6 +188,42 @@ TEST(Relief, LiftsNothingThatHangs) {
   relief_of(model, std::move(excess))->step(state, loads, 0);
   EXPECT_LT(std::abs(height(state) - height(hangs)), 1e-3 * elastic);
   EXPECT_LE(model.energy(state.x) + height(state), elastic + height(hangs) + 1e-9 * elastic);
+}
+
+/// What a handle holds drawn out does not snap away from it.
+TEST(Relief, GivesAHandleNoMoreThanItLetsOut) {
+  const auto body = support::with_copies(support::with_placed_skin(support::block({5, 4, 4}, 0.1)));
+  const Points rest = grid::rest_positions(body);
+  support::Random random(5);
+  const auto check = [&](const dynamics::ForceModel& model, const double stiffness, const auto& relief_of) {
+    dynamics::State state{rest, Points(rest.size(), Vec3::Zero()), 0.25};
+    for (Vec3& x : state.x)
+      x[0] += 0.2 * x[0] + 0.005 * support::random_vector(random)[0];
+    const double had = model.energy(state.x);
+    std::uint32_t right = 0;
+    for (std::uint32_t i = 1; i < rest.size(); ++i)
+      if (model.lumped_mass()[i] > 0.5 * rubber.density * 1e-3 && rest[i][0] > rest[right][0])
+        right = i;
+    Interpolation point;
+    point.start = {0, 1};
+    point.corners = {right};
+    point.values = {1};
+    dynamics::Loads loads;
+    loads.acting.push_back(std::make_unique<dynamics::HandleSpring>(
+      point, stiffness * had, [&, x = state.x[right]](const double time) { return Vec3(x + (time - 0.25) * Vec3::UnitY()); }));
+    const dynamics::State drawn = state;
+    dynamics::Excess excess{.most = 0.3 * had,
+                            .touched = std::vector<std::uint8_t>(rest.size(), 1),
+                            .piece = [&] { return std::vector<std::uint32_t>(rest.size(), 0); }};
+    relief_of(std::move(excess))->step(state, loads, 0);
+    const double given = dynamics::load_energy(loads, state.time, state.x);
+    EXPECT_LE(model.energy(state.x) + given, 1.02 * had); // light corners of a lattice go to their goals in any case
+    return given / had;
+  };
+  fem::Hexahedra elements(body, {.material = rubber});
+  EXPECT_LT(check(elements, 1e5, [&](dynamics::Excess excess) { return relief_of(elements, std::move(excess)); }), 0.1);
+  const lattice::Matching matching(body, {});
+  check(matching, 1e3, [&](dynamics::Excess excess) { return relief_of(matching, std::move(excess)); });
 }
 
 /// What is drawn out and let go shrinks, but not where that lifts it by more than it lets out.
