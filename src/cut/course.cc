@@ -17,6 +17,7 @@ namespace {
 using grid::CellId;
 using grid::Front;
 using grid::Solid;
+namespace skeleton = grid::skeleton;
 
 constexpr double in_plane = 1e-6; // cubes; and of a unit vector
 
@@ -81,6 +82,13 @@ Plane displaced(const Plane& plane, const double distance) {
 bool parts_in_two(const Solid& solid, const Front& front) {
   const grid::Parts parts = grid::parts_of(grid::with(grid::cuts_of(solid, front.cell), front.ahead));
   return parts.n == 2 && std::ranges::all_of(parts, [](const grid::Part& part) { return part.nodes != 0; });
+}
+
+/// Would these cuts come between the nodes of a front's cell?
+bool parts_nodes(const Solid& solid, const Front& front, const grid::Segments blades) {
+  grid::CellCuts cuts = grid::cuts_of(solid, front.cell);
+  cuts.blades = blades;
+  return std::ranges::count_if(grid::whole_parts_of(cuts), [](const grid::Part& part) { return part.nodes != 0; }) > 1;
 }
 
 /// Do the parts of two cells divide the face between them alike, or does one of the cells hold it together?
@@ -166,9 +174,37 @@ bool fits_in(const Solid& solid, const Front& front, const FrontsOfCells& begun)
 }
 
 bool is_ahead(const Solid& solid, const Front& front) {
-  grid::CellCuts cuts = grid::cuts_of(solid, front.cell);
-  cuts.blades = grid::cut_by(solid, front.cell, front.label);
-  return std::ranges::count_if(grid::whole_parts_of(cuts), [](const grid::Part& part) { return part.nodes != 0; }) < 2;
+  return !parts_nodes(solid, front, grid::cut_by(solid, front.cell, front.label));
+}
+
+std::vector<grid::SkinCut> missed_cuts(const Solid& solid, const Front& front) {
+  const grid::CellCuts cuts = grid::cuts_of(solid, front.cell);
+  const grid::Skeleton& skeleton = cuts.skeleton();
+  grid::Segments own = grid::cut_by(solid, front.cell, front.label);
+  const auto is_odd = [&](const int side) {
+    const grid::Skeleton::Side& border = skeleton.side[side];
+    int n = 0;
+    for (int i = 0; i < border.n; ++i)
+      n += static_cast<int>(own >> border.segments[i] & 1);
+    return n % 2 == 1;
+  };
+  const auto height = [&](const int item) {
+    return front.normal.dot(grid::item_point(solid, front.cell, item) - front.point);
+  };
+  std::vector<grid::SkinCut> missed;
+  for (grid::Segments left = skeleton.segments & ~skeleton::lines & ~cuts.blades; left != 0; left &= left - 1) {
+    const int segment = std::countr_zero(left);
+    const auto& [ends, sides] = skeleton.segment[segment];
+    if (!is_odd(sides[0]) || !is_odd(sides[1]))
+      continue;
+    own |= grid::Segments(1) << segment;
+    const double a = height(ends[0]), b = height(ends[1]);
+    missed.push_back({.segment = grid::skin_segment(solid.grid, front.cell, segment),
+                      .t = (a >= 0) == (b >= 0) ? 0.5 : a / (a - b),
+                      .normal = front.normal,
+                      .label = front.label});
+  }
+  return parts_nodes(solid, front, own) ? missed : std::vector<grid::SkinCut>();
 }
 
 } // namespace kerf::cut

@@ -34,6 +34,23 @@ bool is_known(const Solid& solid, const Segment& segment, const grid::CutLabel l
   return std::ranges::find(later, label, &grid::LaterCut::label) != later.end();
 }
 
+NearSweep near(const Points& line) {
+  std::vector<Patch> pieces;
+  for (std::size_t i = 1; i < line.size(); ++i)
+    pieces.push_back({line[i - 1], line[i], line[i], line[i - 1]});
+  return NearSweep(std::move(pieces));
+}
+
+/// May it be in one of the cell's copies, or nearer than `room` [m]?
+bool is_near(const NearSweep& near, const Solid& solid, const grid::CellId c, const Points& x, const double room) {
+  for (const grid::CopyId copy : solid.complex.copies_of(c)) {
+    const Box box = geometry::box_around(corners_of(solid.complex.copies[copy], x));
+    if (near.may_be_in({box.lower - Vec3::Constant(room), box.upper + Vec3::Constant(room)}))
+      return true;
+  }
+  return false;
+}
+
 /// Where blades are that come on: those that have moved, or are `coming`.
 class Passage {
  public:
@@ -42,10 +59,7 @@ class Passage {
       const auto& [label, line, before] = edge;
       if (edge.rests() && !coming.contains(label))
         continue;
-      std::vector<Patch> pieces;
-      for (std::size_t i = 1; i < line.size(); ++i)
-        pieces.push_back({line[i - 1], line[i], line[i], line[i - 1]});
-      edges_.push_back({label, NearSweep(std::move(pieces))});
+      edges_.push_back({label, near(line)});
     }
   }
 
@@ -69,16 +83,9 @@ class Passage {
  private:
   bool holds(const grid::CutLabel label, const Solid& solid, const grid::CellId c, const Points& x) const {
     return std::ranges::any_of(edges_,
-                               [&](const Edge& edge) { return edge.label == label && is_near(edge.near, solid, c, x); });
-  }
-  static bool is_near(const NearSweep& near, const Solid& solid, const grid::CellId c, const Points& x) {
-    const Vec3 cube = Vec3::Constant(solid.grid.h());
-    for (const grid::CopyId copy : solid.complex.copies_of(c)) {
-      const Box box = geometry::box_around(corners_of(solid.complex.copies[copy], x));
-      if (near.may_be_in({box.lower - cube, box.upper + cube}))
-        return true;
-    }
-    return false;
+                               [&](const Edge& edge) {
+      return edge.label == label && is_near(edge.near, solid, c, x, solid.grid.h());
+    });
   }
 
   struct Edge {
@@ -142,10 +149,25 @@ CutChange Cutter::take(Solid& solid, const std::span<const Stroke> strokes, cons
     cuts.cuts = pending_.release(solid);
   if (strokes.empty() || boxes_->moves())
     x_before_ = x; // not after the cut: where corners jump then, the blade meets them on their way
+  for (const grid::SkinCut& cut : missed(solid, x))
+    cuts.of_skin.push_back(cut);
   Added added = add(solid, cuts);
   coming.merge(pending_.labels());
   added.coming = std::move(coming);
   return part(solid, added, advance_.take(solid, pending_), x);
+}
+
+std::vector<grid::SkinCut> Cutter::missed(const Solid& solid, const Points& x) const {
+  std::vector<grid::SkinCut> all;
+  for (const grid::Front& front : solid.cuts.fronts()) {
+    const auto edge = std::ranges::find(edges_, front.label, &StandingEdge::label);
+    if (front.passed < most_passed || edge == edges_.end())
+      continue;
+    const auto cuts = missed_cuts(solid, front);
+    if (!cuts.empty() && !is_near(near(edge->line), solid, front.cell, x, 0))
+      all.insert(all.end(), cuts.begin(), cuts.end());
+  }
+  return all;
 }
 
 CutChange Cutter::at_once(Solid& solid, const CutSurface& surface, const Points& x) {

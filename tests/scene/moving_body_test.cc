@@ -201,5 +201,36 @@ TEST(MovingBody, IsPartedWhileItIsShaken) {
   EXPECT_GE(grid::n_pieces(body.solid.complex), 2u);
 }
 
+/// Held at both ends, carried along, and cut by a blade that goes with it: its copies swing apart while it is cut, and
+/// have points of the skin in two places.
+TEST(MovingBody, IsPartedBetweenSupportsThatCarryIt) {
+  const output::TemporaryFolder folder;
+  std::mt19937 random(17);
+  const auto uniform = [&](const double from, const double to) {
+    return std::uniform_real_distribution<double>(from, to)(random);
+  };
+  const auto check = [&](const std::string& backend, const std::string& integrator, const double dt,
+                         const double velocity, const double at) {
+    std::ostringstream text;
+    const std::string move = "  set Displacement [m] = " + std::to_string(velocity) + "*t; 0; 0\n end\n";
+    text << "subsection Time\n set Time step [s] = " << dt << "\n set End time [s] = 0.4\nend\n"
+         << "subsection Body b\n set Backend = " << backend << "\n set Integrator = " << integrator
+         << "\n set Shape = box\n set Sides [m] = 0.5, 0.3, 0.3\n set Cube edge [m] = 0.1\n"
+         << " subsection Support a\n  set Lower [m] = -9, -9, -9\n  set Upper [m] = -0.09, 9, 9\n"
+         << move << " subsection Support b\n  set Lower [m] = 0.13, -9, -9\n  set Upper [m] = 9, 9, 9\n"
+         << move << "end\nsubsection Blade k\n set Edge [m] = 0, 0, -1; 0, 0, 1\n set Times [s] = 0, 0.4\n"
+         << " set Positions [m] = " << at << ", 0.3, 0; " << at + 0.4 * velocity << ", -0.3, 0\nend\n";
+    World world = world_of(text.str());
+    run_silently(world, folder / ("run" + std::to_string(random())));
+    EXPECT_GE(world.bodies[0].pieces.n_pieces, 2u) << text.str();
+  };
+  check("fem", "implicit Euler", 0.0025, 1, 0.04); // these three hung together by one segment of the skin
+  check("mass-spring", "generalised alpha", 0.002, 1.04, 0.036);
+  check("fem", "Newmark", 0.004, 0.39, -0.042);
+  for (int i = 0; i < 24; ++i)
+    check(i % 2 == 0 ? "fem" : "mass-spring", std::array{"implicit Euler", "Newmark", "BDF2"}[i % 3],
+          std::array{0.002, 0.004}[i / 3 % 2], uniform(-1.2, 1.2), uniform(-0.06, 0.06));
+}
+
 } // namespace
 } // namespace kerf::scene
