@@ -1,20 +1,10 @@
 #include "base/work_thread.h"
 
 #include <ctime>
+#include <pthread.h>
 #include <utility>
 
 namespace kerf {
-
-namespace {
-
-/// Of the thread that asks [s].
-double cpu_time() {
-  timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return double(time.tv_sec) + 1e-9 * double(time.tv_nsec);
-}
-
-} // namespace
 
 WorkThread::WorkThread() : thread_([this](const std::stop_token& stop) { work(stop); }) {}
 
@@ -40,8 +30,12 @@ void WorkThread::wait() {
 }
 
 double WorkThread::cpu_seconds() const {
-  const std::lock_guard lock(mutex_);
-  return cpu_seconds_;
+  clockid_t clock{};
+  timespec time{};
+  if (pthread_getcpuclockid(const_cast<std::jthread&>(thread_).native_handle(), &clock) != 0 ||
+      clock_gettime(clock, &time) != 0)
+    return 0;
+  return double(time.tv_sec) + 1e-9 * double(time.tv_nsec);
 }
 
 void WorkThread::throw_failure() {
@@ -58,17 +52,14 @@ void WorkThread::work(const std::stop_token& stop) {
     if (!failure_) {
       lock.unlock();
       std::exception_ptr failure;
-      const double start = cpu_time();
       try {
         piece();
       } catch (...) {
         failure = std::current_exception();
       }
       piece = nullptr; // what it holds goes before it counts as done
-      const double took = cpu_time() - start;
       lock.lock();
       failure_ = failure;
-      cpu_seconds_ += took;
     }
     works_ = false;
     changed_.notify_all();

@@ -24,7 +24,7 @@ class WorkThread {
   void give(std::function<void()> work);
   /// Waits until all is done; throws likewise.
   void wait();
-  /// CPU time of what is done [s].
+  /// CPU time that its thread has taken until now [s].
   double cpu_seconds() const;
 
  private:
@@ -36,7 +36,6 @@ class WorkThread {
   std::function<void()> next_; ///< to be done; empty: nothing
   bool works_ = false;         ///< on one that is `next_` no more
   std::exception_ptr failure_; ///< nothing is done until it is told
-  double cpu_seconds_ = 0;
   std::jthread thread_; ///< last: it uses all the others
 };
 

@@ -132,8 +132,9 @@ class Search {
   enum class Known : std::uint8_t { nothing, seen, attached };
 
   bool is_loose(const CopyId c) const {
+    constexpr double round_off = 1e-6; // a row of whole cubes around nodes fills quarters
     const Copy& copy = solid_.complex.copies[c];
-    return std::popcount(copy.nodes) <= 1 || fill(solid_, copy) < well_filled;
+    return std::popcount(copy.nodes) <= 1 || fill(solid_, copy) < (1 - round_off) * well_filled;
   }
 
   /// Calls f(other) for each copy that is glued to this one, or that a front holds together with it, until f says

@@ -226,12 +226,17 @@ void Recorder::open_surface_files(const World& world) {
   }
 }
 
-Cost Recorder::total_cost() const {
-  const Cost now = cost_ ? cost_() : Cost();
-  double beside = 0; // of recording too
+/// What this process has cost, but for the threads that record beside the steps.
+Cost Recorder::cost() const {
+  Cost now = cost_ ? cost_() : Cost();
   for (const auto* thread : {&image_thread_, &file_thread_})
-    beside += *thread ? (*thread)->cpu_seconds() : 0;
-  return {earlier_cost_.cpu_seconds + now.cpu_seconds - recording_cpu_ - beside,
+    now.cpu_seconds -= *thread ? (*thread)->cpu_seconds() : 0;
+  return now;
+}
+
+Cost Recorder::total_cost() const {
+  const Cost now = cost();
+  return {earlier_cost_.cpu_seconds + now.cpu_seconds - recording_cpu_,
           std::max(now.peak_memory, earlier_cost_.peak_memory)};
 }
 
@@ -348,9 +353,9 @@ void Recorder::compare(const int step, const std::span<const double> values) con
 }
 
 void Recorder::record(const World& world, const int step, Timings& seconds) {
-  const double before = cost_ ? cost_().cpu_seconds : 0;
+  const double before = cost().cpu_seconds;
   record_all(world, step, seconds);
-  recording_cpu_ += cost_ ? cost_().cpu_seconds - before : 0;
+  recording_cpu_ += cost().cpu_seconds - before;
 }
 
 void Recorder::record_all(const World& world, const int step, Timings& seconds) {

@@ -79,6 +79,7 @@ class Recorder {
   const std::filesystem::path& folder() const { return folder_.path(); }
 
  private:
+  Cost cost() const;
   struct BodyFiles {
     int complex_written = -1, surface_written = -1; ///< Body::n_recuts of what the files hold last
     std::size_t n_samples_written = 0;              ///< of the atlas of what is inside
