@@ -82,8 +82,7 @@ class Passage {
 
  private:
   bool holds(const grid::CutLabel label, const Solid& solid, const grid::CellId c, const Points& x) const {
-    return std::ranges::any_of(edges_,
-                               [&](const Edge& edge) {
+    return std::ranges::any_of(edges_, [&](const Edge& edge) {
       return edge.label == label && is_near(edge.near, solid, c, x, solid.grid.h());
     });
   }

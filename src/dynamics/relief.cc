@@ -153,15 +153,17 @@ double Relief::flow(const std::span<const std::uint8_t> is_marked, const Loads& 
   for (int k = 0; k < most_steps && excess > 0; ++k, tau *= 4) {
     Loan<Vec3> x(state.x.size());
     try {
-      Balance flow{
-        .time = state.time, .mass_factor = 1 / (tau * tau), .start = Loan<Vec3>(state.x), .acceleration = Loan<Vec3>(*away)};
+      Balance flow{.time = state.time,
+                   .mass_factor = 1 / (tau * tau),
+                   .start = Loan<Vec3>(state.x),
+                   .acceleration = Loan<Vec3>(*away)};
       report.n_iterations += solver.solve(held, constraints, std::move(flow), x).n_linear;
     } catch (const NumericalError&) { // no further
       break;
     }
     const double had = excess, left = model_.energy(x) - excess_.most;
-    const double asked = lift(mass, gravity, state.x, x) + load_energy(held, state.time, x) -
-                         load_energy(held, state.time, state.x);
+    const double asked =
+      lift(mass, gravity, state.x, x) + load_energy(held, state.time, x) - load_energy(held, state.time, state.x);
     if (!(left + std::max(0.0, asked) < had))
       break;
     excess = left;

@@ -79,7 +79,6 @@ class Recorder {
   const std::filesystem::path& folder() const { return folder_.path(); }
 
  private:
-  Cost cost() const;
   struct BodyFiles {
     int complex_written = -1, surface_written = -1; ///< Body::n_recuts of what the files hold last
     std::size_t n_samples_written = 0;              ///< of the atlas of what is inside
@@ -90,6 +89,7 @@ class Recorder {
   };
   using Clock = std::chrono::steady_clock;
 
+  Cost cost() const;
   void open_surface_files(const World& world);
   std::vector<std::string> warn_of_lost_images(const World& world, int step) const;
   void compare(int step, std::span<const double> values) const;

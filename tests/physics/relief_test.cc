@@ -210,7 +210,8 @@ TEST(Relief, GivesAHandleNoMoreThanItLetsOut) {
     point.values = {1};
     dynamics::Loads loads;
     loads.acting.push_back(std::make_unique<dynamics::HandleSpring>(
-      point, stiffness * had, [&, x = state.x[right]](const double time) { return Vec3(x + (time - 0.25) * Vec3::UnitY()); }));
+      point, stiffness * had,
+      [x = state.x[right]](const double time) { return Vec3(x + (time - 0.25) * Vec3::UnitY()); }));
     const dynamics::State drawn = state;
     dynamics::Excess excess{.most = 0.3 * had,
                             .touched = std::vector<std::uint8_t>(rest.size(), 1),
