@@ -48,26 +48,11 @@ Vec3 zero_of(const std::array<int, 4>& corners, const std::array<Vec3, 4>& v) {
   return zero.allFinite() ? Vec3(zero.cwiseMax(0).cwiseMin(1)) : Vec3::Constant(0.5); // flat, but for rounding
 }
 
-/// Of what the piece itself sweeps, at this place of it: where it turns, that changes along it.
-Vec3 normal_of_motion(const Encounter& e, const double s, const double f) {
-  const auto& [before, after] = e.piece;
-  const Vec3 along = (1 - f) * (before[1] - before[0]) + f * (after[1] - after[0]);
-  const Vec3 moved = (1 - s) * (after[0] - before[0]) + s * (after[1] - before[1]);
-  return along.cross(moved).stableNormalized();
-}
-
-Vec3 normal_at(const Encounter& e, const Vec3& at) {
-  const Vec3 own = normal_of_motion(e, at[1], at[2]);
-  if (!own.isZero(0))
-    return own;
-  const Vec3 moved = (1 - at[0]) * (e.edge[1][0] - e.edge[0][0]) + at[0] * (e.edge[1][1] - e.edge[0][1]);
-  return (e.piece[1][1] - e.piece[1][0]).cross(moved).stableNormalized();
-}
-
 /// Every meeting of a step, of which the one nearest to the segment's lower end is kept.
 class Meetings {
  public:
-  void add(const Encounter& encounter) {
+  /// `duration`: of the part of the step that lies between its two moments [1].
+  void add(const Encounter& encounter, const double duration) {
     std::array<Vec3, 8> differences;
     Vec3 lower = Vec3::Constant(std::numeric_limits<double>::infinity()), upper = -lower;
     for (int corner = 0; corner < 8; ++corner) {
@@ -81,18 +66,23 @@ class Meetings {
       const std::array v = {differences[corners[0]], differences[corners[1]], differences[corners[2]],
                             differences[corners[3]]};
       if (holds_origin(v))
-        add(encounter, zero_of(corners, v));
+        add(encounter, duration, zero_of(corners, v));
     }
   }
 
   const Verdict& verdict() const { return verdict_; }
 
  private:
-  void add(const Encounter& encounter, const Vec3& at) {
-    if (verdict_.n_crossings++ == 0 || at[0] < verdict_.t) {
-      verdict_.t = at[0];
-      verdict_.normal = normal_at(encounter, at);
-    }
+  void add(const Encounter& encounter, const double duration, const Vec3& at) {
+    if (verdict_.n_crossings++ > 0 && at[0] >= verdict_.t)
+      return;
+    const auto& [before, after] = encounter.piece;
+    const double s = at[1], f = at[2];
+    const Vec3 along = (1 - f) * (before[1] - before[0]) + f * (after[1] - after[0]); // where it turns, that changes
+    const Vec3 moved = (1 - s) * (after[0] - before[0]) + s * (after[1] - before[1]);
+    verdict_.t = at[0];
+    verdict_.normal = along.cross(moved);
+    verdict_.along = duration * along;
   }
 
   Verdict verdict_;
@@ -110,7 +100,8 @@ Verdict meet(const BladePath& path, const Segment& before, const Segment& now) {
     const Points &from = path.lines[k - 1], &to = path.lines[k];
     const std::array edge = {between(before, now, path.fractions[k - 1]), between(before, now, path.fractions[k])};
     for (std::size_t i = 0; i + 1 < from.size(); ++i)
-      meetings.add({edge, {Segment{from[i], from[i + 1]}, Segment{to[i], to[i + 1]}}});
+      meetings.add({edge, {Segment{from[i], from[i + 1]}, Segment{to[i], to[i + 1]}}},
+                   path.fractions[k] - path.fractions[k - 1]);
   }
   return meetings.verdict();
 }

@@ -16,9 +16,7 @@
 
 namespace kerf::cut {
 
-/// How a segment that moves linearly from `before` to `now` [m] in a step meets a blade on its path through it. The
-/// normal is that of the blade's own motion, where it moves: that of the relative motion tilts with every recoil of the
-/// material, and would roughen the cut.
+/// How a segment that moves linearly from `before` to `now` [m] in a step meets a blade on its path through it.
 Verdict meet(const BladePath& path, const Segment& before, const Segment& now);
 
 } // namespace kerf::cut

@@ -4,7 +4,10 @@
 #include "grid/parts.h"
 #include "grid/shape.h"
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <limits>
 
@@ -136,9 +139,11 @@ void Target::judge_later(const grid::EdgeId edge, const grid::CutLabel label, co
     const EdgeEnds ends = ends_of(solid_, edge);
     verdict = judge(ends.segment(x_before_), ends.segment(x_));
   }
-  if (verdict.n_crossings % 2 == 1)
+  if (verdict.n_crossings % 2 == 1) {
+    const Vec3 normal = normal_among(solid_.grid.cells(edge), verdict);
     result.later.push_back(
-      {edge, from + verdict.t * (to - from), pulled_back(solid_, x_, edge, first.t, verdict.normal), label});
+      {edge, from + verdict.t * (to - from), pulled_back(solid_, x_, edge, first.t, normal), label});
+  }
 }
 
 void Target::judge(const grid::EdgeId edge, const grid::CutLabel label, const Judge& judge, SweepCuts& result) const {
@@ -150,7 +155,8 @@ void Target::judge(const grid::EdgeId edge, const grid::CutLabel label, const Ju
   const Verdict verdict = judge(ends.segment(x_before_), ends.segment(x_));
   if (verdict.n_crossings % 2 == 1) {
     const double t = ends.from + verdict.t * (ends.to - ends.from);
-    result.cuts.push_back({edge, t, pulled_back(solid_, x_, edge, t, verdict.normal), label});
+    const Vec3 normal = normal_among(solid_.grid.cells(edge), verdict);
+    result.cuts.push_back({edge, t, pulled_back(solid_, x_, edge, t, normal), label});
   } else if (verdict.n_crossings > 0)
     ++result.n_double_crossings;
 }
@@ -173,12 +179,28 @@ void Target::judge_skin(const grid::CellId cell, const Nearness* const near, con
     if (near && !geometry::overlap(room(before, now), near->reach))
       return;
     const Verdict verdict = judge(before, now);
-    if (verdict.n_crossings % 2 == 1)
+    if (verdict.n_crossings % 2 == 1) {
+      const Vec3 normal = normal_among(std::array{cell}, verdict);
       (earlier ? result.later_of_skin : result.of_skin)
-        .push_back({of_skin, verdict.t, skin.pulled_back(segment, verdict.t, x_, verdict.normal), label});
-    else if (verdict.n_crossings > 0 && !earlier)
+        .push_back({of_skin, verdict.t, skin.pulled_back(segment, verdict.t, x_, normal), label});
+    } else if (verdict.n_crossings > 0 && !earlier)
       ++result.n_double_crossings;
   });
+}
+
+Vec3 Target::normal_among(const std::span<const grid::CellId> cells, const Verdict& verdict) const {
+  if (verdict.along.isZero(0))
+    return verdict.normal;
+  Vec3 moved = Vec3::Zero();
+  int n = 0;
+  for (const grid::CellId cell : cells)
+    if (cell.valid())
+      for (const grid::CopyId copy : solid_.complex.copies_of(cell))
+        for (const grid::CornerId corner : solid_.complex.copies[copy].corners) {
+          moved += x_[corner.value] - x_before_[corner.value];
+          ++n;
+        }
+  return (verdict.normal - verdict.along.cross(moved / n)).stableNormalized();
 }
 
 Box Target::box_around_copies(const grid::CellId cell) const {

@@ -8,7 +8,8 @@
 /// (edge_boxes.h).
 ///
 /// Normals are pulled back to rest with the deformation gradient F = dx/dX at the cut, averaged over the copies around
-/// the edge: N ~ F^T n; and pushed forward as n ~ F^-T N.
+/// the edge: N ~ F^T n; and pushed forward as n ~ F^-T N. Of a blade they are those of its motion against that of the
+/// cells around, on average: that against one edge alone would tilt with every recoil of the material.
 
 #include "cut/edge_boxes.h"
 #include "cut/recut.h"
@@ -17,6 +18,7 @@
 #include <algorithm>
 #include <bit>
 #include <functional>
+#include <span>
 
 namespace kerf::cut {
 
@@ -33,6 +35,7 @@ struct Verdict {
   std::size_t n_crossings = 0;
   double t = 0;               ///< of the crossing nearest to the lower node, in [0, 1] [1]
   Vec3 normal = Vec3::Zero(); ///< of the surface there, of any length, current configuration
+  Vec3 along = Vec3::Zero();  ///< a blade's edge: in material that moves by u in the step, normal - along x u is normal
 };
 
 /// How a surface meets a segment that was at one place, and is at another one now.
@@ -124,6 +127,7 @@ class Target {
   void judge(grid::EdgeId edge, grid::CutLabel label, const Judge& judge, SweepCuts& result) const;
   void judge_later(grid::EdgeId edge, grid::CutLabel label, const Judge& judge, SweepCuts& result) const;
   Box box_around_copies(grid::CellId cell) const; // before and now
+  Vec3 normal_among(std::span<const grid::CellId> cells, const Verdict& verdict) const;
   double longest() const { return std::max(boxes_->longest(), solid_.grid.h()); }
 
   const grid::Solid& solid_;

@@ -82,6 +82,7 @@ class OnCorners : public Physics {
   const Points& rest() const override { return rest_; }
   bool particles_are_corners() const override { return true; }
   const Crumbs& crumbs() const override { return crumbs_; }
+  dynamics::MotionKind motion() const override { return stepper_->motion(); }
 
   dynamics::StepReport step(dynamics::State& state, const dynamics::Loads& loads, const double dt) override {
     dynamics::StepReport report;

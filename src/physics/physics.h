@@ -42,6 +42,8 @@ class Physics {
   virtual bool particles_are_corners() const = 0;
   /// What the model does not know: pieces that move as rigid bodies. Loads must carry what they carry.
   virtual const Crumbs& crumbs() const = 0;
+  /// What its steps make of inertia.
+  virtual dynamics::MotionKind motion() const = 0;
 
   /// Advances the particles by dt [s]. Throws as dynamics::Stepper.
   virtual dynamics::StepReport step(dynamics::State& state, const dynamics::Loads& loads, double dt) = 0;

@@ -54,6 +54,7 @@ class Phyxels : public Physics {
   const Points& rest() const override { return model_.phyxels().rest; }
   bool particles_are_corners() const override { return false; }
   const Crumbs& crumbs() const override { return crumbs_; }
+  dynamics::MotionKind motion() const override { return stepper_->motion(); }
   dynamics::StepReport step(dynamics::State& state, const dynamics::Loads& loads, double dt) override;
   void follow_cut(const CutBody& body, const grid::CutChange& change, dynamics::State& state) override;
   void let_out(const CutBody& body, const grid::CutChange& change, double had, const dynamics::Loads& loads,

@@ -62,6 +62,7 @@ void follow_cut(Body& body, grid::CutChange change, Timings& timings) {
   body.physics->follow_cut(seen(body), change, body.state);
   make_loads(body, &change);
   body.physics->let_out(seen(body), change, had, body.loads, body.state);
+  follow(body);
 }
 
 /// Cuts, and lets all of the body follow.

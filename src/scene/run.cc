@@ -54,20 +54,47 @@ void cut_at_once(Body& body, const World& world, const int step, Timings& second
     put_in_initial_state(body);
 }
 
-void cut(World& world, const int step, Timings& seconds) {
+/// What cuts do to the energy is booked as theirs.
+template <class Cut>
+void take(Body& body, const Cut& cut) {
+  const int n_recuts = body.n_recuts;
+  const double before = body.accounts ? total_energy(*body.physics, body.loads, body.state) : 0;
+  cut();
+  if (body.accounts && body.n_recuts != n_recuts)
+    body.accounts->add_work_of_cut(total_energy(*body.physics, body.loads, body.state) - before);
+}
+
+/// A body that moves is cut after its step, so that it and the blades go their ways in the same time; in statics
+/// before, so that it is in balance with what it is cut to.
+void advance(Body& body, World& world, const int step, Timings& seconds) {
   const double dt = world.time_step, t0 = (step - 1) * dt, t1 = step * dt;
-  for (Body& body : world.bodies) {
-    if (!body.cutter)
-      continue;
-    on(world, body, step, t1, [&] {
-      const int n_recuts = body.n_recuts;
-      const double before = body.accounts ? total_energy(*body.physics, body.loads, body.state) : 0;
+  const bool is_cut_before = body.physics->motion() == dynamics::MotionKind::quasi_static;
+  if (body.cutter)
+    take(body, [&] {
       cut_at_once(body, world, step, seconds);
-      recut(body, world.blades, t0, t1, seconds);
-      if (body.accounts && body.n_recuts != n_recuts)
-        body.accounts->add_work_of_cut(total_energy(*body.physics, body.loads, body.state) - before);
+      if (is_cut_before)
+        recut(body, world.blades, t0, t1, seconds);
     });
+  {
+    const ScopedTimer timer(seconds, "visibility");
+    if (body.physics->catch_up(seen(body)))
+      make_loads(body);
   }
+  {
+    const ScopedTimer timer(seconds, "solve");
+    hold(body, world.forceps, step, t0);
+    if (body.accounts)
+      body.accounts->before_step(body.state);
+    const Loan<Vec3> before(body.state.x);
+    body.report = body.physics->step(body.state, body.loads, dt);
+    require_sound_motion(body, before, dt);
+    body.n_divided += body.report.n_rejected > 0 ? 1 : 0;
+    if (body.accounts)
+      body.accounts->after_step(*body.physics, body.loads, body.state);
+    follow(body);
+  }
+  if (body.cutter && !is_cut_before)
+    take(body, [&] { recut(body, world.blades, t0, t1, seconds); });
 }
 
 /// Between two steps: after a signal, what has been computed is kept for --resume.
@@ -83,38 +110,17 @@ void end_if_asked(World& world, Recorder& recorder, const int step) {
 } // namespace
 
 void advance(World& world, const int step, Timings& seconds) {
-  const double dt = world.time_step, t1 = step * dt;
-  cut(world, step, seconds);
-  for (Body& body : world.bodies) {
-    {
-      const ScopedTimer timer(seconds, "visibility");
-      if (body.physics->catch_up(seen(body)))
-        make_loads(body);
-    }
-    const ScopedTimer timer(seconds, "solve");
-    hold(body, world.forceps, step, (step - 1) * dt);
-    on(world, body, step, t1, [&] {
-      if (body.accounts)
-        body.accounts->before_step(body.state);
-      const Loan<Vec3> before(body.state.x);
-      body.report = body.physics->step(body.state, body.loads, dt);
-      require_sound_motion(body, before, dt);
-      body.n_divided += body.report.n_rejected > 0 ? 1 : 0;
-      if (body.accounts)
-        body.accounts->after_step(*body.physics, body.loads, body.state);
-    });
-  }
+  const double t1 = step * world.time_step;
   world.watches.resize(world.bodies.size());
   for (std::size_t b = 0; b < world.bodies.size(); ++b) {
     Body& body = world.bodies[b];
-    {
-      const ScopedTimer timer(seconds, "solve");
-      follow(body);
-      on(world, body, step, t1, [&] { require_sound_volume(body, world.watches[b]); });
-    }
+    on(world, body, step, t1, [&] { advance(body, world, step, seconds); });
+    const ScopedTimer timer(seconds, "solve");
+    on(world, body, step, t1, [&] { require_sound_volume(body, world.watches[b]); });
+  }
+  for (Body& body : world.bodies)
     if (body.interior)
       paint(*body.interior, body.surface, seconds);
-  }
 }
 
 Timings run(World& world, Recorder& recorder, Progress& progress) {

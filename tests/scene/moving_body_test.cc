@@ -172,6 +172,37 @@ TEST(MovingBody, FallsThroughARestingBlade) {
   EXPECT_EQ(n_wrong(world.bodies[0], Vec3::UnitZ()), 0u);
 }
 
+/// The whole flow, of a body that flies and a blade that crosses its way: in steps of any length, and whatever moves it,
+/// the body is cut where it and the blade are at the same time.
+TEST(MovingBody, IsCutWhereItIsThen) {
+  const output::TemporaryFolder folder;
+  const Vec3 flight(5, 0, 0), stroke(0, 0, -7); // [m/s]; as far as the cube is wide in .04 s
+  const double end = 0.06;
+  const Vec3 begin = middle + 0.5 * end * (flight - stroke), then = begin + end * stroke;
+  std::ostringstream knife;
+  knife.precision(17);
+  knife << "subsection Blade knife\n set Edge [m] = 0, -0.3, 0; 0, 0.3, 0\n set Times [s] = 0, " << end
+        << "\n set Positions [m] = " << begin[0] << ", 0, " << begin[2] << "; " << then[0] << ", 0, " << then[2]
+        << "\nend\n";
+  for (const std::string backend : {"fem", "mass-spring", "lattice", "pba"})
+    for (const double dt : {0.01, 0.002}) {
+      SCOPED_TRACE(backend + ", step " + std::to_string(dt));
+      World world = world_of(cube_scene() + knife.str(),
+                             {"Time/Time step [s]=" + std::to_string(dt), "Time/End time [s]=0.06",
+                              "Body cube/Backend=" + backend, "Body cube/Initial state/Velocity [m/s]=5; 0; 0"});
+      run_silently(world, folder / ("run" + backend + std::to_string(dt)));
+      const Body& body = world.bodies[0];
+      EXPECT_EQ(body.pieces.n_pieces, 2u);
+      const Vec3 normal = (stroke - flight).cross(Vec3::UnitY()).normalized();
+      double farthest = 0;
+      for (std::size_t i = 0; i < body.surface.triangles.size(); ++i)
+        if (body.surface.labels[i] == 1)
+          for (const auto v : body.surface.triangles[i])
+            farthest = std::max(farthest, std::abs((body.surface.rest[v] - middle).dot(normal)));
+      EXPECT_LT(farthest, 1e-6 * body.solid.grid.h());
+    }
+}
+
 /// The pieces of all nodes on one side, beyond `distance` [m] from the middle.
 std::set<std::uint32_t> pieces_beside(const Body& body, const double distance) {
   const grid::Pieces all = grid::pieces(body.solid.complex);
