@@ -169,6 +169,24 @@ std::string describe_crumbs(const Body& body) {
   return text + (crumbs.size() > most ? " and elsewhere" : "") + "; a smaller cube edge may join them";
 }
 
+/// In statics, what the scene says of motion.
+std::string describe_statics(const Body& body) {
+  if (body.physics->motion() != dynamics::MotionKind::quasi_static)
+    return "";
+  const bool is_damped = body.loads.mass_damping > 0 || body.loads.stiffness_damping > 0;
+  const bool moves = std::ranges::any_of(body.state.v, [](const Vec3& v) { return !v.isZero(0); });
+  const std::string what = is_damped && moves ? "damping and initial velocity"
+                           : is_damped        ? "damping"
+                           : moves            ? "initial velocity"
+                                              : "";
+  return what.empty() ? "" : line("body ", body.name, ": statics has no motion; left out: ", what);
+}
+
+std::string describe_start(const Body& body) {
+  const std::string what = body.initial ? unsound_volume(body).what : "";
+  return what.empty() ? "" : line("warning: body ", body.name, " starts where nothing elastic comes: ", what);
+}
+
 } // namespace
 
 Body compose_body(const Section& section, const GravityParameters* gravity, const std::vector<const Section*>& floors,
@@ -203,7 +221,7 @@ Body compose_body(const Section& section, const GravityParameters* gravity, cons
   start(body, mesh, physics_maker(section, parameters, world.time_step), world.setup_seconds);
   if (const Section* initial = section.find("Initial state")) {
     body.initial = compose_initial_state(*initial);
-    put_in_initial_state(body);
+    put_in_initial_state(body, world.time_step);
   }
   if (interior) {
     {
@@ -221,6 +239,9 @@ Body compose_body(const Section& section, const GravityParameters* gravity, cons
   world.composition.push_back(line("body ", body.name, ": ", describe_physics(section, parameters, body), ", ",
                                    n_supports, " supports, ",
                                    body.regions.size() + body.load_makers.size() - n_supports, " loads"));
+  for (const std::string& said : {describe_statics(body), describe_start(body)})
+    if (!said.empty())
+      world.composition.push_back(said);
   for (const std::string& said : describe_supports(body))
     world.composition.push_back(said);
   for (const std::string& said : describe_skin_supports(section, body))

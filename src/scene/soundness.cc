@@ -174,7 +174,7 @@ Stretch stretch_of(const Cubes& all, const Body& body) {
   return {all.longest, std::sqrt(all.squared_length) / body.solid.grid.h()};
 }
 
-constexpr char remedy[] = ". What acts on it is more than its material bears: use a stiffer material or smaller loads";
+constexpr char remedy[] = "What acts on it is more than its material bears: use a stiffer material or smaller loads";
 
 /// Whether the body was put where it has such an energy, and has it still: then it may pass through any shape.
 bool may_be_anywhere(const Body& body) {
@@ -187,41 +187,6 @@ bool may_be_anywhere(const Body& body) {
 bool is_of_small_strain(const Body& body) {
   const auto* const elements = dynamic_cast<const physics::Elements*>(body.physics.get());
   return elements && elements->own_model().material().law == "small strain";
-}
-
-/// What is wrong with the body's volumes; nothing: they are sound.
-std::string unsound_volume(const Body& body) {
-  constexpr double most = 10, most_inverted = 0.1;
-  Loan<double> ratios(body.solid.complex.n_copies(), AnyValues());
-  const Cubes all = cubes(body, *ratios);
-  const Loan<PieceVolume> pieces = piece_volumes(body, *ratios);
-  const bool is_small_strain = is_of_small_strain(body);
-  constexpr double most_turned = 1.25; // small strain takes I + tan(a) x for a turn by a: 1 + tan^2(a) of the volume
-  for (std::uint32_t p = 0; p < pieces.size(); ++p) {
-    if (pieces[p].rest < 1)
-      continue;
-    const double ratio = pieces[p].now / pieces[p].rest;
-    if (is_small_strain && ratio > most_turned)
-      return "piece " + std::to_string(p) + " has " + in_short(100 * ratio) +
-             " % of its volume at rest: small strain takes rotations for strains, and this piece turns. "
-             "Use another law, or smaller loads: all that they do is in proportion";
-    if (ratio > 1 / most && ratio < most)
-      continue;
-    return "piece " + std::to_string(p) + " is " +
-           (ratio > 1   ? "blown up"
-            : ratio > 0 ? "crushed"
-                        : "inside out") +
-           ": its volume is " + in_short(100 * ratio) + " % of that at rest. Worst is " +
-           worst_copy(body, [&](const std::size_t c) { return body.pieces.piece[grid::CopyId(c)] == p; }) + remedy;
-  }
-  // Nodes count, so near-empty copies hardly do.
-  if (const double part = double(all.n_inverted) / double(std::max<std::size_t>(all.n_nodes, 1)); part > most_inverted)
-    return in_short(100 * part) + " % of the body are inside out. Worst is " +
-           worst_copy(body, [](std::size_t) { return true; }) + remedy;
-  constexpr double most_stretch = 32; // of 308 sound runs of unseen bodies 4 come to more than 12, none to more than 16
-  if (const Stretch stretch = stretch_of(all, body); stretch.factor > most_stretch)
-    return in_words(body, stretch.copy) + ", is drawn out to " + in_short(stretch.factor) + " times its edge" + remedy;
-  return "";
 }
 
 } // namespace
@@ -267,16 +232,50 @@ void require_sound_motion(const Body& body, const Points& before, const double d
                          " J) could move an eighth of a cube. Use a smaller time step");
 }
 
+UnsoundVolume unsound_volume(const Body& body) {
+  constexpr double most = 10, most_inverted = 0.1;
+  Loan<double> ratios(body.solid.complex.n_copies(), AnyValues());
+  const Cubes all = cubes(body, *ratios);
+  const Loan<PieceVolume> pieces = piece_volumes(body, *ratios);
+  const bool is_small_strain = is_of_small_strain(body);
+  constexpr double most_turned = 1.25; // small strain takes I + tan(a) x for a turn by a: 1 + tan^2(a) of the volume
+  for (std::uint32_t p = 0; p < pieces.size(); ++p) {
+    if (pieces[p].rest < 1)
+      continue;
+    const double ratio = pieces[p].now / pieces[p].rest;
+    if (is_small_strain && ratio > most_turned)
+      return {"piece " + std::to_string(p) + " has " + in_short(100 * ratio) +
+                " % of its volume at rest: small strain takes rotations for strains, and this piece turns",
+              "Use another law, or smaller loads: all that they do is in proportion"};
+    if (ratio > 1 / most && ratio < most)
+      continue;
+    const std::string how = ratio > 1 ? "blown up" : ratio > 0 ? "crushed" : "inside out";
+    return {"piece " + std::to_string(p) + " is " + how + ": its volume is " + in_short(100 * ratio) +
+              " % of that at rest. Worst is " +
+              worst_copy(body, [&](const std::size_t c) { return body.pieces.piece[grid::CopyId(c)] == p; }),
+            remedy};
+  }
+  // Nodes count, so near-empty copies hardly do.
+  if (const double part = double(all.n_inverted) / double(std::max<std::size_t>(all.n_nodes, 1)); part > most_inverted)
+    return {in_short(100 * part) + " % of the body are inside out. Worst is " +
+              worst_copy(body, [](std::size_t) { return true; }),
+            remedy};
+  constexpr double most_stretch = 32; // of 308 sound runs of unseen bodies 4 come to more than 12, none to more than 16
+  if (const Stretch stretch = stretch_of(all, body); stretch.factor > most_stretch)
+    return {in_words(body, stretch.copy) + ", is drawn out to " + in_short(stretch.factor) + " times its edge", remedy};
+  return {};
+}
+
 Stretch largest_stretch(const Body& body) {
   Loan<double> ratios(body.solid.complex.n_copies(), AnyValues());
   return stretch_of(cubes(body, *ratios), body);
 }
 
 void require_sound_volume(const Body& body, Watch& watch) {
-  const std::string what = unsound_volume(body);
+  const auto [what, remedy] = unsound_volume(body);
   watch.is_sound = what.empty();
   if (!what.empty() && !may_be_anywhere(body))
-    throw NumericalError(what);
+    throw NumericalError(what + ". " + remedy);
 }
 
 } // namespace kerf::scene

@@ -32,6 +32,11 @@ struct Stretch {
 /// Of all copies but those of crumbs, which are rigid.
 Stretch largest_stretch(const Body& body);
 
+/// What of a body's volumes no elastic body has, as said above, and what helps.
+struct UnsoundVolume {
+  std::string what, remedy; ///< empty where they are sound
+};
+UnsoundVolume unsound_volume(const Body& body);
 /// After the corners followed. Pieces of fewer than eight nodes are left out. Throws NumericalError that names the
 /// piece, its worst copy and its place.
 void require_sound_volume(const Body& body, Watch& watch);
