@@ -23,6 +23,23 @@ double disagreement(const Support& a, const Vec3& place_a, const Support& b, con
   return std::sqrt(2.0) * (H * x - wanted).norm(); // of two full holds: the distance of their places
 }
 
+/// A load that somebody else owns.
+class SameLoad : public Load {
+ public:
+  explicit SameLoad(const Load& load) : load_(load) {}
+
+  Nature nature() const override { return load_.nature(); }
+  double energy(const double time, const Points& x) const override { return load_.energy(time, x); }
+  void add_force(const Moment& moment, Points& forces) const override { load_.add_force(moment, forces); }
+  void add_tangent(const Tangent kind, const Moment& moment, const double velocity_factor,
+                   LoadTangent& tangent) const override {
+    load_.add_tangent(kind, moment, velocity_factor, tangent);
+  }
+
+ private:
+  const Load& load_;
+};
+
 } // namespace
 
 Support::Places Support::places(const double time) const {
@@ -50,6 +67,15 @@ Mat3 held_axes(const std::string& word) {
     if (axis >= 'x' && axis <= 'z')
       axes[axis - 'x'] = 1;
   return axes.asDiagonal();
+}
+
+Loads potentials_of(const Loads& loads) {
+  Loads potentials;
+  potentials.carried = loads.carried;
+  for (const auto& load : loads.acting)
+    if (load->nature() == Nature::conservative)
+      potentials.acting.push_back(std::make_unique<SameLoad>(*load));
+  return potentials;
 }
 
 Loan<std::uint8_t> held_corners(const Loads& loads, const std::size_t n_corners) {

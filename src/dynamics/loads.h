@@ -54,6 +54,9 @@ inline bool is_carried(const Loads& loads, const std::size_t corner) {
   return corner < loads.carried.size() && loads.carried[corner] != 0;
 }
 
+/// Those with a potential alone, which must outlive it: no gravity, damping or supports.
+Loads potentials_of(const Loads& loads);
+
 /// 1 for each corner that supports hold in all directions, or that a body carries.
 Loan<std::uint8_t> held_corners(const Loads& loads, std::size_t n_corners);
 

@@ -40,23 +40,6 @@ double slope_squared(const std::span<const double> mass, const Constraints& cons
   return sum;
 }
 
-/// A load that somebody else owns.
-class SameLoad : public Load {
- public:
-  explicit SameLoad(const Load& load) : load_(load) {}
-
-  Nature nature() const override { return load_.nature(); }
-  double energy(const double time, const Points& x) const override { return load_.energy(time, x); }
-  void add_force(const Moment& moment, Points& forces) const override { load_.add_force(moment, forces); }
-  void add_tangent(const Tangent kind, const Moment& moment, const double velocity_factor,
-                   LoadTangent& tangent) const override {
-    load_.add_tangent(kind, moment, velocity_factor, tangent);
-  }
-
- private:
-  const Load& load_;
-};
-
 /// The loads with a potential, and supports under which nothing moves but what is marked (1), and neither held by
 /// others nor carried by crumbs.
 Loads held_but(const std::span<const std::uint8_t> is_marked, const State& state, const Loads& loads) {
@@ -67,12 +50,8 @@ Loads held_but(const std::span<const std::uint8_t> is_marked, const State& state
       rest.corners.push_back(i);
       rest.rest.push_back(state.x[i]);
     }
-  Loads held;
+  Loads held = potentials_of(loads);
   held.supports.push_back(std::move(rest));
-  held.carried = loads.carried;
-  for (const auto& load : loads.acting)
-    if (load->nature() == Nature::conservative)
-      held.acting.push_back(std::make_unique<SameLoad>(*load));
   return held;
 }
 

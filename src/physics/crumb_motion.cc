@@ -255,6 +255,42 @@ Crumbs::Motions Crumbs::pushed(const dynamics::Loads& loads, const double dt, co
   return motions;
 }
 
+void Crumbs::let_out(const dynamics::Loads& loads, const double had, dynamics::State& state) const {
+  constexpr int most = 12;
+  const dynamics::Loads potentials = dynamics::potentials_of(loads);
+  if (!any() || potentials.acting.empty())
+    return;
+  const auto energy = [&] { return dynamics::load_energy(potentials, state.time, state.x); };
+  double excess = energy() - had, slope = 0;
+  if (!(excess > 0))
+    return;
+  const Motions found = state.crumbs;
+  Motions places = found; // at rest there
+  for (RigidMotion& place : places)
+    place.v = place.spin = Vec3::Zero();
+  const std::vector<Push> first = pushes(potentials, 1, places, state);
+  for (std::size_t b = 0; b < crumbs_.size(); ++b)
+    slope += first[b].force.dot(inertia_of_modes(crumbs_[b].body, places[b]).ldlt().solve(first[b].force));
+  std::vector<Wrench> wrenches(crumbs_.size());
+  double tau = slope > 0 ? std::sqrt(excess / slope) : 0;
+  for (int k = 0; k < most && tau > 0 && excess > 0; ++k, tau *= 4) {
+    Motions next = pushed(potentials, tau, places, Motions(places), wrenches, state);
+    for (RigidMotion& place : next)
+      place.v = place.spin = Vec3::Zero();
+    carry(next, state);
+    const double left = energy() - had;
+    if (!(left < excess))
+      break;
+    excess = left;
+    places = std::move(next);
+  }
+  for (std::size_t b = 0; b < crumbs_.size(); ++b) {
+    state.crumbs[b].x = places[b].x;
+    state.crumbs[b].R = places[b].R;
+  }
+  carry(state.crumbs, state);
+}
+
 std::vector<std::vector<Crumbs::Hold>> Crumbs::holds(const dynamics::Loads& loads) const {
   std::vector<std::vector<Hold>> all(crumbs_.size());
   for (std::size_t s = 0; s < loads.supports.size(); ++s)

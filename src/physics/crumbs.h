@@ -47,6 +47,11 @@ class Crumbs {
   /// Throws dynamics::StepError where loads leave no way.
   void step(const dynamics::Loads& loads, double dt, dynamics::MotionKind kind, dynamics::State& state);
 
+  /// After a cut. What loads with a potential have got by it, as their points went along with material that is rigid
+  /// now, crumbs let out: they go down the slope of these loads (dynamics/relief.h), in steps
+  /// W d / tau^2 = push, W their inertia, until loads have no more than they `had` [J]. Velocities stay.
+  void let_out(const dynamics::Loads& loads, double had, dynamics::State& state) const;
+
   /// Lets all crumbs move as their corners do now, with what they carry.
   void put(const Motion& of_corners, dynamics::State& state) const;
   /// Puts the corners of crumbs where they are.

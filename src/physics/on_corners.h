@@ -125,12 +125,15 @@ class OnCorners : public Physics {
     follow_heirs(state);
   }
 
-  void let_out(const CutBody& body, const grid::CutChange& change, const double had, const dynamics::Loads& loads,
-               dynamics::State& state) override {
-    if (stepper_->motion() != dynamics::MotionKind::dynamic || carry_all(crumbs_))
+  void let_out(const CutBody& body, const grid::CutChange& change, const EnergyBefore& had,
+               const dynamics::Loads& loads, dynamics::State& state) override {
+    if (stepper_->motion() != dynamics::MotionKind::dynamic)
+      return;
+    crumbs_.let_out(loads, had.of_loads, state);
+    if (carry_all(crumbs_))
       return;
     const grid::CornerNumbers& numbers = model_->numbers();
-    dynamics::Excess excess{.most = dynamics::most_after_cut(model(), had, state.v),
+    dynamics::Excess excess{.most = dynamics::most_after_cut(model(), had.elastic, state.v),
                             .touched = {},
                             .piece = [&] { return own_pieces(body); }};
     numbers.gather(touched_corners(body.solid.complex, change), excess.touched);

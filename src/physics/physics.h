@@ -30,6 +30,11 @@ using PiecesOfParticles = std::function<std::vector<std::uint32_t>()>;
 using StepperMaker =
   std::function<std::unique_ptr<dynamics::Stepper>(dynamics::ElasticModel&, const PiecesOfParticles&)>;
 
+/// Before a cut [J].
+struct EnergyBefore {
+  double elastic, of_loads;
+};
+
 class Physics {
  public:
   virtual ~Physics() = default;
@@ -51,9 +56,9 @@ class Physics {
   /// Follows a cut of the body, and so does the state: new particles take what their parents have.
   virtual void follow_cut(const CutBody& body, const grid::CutChange& change, dynamics::State& state) = 0;
   /// After follow_cut(), with the loads that there are now: lets out of what it has touched the elastic energy that it
-  /// gave (dynamics/relief.h). There were `had` [J] before.
-  virtual void let_out(const CutBody& body, const grid::CutChange& change, double had, const dynamics::Loads& loads,
-                       dynamics::State& state) = 0;
+  /// gave (dynamics/relief.h), and what became crumbs that of loads with a potential.
+  virtual void let_out(const CutBody& body, const grid::CutChange& change, const EnergyBefore& had,
+                       const dynamics::Loads& loads, dynamics::State& state) = 0;
   /// Does a step's share of what cuts have left to do. Says whether carry() is another one now.
   virtual bool catch_up(const CutBody&) { return false; }
   /// What it knows beside the state and the body; into one that was made of the same body before its first cut.

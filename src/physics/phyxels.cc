@@ -253,11 +253,16 @@ void Phyxels::find_touched(const std::vector<double>& weights_before) {
         touched_[i] = 1;
 }
 
-void Phyxels::let_out(const CutBody&, const grid::CutChange&, const double had, const dynamics::Loads& loads,
-                      dynamics::State& state) {
-  if (stepper_->motion() != dynamics::MotionKind::dynamic || carry_all(crumbs_))
+void Phyxels::let_out(const CutBody&, const grid::CutChange&, const EnergyBefore& had,
+                      const dynamics::Loads& loads, dynamics::State& state) {
+  if (stepper_->motion() != dynamics::MotionKind::dynamic)
     return;
-  dynamics::Relief relief(model_, {.most = dynamics::most_after_cut(model_, had, state.v),
+  crumbs_.let_out(loads, had.of_loads, state);
+  if (carry_all(crumbs_)) {
+    follow(state);
+    return;
+  }
+  dynamics::Relief relief(model_, {.most = dynamics::most_after_cut(model_, had.elastic, state.v),
                                    .touched = touched_,
                                    .piece = [this] { return phyxel_pieces_; }});
   relief.step(state, loads, 0);

@@ -57,8 +57,8 @@ class Phyxels : public Physics {
   dynamics::MotionKind motion() const override { return stepper_->motion(); }
   dynamics::StepReport step(dynamics::State& state, const dynamics::Loads& loads, double dt) override;
   void follow_cut(const CutBody& body, const grid::CutChange& change, dynamics::State& state) override;
-  void let_out(const CutBody& body, const grid::CutChange& change, double had, const dynamics::Loads& loads,
-               dynamics::State& state) override;
+  void let_out(const CutBody& body, const grid::CutChange& change, const EnergyBefore& had,
+               const dynamics::Loads& loads, dynamics::State& state) override;
   bool catch_up(const CutBody& body) override;
   void archive(Archive& a, const CutBody& body) override;
   void follow(const dynamics::State& state) override;

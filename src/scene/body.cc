@@ -1,6 +1,7 @@
 #include "scene/body.h"
 
 #include "cut/fit.h"
+#include "dynamics/forces.h"
 #include "grid/locate.h"
 #include "scene/held.h"
 
@@ -58,7 +59,8 @@ void follow_cut(Body& body, grid::CutChange change, Timings& timings) {
     ++body.n_recuts;
   }
   const ScopedTimer timer(timings, "assemble");
-  const double had = body.physics->model().energy(body.state.x);
+  const physics::EnergyBefore had{body.physics->model().energy(body.state.x),
+                                  dynamics::load_energy(body.loads, body.state.time, body.state.x)};
   body.physics->follow_cut(seen(body), change, body.state);
   make_loads(body, &change);
   body.physics->let_out(seen(body), change, had, body.loads, body.state);

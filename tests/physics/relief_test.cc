@@ -111,7 +111,7 @@ TEST(Relief, LetsOutWhatCutsGive) {
         const dynamics::State as_cut = state;
         dynamics::Loads loads;
         loads.carried = physics->crumbs().carried();
-        physics->let_out(block.seen(), change, had, loads, state);
+        physics->let_out(block.seen(), change, {had, 0}, loads, state);
         const double left = physics->model().energy(state.x);
         if (given > most) {
           ++n_given;
