@@ -130,6 +130,24 @@ void check(const Blade& blade) {
     check_hinge(blade);
 }
 
+void divide_edge_of_turning(Blade& blade, const double longest) {
+  constexpr double most = 200;
+  bool turns = blade.hinge.has_value();
+  for (std::size_t k = 1; k < blade.key_frames.size(); ++k)
+    turns |= blade.key_frames[k].rotation != blade.key_frames[k - 1].rotation;
+  if (!turns)
+    return;
+  Points edge = {blade.edge.front()};
+  for (std::size_t i = 1; i < blade.edge.size(); ++i) {
+    const Vec3 &from = blade.edge[i - 1], &to = blade.edge[i];
+    const auto n = static_cast<int>(std::clamp(std::ceil((to - from).norm() / longest), 1.0, most));
+    for (int k = 1; k < n; ++k)
+      edge.push_back(from + double(k) / n * (to - from));
+    edge.push_back(to);
+  }
+  blade.edge = std::move(edge);
+}
+
 Pose pose(const Blade& blade, const double t) {
   const Pose tool = pose(blade.key_frames, t);
   if (!blade.hinge)

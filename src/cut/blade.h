@@ -46,6 +46,10 @@ struct Blade {
 /// 180 degrees, or at times that do not increase.
 void check(const Blade& blade);
 
+/// Divides the edge of a blade that turns into pieces of at most `longest` [m], at most 200 a segment: a piece sweeps
+/// two triangles, whose normals are off by its length times how much it turns on its way [rad/m].
+void divide_edge_of_turning(Blade& blade, double longest);
+
 /// Where the blade is at time t [s]. Here and below, check() must accept the blade.
 Pose pose(const Blade& blade, double t);
 

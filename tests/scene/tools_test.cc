@@ -9,7 +9,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
+#include <numbers>
 
 namespace kerf::scene {
 namespace {
@@ -156,6 +158,29 @@ TEST(BladeScene, RefusesWhatIsNoBlade) {
   refuse("Positions [m]", "0, 0, 0.2; 0, 0, 0", {"as many as Times [s], which are 3"});
   refuse("Positions [m]", "0, 0, 0.2; 0, 0, 0; inf, 0, 0", {"all finite"});
   refuse("Rotations [degrees]", "0, 0, 0; 0, 0, 10; 0, 0, 195", {"less than 180 degrees", "Add a key frame"});
+}
+
+/// A long straight blade that turns on its way leaves the helicoid that it sweeps: what it crosses, and what is placed
+/// between, by its normals.
+TEST(BladeScene, ThatTurnsLeavesItsOwnSurface) {
+  const std::string knife =
+    section("Blade knife", {"Edge [m] = 0, -0.7, 0; 0, 0.7, 0", "Times [s] = 0, 0.2",
+                            "Positions [m] = 0, 0, 0.26; 0, 0, -0.26", "Rotations [degrees] = 0, 0, 0; 0, 0, 30"});
+  World world = world_of(cube_scene() + knife,
+                         {"Body cube/Cube edge [m]=0.0271", "Time/Time step [s]=0.00125", "Time/End time [s]=0.2"});
+  const output::TemporaryFolder folder;
+  run_silently(world, folder / "out");
+  const Body& body = world.bodies[0];
+  EXPECT_EQ(body.pieces.n_pieces, 2u);
+  double farthest = 0;
+  for (std::size_t i = 0; i < body.surface.triangles.size(); ++i)
+    if (body.surface.labels[i] == 1)
+      for (const auto v : body.surface.triangles[i]) {
+        const Vec3& p = body.surface.rest[v];
+        const double angle = 30 * std::numbers::pi / 180 * (0.26 - p[2]) / 0.52;
+        farthest = std::max(farthest, std::abs(p[0] * std::cos(angle) + p[1] * std::sin(angle)));
+      }
+  EXPECT_LT(farthest, 0.1 * body.solid.grid.h()); // .38 with an edge of one piece
 }
 
 TEST(CurvedBlade, IsWrittenAsArcs) {
