@@ -2,6 +2,8 @@
 
 #include "base/parallel.h"
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <utility>
 
@@ -10,6 +12,30 @@ namespace kerf::dynamics {
 namespace {
 
 constexpr std::size_t worth = 4096; // corners from which on a second thread pays
+
+/// Where supports have moved, they take all that is free with them, as nearly as a rigid motion can: else the first
+/// linear system would know a body that is torn where it is held.
+void ride(const Loads& loads, const Constraints& constraints, const Points& from, Points& to) {
+  Loan<Vec3> before, after;
+  for (const auto& held : constraints.held())
+    if (constraints.freedom(held.corner).n_free == 0 && !is_carried(loads, held.corner)) {
+      before->push_back(from[held.corner]);
+      after->push_back(to[held.corner]);
+    }
+  if (before.empty())
+    return;
+  using Columns = Eigen::Map<const Eigen::Matrix3Xd>;
+  const auto n = static_cast<Eigen::Index>(before.size());
+  const Eigen::Matrix4d motion =
+    Eigen::umeyama(Columns(before->data()->data(), 3, n), Columns(after->data()->data(), 3, n), false);
+  parallel_for(
+    from.size(),
+    [&](const std::size_t i) {
+      if (constraints.is_free(i))
+        to[i] = motion.topLeftCorner<3, 3>() * from[i] + motion.topRightCorner<3, 1>();
+    },
+    worth);
+}
 
 } // namespace
 
@@ -52,18 +78,20 @@ StepReport ImplicitEuler::step(State& state, const Loads& loads, const double dt
   const auto has_moved = [&](const Constraints::Held& held) {
     return balance.start[held.corner] != state.x[held.corner];
   };
-  if (std::ranges::any_of(constraints.held(), has_moved))
+  if (std::ranges::any_of(constraints.held(), has_moved)) {
     balance.velocity = Loan<Vec3>(n);
+    ride(loads, constraints, state.x, balance.start);
+  }
   const Points* const a = remembered(state, last_acceleration); // of the last step, which may have been another length
   balance.guess_is_free_motion = !a && balance.velocity.empty();
   parallel_for(
     n,
     [&](const std::size_t i) {
-      const Vec3 v = (balance.start[i] - state.x[i]) / dt; // zero but where supports move
+      const Vec3 v = (balance.start[i] - state.x[i]) / dt; // zero but where supports move it
       if (!balance.velocity.empty())
         balance.velocity[i] = v;
       balance.acceleration[i] = (v - state.v[i]) / dt;
-      balance.guess[i] = dt * (a ? Vec3(state.v[i] + dt * (*a)[i]) : state.v[i]);
+      balance.guess[i] = dt * ((a ? Vec3(state.v[i] + dt * (*a)[i]) : state.v[i]) - v);
     },
     worth);
   Loan<Vec3> x = Loan<Vec3>::with_room(n);

@@ -31,7 +31,7 @@ InitialState compose_initial_state(const Section& section) {
           vector_of_rest(section, "Velocity [m/s]", parameters.velocity), 0};
 }
 
-void put_in_initial_state(Body& body) {
+void put_in_initial_state(Body& body, const double time_step) {
   if (!body.initial)
     return;
   const auto place = [&](const Vec3& X) { return Vec3(X + body.initial->displacement(X, 0)); };
@@ -43,6 +43,10 @@ void put_in_initial_state(Body& body) {
       body.state.x[i] = place(rest[i]);
       body.state.v[i] = velocity(rest[i]);
     }
+  if (body.physics->motion() == dynamics::MotionKind::dynamic) {
+    const double delta = 0.5e-3 * time_step;
+    dynamics::Constraints(body.loads, rest.size()).place_velocity(delta, delta, body.state.v);
+  }
   if (body.physics->crumbs().any()) {
     physics::Motion now;
     for (const Vec3& X : grid::rest_positions(body.solid)) {

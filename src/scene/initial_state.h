@@ -17,8 +17,9 @@ struct InitialStateParameters {
 InitialState compose_initial_state(const Section& section);
 
 /// Puts every particle that no support holds where body.initial has it, and crumbs with the mean rotation of their
-/// corners there; what integrators remember is forgotten. Nothing for a body without an initial state.
-void put_in_initial_state(Body& body);
+/// corners there; what supports hold moves as they begin to, in a thousandth of a time step [s]; what integrators
+/// remember is forgotten. Nothing for a body without an initial state.
+void put_in_initial_state(Body& body, double time_step);
 
 /// Surfaces that cut at time 0 cut a body at rest: before them, and with the initial state after them.
 void put_at_rest(Body& body);

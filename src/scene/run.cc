@@ -51,7 +51,7 @@ void cut_at_once(Body& body, const World& world, const int step, Timings& second
     if (is_now(timed))
       cut_at_once(body, timed.surface, seconds);
   if (is_put)
-    put_in_initial_state(body);
+    put_in_initial_state(body, world.time_step);
 }
 
 /// What cuts do to the energy is booked as theirs.
@@ -90,7 +90,7 @@ void advance(Body& body, World& world, const int step, Timings& seconds) {
     require_sound_motion(body, before, dt);
     body.n_divided += body.report.n_rejected > 0 ? 1 : 0;
     if (body.accounts)
-      body.accounts->after_step(*body.physics, body.loads, body.state);
+      body.accounts->after_step(*body.physics, body.loads, body.report.begins_anew, body.state);
     follow(body);
   }
   if (body.cutter && !is_cut_before)

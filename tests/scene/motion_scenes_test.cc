@@ -29,6 +29,26 @@ double swing(const std::string& integrator, const double dt) {
     .last("probe top x");
 }
 
+/// What flies as its support does, or turns as it does, is not deformed by steps that take the support on by more than
+/// half a cube, of whatever order.
+TEST(MotionScene, RidesWithItsSupport) {
+  for (const std::string backend : {"fem", "mass-spring", "pba"})
+    for (const bool turns : {false, true}) {
+      SCOPED_TRACE(backend + (turns ? ", turns" : ""));
+      const std::string motion = turns ? "Rotation [degrees] = 0; 0; 300*t" : "Displacement [m] = 0; 0; 3*t";
+      const std::string velocity = turns ? "Velocity [m/s] = -5.235988*y; 5.235988*x; 0" : "Velocity [m/s] = 0; 0; 3";
+      const Trial cube(steps(0.01, 10) +
+                       section("Body cube", cube_keys() + Keys{"Backend = " + backend, "Integrator = implicit Euler"},
+                               material(1e4, 0.3) + section("Initial state", {velocity}) +
+                                 section("Support foot", box("-1, -1, -1", "1, 1, -0.02") + Keys{motion})) +
+                       observe("elastic energy, kinetic energy, work of supports"));
+      const auto kinetic = cube.series("kinetic energy"), elastic = cube.series("elastic energy");
+      for (std::size_t k = 1; k < elastic.size(); ++k)
+        EXPECT_LT(elastic[k], (turns ? 0.02 : 1e-12) * kinetic[k]) << k; // turning, it is drawn out by its weight
+      EXPECT_LT(std::abs(cube.last("work of supports")), (turns ? 0.1 : 1e-9) * kinetic.back());
+    }
+}
+
 TEST(MotionScene, EveryIntegratorSwingsAlike) {
   const double exact = swing("velocity Verlet", 1e-4);
   EXPECT_GT(exact, 0.003);
