@@ -184,6 +184,7 @@ StepReport GeneralisedAlpha::step(State& state, const Loads& loads, const double
   balance.offset = straightened(loads, state, dt, c.alpha_f);
   StepReport report = accepted(solver_.solve(loads, constraints, std::move(balance), x));
   report.n_iterations += begun.n_iterations;
+  report.begins_anew = has_jumped;
   const Loan<Vec3> start(state.x);
   Loan<Vec3> way(x.size());
   const auto [alpha_m, alpha_f, beta, gamma] = c;

@@ -25,6 +25,7 @@ void add(StepReport& sum, const StepReport& part) {
   sum.n_rejected += part.n_rejected;
   sum.stable_step = part.stable_step;
   sum.residual = std::max(sum.residual, part.residual);
+  sum.begins_anew |= part.begins_anew;
 }
 
 /// Of corners, with a value of each.
@@ -271,8 +272,10 @@ SoundSteps::Tried SoundSteps::divided(const State& state, const Loads& loads, co
     add_checked(before, loads, (state.time + k * dt / n) - before.time, tried);
   }
   tried.state->time = state.time + dt;
-  if (n > 1)
+  if (n > 1) {
     tried.report.n_substeps = n;
+    tried.report.begins_anew = false; // most of them do not
+  }
   return tried;
 }
 

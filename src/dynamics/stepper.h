@@ -22,9 +22,13 @@ struct StepReport {
   double stable_step = 0; ///< of an explicit integrator when it was computed last [s]
   double residual = 0;    ///< forces out of balance at the end over the forces that balance, if it was measured [1]
 
+  bool begins_anew = false; ///< the forces where it began had no say: they had jumped
+
   Modes modes = {};
 
-  void archive(Archive& a) { a(n_iterations, n_newton, n_substeps, n_rejected, stable_step, residual, modes); }
+  void archive(Archive& a) {
+    a(n_iterations, n_newton, n_substeps, n_rejected, stable_step, residual, begins_anew, modes);
+  }
 };
 
 /// What a stepper makes of inertia.

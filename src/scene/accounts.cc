@@ -44,7 +44,8 @@ void Accounts::open(physics::Physics& physics, const dynamics::Loads& loads, con
   reactions_.assign(loads.supports.size(), {});
 }
 
-void Accounts::after_step(physics::Physics& physics, const dynamics::Loads& loads, dynamics::State& state) {
+void Accounts::after_step(physics::Physics& physics, const dynamics::Loads& loads, const bool begins_anew,
+                          dynamics::State& state) {
   const double dt = state.time - before_.time;
   const Points acceleration = dynamics::mean_acceleration(before_, state), none(state.x.size(), Vec3::Zero());
   reactions_ = dynamics::reactions(physics.model(), loads, state, acceleration, Vec3::Zero());
@@ -57,8 +58,8 @@ void Accounts::after_step(physics::Physics& physics, const dynamics::Loads& load
   for (std::size_t i = 0; i < state.x.size(); ++i)
     from.v[i] = (state.x[i] - before_.x[i]) / dt;
   to.v = from.v;
-  auto at_begin = dynamics::power(physics.model(), loads, from, none);
-  auto at_end = dynamics::power(physics.model(), loads, to, none);
+  auto at_end = dynamics::power(physics.model(), loads, to, none),
+       at_begin = begins_anew ? at_end : dynamics::power(physics.model(), loads, from, none);
   // Half-way, where the way of a step in which a body turns is one by a rotation; at its ends it is a strain as well.
   dynamics::State half_way{state.x, from.v, state.time};
   for (std::size_t i = 0; i < state.x.size(); ++i)
@@ -74,10 +75,14 @@ void Accounts::after_step(physics::Physics& physics, const dynamics::Loads& load
   at_end.dissipated += 2 * loads.mass_damping * kinetic_energy_of_crumbs_;
   dynamics::book(at_begin, at_end, dt, state);
   state.numbers["work of supports [J]"] += physics.crumbs().work_of_supports();
-  const auto by_time = [&](const Points& x) { // what potentials that change with time add, with the body held still
-    return dynamics::load_energy(loads, state.time, x) - dynamics::load_energy(loads, before_.time, x);
+  // What potentials that change with time add, with the body held still.
+  const auto by_time = [&](const Points& x, const double from, const double to_time) {
+    return dynamics::load_energy(loads, to_time, x) - dynamics::load_energy(loads, from, x);
   };
-  state.numbers["work of loads [J]"] += 0.5 * (by_time(before_.x) + by_time(state.x));
+  constexpr double part = 0.01; // of the step
+  state.numbers["work of loads [J]"] +=
+    begins_anew ? by_time(state.x, state.time - part * dt, state.time + part * dt) / (2 * part)
+                : 0.5 * (by_time(before_.x, before_.time, state.time) + by_time(state.x, before_.time, state.time));
 }
 
 } // namespace kerf::scene

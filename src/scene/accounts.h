@@ -4,7 +4,8 @@
 ///
 /// Work is force times displacement by the trapezoidal rule over a step, so statics has work too; but what supports
 /// spend on inertia is mass times mean acceleration times mean velocity, which is the kinetic energy's growth: a held
-/// corner's velocity is that of the step that led there, and lags. Reactions are those at the end of the step.
+/// corner's velocity is that of the step that led there, and lags. Reactions are those at the end of the step. In a
+/// step that begins anew after a cut, where forces of stiff loads may have been ringing, those at its end count alone.
 /// Everything that happens to the energy at an instant of cutting is the work of the cut.
 /// energy + dissipated - works of supports, loads and cut stays what it was at the start, up to the integrator's error;
 /// in statics what is missing is what the body gave away on its way from one equilibrium to the next: for a cut that
@@ -33,7 +34,7 @@ class Accounts {
 
   /// Around each step.
   void before_step(const dynamics::State& state) { before_ = state; }
-  void after_step(physics::Physics& physics, const dynamics::Loads& loads, dynamics::State& state);
+  void after_step(physics::Physics& physics, const dynamics::Loads& loads, bool begins_anew, dynamics::State& state);
 
   /// What a cut did to the energy [J].
   void add_work_of_cut(const double work) { work_of_cut_ += work; }

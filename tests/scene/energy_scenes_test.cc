@@ -147,6 +147,50 @@ TEST(EnergyScene, ABladeThatTiltsGivesNothing) {
     }
 }
 
+/// Pieces that are too small to be deformed become rigid while a stiff load holds them: it gets nothing by that.
+TEST(EnergyScene, ACrumbThatALoadHoldsGivesNothing) {
+  const auto check = [](const Keys& body, const std::string& held, const std::string& cuts) {
+    const Keys skin = {"Hold at = skin", "Displacement [m] = 0.064*t; -0.09*t; -0.037*t"};
+    const Trial block(steps(0.01, 40) +
+                      section("Body b", Keys{"Shape = box", "Cube edge [m] = 0.1"} + body,
+                              section("Support w", box("-1.2, -9, -9", "-0.19, 9, 9") + skin) + held) +
+                      cuts + observe("work of the cut, kinetic energy, energy of loads, crumbs"));
+    EXPECT_GT(block.last("crumbs"), 0);
+    const auto work = block.series("work of the cut"), kinetic = block.series("kinetic energy");
+    const double most = *std::ranges::max_element(kinetic);
+    for (std::size_t k = 1; k < work.size(); ++k)
+      EXPECT_LT(work[k] - work[k - 1], 0.02 * most) << k;
+  };
+  const std::string pressure = section("Pressure p", {"Faces = revealed", "Pressure [Pa] = 1115*min(t*5,1)"});
+  for (const std::string integrator : {"BDF2", "implicit Euler", "generalised alpha"}) {
+    SCOPED_TRACE(integrator);
+    for (const std::string backend : {"fem", "mass-spring"})
+      check({"Sides [m] = 0.4, 0.2, 0.2", "Backend = " + backend, "Integrator = " + integrator}, pressure,
+            section("Blade k", {"Edge [m] = 0, -0.6, 0; 0, 0.6, 0", "Times [s] = 0, 0.28",
+                                "Positions [m] = 0.33, 0, -0.0826; -0.33, 0, -0.0826"}));
+  }
+}
+
+/// What holds a skin that is set in motion at once rings, where nothing damps that, until a cut: no work is booked of
+/// forces that the step after it does not take.
+TEST(EnergyScene, BooksCloseAtACutWhereALoadRings) {
+  const Trial block(
+    steps(0.01, 30) +
+    section("Body b", {"Shape = box", "Sides [m] = 0.4, 0.4, 0.3", "Cube edge [m] = 0.1", "Integrator = Newmark"},
+            material(1.7e5, 0.015) +
+              section("Support w", box("-1.2, -9, -9", "-0.19, 9, 9") +
+                                     Keys{"Hold at = skin", "Displacement [m] = -0.0248*t; -0.0646*t; -0.0246*t",
+                                          "Rotation [degrees] = 16.5*t; -25.9*t; 6.66*t", "Pivot [m] = -0.2, 0, 0"})) +
+    section("Blade k", {"Edge [m] = 0, 0, -0.65; 0, 0, 0.65", "Times [s] = 0, 0.28",
+                        "Positions [m] = 0.0947, 0.33, 0; 0.0947, -0.33, 0"}) +
+    observe("kinetic energy, missing energy, cut edges"));
+  EXPECT_GT(block.last("cut edges"), 0);
+  const auto missing = block.series("missing energy"), kinetic = block.series("kinetic energy");
+  const double most = *std::ranges::max_element(kinetic);
+  for (std::size_t k = 1; k < missing.size(); ++k)
+    EXPECT_LT(std::abs(missing[k] - missing[k - 1]), 0.1 * most) << k;
+}
+
 /// A load that grows with time works through its potential's own change too: nothing is missing.
 TEST(EnergyScene, BooksOfALoadThatGrowsClose) {
   for (const std::string integrator : {"quasi-static", "Newmark"}) {

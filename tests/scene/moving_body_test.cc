@@ -172,8 +172,8 @@ TEST(MovingBody, FallsThroughARestingBlade) {
   EXPECT_EQ(n_wrong(world.bodies[0], Vec3::UnitZ()), 0u);
 }
 
-/// The whole flow, of a body that flies and a blade that crosses its way: in steps of any length, and whatever moves it,
-/// the body is cut where it and the blade are at the same time.
+/// The whole flow, of a body that flies and a blade that crosses its way: in steps of any length, and whatever moves
+/// it, the body is cut where it and the blade are at the same time.
 TEST(MovingBody, IsCutWhereItIsThen) {
   const output::TemporaryFolder folder;
   const Vec3 flight(5, 0, 0), stroke(0, 0, -7); // [m/s]; as far as the cube is wide in .04 s
