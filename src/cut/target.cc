@@ -195,8 +195,9 @@ Vec3 Target::normal_among(const std::span<const grid::CellId> cells, const Verdi
   int n = 0;
   for (const grid::CellId cell : cells)
     if (cell.valid())
-      for (const grid::CopyId copy : solid_.complex.copies_of(cell))
-        for (const grid::CornerId corner : solid_.complex.copies[copy].corners) {
+      for (const grid::NodeId node : solid_.grid.nodes(cell))
+        if (solid_.grid.is_material(node)) { // of these, so that fronts, which add copies, have no say
+          const grid::CornerId corner = solid_.complex.real_corner[node];
           moved += x_[corner.value] - x_before_[corner.value];
           ++n;
         }
