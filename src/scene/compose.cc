@@ -101,9 +101,9 @@ World compose(const SceneText& text) {
     world.bodies.push_back(compose_body(*body, gravity_section ? &gravity : nullptr, root.all("Floor"), world));
   }
   end_if_asked();
-  for (const Body& body : world.bodies)
-    for (cut::Blade& blade : world.blades)
-      cut::divide_edge_of_turning(blade, body.solid.grid.h());
+  const auto h = [](const Body& body) { return body.solid.grid.h(); };
+  for (cut::Blade& blade : world.blades)
+    cut::divide_edge_of_turning(blade, h(*std::ranges::min_element(world.bodies, {}, h)));
   require_meeting_of_all(root, world);
   for (const Section* section : root.all("Forceps"))
     compose_forceps(*section, world);
