@@ -90,9 +90,11 @@ void print(const bench::Comparison& comparison, const output::BenchTable& now, c
   std::printf("\nagainst %s: %zu of its %zu rows compared", file.c_str(), comparison.n_compared, before.rows.size());
   if (now.n_threads != before.n_threads)
     std::printf(", which were measured on %lld threads", static_cast<long long>(before.n_threads));
-  std::printf("; %zu are slower by more than 10 %%\n", comparison.fallen.size());
+  std::printf("; %zu are slower by more than 10 %% and than their samples spread\n", comparison.fallen.size());
   for (const std::string& line : comparison.fallen)
     std::printf("slower: %s\n", line.c_str());
+  for (const std::string& line : comparison.missing)
+    std::printf("not measured now: %s\n", line.c_str());
 }
 
 } // namespace

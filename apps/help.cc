@@ -59,6 +59,7 @@ samples on the clock: leave the machine alone meanwhile.
   --threads N                1 to 1024                                            1
   --output DIR               folder of bench.h5 and bench.csv                     results/bench
   --against FILE.h5          an earlier bench.h5: names what is slower by more than 10 %
+                             and than its samples spread, and what is not measured now
   --force                    replaces the results of an earlier one
 )";
 

@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "base/interrupt.h"
+#include "base/parallel.h"
 #include "scene/build_info.h"
 
 #include <algorithm>
@@ -76,6 +77,7 @@ int main(const int argc, char** const argv) {
   kerf::apps::make_streams_safe();
   kerf::heed_signals();
   std::signal(SIGXFSZ, SIG_IGN); // a file size limit is then an error of the write, like a full disk
+  kerf::set_n_threads(kerf::n_processors()); // deal.II has counted those of the machine
   try {
     const int exit_code = dispatch({argv + 1, argv + argc});
     kerf::apps::finish_stdout();

@@ -16,7 +16,7 @@ struct SceneArguments {
   std::filesystem::path output; ///< results/SCENE when not given; of several scenes what is given, or results
   int n_jobs = 0;               ///< at a time, of several scenes or rows; 0: not said
   int row = 0;                  ///< of a study, from 1; 0: all
-  int n_threads = 0;            ///< 0: as many as there are processors
+  int n_threads = 0;            ///< 0: as many as there are processors for it
   output::Earlier earlier = output::Earlier::refuse; ///< what to do about an earlier run's results
 };
 

@@ -2,6 +2,7 @@
 
 #include <tbb/blocked_range.h>
 #include <tbb/global_control.h>
+#include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
@@ -10,6 +11,8 @@
 #include <memory>
 
 namespace kerf {
+
+int n_processors() { return tbb::info::default_concurrency(); }
 
 void set_n_threads(const int n) {
   // TBB's own way to say it: the limit holds as long as the object lives.

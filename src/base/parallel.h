@@ -8,7 +8,10 @@
 
 namespace kerf {
 
-/// Sets the number of threads of every later loop; as many as there are processors before the first call.
+/// Processors that this process may run on: what taskset, a container or a cluster leave it.
+int n_processors();
+
+/// Sets the number of threads of every later loop.
 void set_n_threads(int n);
 int n_threads();
 

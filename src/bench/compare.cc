@@ -50,7 +50,8 @@ Comparison compare(const output::BenchTable& now, const output::BenchTable& befo
       continue;
     }
     ++result.n_compared;
-    if (it->rate < (1 - allowed) * old.rate)
+    const double noise = std::max(it->spread, old.spread);
+    if (it->rate < (1 - std::max(allowed, noise)) * old.rate)
       result.fallen.push_back(printed("%s: %.3g %s/s, %.0f %% less than %.3g", where.c_str(), it->rate,
                                       old.item.c_str(), 100 * (1 - it->rate / old.rate), old.rate));
   }

@@ -19,7 +19,7 @@ struct Comparison {
   std::vector<std::string> fallen;  ///< a line for each that is slower by more than the part that is allowed
   std::vector<std::string> missing; ///< a line for each that only the earlier one has
 };
-/// `allowed`: part of the rate that may be lost [1].
+/// `allowed`: part of the rate that may be lost [1]; where the samples of a row spread wider, as much as they do.
 Comparison compare(const output::BenchTable& now, const output::BenchTable& before, double allowed);
 
 } // namespace kerf::bench

@@ -2,6 +2,8 @@
 
 #include "base/error.h"
 #include "base/interrupt.h"
+#include "dynamics/constraints.h"
+#include "dynamics/preconditioner.h"
 #include "dynamics/state.h"
 #include "scene/compose.h"
 #include "scene/run.h"
@@ -102,9 +104,26 @@ class Stirred {
 /// Of full cubes, counted from kernels.h: two transforms of 72 additions, two rotations of seven modes (15 each),
 /// Hooke's law; of rows read, read and written, corners' numbers and a rotation.
 Need need_of_product(const std::size_t n_elements) {
-  constexpr double flops = 2 * 72 + 2 * 7 * 15 + 60, bytes = 3 * 32 + 8 * 4 + 9 * 8;
+  constexpr double flops = 2 * 72 + 2 * 7 * 15 + 60, bytes = 3 * 32 + 8 * 4 + 9 * 4;
   return {flops * double(n_elements), bytes * double(n_elements)};
 }
+
+/// The equation of an implicit step of a second: stiff enough for multigrid whatever the cubes.
+struct StepEquation {
+  StepEquation(dynamics::ElasticModel& of, const scene::Body& body)
+    : model(of), constraints(body.loads, body.state.x.size()) {
+    model.linearise(body.state.x);
+    model.stiffness_diagonal([this](std::size_t, const Mat3& block) { trace += block.trace(); });
+  }
+  dynamics::Preconditioner* preconditioner() const {
+    return model.preconditioner({1, 1, model.lumped_mass(), trace, loads, constraints});
+  }
+
+  dynamics::ElasticModel& model;
+  dynamics::Constraints constraints;
+  dynamics::LoadTangent loads = {};
+  double trace = 0;
+};
 
 std::vector<Path> paths_of_elements() {
   const auto on_elements = [](const auto& make) {
@@ -152,8 +171,30 @@ std::vector<Path> paths_of_elements() {
              scene::Body& body = world.bodies[0];
              const double bytes =
                24.0 * double(body.surface.rest.size()) + 36.0 * double(body.surface.weights.values.size());
-             return Ready{body.surface.rest.size(), [&body] { scene::follow(body); }, {unknown, bytes}};
+             return Ready{body.surface.rest.size(),
+                          [&body] {
+                            scene::follow(body);
+                            scene::positions(body);
+                          },
+                          {unknown, bytes}};
            },
+           {}},
+          {"multigrid takes an equation",
+           "elements",
+           on_elements([](ElasticModel& model, scene::Body& body, std::size_t n) {
+             const auto step = std::make_shared<StepEquation>(model, body);
+             return Ready{n, [step] { step->preconditioner(); }};
+           }),
+           {}},
+          {"multigrid's cycle",
+           "elements",
+           on_elements([moved](ElasticModel& model, scene::Body& body, std::size_t n) {
+             const auto step = std::make_shared<StepEquation>(model, body);
+             const auto r = moved(body), z = std::make_shared<Points>(r->size());
+             return Ready{n, [step, of_step = step->preconditioner(), r, z] {
+                            of_step->apply(dynamics::flat(*r), dynamics::flat(*z));
+                          }};
+           }),
            {}},
           {"implicit step, elements",
            "elements",
@@ -206,7 +247,7 @@ Measured cutting(const int n, const Options& options) {
 }
 
 const std::vector<Group>& groups() {
-  constexpr double few = 1.1e4, all = 1e9;
+  constexpr double few = 5.1e4, all = 1e9;
   const auto scene = [](const std::string& body) {
     return [=](const int n) { return cube_scene(n, 1.0 / 60, 1, body); };
   };

@@ -298,9 +298,12 @@ std::size_t Cutter::n_passed_cells() const {
 }
 
 Stroke Cutter::stroke(const Solid& solid, const Blade& blade, const double t0, const double t1, const Points& x) const {
-  Stroke stroke{blade.label, {}, sweep(blade, t0, t1)};
-  for (const BladePath& path : paths(blade, t0, t1))
+  Stroke stroke{blade.label};
+  for (const BladePath& path : paths(blade, t0, t1)) {
     append(stroke.found, cut_edges(path, solid, x_before_, x, blade.label, &*boxes_));
+    const auto swept = swept_triangles(path);
+    stroke.swept.insert(stroke.swept.end(), swept.begin(), swept.end());
+  }
   return stroke;
 }
 
@@ -311,7 +314,7 @@ SweepCuts Cutter::queue(const Solid& solid, const std::span<const Stroke> stroke
   for (const auto& [label, found, swept] : strokes) {
     append(met, found);
     counts_.n_double_crossings += found.n_double_crossings;
-    passed_[label - 1].pass(swept, found, solid, x, *boxes_, label);
+    passed_[label - 1].pass(swept, found, solid, x_before_, x, *boxes_, label);
   }
   if (release_ == Release::queued)
     for (const EdgeCut& cut : pending_.push(met.cuts))

@@ -23,13 +23,11 @@
 
 namespace kerf::cut {
 
-using Strip = std::vector<std::array<Vec3, 3>>;
-
 /// What a blade does in a step.
 struct Stroke {
   grid::CutLabel label = 1;
   SweepCuts found = {}; ///< that it meets
-  Strip swept = {};     ///< triangles [m, world frame]
+  std::vector<SweptTriangle> swept = {};
 };
 
 /// A blade's cutting edge where it stands after a step, and where it stood before, world frame [m].

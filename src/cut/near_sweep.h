@@ -23,14 +23,14 @@ class NearSweep {
   /// Around all patches; no box overlaps it when there are none.
   const Box& reach() const { return reach_; }
 
-  /// Calls f(patch) for each patch that may meet something in the box, in no order that means anything.
+  /// Calls f(i) for each patch that may meet something in the box, in no order that means anything.
   template <class Function>
   void for_each(const Box& box, const Function& f) const {
     if (!is_in_reach(box))
       return;
     tree_.for_each(box, [&](const std::size_t i) {
       if (may_meet(i, box))
-        f(patches_[i]);
+        f(i);
     });
   }
 

@@ -63,9 +63,9 @@ bool meets(const std::array<Vec3, 3>& triangle, const grid::Tetrahedron& tetrahe
 /// Finds the cells in some blocks that a strip passes.
 class Search {
  public:
-  Search(const std::span<const std::array<Vec3, 3>> strip, const SweepCuts& found, const grid::Solid& solid,
-         const Points& x, const grid::CutLabel label)
-    : near_(patches(strip)), solid_(solid), x_(x), label_(label) {
+  Search(const std::span<const SweptTriangle> strip, const SweepCuts& found, const grid::Solid& solid,
+         const Points& x_before, const Points& x, const grid::CutLabel label)
+    : strip_(strip), near_(patches_of(strip)), solid_(solid), x_before_(x_before), x_(x), label_(label) {
     std::vector<grid::EdgeId> edges;
     for (const grid::EdgeCut& cut : found.cuts)
       edges.push_back(cut.edge);
@@ -82,14 +82,18 @@ class Search {
   bool passes(const grid::CellId cell, const double room) const {
     for (const grid::CopyId c : solid_.complex.copies_of(cell)) {
       const grid::Copy& copy = solid_.complex.copies[c];
-      const Vec3 middle = 0.5 * (x_[copy.corners[0].value] + x_[copy.corners[7].value]);
-      if (((near_.reach().lower - middle).array() > room).any() ||
-          ((middle - near_.reach().upper).array() > room).any())
+      const Vec3 middle = middle_of(copy, x_), way = middle - middle_of(copy, x_before_);
+      if (((near_.reach().lower - middle.cwiseMax(middle - way)).array() > room).any() ||
+          ((middle.cwiseMin(middle - way) - near_.reach().upper).array() > room).any())
         continue;
       const std::array<Vec3, 8> corners = grid::corners_of(copy, x_);
+      const Box now = geometry::box_around(corners);
+      const Box box{now.lower.cwiseMin(now.lower - way), now.upper.cwiseMax(now.upper - way)};
       bool found = false;
-      near_.for_each(geometry::box_around(corners), [&](const Patch& patch) {
-        const std::array<Vec3, 3> triangle = {patch[0], patch[1], patch[2]};
+      near_.for_each(box, [&](const std::size_t i) {
+        std::array<Vec3, 3> triangle = strip_[i].vertices;
+        for (int v = 0; v < 3; ++v)
+          triangle[v] += strip_[i].left[v] * way;
         found = found || (are_parted(corners, triangle) && !is_cut_by_label(cell) && passes(copy, corners, triangle));
       });
       if (found)
@@ -99,6 +103,17 @@ class Search {
   }
 
  private:
+  static std::vector<Patch> patches_of(const std::span<const SweptTriangle> strip) {
+    std::vector<std::array<Vec3, 3>> triangles;
+    for (const SweptTriangle& swept : strip)
+      triangles.push_back(swept.vertices);
+    return patches(triangles);
+  }
+
+  static Vec3 middle_of(const grid::Copy& copy, const Points& x) {
+    return 0.5 * (x[copy.corners[0].value] + x[copy.corners[7].value]);
+  }
+
   /// The material lies among its copy's corners. Round-off counts as parted.
   static bool are_parted(const std::array<Vec3, 8>& corners, const std::array<Vec3, 3>& triangle) {
     const Vec3 normal = (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]);
@@ -142,20 +157,33 @@ class Search {
     return found;
   }
 
+  std::span<const SweptTriangle> strip_;
   NearSweep near_;
   const grid::Solid& solid_;
-  const Points& x_;
+  const Points &x_before_, &x_;
   grid::CutLabel label_;
   std::vector<grid::CellId> met_; // in which it cuts now
 };
 
 } // namespace
 
-void PassedCells::pass(const std::span<const std::array<Vec3, 3>> strip, const SweepCuts& found,
-                       const grid::Solid& solid, const Points& x, const EdgeBoxes& boxes, const grid::CutLabel label) {
+std::vector<SweptTriangle> swept_triangles(const BladePath& path) {
+  std::vector<SweptTriangle> swept;
+  for (std::size_t k = 1; k < path.lines.size(); ++k) {
+    std::vector<std::array<Vec3, 3>> strip;
+    add_strip(path.lines[k - 1], path.lines[k], strip);
+    const double before = 1 - path.fractions[k - 1], after = 1 - path.fractions[k];
+    for (std::size_t i = 0; i < strip.size(); ++i) // two a piece of the edge: with two vertices before, and with one
+      swept.push_back({strip[i], {before, i % 2 == 0 ? before : after, after}});
+  }
+  return swept;
+}
+
+void PassedCells::pass(const std::span<const SweptTriangle> strip, const SweepCuts& found, const grid::Solid& solid,
+                       const Points& x_before, const Points& x, const EdgeBoxes& boxes, const grid::CutLabel label) {
   if (strip.empty())
     return;
-  const Search search(strip, found, solid, x, label);
+  const Search search(strip, found, solid, x_before, x, label);
   const auto blocks = boxes.blocks([&](const EdgeBoxes::Block& block) { return search.is_near(block); });
   std::vector<std::vector<grid::CellId>> passed(blocks.size());
   parallel_for(blocks.size(), [&](const std::size_t k) {

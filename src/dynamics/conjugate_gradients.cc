@@ -161,7 +161,14 @@ CgReport conjugate_gradients(const CgEquation& equation, const std::span<const d
     return report;
   };
   measure();
+  double earlier = report.residual; // by the patience's iterations
   while (!report.converged && report.n_iterations < max_iterations) {
+    if (stop.patience > 0 && report.n_iterations > 0 && report.n_iterations % stop.patience == 0) {
+      constexpr double tenth = 0.1;
+      if (!(report.residual <= tenth * earlier))
+        break;
+      earlier = report.residual;
+    }
     equation.A(p, Ap);
     const double pAp = dot(p, Ap);
     if (!(pAp > 0 && rz > 0)) {
@@ -187,10 +194,11 @@ CgReport conjugate_gradients(const CgEquation& equation, const std::span<const d
 CgReport patient_conjugate_gradients(const CgEquation& equation, const std::span<const double> b, const CgStop& stop,
                                      const int max_iterations, const std::span<double> x,
                                      const std::span<double> left) {
-  constexpr int patience = 100;
   if (!equation.J)
     return conjugate_gradients(equation, b, stop, max_iterations, x, left);
-  const CgReport first = conjugate_gradients(equation, b, stop, std::min(patience, max_iterations), x, left);
+  CgStop patient = stop;
+  patient.patience = 200;
+  const CgReport first = conjugate_gradients(equation, b, patient, max_iterations, x, left);
   if (first.converged || first.indefinite || first.n_iterations >= max_iterations)
     return first;
   CgReport report =

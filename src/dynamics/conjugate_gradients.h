@@ -47,6 +47,7 @@ struct CgStop {
   double error = 0;    ///< of x
   double of_way = 0;   ///< error of x over the way to the solution [1]
   std::optional<WayFrom> from = {}; ///< none: from the x that was given
+  int patience = 0; ///< gives up once so many iterations have not brought the residual to a tenth; 0: never
 };
 
 struct CgReport {
@@ -85,8 +86,8 @@ struct CgEquation {
 CgReport conjugate_gradients(const CgEquation& equation, std::span<const double> b, const CgStop& stop,
                              int max_iterations, std::span<double> x, std::span<double> left = {});
 
-/// The same, but for an equation with J of its own by B for at most 100 iterations, and from there by J: where B gets
-/// on badly, the blocks alone may do as well, at a fraction of its cost.
+/// The same, but for an equation with J of its own by B as long as 200 iterations bring the residual to a tenth,
+/// and from there by J: where B gets on badly, the blocks alone may do as well, at a fraction of its cost.
 CgReport patient_conjugate_gradients(const CgEquation& equation, std::span<const double> b, const CgStop& stop,
                                      int max_iterations, std::span<double> x, std::span<double> left = {});
 

@@ -1,6 +1,7 @@
 #include "dynamics/symplectic_euler.h"
 
 #include "base/loan.h"
+#include "base/parallel.h"
 #include "dynamics/constraints.h"
 #include "dynamics/explicit_steppers.h"
 #include "dynamics/forces.h"
@@ -27,10 +28,14 @@ StepReport SymplecticEuler::step(State& state, const Loads& loads, const double 
   const auto mass = model_.lumped_mass();
   total_force(model_, loads, {state.time, state.x, state.v}, MassDamping::left_out, force_);
   Loan<Vec3> x(state.x), v(state.v);
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    v[i] = (v[i] + per_mass(dt, mass[i]) * force_[i]) / (1 + dt * loads.mass_damping);
-    x[i] += dt * v[i];
-  }
+  constexpr std::size_t worth = 4096; // particles from which on a second thread pays
+  parallel_for(
+    x.size(),
+    [&](const std::size_t i) {
+      v[i] = (v[i] + per_mass(dt, mass[i]) * force_[i]) / (1 + dt * loads.mass_damping);
+      x[i] += dt * v[i];
+    },
+    worth);
   constraints.place(state.time + dt, x);
   for (const auto& held : constraints.held())
     v[held.corner] = (x[held.corner] - state.x[held.corner]) / dt;

@@ -29,11 +29,12 @@ Moments shifted(const Moments& moments, const Vec3& centre) {
   int stride = 1;
   for (int axis = 0; axis < 3; ++axis, stride *= 3) {
     const Moments before = m;
+    const double by = -centre[axis], to_power[3] = {1, by, by * by};
     for (int n = 0; n < 27; ++n) {
       const int power = n / stride % 3;
       m[n] = 0;
       for (int k = 0; k <= power; ++k)
-        m[n] += binomial(power, k) * std::pow(-centre[axis], power - k) * before[n + (k - power) * stride];
+        m[n] += binomial(power, k) * to_power[power - k] * before[n + (k - power) * stride];
     }
   }
   return m;

@@ -5,6 +5,7 @@
 #include "base/parallel.h"
 #include "dynamics/conjugate_gradients.h"
 #include "dynamics/forces.h"
+#include "material/polar.h"
 #include "physics/on_corners.h"
 
 #include <Eigen/Geometry>
@@ -70,15 +71,16 @@ std::array<Vec3, 12> edges(const Points& x, const grid::Copy& copy) {
   return all;
 }
 
-/// det F in the middle of a copy: the mean of its four edges along each axis.
-double volume_ratio(const std::array<Vec3, 12>& edges, const double h) {
+/// F in the middle of a copy: the mean of its four edges along each axis.
+Mat3 mean_gradient(const std::array<Vec3, 12>& edges, const double h) {
   Mat3 F;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const Vec3* const e = &edges[4 * axis];
     F.col(static_cast<Eigen::Index>(axis)) = (e[0] + e[1] + e[2] + e[3]) / (4 * h);
   }
-  return F.determinant();
+  return F;
 }
+double volume_ratio(const std::array<Vec3, 12>& edges, const double h) { return mean_gradient(edges, h).determinant(); }
 
 std::string in_words(const Body& body, const std::size_t copy) {
   const grid::Grid& grid = body.solid.grid;
@@ -184,6 +186,38 @@ bool may_be_anywhere(const Body& body) {
   return inner_energy(*body.physics, body.state) <= little_more * body.initial->energy;
 }
 
+/// By how far a copy's corners are from where its cube would have them, turned as it is: at most [m].
+double distortion(const Points& rest, const Points& x, const grid::Copy& copy, const double h) {
+  Vec3 middle = Vec3::Zero(), middle_at_rest = Vec3::Zero();
+  for (const grid::CornerId corner : copy.corners) {
+    middle += x[corner.value] / 8;
+    middle_at_rest += rest[corner.value] / 8;
+  }
+  const Mat3 R = material::rotation_of(mean_gradient(edges(x, copy), h));
+  double most = 0;
+  for (const grid::CornerId corner : copy.corners)
+    most = std::max(most, (x[corner.value] - middle - R * (rest[corner.value] - middle_at_rest)).norm());
+  return most;
+}
+
+/// How far a step may take each particle: what is held as far as its support goes; a corner twice as far as two of its
+/// copy are from where the cube would have them. So far it snaps, to there and beyond, when a cut lets it go while the
+/// body hangs from where it was held, and time steps do not resolve that.
+Loan<double> room_of_particles(const Body& body, const Points& before) {
+  Loan<double> room(before.size(), 0.0);
+  if (body.physics->particles_are_corners())
+    for (const grid::Copy& copy : body.solid.complex.copies) {
+      const double way = 4 * distortion(body.physics->rest(), before, copy, body.solid.grid.h());
+      for (const grid::CornerId corner : copy.corners)
+        room[corner.value] = std::max(room[corner.value], way);
+    }
+  const auto held = dynamics::held_corners(body.loads, before.size());
+  for (std::size_t i = 0; i < room.size(); ++i)
+    if (held[i] != 0)
+      room[i] = std::numeric_limits<double>::infinity();
+  return room;
+}
+
 bool is_of_small_strain(const Body& body) {
   const auto* const elements = dynamic_cast<const physics::Elements*>(body.physics.get());
   return elements && elements->own_model().material().law == "small strain";
@@ -200,7 +234,7 @@ std::string particle_at(const Body& body, const std::size_t particle) {
 void require_sound_motion(const Body& body, const Points& before, const double dt) {
   const dynamics::ForceModel& model = body.physics->model();
   const Vec3 mean = mean_velocity(model, body.state.v);
-  const auto motion_but_of = [&](const std::span<const std::uint8_t> held) {
+  const auto motion_but_of = [&](const std::span<const double> room) {
     return dynamics::sum_in_blocks(
       body.state.x.size(), Motion(), [&](const std::size_t begin, const std::size_t end, Motion& part) {
         for (std::size_t i = begin; i < end; ++i) {
@@ -208,8 +242,11 @@ void require_sound_motion(const Body& body, const Points& before, const double d
           const double speed = (v - mean).squaredNorm();
           if (!std::isfinite(speed + x.sum()))
             part += {i, 0, 0};
-          else if (speed > part.squared_speed && (held.empty() || held[i] == 0))
-            part += {none, i, std::min(speed, ((x - before[i]) / dt - mean).squaredNorm())};
+          else if (speed > part.squared_speed) {
+            const double least = std::min(speed, ((x - before[i]) / dt - mean).squaredNorm());
+            if (room.empty() || std::sqrt(least) * dt > room[i])
+              part += {none, i, least};
+          }
         }
       });
   };
@@ -219,7 +256,7 @@ void require_sound_motion(const Body& body, const Points& before, const double d
     throw NumericalError("the motion has diverged: " + particle_at(body, all.lost) + ", has no finite place any more");
   if (is_slow(all))
     return;
-  all = motion_but_of(dynamics::held_corners(body.loads, body.state.x.size()));
+  all = motion_but_of(room_of_particles(body, before));
   if (is_slow(all))
     return;
   const double speed = std::sqrt(all.squared_speed);

@@ -21,8 +21,8 @@ struct Watch {
 };
 
 /// After a step of dt [s] from `before` [m], before the corners follow. Velocities may ring where nothing damps them,
-/// and statics go far without any: the less of a velocity and of the way over dt counts. Throws NumericalError that
-/// names the particle and its place.
+/// and statics go far without any: the less of a velocity and of the way over dt counts, where that is more than a cube
+/// and more than a corner of so distorted copies may snap. Throws NumericalError that names the particle and its place.
 void require_sound_motion(const Body& body, const Points& before, double dt);
 /// The copy whose cube is drawn out most.
 struct Stretch {

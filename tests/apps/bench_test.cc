@@ -36,6 +36,9 @@ TEST_F(Bench, MeasuresEveryPath) {
     EXPECT_GT(row.seconds, 0) << row.path;
     EXPECT_NEAR(row.rate, double(row.n) / row.seconds, 1e-9 * row.rate) << row.path;
     EXPECT_NE(result.out.find(row.path), std::string::npos);
+    if (!std::isnan(row.of_bandwidth)) {
+      EXPECT_LT(row.of_bandwidth, 100) << row.path << ": does nothing";
+    }
     if (row.path == "stiffness product, elements") {
       EXPECT_EQ(row.n, 216);
       EXPECT_GT(row.of_peak, 0);
@@ -63,6 +66,14 @@ TEST_F(Bench, NamesWhatIsSlowerThanInAnEarlierFile) {
   output::write_bench_file(folder / "slower.h5", before, output::sample_info());
   const Result faster = bench({"--only", "energy", "--output", "out", "--against", "slower.h5"});
   EXPECT_NE(faster.out.find("1 of its 1 rows compared; 0 are slower"), std::string::npos) << faster.out;
+  before.rows[0].rate = 1000 * rate;
+  before.rows[0].spread = 1;
+  before.rows.push_back(before.rows[0]);
+  before.rows[1].cells = 1000;
+  output::write_bench_file(folder / "noisy.h5", before, output::sample_info());
+  const Result noisy = bench({"--only", "energy", "--output", "out", "--against", "noisy.h5"});
+  EXPECT_NE(noisy.out.find("1 of its 2 rows compared; 0 are slower"), std::string::npos) << noisy.out;
+  EXPECT_NE(noisy.out.find("not measured now: energy, elements, 1000 cells"), std::string::npos) << noisy.out;
 }
 
 TEST_F(Bench, WhatCannotBeIsRefused) {

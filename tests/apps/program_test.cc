@@ -5,6 +5,8 @@
 
 #include <regex>
 
+#include <sched.h>
+
 namespace kerf::apps {
 namespace {
 
@@ -197,6 +199,23 @@ TEST_F(ProgramTest, ShortTimesAreNotRoundedToNothing) {
 }
 
 /// A run of more corners than one thread is given, with a cut through them.
+/// As many threads as there are processors that the process may run on, as under taskset.
+TEST_F(ProgramTest, TakesAsManyThreadsAsItMayRunOn) {
+  cpu_set_t all, one;
+  ASSERT_EQ(sched_getaffinity(0, sizeof(all), &all), 0);
+  for (const int n : {CPU_COUNT(&all), 1}) {
+    CPU_ZERO(&one);
+    for (int cpu = 0; cpu < CPU_SETSIZE && CPU_COUNT(&one) < n; ++cpu)
+      if (CPU_ISSET(cpu, &all))
+        CPU_SET(cpu, &one);
+    ASSERT_EQ(sched_setaffinity(0, sizeof(one), &one), 0);
+    const Result result = run(cube_scene(), {"--set", "Time/End time [s]=0.01"});
+    ASSERT_EQ(sched_setaffinity(0, sizeof(all), &all), 0);
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_EQ(output::Reader(folder / "out/run.h5").info().n_threads, n);
+  }
+}
+
 TEST_F(ProgramTest, GivesTheSameBitsForAnyNumberOfThreads) {
   const std::string scene = cube_scene() + falling_blade() + "subsection Gravity\nend\n";
   std::vector<output::Frame> frames;

@@ -32,7 +32,10 @@ struct Resting {
   SweepCuts sweep(const Strip& strip) {
     boxes.fit(x);
     const auto found = cut_edges(strip, body, x, 1, &boxes);
-    passed.pass(strip, found, body, x, boxes, 1);
+    std::vector<SweptTriangle> swept;
+    for (const auto& triangle : strip)
+      swept.push_back({triangle});
+    passed.pass(swept, found, body, x, x, boxes, 1);
     return found;
   }
   void cut(const SweepCuts& found) {
@@ -172,6 +175,39 @@ TEST(Passed, FollowsTheBody) {
     moved.sweep(patch(F * from + shift, F * u, F * v));
     EXPECT_EQ(cells(moved.passed), cells(at_rest.passed));
   }
+}
+
+/// A body that flies: the same cells as at rest, by what the blade sweeps relative to it, in a step by many cubes. And
+/// a blade that goes with it passes none.
+TEST(Passed, IsMetAsTheBladeMovesRelativeToIt) {
+  Random random(73);
+  std::size_t n = 0;
+  for (int i = 0; i < 40; ++i) {
+    Resting at_rest = block(6), flying = block(6);
+    const Vec3 way = 9 * support::random_vector(random), from = Vec3::Constant(2) + 3 * support::random_offset(random);
+    const Vec3 along = uniform(random, 0.1, 1) * support::random_direction(random),
+               on = 0.3 * support::random_vector(random);
+    at_rest.sweep(patch(from, along, on));
+    BladePath path{{0, 0.3, 1}, {}}, beside = path;
+    for (const double f : path.fractions) {
+      path.lines.push_back({from + f * (on + way), from + along + f * (on + way)});
+      beside.lines.push_back({Vec3(from + f * way + Vec3(20, 0, 0)), Vec3(from + along + f * way + Vec3(20, 0, 0))});
+    }
+    const Points before = flying.x;
+    for (Vec3& p : flying.x)
+      p += way;
+    flying.boxes.fit(before, flying.x);
+    for (const BladePath* const one : {&beside, &path}) {
+      const auto found = cut_edges(*one, flying.body, before, flying.x, 1, &flying.boxes);
+      flying.passed.pass(swept_triangles(*one), found, flying.body, before, flying.x, flying.boxes, 1);
+      if (one == &beside) {
+        EXPECT_TRUE(flying.passed.cells().empty());
+      }
+    }
+    EXPECT_EQ(cells(flying.passed), cells(at_rest.passed));
+    n += flying.passed.cells().size();
+  }
+  EXPECT_GT(n, 20u);
 }
 
 } // namespace

@@ -194,7 +194,7 @@ class Run {
       if (plane && is_first && subject_.cutter.counts().n_left_whole == 0)
         require_parted(subject_, *plane);
     } else {
-      const Soup strip = strip_of(swept.sweep);
+      const std::vector<cut::SweptTriangle> strip = strip_of(swept.sweep);
       step({label, found, strip});
       tally_.n_most_waiting = std::max(tally_.n_most_waiting, subject_.cutter.n_waiting());
       now_ = {label, {}, strip};
@@ -210,13 +210,13 @@ class Run {
     return surface ? std::get_if<cut::Plane>(&surface->shape) : nullptr;
   }
 
-  static Soup strip_of(const Sweep& sweep) {
+  static std::vector<cut::SweptTriangle> strip_of(const Sweep& sweep) {
+    std::vector<cut::SweptTriangle> strip;
     if (const auto* const soup = std::get_if<Soup>(&sweep))
-      return *soup;
-    Soup strip;
+      for (const auto& triangle : *soup)
+        strip.push_back({triangle});
     if (const auto* const path = std::get_if<cut::BladePath>(&sweep))
-      for (std::size_t k = 1; k < path->lines.size(); ++k)
-        cut::add_strip(path->lines[k - 1], path->lines[k], strip);
+      return cut::swept_triangles(*path);
     return strip;
   }
 
