@@ -2,6 +2,7 @@
 
 #include "base/parallel.h"
 #include "cut/near_sweep.h"
+#include "geometry/convex_polygon.h"
 #include "grid/material.h"
 #include "grid/shape.h"
 #include "grid/touched.h"
@@ -15,38 +16,13 @@ namespace kerf::cut {
 
 namespace {
 
-/// A triangle that is clipped by the sides of a tetrahedron: convex, so that each side adds a vertex at most.
-struct Polygon {
-  int n = 0;
-  std::array<Vec3, 7> vertices;
-
-  void push_back(const Vec3& p) {
-    if (n < 7) // round-off may make a flat one seem to bend
-      vertices[n++] = p;
-  }
-};
-
-/// The part of a convex polygon above the plane n . p = d.
-Polygon clipped(const Polygon& polygon, const Vec3& n, const double d) {
-  Polygon kept;
-  for (int i = 0; i < polygon.n; ++i) {
-    const Vec3 &p = polygon.vertices[i], &q = polygon.vertices[(i + 1) % polygon.n];
-    const double a = n.dot(p) - d, b = n.dot(q) - d;
-    if (a > 0)
-      kept.push_back(p);
-    if ((a > 0) != (b > 0))
-      kept.push_back(p + a / (a - b) * (q - p));
-  }
-  return kept;
-}
-
 bool meets(const std::array<Vec3, 3>& triangle, const grid::Tetrahedron& tetrahedron) {
   constexpr double shrunk = 1 - 1e-6;
   const Vec3 middle = 0.25 * (tetrahedron[0] + tetrahedron[1] + tetrahedron[2] + tetrahedron[3]);
   std::array<Vec3, 4> v;
   for (int i = 0; i < 4; ++i)
     v[i] = shrunk * (tetrahedron[i] - middle);
-  Polygon polygon;
+  geometry::ConvexPolygon<7> polygon; // the triangle, and a vertex for each side of the tetrahedron
   for (const Vec3& p : triangle)
     polygon.push_back(p - middle);
   for (int i = 0; i < 4 && polygon.n > 0; ++i) {

@@ -3,6 +3,7 @@
 #include "grid/cube.h"
 #include "grid/touched.h"
 #include "surface/below_skin.h"
+#include "surface/border.h"
 #include "surface/fold.h"
 #include "surface/view.h"
 
@@ -270,7 +271,8 @@ class Placer {
                           {grid::item_point(solid_, c, side.items[0]), grid::item_point(solid_, c, side.items[1]),
                            grid::item_point(solid_, c, side.items[2])}));
     });
-    solid_.cuts.set_inner_point(c, hold_below_skin(from, p, part));
+    const Vec3 q = hold_below_skin(from, p, part);
+    solid_.cuts.set_inner_point(c, point_that_sees_border(solid_, view, q).value_or(q));
     if (is_folded(solid_, view)) {
       is_held_ = true;
       solid_.cuts.set_inner_point(c, grid::cell_point(solid_, c));

@@ -1,5 +1,6 @@
 /// Surfaces of bodies that planes have cut, above all where the cuts meet the skin: vertices of a cut lie on its plane,
-/// no triangle is without area, none is long, no vertex holds two fans of triangles together; needles are counted. The
+/// no triangle is without area, none is long, no vertex holds two fans of triangles together; needles are counted, and
+/// triangles of a cut that look the other way, as it is folded within its plane. The
 /// long test takes all closed meshes of the folder that KERF_STROKE_MESHES names:
 ///
 ///   KERF_STROKE_MESHES=folder ./kerf test -L long -R Rims
@@ -22,6 +23,8 @@ struct Tally {
   std::size_t n_two_fans = 0;                                         ///< vertices
   std::size_t n_of_cut = 0, n_off = 0;                                ///< of the cuts' vertices: off the plane
   double off_plane = 0;                                               ///< at most [h]
+  std::size_t n_of_cap = 0, n_folded = 0;                             ///< triangles of the cuts
+  double area = 0, folded_area = 0;                                   ///< of them [h^2]
 };
 
 double smallest_angle(const std::array<Vec3, 3>& p) {
@@ -73,6 +76,25 @@ void add(Tally& tally, const surface::Surface& surface, const support::Plane& pl
   tally.n_two_fans += n_with_two_fans(surface);
 }
 
+/// Of the cut's triangles, those that do not look away from their copy's material.
+void add_folded(Tally& tally, const support::Body& body, const surface::Surface& surface, const support::Plane& plane) {
+  const double unit = body.grid.h() * body.grid.h();
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+    if (surface.labels[t] == grid::skin_label)
+      continue;
+    const auto& [a, b, c] = surface.triangles[t];
+    const Vec3 u = surface.rest[b] - surface.rest[a], v = surface.rest[c] - surface.rest[a];
+    const double up = 0.5 / unit * plane.normal.dot(u.cross(v)),
+                 side = plane.height(support::point_in(body, body.complex.copies[surface.copies[t]])) < 0 ? 1 : -1;
+    ++tally.n_of_cap;
+    tally.area += std::abs(up);
+    if (side * up < -1e-9) {
+      ++tally.n_folded;
+      tally.folded_area += std::abs(up);
+    }
+  }
+}
+
 class Rims : public testing::TestWithParam<int> {};
 
 TEST_P(Rims, OfUnseenBodies) {
@@ -89,7 +111,10 @@ TEST_P(Rims, OfUnseenBodies) {
       support::cut_through(body, support::cuts_of_plane(body, plane));
       const std::size_t before = all.n_two_fans, n_flat = all.n_flat, n_long = all.n_long;
       const double off_plane = all.off_plane;
-      add(all, surface::build_surface(support::with_copies(std::move(body))), plane, h);
+      const support::Body whole = support::with_copies(std::move(body));
+      const surface::Surface surface = surface::build_surface(whole);
+      add(all, surface, plane, h);
+      add_folded(all, whole, surface, plane);
       if (all.n_two_fans > before || all.n_flat > n_flat || all.n_long > n_long || all.off_plane > std::max(off_plane, 1e-9))
         std::cout << name << ", " << i << ": " << all.n_two_fans - before << " vertices with two fans, "
                   << all.n_flat - n_flat << " triangles without area, " << all.n_long - n_long
@@ -97,12 +122,15 @@ TEST_P(Rims, OfUnseenBodies) {
     }
   std::cout << n_bodies << " bodies; " << all.n_triangles << " triangles at rims, " << all.n_needles
             << " needles; " << all.n_off << " of " << all.n_of_cut << " vertices off their plane, by up to "
-            << all.off_plane << " h\n";
+            << all.off_plane << " h; " << all.n_folded << " of " << all.n_of_cap << " triangles of cuts folded, "
+            << 100 * all.folded_area / all.area << " % of their area\n";
   EXPECT_GT(all.n_triangles, 100u * n_bodies);
   EXPECT_LT(all.n_needles, 0.06 * all.n_triangles);
   EXPECT_EQ(all.n_flat, 0u);
   EXPECT_EQ(all.n_long, 0u);
   EXPECT_EQ(all.n_two_fans, 0u);
+  EXPECT_LT(all.n_folded, 0.008 * all.n_of_cap); // borders that are seen from no point, or two of them in a cell
+  EXPECT_LT(all.folded_area, 0.002 * all.area);
   EXPECT_LE(all.n_off, all.n_of_cut / 10000); // where a cut would fold over a jagged skin, a cell's vertex gives way
 }
 INSTANTIATE_TEST_SUITE_P(Short, Rims, testing::Values(3));

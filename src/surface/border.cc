@@ -1,0 +1,85 @@
+#include "surface/border.h"
+
+#include "geometry/convex_polygon.h"
+
+#include <Eigen/Geometry>
+
+namespace kerf::surface {
+
+namespace {
+
+namespace cube = grid::cube;
+namespace skeleton = grid::skeleton;
+
+constexpr std::size_t most_pieces = 2 * skeleton::n_segments;
+using Pieces = Few<Plane, most_pieces>; // in the cut's plane: on it, and the direction from where it is seen, unit
+
+Vec3 point_in_side(const grid::Solid& solid, const View& view, const int side) {
+  if (side >= skeleton::first_triangle)
+    return *solid.cuts.inner_point(view.cell, side - skeleton::first_triangle);
+  const int face = side / 2;
+  const grid::FaceId f = solid.grid.faces(view.cell)[face];
+  const bool is_full = (view.now.material & cube::face_mask(face)) == cube::face_mask(face);
+  return is_full ? grid::face_point(solid, f) : *solid.cuts.inner_point(f, side % 2);
+}
+
+/// None where it does not lie in one plane with p.
+Pieces pieces_of_border(const grid::Solid& solid, const View& view, const Vec3& p, const Vec3& normal) {
+  constexpr double round_off = 1e-9; // of h
+  const double h = solid.grid.h();
+  const auto is_in_plane = [&](const Vec3& q) { return std::abs(normal.dot(q - p)) <= round_off * h; };
+  Pieces pieces;
+  bool is_flat = true;
+  for_each_bit(view.now.blades, [&](const int k) {
+    const auto& [ends, sides] = view.now.skeleton().segment[k];
+    const Vec3 at = grid::segment_point(solid, view.cell, view.now.skeleton(), k),
+               along = grid::item_point(solid, view.cell, ends[1]) - grid::item_point(solid, view.cell, ends[0]);
+    is_flat = is_flat && is_in_plane(at);
+    for (const int way : {0, 1}) {
+      const Vec3 beside = point_in_side(solid, view, sides[way]), piece = beside - at;
+      is_flat = is_flat && is_in_plane(beside);
+      const Vec3 inward = piece.cross(way == 0 ? normal : Vec3(-normal)) * (along.dot(normal) > 0 ? 1 : -1);
+      if (piece.norm() > round_off * h)
+        pieces.push_back({at, inward.normalized()});
+    }
+  });
+  return is_flat ? pieces : Pieces();
+}
+
+/// A square around the cell, in the plane.
+geometry::ConvexPolygon<most_pieces + 4> all_around(const Vec3& p, const Vec3& normal, const double h) {
+  const Vec3 u = normal.unitOrthogonal() * 2 * h, v = normal.cross(u);
+  geometry::ConvexPolygon<most_pieces + 4> square;
+  for (const Vec3& corner : {Vec3(p + u + v), Vec3(p - u + v), Vec3(p - u - v), Vec3(p + u - v)})
+    square.push_back(corner);
+  return square;
+}
+
+} // namespace
+
+std::optional<Vec3> point_that_sees_border(const grid::Solid& solid, const View& view, const Vec3& p) {
+  constexpr double round_off = 1e-12, least = 1e-6; // of h
+  const double h = solid.grid.h();
+  const Vec3 normal = cut_plane(solid, view, std::countr_zero(view.now.blades)).plane.normal;
+  const Pieces pieces = pieces_of_border(solid, view, p, normal);
+  const auto height = [](const Vec3& q, const Plane& piece) { return piece.normal.dot(q - piece.point); };
+  bool sees_all = true;
+  for (const Plane& piece : pieces)
+    sees_all = sees_all && height(p, piece) >= -round_off * h;
+  if (sees_all)
+    return {};
+  auto kernel = all_around(p, normal, h);
+  for (const Plane& piece : pieces)
+    kernel = clipped(kernel, piece.normal, piece.normal.dot(piece.point));
+  if (kernel.n < 3)
+    return {};
+  Vec3 middle = Vec3::Zero();
+  for (std::size_t i = 0; i < kernel.n; ++i)
+    middle += kernel.vertices[i] / double(kernel.n);
+  for (const Plane& piece : pieces)
+    if (height(middle, piece) < least * h)
+      return {};
+  return middle;
+}
+
+} // namespace kerf::surface
