@@ -1,8 +1,8 @@
 #include "cut/passed.h"
 
+#include "base/convex_polygon.h"
 #include "base/parallel.h"
 #include "cut/near_sweep.h"
-#include "geometry/convex_polygon.h"
 #include "grid/material.h"
 #include "grid/shape.h"
 #include "grid/touched.h"
@@ -22,7 +22,7 @@ bool meets(const std::array<Vec3, 3>& triangle, const grid::Tetrahedron& tetrahe
   std::array<Vec3, 4> v;
   for (int i = 0; i < 4; ++i)
     v[i] = shrunk * (tetrahedron[i] - middle);
-  geometry::ConvexPolygon<7> polygon; // the triangle, and a vertex for each side of the tetrahedron
+  ConvexPolygon<7> polygon; // the triangle, and a vertex for each side of the tetrahedron
   for (const Vec3& p : triangle)
     polygon.push_back(p - middle);
   for (int i = 0; i < 4 && polygon.n > 0; ++i) {

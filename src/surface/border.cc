@@ -1,6 +1,6 @@
 #include "surface/border.h"
 
-#include "geometry/convex_polygon.h"
+#include "base/convex_polygon.h"
 
 #include <Eigen/Geometry>
 
@@ -47,9 +47,9 @@ Pieces pieces_of_border(const grid::Solid& solid, const View& view, const Vec3& 
 }
 
 /// A square around the cell, in the plane.
-geometry::ConvexPolygon<most_pieces + 4> all_around(const Vec3& p, const Vec3& normal, const double h) {
+ConvexPolygon<most_pieces + 4> all_around(const Vec3& p, const Vec3& normal, const double h) {
   const Vec3 u = normal.unitOrthogonal() * 2 * h, v = normal.cross(u);
-  geometry::ConvexPolygon<most_pieces + 4> square;
+  ConvexPolygon<most_pieces + 4> square;
   for (const Vec3& corner : {Vec3(p + u + v), Vec3(p - u + v), Vec3(p - u - v), Vec3(p + u - v)})
     square.push_back(corner);
   return square;

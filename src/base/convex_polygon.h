@@ -7,7 +7,7 @@
 #include <array>
 #include <cstddef>
 
-namespace kerf::geometry {
+namespace kerf {
 
 /// Of at most `room` vertices.
 template <std::size_t room>
@@ -36,4 +36,4 @@ ConvexPolygon<room> clipped(const ConvexPolygon<room>& polygon, const Vec3& norm
   return kept;
 }
 
-} // namespace kerf::geometry
+} // namespace kerf
