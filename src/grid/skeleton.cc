@@ -180,6 +180,20 @@ Items Skeleton::reachable(const Items from, const Segments cut) const {
   return reached;
 }
 
+Items Skeleton::reachable_within(const int of_side, const int from, const Segments cut) const {
+  const auto& [n, around, between] = side[of_side];
+  Items reached = Items(1) << from, before = 0;
+  while (reached != before) {
+    before = reached;
+    for (int i = 0; i < n; ++i) {
+      const Items ends = Items(1) << around[i] | Items(1) << around[(i + 1) % n];
+      if ((cut >> between[i] & 1) == 0 && (reached & ends) != 0)
+        reached |= ends;
+    }
+  }
+  return reached;
+}
+
 const Skeleton& skeleton_of(const unsigned material) {
   static const auto all = [] {
     auto made = std::make_unique<std::array<Skeleton, 256>>();

@@ -82,6 +82,8 @@ struct Skeleton {
 
   /// The items that can be reached from some without crossing a cut segment.
   Items reachable(Items from, Segments cut) const;
+  /// Those of a side that can be reached from one of them along its border.
+  Items reachable_within(int of_side, int from, Segments cut) const;
 };
 
 /// Of a cell with these material vertices (8 bits).

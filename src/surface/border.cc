@@ -4,6 +4,9 @@
 
 #include <Eigen/Geometry>
 
+#include <algorithm>
+#include <bit>
+
 namespace kerf::surface {
 
 namespace {
@@ -23,14 +26,15 @@ Vec3 point_in_side(const grid::Solid& solid, const View& view, const int side) {
   return is_full ? grid::face_point(solid, f) : *solid.cuts.inner_point(f, side % 2);
 }
 
-/// None where it does not lie in one plane with p.
-Pieces pieces_of_border(const grid::Solid& solid, const View& view, const Vec3& p, const Vec3& normal) {
+/// Of the cuts of some segments. None where they do not lie in one plane with p.
+Pieces pieces_of_border(const grid::Solid& solid, const View& view, const grid::Segments of, const Vec3& p,
+                        const Vec3& normal) {
   constexpr double round_off = 1e-9; // of h
   const double h = solid.grid.h();
   const auto is_in_plane = [&](const Vec3& q) { return std::abs(normal.dot(q - p)) <= round_off * h; };
   Pieces pieces;
   bool is_flat = true;
-  for_each_bit(view.now.blades, [&](const int k) {
+  for_each_bit(of, [&](const int k) {
     const auto& [ends, sides] = view.now.skeleton().segment[k];
     const Vec3 at = grid::segment_point(solid, view.cell, view.now.skeleton(), k),
                along = grid::item_point(solid, view.cell, ends[1]) - grid::item_point(solid, view.cell, ends[0]);
@@ -55,19 +59,12 @@ ConvexPolygon<most_pieces + 4> all_around(const Vec3& p, const Vec3& normal, con
   return square;
 }
 
-} // namespace
-
-std::optional<Vec3> point_that_sees_border(const grid::Solid& solid, const View& view, const Vec3& p) {
+/// In the middle of all points of the plane from where the pieces are seen; p where it is one of them.
+std::optional<Vec3> point_that_sees(const Pieces& pieces, const Vec3& p, const Vec3& normal, const double h) {
   constexpr double round_off = 1e-12, least = 1e-6; // of h
-  const double h = solid.grid.h();
-  const Vec3 normal = cut_plane(solid, view, std::countr_zero(view.now.blades)).plane.normal;
-  const Pieces pieces = pieces_of_border(solid, view, p, normal);
   const auto height = [](const Vec3& q, const Plane& piece) { return piece.normal.dot(q - piece.point); };
-  bool sees_all = true;
-  for (const Plane& piece : pieces)
-    sees_all = sees_all && height(p, piece) >= -round_off * h;
-  if (sees_all)
-    return {};
+  if (std::ranges::all_of(pieces, [&](const Plane& piece) { return height(p, piece) >= -round_off * h; }))
+    return p;
   auto kernel = all_around(p, normal, h);
   for (const Plane& piece : pieces)
     kernel = clipped(kernel, piece.normal, piece.normal.dot(piece.point));
@@ -76,10 +73,51 @@ std::optional<Vec3> point_that_sees_border(const grid::Solid& solid, const View&
   Vec3 middle = Vec3::Zero();
   for (std::size_t i = 0; i < kernel.n; ++i)
     middle += kernel.vertices[i] / double(kernel.n);
-  for (const Plane& piece : pieces)
-    if (height(middle, piece) < least * h)
-      return {};
+  if (std::ranges::any_of(pieces, [&](const Plane& piece) { return height(middle, piece) < least * h; }))
+    return {};
   return middle;
+}
+
+Vec3 normal_of(const grid::Solid& solid, const View& view) {
+  return cut_plane(solid, view, std::countr_zero(view.now.blades)).plane.normal;
+}
+
+} // namespace
+
+std::optional<Vec3> point_that_sees_border(const grid::Solid& solid, const View& view, const Vec3& p) {
+  const Vec3 normal = normal_of(solid, view);
+  return point_that_sees(pieces_of_border(solid, view, view.now.blades, p, normal), p, normal, solid.grid.h());
+}
+
+grid::Segments border_of(const grid::Skeleton& skeleton, const grid::Segments cut, const int segment) {
+  grid::Segments border = grid::Segments(1) << segment, before = 0;
+  while (border != before) {
+    before = border;
+    grid::Sides sides = 0;
+    for_each_bit(border, [&](const int k) {
+      for (const int side : skeleton.segment[k].sides)
+        sides |= grid::Sides(1) << side;
+    });
+    for_each_bit(cut & ~border, [&](const int k) {
+      for (const int side : skeleton.segment[k].sides)
+        if ((sides >> side & 1) != 0)
+          border |= grid::Segments(1) << k;
+    });
+  }
+  return border;
+}
+
+Vec3 vertex_of_border(const grid::Solid& solid, const grid::CellId cell, const grid::Segments border) {
+  const View view = look_at(solid, cell);
+  const Vec3 of_cell = *solid.cuts.inner_point(cell), normal = normal_of(solid, view);
+  if (pieces_of_border(solid, view, view.now.blades, of_cell, normal).empty())
+    return of_cell;
+  Vec3 mean = Vec3::Zero();
+  for_each_bit(border, [&](const int k) {
+    mean += grid::segment_point(solid, cell, view.now.skeleton(), k) / std::popcount(border);
+  });
+  return point_that_sees(pieces_of_border(solid, view, border, mean, normal), mean, normal, solid.grid.h())
+    .value_or(mean);
 }
 
 } // namespace kerf::surface

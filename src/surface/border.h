@@ -16,4 +16,11 @@ namespace kerf::surface {
 /// point of the plane.
 std::optional<Vec3> point_that_sees_border(const grid::Solid& solid, const View& view, const Vec3& p);
 
+/// The cut segments whose cuts lie on the same border as that of `segment`: a thin part of the body leaves two.
+grid::Segments border_of(const grid::Skeleton& skeleton, grid::Segments cut, int segment);
+
+/// Where the fan to one of several borders has its vertex, in a cell whose cuts' vertex is placed: where it sees that
+/// border, if all cuts of the cell lie in one plane; else at the cell's vertex.
+Vec3 vertex_of_border(const grid::Solid& solid, grid::CellId cell, grid::Segments border);
+
 } // namespace kerf::surface

@@ -2,7 +2,9 @@
 
 /// Where the triangles around a line, and the vertices in a face, stand in a surface's tables; for writer.h alone.
 
-#include "grid/cube.h"
+#include "grid/skeleton.h"
+
+#include <bit>
 
 namespace kerf::surface {
 
@@ -27,6 +29,17 @@ constexpr int place_in_face(const int face, const int vertex) {
     if (cube::face_vertices[face][i] == vertex)
       place = i;
   return place;
+}
+
+/// Of a part of a face, the same for both cells there: by the face's nodes, then lines, then arcs.
+inline std::size_t place_in_face(const int face, const grid::Items part) {
+  for (std::size_t i = 0; i < 4; ++i)
+    if (part >> cube::face_vertices[face][i] & 1)
+      return i;
+  for (std::size_t i = 0; i < 4; ++i)
+    if (part >> grid::skeleton::on_line(cube::face_lines[face][i]) & 1)
+      return 4 + i;
+  return part >> grid::skeleton::on_arc(face, 0) & 1 ? 8 : 9;
 }
 
 } // namespace kerf::surface

@@ -52,7 +52,8 @@ std::size_t Surface::n_bytes() const {
 
 std::size_t SurfaceIndex::n_bytes() const {
   return first_face_vertex.n_bytes() + first_inner_vertex.n_bytes() + first_skin_centre.n_bytes() +
-         (in_skin.size() + pieces_of_skin.size() + centres_of_joined.size()) * 2 * sizeof(std::uint64_t) +
+         (in_skin.size() + pieces_of_skin.size() + centres_of_joined.size() + centres_of_borders.size()) * 2 *
+           sizeof(std::uint64_t) +
          bytes(face_vertices) + bytes(edge_vertices) + bytes(segment_vertices) + bytes(first_triangle) +
          bytes(first_triangle_of_segment) + bytes(skin_centres) + bytes(centres.items());
 }

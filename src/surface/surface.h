@@ -52,13 +52,14 @@ struct SurfaceIndex {
   /// first.
   std::unordered_map<std::uint64_t, std::uint32_t> in_skin, pieces_of_skin;
   std::unordered_map<std::uint64_t, std::uint32_t>
-    centres_of_joined; ///< by cell and lowest item of a part (Cuts::joined)
+    centres_of_joined,  ///< by cell and lowest item of a part (Cuts::joined)
+    centres_of_borders; ///< of all borders of a cell but the first: by cell, lowest item of a part, lowest segment
 
   std::size_t n_bytes() const;
   void archive(Archive& a) {
     a(first_face_vertex, face_vertices, first_inner_vertex, edge_vertices, first_triangle, centres);
     a(segment_vertices, first_triangle_of_segment, first_skin_centre, skin_centres, in_skin, pieces_of_skin,
-      centres_of_joined);
+      centres_of_joined, centres_of_borders);
   }
 };
 

@@ -5,6 +5,7 @@
 #include "grid/cube.h"
 #include "grid/shape.h"
 #include "grid/touched.h"
+#include "surface/border.h"
 #include "surface/places.h"
 #include "surface/surface.h"
 #include "surface/table.h"
@@ -146,7 +147,7 @@ class Writer {
     const auto& [ends, sides] = skeleton_->segment[segment];
     for (const int end : {0, 1}) {
       const CopyId copy = copy_of_[ends[end]];
-      const std::uint32_t cut = cut_vertex(segment, end, copy), middle = centre(ends[end]);
+      const std::uint32_t cut = cut_vertex(segment, end, copy), middle = centre(ends[end], segment);
       for (const int way : {0, 1}) {
         const std::uint32_t in_side = side_vertex(sides[way], ends[end]);
         put(triangle_of_cut(segment, end, way),
@@ -265,7 +266,7 @@ class Writer {
     if (item >= skeleton::first_middle)
       return item;
     if (item >= skeleton::first_on_arc)
-      return std::countr_zero(part_of_side(item - skeleton::first_on_arc, item));
+      return std::countr_zero(skeleton_->reachable_within(item - skeleton::first_on_arc, item, blades_));
     return (blades_ >> (item - skeleton::first_on_line) & 1) ? item : skeleton_->vertex[item];
   }
 
@@ -275,24 +276,9 @@ class Writer {
     return *std::min_element(items.begin(), items.begin() + n);
   }
 
-  /// The items of a side that hang together with one of them within the side.
-  grid::Items part_of_side(const int side, const int item) const {
-    const auto& [n, items, segments] = skeleton_->side[side];
-    grid::Items part = grid::Items(1) << item, before = 0;
-    while (part != before) {
-      before = part;
-      for (int i = 0; i < n; ++i) {
-        const grid::Items ends = grid::Items(1) << items[i] | grid::Items(1) << items[(i + 1) % n];
-        if ((blades_ >> segments[i] & 1) == 0 && (part & ends) != 0)
-          part |= ends;
-      }
-    }
-    return part;
-  }
-
   /// The vertex of the cuts in a side, of the part that holds the item there.
   std::uint32_t side_vertex(const int side, const int item) {
-    const grid::Items part = part_of_side(side, item);
+    const grid::Items part = skeleton_->reachable_within(side, item, blades_);
     const CopyId copy = copy_of_[std::countr_zero(part)];
     if (side >= skeleton::first_triangle) {
       const int triangle = side - skeleton::first_triangle;
@@ -307,7 +293,7 @@ class Writer {
     const bool is_full = (skeleton_->items >> skeleton::on_arc(face, 0) & 1) == 0;
     const std::size_t i = is_full ? block(index_.first_face_vertex.at(faces_[face]), 4) +
                                       static_cast<std::size_t>(place_in_face(face, std::countr_zero(part)))
-                                  : block(index_.first_inner_vertex.at(faces_[face]), 10) + place_in(face, part);
+                                  : block(index_.first_inner_vertex.at(faces_[face]), 10) + place_in_face(face, part);
     std::uint32_t& id = index_.face_vertices[i];
     if (id == unset || known_ == Known::renewed)
       set_in_face(id, face,
@@ -322,17 +308,6 @@ class Writer {
     while ((part >> skeleton_->side[side].items[i] & 1) == 0)
       ++i;
     return i;
-  }
-
-  /// The same for both cells at a face: by the face's nodes, then lines, then arcs.
-  static std::size_t place_in(const int face, const grid::Items part) {
-    for (std::size_t i = 0; i < 4; ++i)
-      if (part >> cube::face_vertices[face][i] & 1)
-        return i;
-    for (std::size_t i = 0; i < 4; ++i)
-      if (part >> skeleton::on_line(cube::face_lines[face][i]) & 1)
-        return 4 + i;
-    return part >> skeleton::on_arc(face, 0) & 1 ? 8 : 9;
   }
 
   std::uint32_t edge_vertex_of(const std::uint32_t cut, const int line, const bool is_upper, const CopyId copy) {
@@ -364,14 +339,23 @@ class Writer {
     return index_.centres_of_joined.try_emplace(key, unset).first->second;
   }
 
-  /// Of the cuts at the skin.
-  std::uint32_t centre(const int item) {
+  /// Of the cuts at the skin, of a segment's border: the first border of a cell has the place of the only one.
+  std::uint32_t centre(const int item, const int segment) {
     const int lowest = std::countr_zero(skeleton_->reachable(grid::Items(1) << item, blades_));
     const CopyId copy = copy_of_[lowest];
-    std::uint32_t& id = centre_of(copy, lowest);
+    const grid::Segments border = border_of(*skeleton_, blades_, segment);
+    const int first = std::countr_zero(border);
+    std::uint32_t& id = first == std::countr_zero(blades_) ? centre_of(copy, lowest) : centre_of(lowest, first);
     if (id == unset || known_ == Known::renewed)
-      set_centre(id, *solid_.cuts.inner_point(cell_), copy);
+      set_centre(id, border == blades_ ? *solid_.cuts.inner_point(cell_) : vertex_of_border(solid_, cell_, border),
+                 copy);
     return id;
+  }
+
+  std::uint32_t& centre_of(const int lowest, const int first_segment) {
+    const std::uint64_t part = std::uint64_t(cell_.value) * skeleton::n_items + static_cast<unsigned>(lowest),
+                        key = part * skeleton::n_segments + static_cast<unsigned>(first_segment);
+    return index_.centres_of_borders.try_emplace(key, unset).first->second;
   }
 
   void set_in_face(std::uint32_t& id, const int face, const Vec3& p, const CopyId copy) {
