@@ -13,6 +13,7 @@
 #include <bit>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 namespace kerf::surface {
 
@@ -222,7 +223,7 @@ class Placer {
   }
 
   /// On the skin itself: halfway between two cuts of its sides, and so on the rim. A cut of the third side meets it
-  /// there, where the rim crosses that cut's plane.
+  /// there, where the rim crosses that cut's plane. One cut alone goes on in its plane.
   void place_triangle(const View& view, const int triangle) {
     const Skeleton::Side& side = view.now.skeleton().side[skeleton::first_triangle + triangle];
     const grid::Segments of = border(side), now = view.now.blades & of, old = view.old_blades & of;
@@ -230,11 +231,24 @@ class Placer {
       return;
     Vec3 p = mean_point_of(view, of);
     if (std::popcount(now) == 1)
-      p = 0.5 * (p + middle_of(view, skeleton::first_triangle + triangle));
+      p = 0.5 * (p + end_of_cut(view, side, now).value_or(middle_of(view, skeleton::first_triangle + triangle)));
     else if (std::popcount(old) == 2)
       p = on_rim(view, old, now & ~old);
     solid_.cuts.set_inner_point(view.cell, triangle, p);
     ++counts_.n_placed;
+  }
+
+  /// Where the plane of the only cut of a triangle's sides leaves it.
+  std::optional<Vec3> end_of_cut(const View& view, const Skeleton::Side& side, const grid::Segments cut) const {
+    const Plane plane = cut_plane(solid_, view, std::countr_zero(cut)).plane;
+    const auto i = std::ranges::find(side.segments, std::countr_zero(cut)) - side.segments.begin();
+    const auto at = [&](const std::ptrdiff_t k) { return grid::item_point(solid_, view.cell, side.items[k % 3]); };
+    const Vec3 opposite = at(i + 2);
+    const double height = plane.normal.dot(opposite - plane.point);
+    for (const Vec3& end : {at(i), at(i + 1)})
+      if (const double of_end = plane.normal.dot(end - plane.point); (of_end > 0) != (height > 0))
+        return opposite + height / (height - of_end) * (end - opposite);
+    return {};
   }
 
   /// On the rim between two cuts, nearest to the plane of a third one.
