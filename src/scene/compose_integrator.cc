@@ -99,10 +99,10 @@ Implicit undamped(Implicit implicit) {
 Implicit implicit_integrator(const Section& body, const std::string& name) {
   using dynamics::GeneralisedAlpha;
   if (name == "BDF2")
-    return implicit<ConvergedNewtonParameters>(
+    return undamped(implicit<ConvergedNewtonParameters>(
       body, "BDF2", 2, [](ElasticModel& model, const ConvergedNewtonParameters& p, const PiecesOfParticles&) {
         return std::make_unique<dynamics::Bdf2>(model, p.newton.options());
-      });
+      }));
   if (name == "Newmark")
     return undamped(implicit<dynamics::NewmarkParameters>(
       body, "Newmark", 2, [](ElasticModel& model, const dynamics::NewmarkParameters& p, const PiecesOfParticles&) {

@@ -246,6 +246,24 @@ TEST(SoundScene, PointsHangByThinWebs) {
   EXPECT_LT(stretch("pba"), 1.5 * stretch("fem"));
 }
 
+/// Corners of hardly any mass that a cut has moved follow the others, and do not swing about them.
+TEST(SoundScene, LightCornersSwingNoFurtherByBdf2ThanByNewmark) {
+  const auto stretch = [](const std::string& integrator) {
+    const Trial ball(
+      steps(0.005, 80) + section("Gravity", {"Acceleration [m/s^2] = 0, 0, -9.81"}) +
+      section("Body b",
+              {"Shape = ball", "Radius [m] = 0.25", "Cube edge [m] = 0.06", "Integrator = " + integrator},
+              material(2e4, 0.3) + section("Support top", {"Region = half space", "Plane normal [1] = 0, 0, -1",
+                                                           "Plane point [m] = 0, 0, 0.15"})) +
+      section("Blade k", {"Edge [m] = -1, 0, -0.274; 0, 0, -0.133; 1, 0, 0.274", "Times [s] = 0.05, 0.2",
+                          "Positions [m] = 0, -0.4, 0.179; 0, 0.4, 0.096"}) +
+      observe("largest stretch, pieces"));
+    EXPECT_EQ(ball.last("pieces"), 2) << integrator;
+    return ball.last("largest stretch");
+  };
+  EXPECT_LT(stretch("BDF2"), 1.3 * stretch("Newmark"));
+}
+
 TEST(SoundScene, ARunawayCornerEndsTheRun) {
   World world = world_of(steps(1e-3, 1) + section("Body b", cube_keys(), material(1e4, 0.3)));
   Body& body = world.bodies[0];
