@@ -8,6 +8,8 @@
 #include "scene/soundness.h"
 
 #include <algorithm>
+#include <iomanip>
+#include <sstream>
 
 namespace kerf::scene {
 
@@ -18,7 +20,9 @@ namespace {
 template <class Action>
 void on(const World& world, const Body& body, const int step, const double time, const Action& action) {
   const auto place = [&] {
-    return "body " + body.name + ", step " + std::to_string(step) + ", time " + to_text(time) + " s: ";
+    std::ostringstream text;
+    text << "body " << body.name << ", step " << step << ", time " << std::setprecision(9) << time << " s: ";
+    return text.str(); // a sum of time steps has round-off in its last digits
   };
   try {
     action();
