@@ -1,5 +1,7 @@
 #include "dynamics/bdf2.h"
 
+#include "dynamics/followers.h"
+
 #include <utility>
 
 namespace kerf::dynamics {
@@ -51,12 +53,18 @@ StepReport Bdf2::step(State& state, const Loads& loads, const double dt) {
       (past.c_1 * balance.velocity[i] + past.c_0 * state.v[i] + past.c_m * past.v_before[i]) / dt;
     balance.guess[i] = dt * state.v[i];
   }
+  for (const Follower& follower : model_.followers()) {
+    const auto i = follower.corner;
+    balance.acceleration[i].setZero();
+    balance.velocity[i] = state.v[i] - omega * balance.guess[i];
+  }
   const double end = balance.time;
   Loan<Vec3> x = Loan<Vec3>::with_room(n);
   const StepReport report = accepted(solver_.solve(loads, constraints, std::move(balance), x));
   Loan<Vec3> v(n);
   for (std::size_t i = 0; i < n; ++i)
     v[i] = velocity(i, x[i]);
+  lead_along(model_, x, v);
   constraints.place_velocity(end, part_of_step * dt, v);
   state.x.swap(x);
   state.v.swap(v);

@@ -6,7 +6,7 @@
 ///
 /// and a_1 from v likewise (Hairer, Norsett, Wanner, Solving ODEs I, III.5); r = dt / (step before). Second order,
 /// L-stable for equal steps: what is not resolved dies at once. The first step, and one more than 1 + sqrt 2 times as
-/// long as that before, is implicit Euler, which leaves second order.
+/// long as that before, is implicit Euler, which leaves second order. Corners without mass follow (followers.h).
 ///
 /// State::history "position before" [m], "velocity before" [m/s]; State::numbers "step before [s]".
 
@@ -17,11 +17,12 @@ namespace kerf::dynamics {
 class Bdf2 : public Stepper {
  public:
   /// The model must outlive the stepper.
-  Bdf2(ElasticModel& model, const NewtonOptions& options) : solver_(model, options) {}
+  Bdf2(ElasticModel& model, const NewtonOptions& options) : model_(model), solver_(model, options) {}
 
   StepReport step(State& state, const Loads& loads, double dt) override;
 
  private:
+  ElasticModel& model_;
   BalanceSolver solver_;
 };
 
