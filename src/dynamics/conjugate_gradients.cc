@@ -197,7 +197,7 @@ CgReport patient_conjugate_gradients(const CgEquation& equation, const std::span
   if (!equation.J)
     return conjugate_gradients(equation, b, stop, max_iterations, x, left);
   CgStop patient = stop;
-  patient.patience = 200;
+  patient.patience = 400;
   const CgReport first = conjugate_gradients(equation, b, patient, max_iterations, x, left);
   if (first.converged || first.indefinite || first.n_iterations >= max_iterations)
     return first;

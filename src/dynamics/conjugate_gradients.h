@@ -86,7 +86,7 @@ struct CgEquation {
 CgReport conjugate_gradients(const CgEquation& equation, std::span<const double> b, const CgStop& stop,
                              int max_iterations, std::span<double> x, std::span<double> left = {});
 
-/// The same, but for an equation with J of its own by B as long as 200 iterations bring the residual to a tenth,
+/// The same, but for an equation with J of its own by B as long as 400 iterations bring the residual to a tenth,
 /// and from there by J: where B gets on badly, the blocks alone may do as well, at a fraction of its cost.
 CgReport patient_conjugate_gradients(const CgEquation& equation, std::span<const double> b, const CgStop& stop,
                                      int max_iterations, std::span<double> x, std::span<double> left = {});
