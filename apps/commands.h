@@ -1,6 +1,7 @@
 #pragma once
 
-/// The subcommands of `kerf`. Each takes the arguments after its name and returns the exit code; errors are thrown.
+/// The program, and its subcommands: each takes the arguments after its name and returns the exit code; errors are
+/// thrown.
 
 #include <string>
 #include <vector>
@@ -8,6 +9,10 @@
 namespace kerf::apps {
 
 using Arguments = std::vector<std::string>;
+
+/// What main does, with its arguments: the subcommand that the first one names. Errors are told on stderr. Returns the
+/// exit code.
+int program(int argc, const char* const* argv);
 
 int run(const Arguments& arguments);
 int check(const Arguments& arguments);

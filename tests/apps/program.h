@@ -2,6 +2,7 @@
 
 /// Runs the program in a folder of its own, and what tests ask of the way it ends.
 
+#include "apps/commands.h"
 #include "geometry/triangle_mesh.h"
 #include "tests/output/samples.h"
 #include "tests/scene/scene_text.h"
@@ -26,7 +27,7 @@ using scene::mesh_path;
 using Words = std::vector<std::string>;
 
 /// The program under test; the environment may name another build of it: KERF_PROGRAM=build/asan/apps/kerf.
-inline std::string program() {
+inline std::string program_file() {
   const char* const other = std::getenv("KERF_PROGRAM");
   return other ? std::filesystem::absolute(other).string() : KERF_PROGRAM;
 }
@@ -63,15 +64,11 @@ inline void write_off(const std::filesystem::path& path, const geometry::Triangl
 /// The program, in a folder that goes away.
 class Program : public testing::Test {
  protected:
-  /// Runs `kerf arguments...` after the shell commands `before`, such as a limit.
-  Result kerf(const Words& arguments, const std::string& before = ":") const {
-    const std::string out = (folder / "stdout").string(), err = (folder / "stderr").string();
-    const std::string script =
-      "cd '" + (folder / "").string() + "' && exec >stdout 2>stderr && " + before + " && exec \"$0\" \"$@\"";
-    Words words = {"/bin/sh", "-c", script, program()};
-    words.insert(words.end(), arguments.begin(), arguments.end());
-    const int status = wait_for(words);
-    Result result{.out = read_text(out), .err = read_text(err)};
+  /// Runs `kerf arguments...`, after the shell commands `before`, such as a limit, where there are any.
+  Result kerf(const Words& arguments, const std::string& before = "") const {
+    int status = 0;
+    waitpid(before.empty() ? start(arguments) : start_after(before, arguments), &status, 0);
+    Result result{.out = read_text(folder / "stdout"), .err = read_text(folder / "stderr")};
     if (WIFEXITED(status))
       result.exit_code = WEXITSTATUS(status);
     else
@@ -81,14 +78,19 @@ class Program : public testing::Test {
 
   /// Starts `kerf arguments...` beside this process.
   pid_t start(const Words& arguments) const {
-    Words words = {program()};
+    Words words = {"kerf"};
     words.insert(words.end(), arguments.begin(), arguments.end());
     const std::vector<char*> pointers = pointers_to(words);
+    const bool is_loaded = !needs_its_file(arguments);
+    std::fflush(nullptr);
     const pid_t id = fork();
     if (id == 0) {
-      if (chdir((folder / "").c_str()) == 0 && std::freopen("stdout", "w", stdout) &&
-          std::freopen("stderr", "w", stderr))
-        execv(pointers[0], pointers.data());
+      if (chdir((folder / "").c_str()) != 0 || !std::freopen("stdout", "w", stdout) ||
+          !std::freopen("stderr", "w", stderr))
+        _exit(127);
+      if (is_loaded)
+        std::exit(apps::program(static_cast<int>(words.size()), pointers.data()));
+      execv(program_file().c_str(), pointers.data());
       _exit(127);
     }
     return id;
@@ -97,7 +99,7 @@ class Program : public testing::Test {
   void write(const std::string& name, const std::string& text) const { std::ofstream(folder / name) << text; }
 
   /// Runs a scene into the folder "out", in place of what an earlier run has left there.
-  Result run(const std::string& scene, Words more = {}, const std::string& before = ":") const {
+  Result run(const std::string& scene, Words more = {}, const std::string& before = "") const {
     write("scene.prm", scene);
     const Words start = {"run", "scene.prm", "--output", "out", "--force"};
     more.insert(more.begin(), start.begin(), start.end());
@@ -135,16 +137,31 @@ class Program : public testing::Test {
   }
 
  private:
-  static int wait_for(Words& words) {
+  /// A child is the program as it was linked into the tests, which have loaded its libraries: a third of a second. Not
+  /// so where another build is asked for, or where the program starts itself (jobs, rows, several scenes) or looks beside
+  /// itself (Python).
+  static bool needs_its_file(const Words& arguments) {
+    const auto asks_for = [&](const char* const word) {
+      return std::find(arguments.begin(), arguments.end(), word) != arguments.end();
+    };
+    const auto n_files = std::count_if(arguments.begin(), arguments.end(),
+                                       [](const std::string& word) { return word.ends_with(".prm"); });
+    return std::getenv("KERF_PROGRAM") || n_files > 1 || asks_for("--jobs") || asks_for("study") ||
+           asks_for("report") || asks_for("export") || asks_for("inspect");
+  }
+
+  pid_t start_after(const std::string& before, const Words& arguments) const {
+    const std::string script =
+      "cd '" + (folder / "").string() + "' && exec >stdout 2>stderr && " + before + " && exec \"$0\" \"$@\"";
+    Words words = {"/bin/sh", "-c", script, program_file()};
+    words.insert(words.end(), arguments.begin(), arguments.end());
     const std::vector<char*> pointers = pointers_to(words);
     const pid_t id = fork();
     if (id == 0) {
       execv(pointers[0], pointers.data());
       _exit(127);
     }
-    int status = 0;
-    waitpid(id, &status, 0);
-    return status;
+    return id;
   }
 };
 

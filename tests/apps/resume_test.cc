@@ -236,7 +236,7 @@ TEST_F(Resume, ASecondRunLeavesTheFirstWhole) {
   const pid_t first = start(words);
   wait_for_first_frame();
   ::kill(first, SIGSTOP); // it shall not come to its end before the others have tried
-  const std::string second = "cd '" + (folder / "").string() + "' && '" + program() + "' run scene.prm --output out ";
+  const std::string second = "cd '" + (folder / "").string() + "' && '" + program_file() + "' run scene.prm --output out ";
   for (const std::string option : {"", "--force", "--resume"})
     EXPECT_EQ(WEXITSTATUS(std::system((second + option + " >second 2>&1").c_str())), 2);
   EXPECT_NE(read_text(folder / "second").find("is in use: process "), std::string::npos)
