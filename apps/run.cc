@@ -34,6 +34,11 @@ void print_body(const scene::Body& body, const scene::Watch& watch) {
       "  %d steps taken again, in substeps or by implicit Euler: whole ones failed or gained energy that nothing "
       "gave\n",
       body.n_divided);
+  if (const std::size_t n = surface::n_bodies(body.surface), n_pieces = grid::n_pieces(body.solid.complex);
+      n > n_pieces)
+    std::printf("  its %zu pieces are drawn as %zu bodies: what joins them is thinner than the grid resolves. Use a "
+                "smaller cube edge\n",
+                n_pieces, n);
   if (const std::size_t n = body.interior ? body.interior->atlas.n_coarse() : 0; n > 0)
     std::printf("  %zu triangles have colours farther apart than asked for, %d to a side: use a smaller cube edge\n", n,
                 texture::Atlas::max_parts);
@@ -52,11 +57,14 @@ void print_body(const scene::Body& body, const scene::Watch& watch) {
 void print_cut(const scene::World& world, const grid::CutLabel label, const std::string& what,
                const std::string& remedy) {
   std::size_t n = 0, n_passed = 0, n_of_skin = 0, n_left_whole = 0; // the last of all cuts
+  double between = 0;
   for (const scene::Body& body : world.bodies) {
     n_left_whole += body.cutter->counts().n_left_whole;
     n += body.cutter->counts().n_cut_edges[label - 1];
+    between += body.cutter->counts().between[label - 1];
     n_passed += body.cutter->n_passed_cells(label);
-    n_of_skin += static_cast<std::size_t>(std::ranges::count(body.solid.cuts.skin_cuts(), label, &grid::SkinCut::label));
+    n_of_skin +=
+      static_cast<std::size_t>(std::ranges::count(body.solid.cuts.skin_cuts(), label, &grid::SkinCut::label));
   }
   const std::string why = n > 0          ? ""
                           : n_of_skin > 0
@@ -65,6 +73,10 @@ void print_cut(const scene::World& world, const grid::CutLabel label, const std:
                           : n_left_whole > 0 ? ": none, or what it met was left whole. " + remedy
                                          : ": it never met a body. " + remedy;
   std::printf("%s: cut %zu grid edges%s\n", what.c_str(), n, why.c_str());
+  if (between >= 1)
+    std::printf("  nearer than a cube to earlier cuts: a neighbour has some %.3g cubes of what lies between. Use a "
+                "smaller cube edge\n",
+                between);
 }
 
 void print_cutting(const scene::World& world) {

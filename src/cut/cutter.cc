@@ -34,6 +34,22 @@ bool is_known(const Solid& solid, const Segment& segment, const grid::CutLabel l
   return std::ranges::find(later, label, &grid::LaterCut::label) != later.end();
 }
 
+/// The material on an edge between its cut and a later one, over h, when the corners are at x; times the square of the
+/// later normal along it, so that the sum over the edges of all three axes is a volume in cells. What is longer than h
+/// is open where it is cut: a blade that comes through there cuts nothing.
+double between(const Solid& solid, const EdgeCut& later, const Points& x) {
+  const auto& [lower, upper] = solid.grid.ends(later.edge);
+  const EdgeCut* const first = solid.cuts.find(later.edge);
+  if (!first || !solid.grid.is_material(lower) || !solid.grid.is_material(upper))
+    return 0;
+  const auto& corners = solid.complex.real_corner;
+  const double length = std::max(1.0, (x[corners[upper].value] - x[corners[lower].value]).norm() / solid.grid.h()),
+               below = later.t * length, above = (1 - later.t) * length,
+               part = std::max({first->t - below, 1 - first->t - above, 0.0}),
+               along = later.normal[solid.grid.axis(later.edge)];
+  return part * along * along;
+}
+
 NearSweep near(const Points& line) {
   std::vector<Patch> pieces;
   for (std::size_t i = 1; i < line.size(); ++i)
@@ -97,7 +113,10 @@ class Passage {
 } // namespace
 
 Cutter::Cutter(const std::size_t n_labels, const Release release, const Fronts fronts)
-  : release_(release), fronts_(fronts), passed_(n_labels), counts_{std::vector<std::size_t>(n_labels, 0)} {}
+  : release_(release),
+    fronts_(fronts),
+    passed_(n_labels),
+    counts_{.n_cut_edges = std::vector<std::size_t>(n_labels, 0), .between = std::vector<double>(n_labels, 0)} {}
 
 void Cutter::begin(const Solid& solid, const Points& x) {
   boxes_.emplace(solid);
@@ -149,7 +168,7 @@ CutChange Cutter::take(Solid& solid, const std::span<const Stroke> strokes, cons
   if (strokes.empty() || boxes_->moves())
     x_before_ = x; // not after the cut: where corners jump then, the blade meets them on their way
   append(cuts, {{}, missed(solid, cuts, x)});
-  Added added = add(solid, cuts);
+  Added added = add(solid, cuts, x);
   coming.merge(pending_.labels());
   added.coming = std::move(coming);
   return part(solid, added, advance_.take(solid, pending_), x);
@@ -185,12 +204,14 @@ CutChange Cutter::at_once(Solid& solid, const CutSurface& surface, const Points&
   boxes_stand_there_ = false;
   const SweepCuts found = cut_edges(surface, solid, x, &*boxes_);
   counts_.n_double_crossings += found.n_double_crossings;
-  const Added added = add(solid, found);
+  const Added added = add(solid, found, x);
   return part(solid, added, fronts_ != Fronts::at_faces ? find_fronts(surface, solid, x) : std::vector<grid::Front>(),
               x);
 }
 
-CutChange Cutter::cut(Solid& solid, const SweepCuts& cuts) { return part(solid, add(solid, cuts), {}, x_before_); }
+CutChange Cutter::cut(Solid& solid, const SweepCuts& cuts) {
+  return part(solid, add(solid, cuts, x_before_), {}, x_before_);
+}
 
 std::set<grid::CutLabel> Cutter::labels_that_meet(const Solid& solid, const std::span<const Stroke> strokes) const {
   std::set<grid::CutLabel> labels;
@@ -206,17 +227,22 @@ std::set<grid::CutLabel> Cutter::labels_that_meet(const Solid& solid, const std:
   return labels;
 }
 
-Cutter::Added Cutter::add(Solid& solid, const SweepCuts& cuts) {
+Cutter::Added Cutter::add(Solid& solid, const SweepCuts& cuts, const Points& x) {
   Added added;
   auto& [edges, segments, edges_met, segments_met, coming] = added;
   const auto meet = [&](const auto& cut, const auto& segment, auto& met) {
     if (is_known(solid, segment, cut.label))
-      return;
+      return false;
     solid.cuts.add(segment, grid::LaterCut{cut.t, cut.normal, cut.label});
     met.push_back(segment);
+    return true;
+  };
+  const auto meet_edge = [&](const EdgeCut& cut) {
+    if (meet(cut, cut.edge, edges_met))
+      counts_.between[cut.label - 1] += between(solid, cut, x);
   };
   for (const EdgeCut& cut : cuts.later)
-    meet(cut, cut.edge, edges_met);
+    meet_edge(cut);
   for (const grid::SkinCut& cut : cuts.later_of_skin)
     meet(cut, cut.segment, segments_met);
   for (const EdgeCut& cut : cuts.cuts)
@@ -225,7 +251,7 @@ Cutter::Added Cutter::add(Solid& solid, const SweepCuts& cuts) {
       edges.push_back(cut.edge);
       passed_[cut.label - 1].remove(solid.grid.cells(cut.edge));
     } else // by another of the same step
-      meet(cut, cut.edge, edges_met);
+      meet_edge(cut);
   for (const grid::SkinCut& cut : cuts.of_skin)
     if (!solid.cuts.is_cut(cut.segment)) {
       solid.cuts.add(cut);

@@ -56,8 +56,11 @@ struct CutCounts {
   std::size_t n_double_crossings = 0; ///< edges and segments of the skin that one cut crossed an even number of times:
                                       ///< left uncut
   std::size_t n_left_whole = 0;       ///< edges and segments of the skin that were left whole (shreds.h)
+  std::vector<double> between;        ///< by label, from 1: an estimate of the material that lies between a cut and
+                                      ///< those of other labels before it on the same edges, which a neighbour has of
+                                      ///< what it belongs to, as an edge is cut once [cells]
 
-  void archive(Archive& a) { a(n_cut_edges, n_double_crossings, n_left_whole); }
+  void archive(Archive& a) { a(n_cut_edges, n_double_crossings, n_left_whole, between); }
 };
 
 /// What blades meet in a step: two edges of a cell at most are cut in it, the rest waits (pending.h); or all are. The
@@ -120,7 +123,7 @@ class Cutter {
     std::vector<grid::SkinSegment> segments_met;
     std::set<grid::CutLabel> coming; // of blades that have met something that they had not before, or whose cuts wait
   };
-  Added add(grid::Solid& solid, const SweepCuts& cuts);
+  Added add(grid::Solid& solid, const SweepCuts& cuts, const Points& x);
   /// Of blades that meet something that they have neither cut nor met before.
   std::set<grid::CutLabel> labels_that_meet(const grid::Solid& solid, std::span<const Stroke> strokes) const;
   grid::CutChange part(grid::Solid& solid, const Added& added, std::span<const grid::Front> fronts, const Points& x);

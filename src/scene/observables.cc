@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace kerf::scene {
 
@@ -321,6 +322,19 @@ const std::vector<Observable>& body_observables() {
      "grid edges and segments of the skin that were crossed and left uncut: behind them are shavings of one blade with "
      "less material than a cube, or no material (cut/shreds.h)",
      [](const Body& b) { return b.cutter ? count(b.cutter->counts().n_left_whole) : 0.0; }},
+    {"material between cuts", "m^3",
+     "an estimate of what a neighbour has of what it belongs to, as it lies between two cuts of the same grid edges, "
+     "of which each is cut once (cut/cutter.h)",
+     [](const Body& b) {
+       double cells = 0;
+       if (b.cutter)
+         for (const double of_label : b.cutter->counts().between)
+           cells += of_label;
+       return cells * std::pow(b.solid.grid.h(), 3);
+     }},
+    {"drawn bodies", "1",
+     "closed parts of the surface: more than pieces where what joins a piece is thinner than the grid resolves",
+     [](const Body& b) { return count(surface::n_bodies(b.surface)); }},
     {"cells passed uncut", "1",
      "cells whose material a blade passed through without cutting anything in them, so far (cut/passed.h)",
      [](const Body& b) { return b.cutter ? count(b.cutter->n_passed_cells()) : 0.0; }},

@@ -50,22 +50,30 @@ Pieces pieces_of_border(const grid::Solid& solid, const View& view, const grid::
   return is_flat ? pieces : Pieces();
 }
 
-/// A square around the cell, in the plane.
-ConvexPolygon<most_pieces + 4> all_around(const Vec3& p, const Vec3& normal, const double h) {
+using Kernel = ConvexPolygon<most_pieces + 4 + 6>;
+
+/// What a plane through p has in the cell.
+Kernel within(const View& view, const Vec3& p, const Vec3& normal, const double h) {
   const Vec3 u = normal.unitOrthogonal() * 2 * h, v = normal.cross(u);
-  ConvexPolygon<most_pieces + 4> square;
+  Kernel polygon;
   for (const Vec3& corner : {Vec3(p + u + v), Vec3(p - u + v), Vec3(p - u - v), Vec3(p + u - v)})
-    square.push_back(corner);
-  return square;
+    polygon.push_back(corner);
+  const double margin = grid::min_edge_parameter * h;
+  for (const int axis : {0, 1, 2}) {
+    polygon = clipped(polygon, Vec3::Unit(axis), view.lower[axis] + margin);
+    polygon = clipped(polygon, -Vec3::Unit(axis), -view.upper[axis] + margin);
+  }
+  return polygon;
 }
 
-/// In the middle of all points of the plane from where the pieces are seen; p where it is one of them.
-std::optional<Vec3> point_that_sees(const Pieces& pieces, const Vec3& p, const Vec3& normal, const double h) {
+/// In the middle of all points of the plane in the cell from where the pieces are seen; p where it is one of them.
+std::optional<Vec3> point_that_sees(const View& view, const Pieces& pieces, const Vec3& p, const Vec3& normal,
+                                    const double h) {
   constexpr double round_off = 1e-12, least = 1e-6; // of h
   const auto height = [](const Vec3& q, const Plane& piece) { return piece.normal.dot(q - piece.point); };
   if (std::ranges::all_of(pieces, [&](const Plane& piece) { return height(p, piece) >= -round_off * h; }))
     return p;
-  auto kernel = all_around(p, normal, h);
+  Kernel kernel = within(view, p, normal, h);
   for (const Plane& piece : pieces)
     kernel = clipped(kernel, piece.normal, piece.normal.dot(piece.point));
   if (kernel.n < 3)
@@ -86,7 +94,7 @@ Vec3 normal_of(const grid::Solid& solid, const View& view) {
 
 std::optional<Vec3> point_that_sees_border(const grid::Solid& solid, const View& view, const Vec3& p) {
   const Vec3 normal = normal_of(solid, view);
-  return point_that_sees(pieces_of_border(solid, view, view.now.blades, p, normal), p, normal, solid.grid.h());
+  return point_that_sees(view, pieces_of_border(solid, view, view.now.blades, p, normal), p, normal, solid.grid.h());
 }
 
 grid::Segments border_of(const grid::Skeleton& skeleton, const grid::Segments cut, const int segment) {
@@ -116,7 +124,7 @@ Vec3 vertex_of_border(const grid::Solid& solid, const grid::CellId cell, const g
   for_each_bit(border, [&](const int k) {
     mean += grid::segment_point(solid, cell, view.now.skeleton(), k) / std::popcount(border);
   });
-  return point_that_sees(pieces_of_border(solid, view, border, mean, normal), mean, normal, solid.grid.h())
+  return point_that_sees(view, pieces_of_border(solid, view, border, mean, normal), mean, normal, solid.grid.h())
     .value_or(mean);
 }
 

@@ -5,13 +5,14 @@
 #include "surface/below_skin.h"
 #include "surface/border.h"
 #include "surface/fold.h"
-#include "surface/view.h"
+#include "surface/site.h"
 
 #include <Eigen/Geometry>
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <optional>
 
@@ -28,54 +29,6 @@ using grid::Solid;
 namespace {
 
 constexpr int no_axis = -1;
-
-/// A face or a cell, with the planes of its cut edges sorted by what they ask of its vertex.
-struct Site {
-  Site(const View& of, const Directions& directions) : view(of), inside(directions) {}
-
-  const View& view;
-  Directions inside; ///< the directions within it
-  Planes locked;     ///< cuts that already separate material here: the vertex stays on them
-  Few<grid::CutLabel, 60> locked_labels;
-  Planes open;         ///< cuts that the vertex has yet to meet
-  bool splits = false; ///< with all cuts, material here is separated
-
-  /// Does it reach along the axis?
-  bool reaches(const int axis) const { return inside.projection(axis, axis) != 0; }
-  void lock(const Plane& plane, const grid::CutLabel label) {
-    locked.push_back(plane);
-    locked_labels.push_back(label);
-  }
-};
-
-/// Figure 2.15 (b), (c): where two cut lines in a face are joined.
-class Joint {
- public:
-  explicit Joint(const double sharp_angle)
-    : smooth_(std::cos(sharp_angle)), turning_back_(std::cos(std::min(0.5 * std::numbers::pi + sharp_angle, limit))) {}
-
-  /// u and v are the axes of the face.
-  Vec3 operator()(const Plane& a, const Plane& b, const int u, const int v) const {
-    const Vec3 middle = 0.5 * (a.point + b.point);
-    const double mu = a.normal[u], mv = a.normal[v], nu = b.normal[u], nv = b.normal[v];
-    const double sine = mu * nv - mv * nu, lengths2 = (mu * mu + mv * mv) * (nu * nu + nv * nv);
-    if (sine * sine < 1e-12 * lengths2 || lengths2 == 0)
-      return middle;
-    const double da = a.normal.dot(a.point - middle), db = b.normal.dot(b.point - middle);
-    Vec3 meeting = middle;
-    meeting[u] += (da * nv - db * mv) / sine;
-    meeting[v] += (db * mu - da * nu) / sine;
-    const Vec3 arriving = meeting - a.point, leaving = b.point - meeting;
-    const double turn = arriving.dot(leaving), lengths = std::sqrt(arriving.squaredNorm() * leaving.squaredNorm());
-    if (turn < turning_back_ * lengths)
-      return middle; // the curve would turn back: the two planes do not belong to one cut
-    return turn < smooth_ * lengths ? meeting : Vec3(0.25 * (a.point + 2 * meeting + b.point));
-  }
-
- private:
-  static constexpr double limit = std::numbers::pi;
-  double smooth_, turning_back_; ///< cosines of the turns where these begin
-};
 
 class Placer {
  public:
@@ -135,7 +88,7 @@ class Placer {
       if (was_split && (old >> line & 1))
         site.lock(view.planes[line], view.labels[line]);
       else
-        site.open.push_back(view.planes[line]);
+        site.open_to(view.planes[line], view.labels[line]);
     });
     return site;
   }
@@ -152,7 +105,7 @@ class Placer {
       if (n_old > n_first && (view.old_blades >> segment & 1) != 0)
         site.lock(cut.plane, cut.label);
       else
-        site.open.push_back(cut.plane);
+        site.open_to(cut.plane, cut.label);
     });
     return site;
   }
@@ -196,14 +149,16 @@ class Placer {
       make_site_of_blades(view, of, in_face(face), {1, n_parts(view.old_blades), n_parts(view.now.blades)});
     const Vec3 middle = middle_of(view, side);
     const Vec3* const before = solid_.cuts.inner_point(f, arc);
-    const Vec3 mean = mean_point_of(view, of), from = site.locked.empty() ? mean : *before;
-    const Vec3 p = place_in(site, cube::face_axis(face), before ? *before : middle, 0.5 * (mean + middle));
+    const Vec3 p = place_in(site, cube::face_axis(face), before ? *before : middle,
+                            0.5 * (mean_point_of(view, of) + middle));
     const grid::SkinArc& of_skin = grid::skin_arcs(face, view.now.material).arcs[arc];
     const auto at = [&](const int item) { return grid::item_point(solid_, view.cell, item); };
-    const double part =
-      part_before_line(from, p, at(skeleton::on_line(of_skin.lines[0])), at(skeleton::on_arc(face, arc)),
-                       at(skeleton::on_line(of_skin.lines[1])), cube::face_axis(face));
-    const Vec3 q = hold_below_skin(from, p, part);
+    const auto part = [&](const Vec3& from) {
+      return part_before_line(from, p, at(skeleton::on_line(of_skin.lines[0])), at(skeleton::on_arc(face, arc)),
+                              at(skeleton::on_line(of_skin.lines[1])), cube::face_axis(face));
+    };
+    const Vec3 from = site.locked.empty() ? between_cuts(site, p, part) : *before;
+    const Vec3 q = hold_below_skin(from, p, part(from));
     const bool folds = !is_on_planes(view, of, q) && is_folded(solid_, view, side, q);
     is_held_ |= folds;
     solid_.cuts.set_inner_point(f, arc, folds ? at(skeleton::on_arc(face, arc)) : q);
@@ -223,19 +178,41 @@ class Placer {
   }
 
   /// On the skin itself: halfway between two cuts of its sides, and so on the rim. A cut of the third side meets it
-  /// there, where the rim crosses that cut's plane. One cut alone goes on in its plane.
+  /// there, where the rim crosses that cut's plane. One cut alone goes on in its plane; so does the first of those of
+  /// different labels that do not meet in the triangle.
   void place_triangle(const View& view, const int triangle) {
     const Skeleton::Side& side = view.now.skeleton().side[skeleton::first_triangle + triangle];
     const grid::Segments of = border(side), now = view.now.blades & of, old = view.old_blades & of;
     if (now == old)
       return;
-    Vec3 p = mean_point_of(view, of);
-    if (std::popcount(now) == 1)
-      p = 0.5 * (p + end_of_cut(view, side, now).value_or(middle_of(view, skeleton::first_triangle + triangle)));
-    else if (std::popcount(old) == 2)
-      p = on_rim(view, old, now & ~old);
+    const grid::Segments first = old != 0 ? old & -old : now & -now,
+                         pair = of_one_label(view, std::popcount(old) == 2 ? old : now);
+    const auto plane = [&](const grid::Segments cuts) { return cut_plane(solid_, view, std::countr_zero(cuts)).plane; };
+    Vec3 p;
+    if (pair != 0) {
+      p = now == pair ? mean_point_of(view, pair) : on_rim(view, pair, now & ~pair);
+    } else if (std::popcount(old) == 2) {
+      return;
+    } else {
+      p = 0.5 * (mean_point_of(view, first) +
+                 end_of_cut(view, side, first).value_or(middle_of(view, skeleton::first_triangle + triangle)));
+      if (now != first) {
+        const auto at = [&](const int k) { return grid::item_point(solid_, view.cell, side.items[k]); };
+        p = meeting_in({at(0), at(1), at(2)}, plane(first), plane(now & ~first)).value_or(p);
+      }
+    }
     solid_.cuts.set_inner_point(view.cell, triangle, p);
     ++counts_.n_placed;
+  }
+
+  /// The first two of some cuts that have the same label; none where all differ.
+  grid::Segments of_one_label(const View& view, const grid::Segments cuts) const {
+    const auto label = [&](const grid::Segments cut) { return cut_plane(solid_, view, std::countr_zero(cut)).label; };
+    for (grid::Segments left = cuts; left != 0; left &= left - 1)
+      for (grid::Segments others = left & (left - 1); others != 0; others &= others - 1)
+        if (label(left) == label(others))
+          return (left & -left) | (others & -others);
+    return 0;
   }
 
   /// Where the plane of the only cut of a triangle's sides leaves it.
@@ -274,18 +251,19 @@ class Placer {
     const Site site = make_site_of_blades(view, ~grid::Segments(0), Directions(),
                                           {n_parts(0), n_parts(view.old_blades), n_parts(view.now.blades)});
     const Vec3* const before = solid_.cuts.inner_point(c);
-    const Vec3 mean = mean_point_of(view, ~grid::Segments(0)), middle = 0.5 * (mean + mean_node(view)),
-               from = site.locked.empty() ? mean : *before;
-    const Vec3 p = place_in(site, no_axis, before ? *before : middle, middle);
-    double part = 1;
-    for_each_bit(view.now.skeleton().sides >> skeleton::first_triangle, [&](const int triangle) {
-      const Skeleton::Side& side = view.now.skeleton().side[skeleton::first_triangle + triangle];
-      part = std::min(
-        part, part_before(from, p,
-                          {grid::item_point(solid_, c, side.items[0]), grid::item_point(solid_, c, side.items[1]),
-                           grid::item_point(solid_, c, side.items[2])}));
-    });
-    const Vec3 q = hold_below_skin(from, p, part);
+    const Vec3 middle = 0.5 * (mean_point_of(view, ~grid::Segments(0)) + mean_node(view)),
+               p = place_in(site, no_axis, before ? *before : middle, middle);
+    const auto part = [&](const Vec3& from) {
+      double result = 1;
+      for_each_bit(view.now.skeleton().sides >> skeleton::first_triangle, [&](const int triangle) {
+        const auto& items = view.now.skeleton().side[skeleton::first_triangle + triangle].items;
+        const auto at = [&](const int k) { return grid::item_point(solid_, c, items[k]); };
+        result = std::min(result, part_before(from, p, {at(0), at(1), at(2)}));
+      });
+      return result;
+    };
+    const Vec3 from = site.locked.empty() ? between_cuts(site, p, part) : *before,
+               q = hold_below_skin(from, p, part(from));
     solid_.cuts.set_inner_point(c, point_that_sees_border(solid_, view, q).value_or(q));
     if (is_folded(solid_, view)) {
       is_held_ = true;
@@ -317,6 +295,28 @@ class Placer {
     return sum / std::popcount(view.now.blades & of);
   }
 
+  /// Where the way to a vertex begins, a `part` of which the skin leaves: in the middle of the cuts; where these have
+  /// several labels, of those on whose planes it lies, if that brings it into the material.
+  template <class Part>
+  static Vec3 between_cuts(const Site& site, const Vec3& p, const Part& part) {
+    constexpr double least = 0.1;
+    const Vec3 middle = mean_point(site.open);
+    if (!site.has_several_labels() || part(middle) == 1)
+      return middle;
+    Vec3 own = middle;
+    double nearest = std::numeric_limits<double>::infinity();
+    for_each_label(site.open, site.open_labels, [&](grid::CutLabel, const Planes& of_label) {
+      double distance = 0;
+      for (const Plane& plane : of_label)
+        distance = std::max(distance, std::abs(plane.normal.dot(p - plane.point)));
+      if (distance < nearest) {
+        nearest = distance;
+        own = mean_point(of_label);
+      }
+    });
+    return part(own) > least ? own : middle;
+  }
+
   /// p, or where the way there from the cuts' edges still lies below the skin: material has no negative volume.
   Vec3 hold_below_skin(const Vec3& from, const Vec3& p, const double part) {
     constexpr double inside = 0.9;
@@ -331,12 +331,12 @@ class Placer {
   Vec3 place_in(const Site& site, const int normal, const Vec3& p, const Vec3& middle) {
     if (!site.locked.empty())
       return slide(site, p);
-    if (normal != no_axis && site.open.size() == 2) {
+    if (normal != no_axis && site.open.size() == 2 && site.open_labels[0] == site.open_labels[1]) {
       const Vec3 start = inside(site, mean_point(site.open));
       Moves moves;
       moves.push_back(join_(site.open[0], site.open[1], (normal + 1) % 3, (normal + 2) % 3) - start);
       moves.push_back(Vec3::Zero());
-      return hold_inside(site, start, moves);
+      return *first_inside(site, start, moves);
     }
     return meet(site, middle);
   }
@@ -346,37 +346,80 @@ class Placer {
   Directions along_locked(const Site& site) const {
     constexpr double same = 1e-6; // sine of the angle below which sheets are taken for one, or for a side of the site
     Directions along = site.inside;
-    for (int i = 0; i < site.locked.size(); ++i) {
-      const grid::CutLabel label = site.locked_labels[i];
-      const auto* labels = site.locked_labels.begin();
-      if (std::find(labels, labels + i, label) != labels + i)
-        continue;
-      Planes of_label;
-      for (int k = i; k < site.locked.size(); ++k)
-        if (site.locked_labels[k] == label)
-          of_label.push_back(site.locked[k]);
+    for_each_label(site.locked, site.locked_labels, [&](grid::CutLabel, const Planes& of_label) {
       const Fixed fixed = fixed_directions(of_label, site.inside, threshold_, same);
       for (int k = 0; k < fixed.n; ++k)
         along.remove(fixed.of.vectors.col(k), same);
-    }
+    });
     return along;
   }
 
   /// Later cuts: to the open planes along the locked ones; where that ends at a side of the site, on along the side.
   Vec3 slide(const Site& site, const Vec3& p) {
     const Directions along = along_locked(site);
-    const Vec3 q = hold_inside(site, p, moves_to_planes(p, site.open, along, threshold_));
+    const Moves moves = moves_to_planes(p, site.open, along, threshold_);
+    if (const auto inside = first_inside(site, p, moves))
+      return *inside;
+    const Vec3 q = p + part_inside(site, p, moves.back()) * moves.back();
     const Planes sides = sides_at(site, q);
     if (sides.empty() || along.n < 2)
-      return q;
+      return held(site, p, q - p);
     const Vec3 move = moves_to_planes(q, site.open, free_directions(sides, along, threshold_), threshold_).back();
-    return q + part_inside(site, q, move) * move;
+    return held(site, p, q + part_inside(site, q, move) * move - p);
   }
 
-  /// First cuts: the quadric's minimum nearest the middle of the cut, or nearest the centre where a front ends.
+  /// As far along a move that a side holds as leaves some room there: with one of the side's own vertices in the same
+  /// place, a triangle would have no area.
+  Vec3 held(const Site& site, const Vec3& p, const Vec3& move) const {
+    constexpr double room = 1e-3; // of h
+    return p + part_inside(site, p, move, room * solid_.grid.h()) * move;
+  }
+
+  /// First cuts: the quadric's minimum nearest the middle of the cut, or nearest the centre where a front ends. Cuts of
+  /// several labels are no bent one: where they do not meet in the site, the vertex lies on one of them.
   Vec3 meet(const Site& site, const Vec3& centre) {
     const Vec3 start = inside(site, site.splits ? mean_point(site.open) : centre);
-    return hold_inside(site, start, moves_to_planes(start, site.open, site.inside, threshold_));
+    if (!site.has_several_labels()) {
+      const Moves moves = moves_to_planes(start, site.open, site.inside, threshold_);
+      const auto p = first_inside(site, start, moves);
+      return p                       ? *p
+             : site.open.size() == 1 ? on_planes(site, site.open, start + moves[0])
+                                     : Vec3(start + part_inside(site, start, moves.back()) * moves.back());
+    }
+    constexpr double same = 1e-3; // tangent of half the angle below which cuts of two labels are one
+    Planes sheets;
+    Vec3 best = start; // on most cuts, then nearest
+    std::pair<int, double> cuts_and_way;
+    for_each_label(site.open, site.open_labels, [&](grid::CutLabel, const Planes& of_label) {
+      const Vec3 foot = start + moves_to_planes(start, of_label, site.inside, threshold_)[0];
+      const Fixed fixed = fixed_directions(of_label, site.inside, threshold_);
+      for (int k = 0; k < fixed.n; ++k)
+        sheets.push_back({foot, fixed.of.vectors.col(k)});
+      const Vec3 p = part_inside(site, start, foot - start) == 1 ? foot : on_planes(site, of_label, foot);
+      if (const std::pair found(of_label.size(), -(p - start).norm()); found > cuts_and_way) {
+        cuts_and_way = found;
+        best = p;
+      }
+    });
+    ++counts_.n_placed;
+    const Vec3 move = moves_to_planes(start, sheets, site.inside, same)[0];
+    const bool is_met = part_inside(site, start, move) == 1 && std::ranges::all_of(sheets, [&](const Plane& sheet) {
+                          return std::abs(sheet.normal.dot(start + move - sheet.point)) < 1e-9 * solid_.grid.h();
+                        });
+    is_held_ |= !is_met;
+    return is_met ? start + move : best;
+  }
+
+  /// A point of the site on the planes of cuts whose foot is outside: from their middle halfway to the site's side, the
+  /// way to the foot or, where that leads out at once, the other way.
+  Vec3 on_planes(const Site& site, const Planes& planes, const Vec3& foot) const {
+    const double h = solid_.grid.h();
+    const Vec3 p = inside(site, mean_point(planes)), to_foot = site.inside.projection * (foot - p);
+    if (to_foot.norm() < 1e-6 * h)
+      return p;
+    const Vec3 way = 2 * h * to_foot.normalized();
+    const double there = part_inside(site, p, way), back = part_inside(site, p, -way);
+    return p + 0.5 * (there > back ? there : -back) * way;
   }
 
   double margin() const { return grid::min_edge_parameter * solid_.grid.h(); }
@@ -401,26 +444,30 @@ class Placer {
     return sides;
   }
 
-  /// p and the first of the moves that stays in the site; the last one is shortened where none does.
-  Vec3 hold_inside(const Site& site, const Vec3& p, const Moves& moves) {
+  /// p and the first of the moves that stays in the site; none where all lead out of it.
+  std::optional<Vec3> first_inside(const Site& site, const Vec3& p, const Moves& moves) {
     ++counts_.n_placed;
     for (const Vec3& move : moves) {
       if (part_inside(site, p, move) == 1)
         return p + move;
       is_held_ = true;
     }
-    return p + part_inside(site, p, moves.back()) * moves.back();
+    return {};
   }
 
-  /// How much of a move from p stays in the site, in [0, 1].
+  /// How much of a move from p stays in the site, no closer to its sides than `room`, or than p is; in [0, 1].
   double part_inside(const Site& site, const Vec3& p, const Vec3& move) const {
+    return part_inside(site, p, move, margin());
+  }
+  double part_inside(const Site& site, const Vec3& p, const Vec3& move, const double room) const {
     const Vec3& lower = site.view.lower;
     const double slack = 0.01 * margin(); // round-off of a vertex that is at a side and moves along it
     double part = 1;
     for (int axis = 0; axis < 3; ++axis) {
       if (!site.reaches(axis))
         continue;
-      const double low = lower[axis] + margin(), high = lower[axis] + solid_.grid.h() - margin();
+      const double low = std::min(p[axis], lower[axis] + room),
+                   high = std::max(p[axis], lower[axis] + solid_.grid.h() - room);
       const double end = p[axis] + move[axis];
       if (end > high + slack)
         part = std::min(part, (high - p[axis]) / move[axis]);

@@ -1,6 +1,7 @@
 #include "surface/planes.h"
 
 #include <Eigen/Geometry>
+#include <Eigen/LU>
 
 #include <algorithm>
 #include <cmath>
@@ -154,6 +155,17 @@ Moves moves_to_planes(const Vec3& p, const Planes& planes, const Directions& all
   if (moves.empty())
     moves.push_back(Vec3::Zero());
   return moves;
+}
+
+std::optional<Vec3> meeting_in(const std::array<Vec3, 3>& triangle, const Plane& a, const Plane& b) {
+  const Vec3 u = triangle[1] - triangle[0], v = triangle[2] - triangle[0];
+  const Eigen::Matrix2d along{{a.normal.dot(u), a.normal.dot(v)}, {b.normal.dot(u), b.normal.dot(v)}};
+  const Eigen::Vector2d heights(a.normal.dot(a.point - triangle[0]), b.normal.dot(b.point - triangle[0])),
+    t = along.inverse() * heights; // not finite where they do not meet
+  constexpr double inside = 1e-3;
+  if (!(t.minCoeff() > inside && t.sum() < 1 - inside))
+    return {};
+  return triangle[0] + t[0] * u + t[1] * v;
 }
 
 } // namespace kerf::surface

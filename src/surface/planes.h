@@ -11,6 +11,9 @@
 
 #include "base/vec.h"
 
+#include <array>
+#include <optional>
+
 namespace kerf::surface {
 
 struct Plane {
@@ -70,5 +73,8 @@ Directions free_directions(const Planes& planes, const Directions& allowed, doub
 /// The smallest moves of p within the allowed directions that minimise the squared distances to the planes: first to
 /// as many independent ones as there are, then to ever fewer, the weakest left out first. Never empty.
 Moves moves_to_planes(const Vec3& p, const Planes& planes, const Directions& allowed, double threshold);
+
+/// Where two planes meet in a triangle; none where they do not, or nearer than a thousandth of it to a side.
+std::optional<Vec3> meeting_in(const std::array<Vec3, 3>& triangle, const Plane& a, const Plane& b);
 
 } // namespace kerf::surface

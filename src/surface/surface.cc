@@ -2,6 +2,7 @@
 
 #include "base/parallel.h"
 #include "base/sort_unique.h"
+#include "base/union_find.h"
 #include "surface/writer.h"
 
 #include <Eigen/Geometry>
@@ -93,6 +94,19 @@ double enclosed_volume(const Points& positions, const std::vector<Triangle>& tri
   for (const auto& [a, b, c] : triangles)
     six_volumes += (positions[a] - reference).dot((positions[b] - reference).cross(positions[c] - reference));
   return six_volumes / 6;
+}
+
+std::size_t n_bodies(const Surface& surface) {
+  UnionFind parts(surface.rest.size());
+  for (const auto& [a, b, c] : surface.triangles)
+    parts.unite(parts.unite(a, b), c);
+  std::vector<std::uint32_t> part;
+  std::vector<double> volumes(parts.number(part), 0.0);
+  for (const auto& [a, b, c] : surface.triangles) {
+    const Vec3& near = surface.rest[parts.root(a)];
+    volumes[part[a]] += (surface.rest[a] - near).dot((surface.rest[b] - near).cross(surface.rest[c] - near));
+  }
+  return static_cast<std::size_t>(std::ranges::count_if(volumes, [](const double volume) { return volume > 0; }));
 }
 
 std::vector<double> piece_volumes(const Surface& surface, const CellComplex& complex) {

@@ -78,6 +78,9 @@ void follow(const Surface& surface, const Points& corners, Points& positions);
 /// Signed volume that closed triangles enclose [m^3].
 double enclosed_volume(const Points& positions, const std::vector<Triangle>& triangles);
 
+/// Of how many bodies it consists: its closed parts, but those around hollows.
+std::size_t n_bodies(const Surface& surface);
+
 /// Rest volume of each piece [m^3], from the triangles.
 std::vector<double> piece_volumes(const Surface& surface, const grid::CellComplex& complex);
 

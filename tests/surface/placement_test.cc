@@ -241,13 +241,19 @@ TEST_F(Inside, TheCentreMinimisesTheQuadricOfAllPlanes) {
 }
 
 TEST_F(Inside, WhatWouldLeaveIsHeldAndCounted) {
-  // From (2.5, 2.5) the nearest point of this plane has x < 2; across y = 2 it does not.
+  // From (2.5, 2.5) the nearest point of this plane has x < 2; across y = 2 it does not. The cut has (2.05, 2) in it and
+  // leaves the cell at x = 2: the vertex lies halfway.
   const double lean = std::numbers::pi / 6;
-  const auto counts = cut({{edge(2, 2, 2, 0), 0.05, Vec3(std::cos(lean), std::sin(lean), 0), 1}});
+  const Vec3 normal(std::cos(lean), std::sin(lean), 0);
+  const auto counts = cut({{edge(2, 2, 2, 0), 0.05, normal, 1}});
   EXPECT_EQ(counts.n_placed, 8u);
   EXPECT_EQ(counts.n_clamped, 3u) << "one face and the two cells beside it";
-  EXPECT_NEAR(face_point()[0], 2 + grid::min_edge_parameter, 1e-14);
-  EXPECT_NEAR(cell_point()[0], 2 + grid::min_edge_parameter, 1e-14);
+  for (const Vec3& p : {face_point(), cell_point()}) {
+    EXPECT_NEAR(normal.dot(p), normal.dot(Vec3(2.05, 2, 0)), 1e-9);
+    EXPECT_GT(p[0], 2);
+    EXPECT_LT(p[0], 2.05);
+  }
+  EXPECT_NEAR(face_point()[0], 2.025, 1e-9);
 }
 
 /// No vertex leaves its face or cell, with room for the octants.
