@@ -32,18 +32,18 @@ void BodyShapeParameters::describe(Parameters& p) {
   if (is_any_of({"box", "ball", "cylinder"}))
     p.vector("Centre [m]", centre, "Box, ball, cylinder: the middle.");
   if (is_any_of({"box"})) {
-    p.vector("Sides [m]", sides, "Box: lengths of its sides along x, y, z, before it is turned.");
+    p.vector("Sides [m]", sides, "Box, which must say it: lengths of its sides along x, y, z, before it is turned.");
     require_of_a_shape();
     p.vector("Rotation [degrees]", rotation, "Box: turned about its middle by this rotation vector.");
   }
   if (is_any_of({"ball", "cylinder"})) {
     p.number(
       "Radius [m]", radius, positive,
-      "Ball, cylinder: the radius. Their triangles are half a cube wide, and enclose the volume of the round body.");
+      "Ball, cylinder, which must say it: the radius. Their triangles are half a cube wide, and enclose the volume of the round body.");
     require_of_a_shape();
   }
   if (is_any_of({"cylinder"})) {
-    p.number("Height [m]", height, positive, "Cylinder: from end face to end face.");
+    p.number("Height [m]", height, positive, "Cylinder, which must say it: from end face to end face.");
     require_of_a_shape();
     p.vector("Axis [1]", axis, "Cylinder: direction of its axis, of any length.");
   }
