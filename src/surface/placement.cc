@@ -100,6 +100,7 @@ class Placer {
     Site site(view, inside);
     const auto& [n_first, n_old, n_now] = n_parts;
     site.splits = n_now > n_first;
+    site.at_skin = true;
     for_each_bit(view.now.blades & of, [&](const int segment) {
       const CutPlane cut = cut_plane(solid_, view, segment);
       if (n_old > n_first && (view.old_blades >> segment & 1) != 0)
@@ -382,9 +383,9 @@ class Placer {
     if (!site.has_several_labels()) {
       const Moves moves = moves_to_planes(start, site.open, site.inside, threshold_);
       const auto p = first_inside(site, start, moves);
-      return p                       ? *p
-             : site.open.size() == 1 ? on_planes(site, site.open, start + moves[0])
-                                     : Vec3(start + part_inside(site, start, moves.back()) * moves.back());
+      if (!p && site.open.size() == 1 && !site.at_skin)
+        return on_planes(site, site.open, start + moves[0]);
+      return p ? *p : Vec3(start + part_inside(site, start, moves.back()) * moves.back());
     }
     constexpr double same = 1e-3; // tangent of half the angle below which cuts of two labels are one
     Planes sheets;

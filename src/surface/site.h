@@ -38,7 +38,8 @@ struct Site {
   Planes locked;     ///< cuts that already separate material here: the vertex stays on them
   Planes open;       ///< cuts that the vertex has yet to meet
   Labels locked_labels, open_labels;
-  bool splits = false; ///< with all cuts, material here is separated
+  bool splits = false;  ///< with all cuts, material here is separated
+  bool at_skin = false; ///< the skin may hold the vertex
 
   /// Have several blades cut it since it was placed?
   bool has_several_labels() const {
