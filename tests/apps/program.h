@@ -88,6 +88,7 @@ class Program : public testing::Test {
       if (chdir((folder / "").c_str()) != 0 || !std::freopen("stdout", "w", stdout) ||
           !std::freopen("stderr", "w", stderr))
         _exit(127);
+      setenv("GTEST_FILTER", "-*", 1); // of the tests, if the program starts itself all the same: none
       if (is_loaded)
         std::exit(apps::program(static_cast<int>(words.size()), pointers.data()));
       execv(program_file().c_str(), pointers.data());
