@@ -190,12 +190,16 @@ Vec3 momentum(const std::span<const double> mass, const Crumbs& crumbs, const dy
 
 void restore_momentum(const Vec3& had, const std::span<const std::uint32_t> particles,
                       const std::span<const double> mass, const Crumbs& crumbs, dynamics::State& state) {
-  double all = 0;
+  constexpr double round_off = 1e-13;
+  double all = 0, sum = 0;
   for (const auto i : particles)
     all += mass[i];
-  if (!(all > 0))
+  for (std::size_t i = 0; i < mass.size(); ++i)
+    sum += mass[i] * state.v[i].norm();
+  const Vec3 missing = had - momentum(mass, crumbs, state);
+  if (!(all > 0) || missing.norm() <= round_off * sum)
     return;
-  const Vec3 more = (had - momentum(mass, crumbs, state)) / all;
+  const Vec3 more = missing / all;
   for (const auto i : particles)
     state.v[i] += more;
 }

@@ -126,4 +126,23 @@ void join_lapsed(const std::span<const grid::Lapse> lapsed, const std::function<
     state.v[heir] += part * omega.cross(state.x[heir] - centre);
 }
 
+void carry_momentum(const grid::CellComplex& complex, const std::span<const std::uint32_t> corners,
+                    const std::span<const double> before, const std::span<const double> now, Points& v) {
+  struct Lost {
+    Vec3 v; // mean
+    double mass = 0;
+  };
+  std::map<grid::NodeId, Lost> lost_at;
+  for (const auto i : corners)
+    if (const double lost = before[i] - now[i]; lost > 0) {
+      Lost& all = lost_at.try_emplace(complex.node[grid::CornerId(i)], Lost{v[i]}).first->second;
+      all.mass += lost;
+      all.v += lost / all.mass * (v[i] - all.v);
+    }
+  for (const auto i : corners)
+    if (const double got = now[i] - before[i]; got > 0)
+      if (const auto lost = lost_at.find(complex.node[grid::CornerId(i)]); lost != lost_at.end())
+        v[i] += got / now[i] * (lost->second.v - v[i]);
+}
+
 } // namespace kerf::physics

@@ -16,6 +16,7 @@
 #include <functional>
 #include <span>
 #include <type_traits>
+#include <utility>
 
 namespace kerf::physics {
 
@@ -35,6 +36,12 @@ void damp_riders(const fem::Hexahedra& model, const lattice::Riders& riders, std
 /// round-off, and a few that lie close together hardly any.
 void join_lapsed(std::span<const grid::Lapse> lapsed, const std::function<double(std::uint32_t)>& mass,
                  dynamics::State& state);
+
+/// A later cut of a cell moves vertices of earlier ones, and so gives some corners of a node material that others had.
+/// Among these corners, what some get brings the mean velocity of what others lose, as bodies that collide and stay
+/// together; so no momentum is lost, and no kinetic energy won. Masses by corner [kg], before and now.
+void carry_momentum(const grid::CellComplex& complex, std::span<const std::uint32_t> corners,
+                    std::span<const double> before, std::span<const double> now, Points& v);
 
 /// What lets out of the corners that a cut has touched what it gave.
 inline std::unique_ptr<dynamics::Stepper> relief_of(dynamics::ElasticModel& model, dynamics::Excess excess) {
@@ -119,8 +126,10 @@ class OnCorners : public Physics {
     follow_cut_with_model(body, change);
     widen(body);
     follow_crumbs(body, state);
-    if (const auto freed = freed_corners(change, carried); !freed.empty())
-      restore_momentum(had, freed, model().lumped_mass(), crumbs_, state);
+    const std::vector<std::uint32_t> touched = touched_material(body, change, carried),
+                                     freed = freed_corners(change, carried);
+    carry_momentum(body.solid.complex, touched, mass_before(change, mass), model().lumped_mass(), state.v);
+    restore_momentum(had, freed.empty() ? touched : freed, model().lumped_mass(), crumbs_, state);
     make_stepper(body);
     follow_heirs(state);
   }
@@ -163,6 +172,25 @@ class OnCorners : public Physics {
   const dynamics::Stepper& stepper() const { return *stepper_; }
 
  private:
+  /// Corners of copies that a cut has reshaped, of which no crumb carries or has carried anything. Ascending.
+  std::vector<std::uint32_t> touched_material(const CutBody& body, const grid::CutChange& change,
+                                              std::vector<std::uint8_t> carried) const {
+    carried.resize(change.n_corners_before, 0);
+    grid::inherit(change, carried);
+    const std::vector<std::uint8_t> is_touched = touched_corners(body.solid.complex, change);
+    std::vector<std::uint32_t> touched;
+    for (std::uint32_t i = 0; i < is_touched.size(); ++i)
+      if (is_touched[i] != 0 && carried[i] == 0 && !crumbs_.carries(i))
+        touched.push_back(i);
+    return touched;
+  }
+  /// Of all corners: new ones had nothing, and heirs what lapsed.
+  static std::vector<double> mass_before(const grid::CutChange& change, std::vector<double> mass) {
+    mass.resize(change.n_corners_before + change.parents.size(), 0);
+    for (const auto& [corner, heir] : change.lapsed)
+      mass[heir.value] += std::exchange(mass[corner.value], 0);
+    return mass;
+  }
   /// That crumbs carried before a cut, and none does now; or their heirs. Ascending.
   std::vector<std::uint32_t> freed_corners(const grid::CutChange& change, std::vector<std::uint8_t> carried) const {
     carried.resize(rest_.size(), 0);
