@@ -34,6 +34,12 @@ void print_body(const scene::Body& body, const scene::Watch& watch) {
       "  %d steps taken again, in substeps or by implicit Euler: whole ones failed or gained energy that nothing "
       "gave\n",
       body.n_divided);
+  const auto now = [&](const char* name) { return scene::find_observable(name)->value(body); };
+  constexpr double much = 0.1; // symplectic Euler takes and gives back as much, near its stable step
+  if (const double part = now("energy gained") / (now("elastic energy") + now("kinetic energy")); part > much)
+    std::printf("  warning: the integrator has gained %.0f %% of the body's kinetic and elastic energy, step by step: "
+                "use a smaller time step, or an integrator that gains none\n",
+                100 * part);
   if (const std::size_t n = surface::n_bodies(body.surface), n_pieces = grid::n_pieces(body.solid.complex);
       n > n_pieces)
     std::printf("  its %zu pieces are drawn as %zu bodies: what joins them is thinner than the grid resolves. Use a "

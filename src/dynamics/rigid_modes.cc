@@ -19,7 +19,7 @@ using Matrix6 = Eigen::Matrix<double, 6, 6>;
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 using Kernel = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 
-constexpr double round_off = 1e-9;
+constexpr double round_off_of_modes = 1e-9;
 
 struct Piece {
   double mass = 0;
@@ -90,7 +90,7 @@ Eigen::MatrixXd part_of(const Eigen::MatrixXd& A, const Part part) {
   const double largest = std::max(1e-300, eigen.eigenvalues().cwiseAbs().maxCoeff());
   Eigen::MatrixXd columns(A.rows(), 0);
   for (Eigen::Index k = 0; k < A.rows(); ++k)
-    if ((eigen.eigenvalues()[k] <= round_off * largest) == (part == Part::kernel)) {
+    if ((eigen.eigenvalues()[k] <= round_off_of_modes * largest) == (part == Part::kernel)) {
       columns.conservativeResize(Eigen::NoChange, columns.cols() + 1);
       columns.rightCols<1>() = eigen.eigenvectors().col(k);
     }
@@ -236,10 +236,13 @@ void require_supported(const std::vector<FreeMode>& modes) {
       names += ", and " + std::to_string(modes.size() - n_named + 1) + " more";
       break;
     }
-    names += (names.empty() ? "" : ", ") + mode.name + (several ? " of piece " + std::to_string(mode.piece) : "");
+    names += (names.empty() ? "" : ", ") + mode.name;
+    if (several)
+      names += " of piece " + std::to_string(mode.piece) + " around " + text_of(mode.centre) + " m";
   }
+  const std::string of_pieces = several ? "; smaller cubes may join pieces that thin parts have left" : "";
   throw ParameterError(Complaint{.rule = "nothing resists these rigid motions, so there is no static answer: " + names,
-                                 .remedy = "Add supports or handles, or use a dynamic integrator"});
+                                 .remedy = "Add supports or handles, or use a dynamic integrator" + of_pieces});
 }
 
 } // namespace kerf::dynamics

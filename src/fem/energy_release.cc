@@ -22,6 +22,13 @@ Growth of_front(const CircleFront& front, const Vec3& X) {
   return r > 0 ? Growth{out / r, distance, 1 / r} : Growth{Vec3::Zero(), distance, 0};
 }
 
+Vec3 point_of(const LineFront& front, const double part) { return front.first + part * (front.second - front.first); }
+Vec3 point_of(const CircleFront& front, const double part) {
+  const double angle = 2 * std::numbers::pi * part;
+  const Vec3 normal = front.normal.normalized(), u = normal.unitOrthogonal(), v = normal.cross(u);
+  return front.centre + front.radius * (std::cos(angle) * u + std::sin(angle) * v);
+}
+
 double length_of(const LineFront& front) { return (front.second - front.first).norm(); }
 double length_of(const CircleFront& front) { return 2 * std::numbers::pi * front.radius; }
 
@@ -34,6 +41,10 @@ double part(const Tubes& tubes, const double distance) {
 
 Growth growth_at(const CrackFront& front, const Vec3& X) {
   return std::visit([&](const auto& f) { return of_front(f, X); }, front);
+}
+
+Vec3 point_on(const CrackFront& front, const double part) {
+  return std::visit([&](const auto& f) { return point_of(f, part); }, front);
 }
 
 double length(const CrackFront& front) {

@@ -56,6 +56,9 @@ struct Growth {
 };
 Growth growth_at(const CrackFront& front, const Vec3& X);
 
+/// A point of the front, at a part of its length from its first end, or around the circle [m].
+Vec3 point_on(const CrackFront& front, double part);
+
 /// Length of the front [m].
 double length(const CrackFront& front);
 

@@ -27,7 +27,9 @@ struct Elastic {
       "Law", law, {"small strain", "corotational", "St. Venant-Kirchhoff", "neo-Hookean"},
       "Stress of a deformation. Small strain: Hooke's law, for small rotations. Corotational: the same, turned with "
       "the material. St. Venant-Kirchhoff: for large rotations, not for strong compression. Neo-Hookean: for "
-      "large strain.");
+      "large strain, m/2 (F:F - 3) + l/2 (J - a)^2 - m/2 log(F:F + 1) with m = 4/3 mu, l = lambda + 5/6 mu, a = 1 + "
+      "3 m / (4 l) (Smith, de Goes and Kim 2018), which other laws of that name differ from by some % at large "
+      "strain.");
   }
 };
 

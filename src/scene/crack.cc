@@ -1,5 +1,6 @@
 #include "scene/crack.h"
 
+#include "dynamics/surface_load.h"
 #include "physics/on_corners.h"
 #include "scene/body.h"
 
@@ -137,8 +138,45 @@ bool resists(const dynamics::Support& support, const NamedFront& front, const Po
 
 } // namespace
 
+namespace {
+
+/// Whether a box holds a point of the outer tube, give or take half a cube.
+bool reaches(const Box& box, const NamedFront& front, const double cube_edge) {
+  const Vec3 outer = Vec3::Constant(front.tubes.outer);
+  const auto n = static_cast<int>(std::ceil(2 * fem::length(front.front) / cube_edge));
+  for (int k = 0; k <= n; ++k)
+    if (Box{box.lower - outer, box.upper + outer}.contains(fem::point_on(front.front, double(k) / n)))
+      return true;
+  return false;
+}
+
+/// What a load does on the faces of the crack is not in the sum.
+void require_unloaded_faces(const Section& section, const Body& body) {
+  const auto check = [&](const Section& load, const dynamics::PatchParameters& patch) {
+    for (const NamedFront& front : body.fronts)
+      if (patch.faces != "skin" && reaches({patch.lower, patch.upper}, front, body.solid.grid.h()))
+        throw load.complaint("Faces",
+                             "must not be faces of the crack inside of the outer tube of crack front '" + front.name +
+                               "', whose energy release rate would lack what the load does there",
+                             "Let the load begin outside of the tube (Lower, Upper), or pull at the skin instead: the "
+                             "stress that would be where the crack is opens it as much; or remove the front");
+  };
+  for (const Section* load : section.all("Traction"))
+    check(*load, load->read<dynamics::TractionParameters>().patch);
+  for (const Section* load : section.all("Pressure"))
+    check(*load, load->read<dynamics::PressureParameters>().patch);
+}
+
+} // namespace
+
 std::vector<std::string> check_crack_fronts(const Section& section, const Body& body) {
   std::vector<std::string> warnings;
+  require_unloaded_faces(section, body);
+  if (!body.fronts.empty() && body.physics->motion() == dynamics::MotionKind::dynamic)
+    warnings.push_back(line("warning: body ", body.name,
+                            ": energy release rates are those of equilibria, and this body moves: what the motion of "
+                            "the material near a front takes or gives is not in them. Write 'set Integrator = "
+                            "quasi-static'"));
   for (std::size_t i = 0; i < body.fronts.size(); ++i) {
     const NamedFront& front = body.fronts[i];
     const Reach reach = reach_of(body, front);

@@ -64,7 +64,11 @@ class Expressions {
     : n_(n),
       has_place_(variables != "t"),
       has_time_(variables != "x, y, z"),
-      place_(section.complaint(key, "", "Choose an expression that is finite in the whole body").complaint()),
+      place_(section
+               .complaint(key, "",
+                          variables == "t" ? "Choose an expression that is finite at all times of the run"
+                                           : "Choose an expression that is finite in the whole body")
+               .complaint()),
       parser_(std::make_shared<dealii::FunctionParser<3>>(n)) {
     const std::string of = (n == 1 ? "one expression of " : "three expressions of ") + variables;
     const std::string remedy = n == 1 ? "For example: 100*sin(2*pi*t)" : "For example: 0; 0; 0.01*sin(2*pi*t)";
@@ -83,9 +87,8 @@ class Expressions {
         require_no_others<1>("t", text);
       if (!has_time_)
         require_no_others<3>("x,y,z", text);
-      for (int i = 0; i < n; ++i)
-        if (!std::isfinite((*this)(i, Vec3::Zero(), 0)) && !has_place_)
-          throw section.complaint(key, "must be finite at t = 0", remedy);
+      for (int i = 0; i < n && !has_place_; ++i)
+        (*this)(i, Vec3::Zero(), 0);
     } catch (const dealii::ExceptionBase&) {
       throw section.complaint(key, "must be " + of + " that can be evaluated", remedy);
     }
@@ -94,10 +97,11 @@ class Expressions {
   double operator()(const int i, const Vec3& X, const double time) const {
     parser_->set_time(time);
     const double value = parser_->value(dealii::Point<3>(X[0], X[1], X[2]), static_cast<unsigned>(i));
-    if (has_place_ && !std::isfinite(value)) {
+    if (!std::isfinite(value)) {
       Complaint complaint = place_;
-      complaint.rule = "must be finite, and is not at x, y, z, t = " + to_text(X[0]) + ", " + to_text(X[1]) + ", " +
-                       to_text(X[2]) + ", " + to_text(time);
+      complaint.rule = has_place_ ? "must be finite, and is not at x, y, z, t = " + to_text(X[0]) + ", " +
+                                      to_text(X[1]) + ", " + to_text(X[2]) + ", " + to_text(time)
+                                  : "must be finite, and is not at t = " + to_text(time);
       throw ParameterError(complaint);
     }
     return value;
@@ -114,7 +118,7 @@ class Expressions {
 
   int n_;
   bool has_place_, has_time_;
-  Complaint place_; ///< of what is not finite only somewhere
+  Complaint place_; ///< of what is not finite somewhere
   std::shared_ptr<dealii::FunctionParser<3>> parser_;
 };
 

@@ -25,11 +25,14 @@ void hold(Body& body, const std::span<const Forceps> forceps, const int step, co
   auto& supports = body.loads.supports;
   supports.resize(body.regions.size());
   body.grips.clear();
-  for (const Forceps& one : forceps)
+  for (const Forceps& one : forceps) {
+    if (step > 1 && holds(one, step) != holds(one, step - 1))
+      dynamics::forget_forces(body.state); // what held it, or moved it, does so no more
     if (holds(one, step)) {
       supports.push_back(grip(body, one, t0));
       body.grips.push_back(one.name);
     }
+  }
 }
 
 } // namespace kerf::scene

@@ -347,7 +347,9 @@ const std::vector<Observable>& body_observables() {
      [](const Body& b) { return count(b.report.n_rejected); }},
     {"energy gained", "J", "that no load and no support gave, by the steps so far (dynamics/sound_steps.h)",
      [](const Body& b) { return booked(b, "energy gained [J]"); }},
-    {"residual", "1", "forces out of balance over those that balance at the end of the step, where it was measured",
+    {"residual", "1",
+     "forces out of balance over those that balance at the end of the step, where it was measured: each over the "
+     "stiffness of its corner, so that what stands at stiff supports counts less",
      [](const Body& b) { return b.report.residual; }},
     {"stable step", "s",
      "longest time step that the explicit integrator bears, as of the first step after the start or a cut; 0 where it "

@@ -28,7 +28,7 @@ void on(const World& world, const Body& body, const int step, const double time,
     action();
   } catch (const dynamics::StepError& error) {
     throw NumericalError(place() + error.what() + ". It shows most at " + particle_at(body, error.particle()) +
-                         ". Use a smaller time step or a stiffer material, or smaller loads");
+                         ". Use a smaller time step, or smaller loads");
   } catch (const NumericalError& error) {
     throw NumericalError(place() + error.what());
   } catch (const ParameterError& error) {

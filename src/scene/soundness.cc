@@ -176,7 +176,8 @@ Stretch stretch_of(const Cubes& all, const Body& body) {
   return {all.longest, std::sqrt(all.squared_length) / body.solid.grid.h()};
 }
 
-constexpr char remedy[] = "What acts on it is more than its material bears: use a stiffer material or smaller loads";
+constexpr char remedy[] = "What acts on it in a step is more than its material bears: use a smaller time step, smaller "
+                          "loads or a stiffer material";
 
 /// Whether the body was put where it has such an energy, and has it still: then it may pass through any shape.
 bool may_be_anywhere(const Body& body) {

@@ -11,7 +11,7 @@ namespace kerf::scene {
 
 namespace {
 
-std::string place(const Vec3& p) { return line("(", p[0], ", ", p[1], ", ", p[2], ")"); }
+std::string place_of(const Vec3& p) { return line("(", p[0], ", ", p[1], ", ", p[2], ")"); }
 
 /// Held corners hang together where a copy has them both. Phyxels are not asked.
 std::size_t n_pieces(const Body& body, const std::vector<std::uint32_t>& held) {
@@ -75,13 +75,24 @@ std::vector<std::string> faces_on_layers(const Body& body, const Region& region)
   return faces;
 }
 
-/// Whether a support holds corners, and all of them lie outside of the material.
+/// Whether a support holds corners, and all of them lie outside of the material, farther from it than a node may lie
+/// that stands on the skin.
 bool holds_no_material(const Body& body, const std::vector<std::uint32_t>& held) {
+  constexpr double on_skin = 0.01; // of h
+  const grid::Solid& solid = body.solid;
   std::vector<std::uint8_t> is_material(body.physics->rest().size(), 0);
-  for (const grid::Copy& copy : body.solid.complex.copies)
+  for (const grid::Copy& copy : solid.complex.copies) {
     for (int v = 0; v < 8; ++v)
       if ((copy.nodes >> v & 1) != 0)
         is_material[copy.corners[v].value] = 1;
+    const auto edges = solid.grid.edges(copy.cell);
+    for (int l = 0; l < 12; ++l) {
+      const auto& [lower, upper] = grid::cube::line_vertices[l];
+      const grid::EdgeCut* const cut = solid.cuts.find_outer(edges[l]);
+      if (cut && (cut->t < on_skin || cut->t > 1 - on_skin))
+        is_material[copy.corners[cut->t < 0.5 ? lower : upper].value] = 1;
+    }
+  }
   return !held.empty() &&
          std::none_of(held.begin(), held.end(), [&](const std::uint32_t i) { return is_material[i] != 0; });
 }
@@ -94,7 +105,7 @@ std::string extent(const Points& points) {
     lower = lower.cwiseMin(p);
     upper = upper.cwiseMax(p);
   }
-  return line("from ", place(lower), " to ", place(upper), " m");
+  return line("from ", place_of(lower), " to ", place_of(upper), " m");
 }
 
 std::vector<std::string> warn_of_layers(const Body& body, const std::string& what, const Region& region) {
@@ -126,10 +137,11 @@ std::vector<std::string> describe_supports(const Body& body) {
              "cubes longer. Write 'set Hold at = skin', or move a layer of nodes to the skin with Lattice "
              "offset"));
   }
-  if (!body.physics->particles_are_corners() &&
-      std::all_of(held.begin(), held.end(), [](const auto h) { return h != 0; }))
+  if (std::all_of(held.begin(), held.end(), [](const auto h) { return h != 0; }))
     warnings.push_back(line("warning: body ", body.name, ": its supports hold all of its ", held.size(),
-                            " phyxels, so nothing of it moves. Use more phyxels, or smaller regions"));
+                            body.physics->particles_are_corners() ? " corners" : " phyxels",
+                            ", so nothing of it moves but as they do. Use smaller regions, smaller cubes, or more "
+                            "phyxels"));
   lines.insert(lines.end(), warnings.begin(), warnings.end());
   return lines;
 }

@@ -50,6 +50,7 @@ class Checker {
       if (!match.kind)
         throw unknown_section(section, kinds, here);
       check_name(section, match, here);
+      check_is_meant(section, match, parent, here);
       check_keys(section, keys(*match.kind), here);
       check_sections(section, match.kind->children, here);
     }
@@ -104,6 +105,20 @@ class Checker {
     if (match.name.size() > most)
       throw error(section.origin, path, "", "a name must have at most " + std::to_string(most) + " characters",
                   "Write a shorter one");
+  }
+
+  /// An override may add a section, but not where its name looks like a slip.
+  static void check_is_meant(const WrittenSection& section, const Heading& match, const WrittenSection& parent,
+                             const std::string& path) {
+    if (!section.origin.is_override() || match.kind->occurrence == Occurrence::once)
+      return;
+    std::vector<std::string> in_scene;
+    for (const WrittenSection& other : parent.sections)
+      if (!other.origin.is_override() && other.heading.starts_with(match.kind->kind + " "))
+        in_scene.push_back(other.heading);
+    if (const auto meant = nearest(section.heading, in_scene))
+      throw error(section.origin, path, "", "there is no such section in the scene",
+                  "Did you mean '" + *meant + "'? A new one must have a name that is less like it");
   }
 
   void check_keys(const WrittenSection& section, const std::vector<Parameter>& allowed, const std::string& path) const {

@@ -17,7 +17,9 @@ namespace kerf::scene {
 /// Where something was written: a line of a file; or line 0 and `--set "..."` for what the command line overrides.
 struct Origin {
   std::string file;
-  int line = 0;
+  int line = 0; ///< 0: of what an override says
+
+  bool is_override() const { return line == 0; }
 };
 
 /// Lines of the text, from the first to the last; 0, 0 for what only the command line says.

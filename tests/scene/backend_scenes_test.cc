@@ -6,7 +6,7 @@
 
 #include <map>
 
-namespace kerf::scene {
+namespace kerf::scene::backend_scenes_test {
 namespace {
 
 constexpr double g = 9.81; // [m/s^2]
@@ -177,6 +177,25 @@ TEST(BackendScene, ForcepsCarryWhatHangs) {
   }
 }
 
+/// What forceps have let go falls freely from the next step on: integrators that remember accelerations do not take the
+/// force of the grip along (Newmark's next step once fell by a third of g dt).
+TEST(BackendScene, WhatForcepsLetGoFallsAtOnce) {
+  constexpr double dt = 0.01;
+  for (const std::string integrator : {"implicit Euler", "Newmark", "generalised alpha", "velocity Verlet"}) {
+    SCOPED_TRACE(integrator);
+    const double step = integrator == "velocity Verlet" ? dt / 20 : dt;
+    const int n_held = static_cast<int>(std::lround(1 / step));
+    const Trial cube(steps(step, n_held + 1) + section("Gravity", {}) +
+                     cube_of("fem", section("Damping", {"Mass damping [1/s] = 10"}), {"Integrator = " + integrator}) +
+                     section("Forceps tweezers",
+                             {"Region = box", "Lower [m] = -1, -1, 0.03", "Upper [m] = 1, 1, 1", "Times [s] = 0",
+                              "Positions [m] = 0, 0, 0", key("Release time [s]", n_held * step)}) +
+                     observe("momentum z"));
+    const double v = cube.last("momentum z") / cube_mass, free_fall = -g * step;
+    EXPECT_NEAR(v, free_fall, 0.1 * std::abs(free_fall)); // 10 / s take some of it
+  }
+}
+
 /// Corners that follow phyxels jump when a cut takes phyxels out of their sight: none may jump past the blade uncut.
 /// The blade's plane is a layer of nodes, where it has most edges along it.
 TEST(BackendScene, ABladePartsABarOfPhyxelsBetweenItsHeldEnds) {
@@ -200,4 +219,4 @@ TEST(BackendScene, ABladePartsABarOfPhyxelsBetweenItsHeldEnds) {
 }
 
 } // namespace
-} // namespace kerf::scene
+} // namespace kerf::scene::backend_scenes_test

@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <fstream>
 
-namespace kerf::scene {
+namespace kerf::scene::parameter_file_test {
 namespace {
 
 struct Time {
@@ -258,6 +258,15 @@ TEST(Overrides, MayAddSections) {
   EXPECT_EQ(scene.require("Body").require("Material").read<Material>().density, 3);
 }
 
+/// Else a slip in a name adds a second load, or a floor, that nobody sees.
+TEST(Overrides, AddNoSectionThatLooksLikeASlip) {
+  const std::string scene = "subsection Body ball\n  set Mesh = ball.off\n  set Cube edge [m] = 1\nend\n";
+  const auto c = complaint_of(scene, {"Body bll/Cube edge [m]=2"});
+  EXPECT_EQ(c.path, "Body bll");
+  EXPECT_NE(c.remedy.find("Did you mean 'Body ball'?"), std::string::npos) << c.remedy;
+  EXPECT_NO_THROW(parse(scene, {"Body other/Mesh=ball.off", "Body other/Cube edge [m]=2"}));
+}
+
 TEST(Overrides, ErrorsNameTheirText) {
   const auto expect = [](const std::string& override_text, const std::string& path, const std::string& value,
                          const std::string& rule, const std::string& remedy) {
@@ -400,4 +409,4 @@ TEST(Nearest, FindsWhatWasMeant) {
 }
 
 } // namespace
-} // namespace kerf::scene
+} // namespace kerf::scene::parameter_file_test

@@ -11,7 +11,7 @@
 
 #include <unistd.h>
 
-namespace kerf::scene {
+namespace kerf::scene::run_test {
 namespace {
 
 double sum(const std::vector<double>& values) { return std::accumulate(values.begin(), values.end(), 0.0); }
@@ -185,6 +185,22 @@ TEST(Run, TellsWhenAndWhyItFailed) {
     EXPECT_TRUE(x.allFinite());
 }
 
+/// Not the material, the loads or the time step.
+TEST(Run, AFunctionOfTimeThatIsNotFiniteIsNamed) {
+  World world = world_of(cube_scene(), {"Body cube/Support top/Lower [m]=-1, -1, 0.05",
+                                        "Body cube/Support top/Upper [m]=1, 1, 1",
+                                        "Body cube/Support top/Displacement [m]=0; 0; sqrt((t - 0.012) * (t - 0.024))"});
+  const output::TemporaryFolder folder;
+  try {
+    run_silently(world, folder / "out");
+    FAIL() << "nothing was thrown";
+  } catch (const ParameterError& error) {
+    const std::string what = error.what();
+    EXPECT_NE(what.find("Support top/Displacement [m]"), std::string::npos) << what;
+    EXPECT_NE(what.find("not at t = 0.02"), std::string::npos) << what;
+  }
+}
+
 TEST(Run, NeedsAFolderThatCanBeMade) {
   const output::TemporaryFolder folder;
   std::ofstream(folder / "file") << "no folder";
@@ -204,4 +220,4 @@ TEST(Run, NeedsAFolderThatCanBeMade) {
 }
 
 } // namespace
-} // namespace kerf::scene
+} // namespace kerf::scene::run_test

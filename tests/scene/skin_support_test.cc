@@ -6,7 +6,7 @@
 
 #include <numbers>
 
-namespace kerf::scene {
+namespace kerf::scene::skin_support_test {
 namespace {
 
 constexpr double E = 1e5; // [Pa]
@@ -206,7 +206,8 @@ TEST(SkinSupportScene, CornersOutsideOfTheMaterialAreWarnedOf) {
   EXPECT_FALSE(is_warned(box("-1, -1, -1", "0.03, 1, 1"), "0.5, 0.5, 0.5"));
   EXPECT_FALSE(is_warned(left + at_skin, "0.5, 0.5, 0.5"));
   EXPECT_FALSE(is_warned(left, "0.001, 0.5, 0.5"));
+  EXPECT_FALSE(is_warned(left, "0, 0.5, 0.5")); // a layer of nodes on the skin itself
 }
 
 } // namespace
-} // namespace kerf::scene
+} // namespace kerf::scene::skin_support_test
