@@ -34,4 +34,9 @@ std::string to_string(const Complaint& c) {
   return text.ends_with('.') || text.ends_with('?') ? text : text + ".";
 }
 
+std::string in_one_line(std::string message) {
+  std::replace(message.begin(), message.end(), '\n', ' ');
+  return message;
+}
+
 } // namespace kerf

@@ -21,6 +21,9 @@ struct Complaint {
 /// "file:line: path = 'value': rule. remedy."
 std::string to_string(const Complaint& complaint);
 
+/// A message without line breaks, for tables.
+std::string in_one_line(std::string message);
+
 class Error : public std::runtime_error {
  public:
   int exit_code() const { return exit_code_; }

@@ -34,4 +34,11 @@ struct Box {
   }
 };
 
+/// W with W a = w x a.
+inline Mat3 cross_matrix(const Vec3& w) {
+  Mat3 W;
+  W << 0, -w[2], w[1], w[2], 0, -w[0], -w[1], w[0], 0;
+  return W;
+}
+
 } // namespace kerf

@@ -10,7 +10,7 @@
 namespace kerf::cut {
 namespace {
 
-constexpr double max_turn = 5 * std::numbers::pi / 180; ///< of one segment
+constexpr double max_turn_of_segment = 5 * std::numbers::pi / 180; ///< of one segment
 constexpr double straight = 1e-9;                       ///< sine of the angle at the second point: a line
 
 [[noreturn]] void refuse(const std::string& value, const std::string& rule, const std::string& remedy) {
@@ -39,7 +39,7 @@ void add_arc(const Vec3& a, const Vec3& b, const Vec3& c, const std::size_t numb
   double angle = std::atan2(axis.dot(u.cross(w)), u.dot(w));
   if (angle <= 0)
     angle += 2 * std::numbers::pi;
-  const int n = std::max(1, static_cast<int>(std::ceil(angle / max_turn - 1e-9)));
+  const int n = std::max(1, static_cast<int>(std::ceil(angle / max_turn_of_segment - 1e-9)));
   for (int i = 1; i < n; ++i)
     polyline.push_back(a + to_centre + Eigen::AngleAxisd(angle * i / n, axis) * u);
   polyline.push_back(c);

@@ -18,7 +18,7 @@ namespace cube = grid::cube;
 namespace skeleton = grid::skeleton;
 using grid::Segments;
 
-constexpr double little = 1e-3; // of a cube
+constexpr double little_room = 1e-3; // of a cube
 
 /// The points of a convex polygon in their order around it.
 void sort_around(Polygon& points, const Vec3& normal) {
@@ -99,7 +99,7 @@ bool CellAtPlane::is_clear(const double margin) const {
 /// The height at which the plane has a section with an area.
 double CellAtPlane::level() const {
   const auto [least, most] = std::minmax_element(height_.begin(), height_.end());
-  const double room = std::min(little * solid_.grid.h(), 0.25 * (*most - *least));
+  const double room = std::min(little_room * solid_.grid.h(), 0.25 * (*most - *least));
   return std::clamp(0.0, *least + room, *most - room);
 }
 
@@ -129,7 +129,7 @@ std::vector<Polygon> CellAtPlane::material() const {
   grid::Copy whole{.cell = cell_, .nodes = static_cast<std::uint8_t>(cuts.material), .corners = {}, .next = {}};
   if (grid::cuts_of_copies(solid_, cell_).is_cut_at_skin()) // which its copies may not know yet
     whole.skin = grid::Part::of(cuts.skeleton().items).skin;
-  const double level = this->level() + little * solid_.grid.h();
+  const double level = this->level() + little_room * solid_.grid.h();
   std::vector<Polygon> pieces;
   grid::for_each_tetrahedron(solid_, whole, [&](const grid::Tetrahedron& xi, int) {
     std::array<Vec3, 4> p;

@@ -12,13 +12,13 @@
 namespace kerf::cut {
 namespace {
 
-constexpr double radians = std::numbers::pi / 180;
+constexpr double radians_a_degree = std::numbers::pi / 180;
 
 using Frames = std::span<const KeyFrame>;
 
 /// Not normalised in sign: the two quaternions of one rotation tell turns by 10 and by 370 degrees apart.
 Eigen::Quaterniond quaternion(const Vec3& rotation_in_degrees) {
-  const double angle = rotation_in_degrees.norm() * radians;
+  const double angle = rotation_in_degrees.norm() * radians_a_degree;
   const Vec3 axis = angle > 0 ? Vec3(rotation_in_degrees.normalized()) : Vec3::UnitX();
   return Eigen::Quaterniond(Eigen::AngleAxisd(angle, axis));
 }

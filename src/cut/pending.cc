@@ -7,7 +7,7 @@ namespace kerf::cut {
 namespace {
 
 /// How many edges of each cell a release cuts.
-class CutCounts {
+class RoomInCells {
  public:
   /// Counts the edge in all its cells, or in none when one of them has no room left.
   bool take(const grid::Grid& grid, const grid::EdgeId edge) {
@@ -49,7 +49,7 @@ std::vector<grid::EdgeCut> PendingCuts::release(const grid::Solid& solid) {
   if (queue_.empty())
     return released;
   std::deque<grid::EdgeCut> waiting;
-  CutCounts counts;
+  RoomInCells counts;
   for (const grid::EdgeCut& cut : queue_) {
     const bool can_be_cut = solid.cuts.can_be_cut(solid.grid, cut.edge),
                is_released = can_be_cut && counts.take(solid.grid, cut.edge);

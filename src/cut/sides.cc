@@ -27,9 +27,9 @@ constexpr int most_labels = 8;
 using Sides = std::array<std::int8_t, most_labels>;
 
 /// What crosses the segments of a cell.
-class Meetings {
+class CellCrossings {
  public:
-  Meetings(const Solid& solid, const CellId c, const grid::CellCuts& cuts) : of_(cuts.skeleton()) {
+  CellCrossings(const Solid& solid, const CellId c, const grid::CellCuts& cuts) : of_(cuts.skeleton()) {
     const auto edges = solid.grid.edges(c);
     for (Segments left = cuts.blades & of_.segments; left != 0; left &= left - 1) {
       const int segment = std::countr_zero(left);
@@ -184,7 +184,7 @@ std::vector<Joined> on_same_sides(const Solid& solid, const CellId c) {
   std::vector<Joined> groups;
   if (parts.n < (solid.cuts.has_later_cuts() ? 2 : 3))
     return groups;
-  const Meetings meetings(solid, c, cuts);
+  const CellCrossings meetings(solid, c, cuts);
   if (meetings.n_labels() < 2)
     return groups;
   const auto sides = meetings.sides();

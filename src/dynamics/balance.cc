@@ -19,7 +19,6 @@
 namespace kerf::dynamics {
 namespace {
 
-constexpr std::size_t worth = 4096;      // corners from which on a second thread pays
 constexpr int most_where_not_taken = 30; // Newton iterations
 
 } // namespace
@@ -119,7 +118,7 @@ double BalanceSolver::square_of_scaled_residual() const {
 Loan<Vec3> BalanceSolver::velocities(const Problem& problem, const Points& x) {
   Loan<Vec3> v(x.size());
   parallel_for(
-    x.size(), [&](const std::size_t i) { v[i] = problem.velocity(x, i); }, worth);
+    x.size(), [&](const std::size_t i) { v[i] = problem.velocity(x, i); }, many_corners);
   return v;
 }
 
@@ -271,7 +270,7 @@ void BalanceSolver::apply(const Problem& problem, const std::span<const double> 
         Ap = (problem.constraints.freedom(i).project * Ap).eval();
       at(y, i) = Ap;
     },
-    worth);
+    many_corners);
 }
 
 /// Nothing along directions that are held, of which single precision would leave something.
@@ -284,7 +283,7 @@ void BalanceSolver::apply_inverse_blocks(const Problem& problem, const std::span
                                          const std::span<double> z) const {
   parallel_for(
     scaling_.size(), [&](const std::size_t i) { at(z, i) = by_inverse_block(problem, i, at(r, i)); },
-    worth);
+    many_corners);
 }
 
 Preconditioner* BalanceSolver::preconditioner(const Problem& problem) {
@@ -318,7 +317,7 @@ int BalanceSolver::correct_by_cg(const Problem& problem, Loan<Vec3> guess, const
     [&](const std::size_t i) {
       correction_[i] = has_guess ? Vec3(problem.constraints.freedom(i).project * guess[i]) : Vec3(Vec3::Zero());
     },
-    worth);
+    many_corners);
   guess = Loan<Vec3>::none();
   const double of_own = 0.5 * options_.step_tolerance; // the step's own error is half the way from free motion
   const double left =
@@ -354,7 +353,7 @@ int BalanceSolver::correct_by_cg(const Problem& problem, Loan<Vec3> guess, const
 /// Conjugate gradients have had A d = r - unsolved, so d.Kd takes no product.
 void BalanceSolver::put_elastic(const Problem& problem, Loan<Vec3> unsolved) {
   parallel_for(
-    unsolved.size(), [&](const std::size_t i) { unsolved[i] = residual_[i] - unsolved[i]; }, worth);
+    unsolved.size(), [&](const std::size_t i) { unsolved[i] = residual_[i] - unsolved[i]; }, many_corners);
   const Loan<double> all = pieces_.products(correction_, unsolved),
                      inertia = pieces_.products(correction_, momenta(model_, correction_));
   elastic_.resize(all.size());
@@ -385,7 +384,7 @@ double BalanceSolver::inertia_of_way(const Problem& problem) const {
 double BalanceSolver::potential_of_free_motion(const Problem& problem, const std::span<double> Ad) {
   Loan<Vec3> d(residual_.size());
   parallel_for(
-    d.size(), [&](const std::size_t i) { d[i] = free_motion(problem, i); }, worth);
+    d.size(), [&](const std::size_t i) { d[i] = free_motion(problem, i); }, many_corners);
   apply(problem, flat(*d), Ad);
   return dot(flat(*d), Ad) - 2 * product(residual_, d);
 }

@@ -16,7 +16,6 @@ namespace kerf::dynamics {
 
 namespace {
 
-constexpr std::size_t worth = 4096; // corners from which on a second thread pays
 
 } // namespace
 
@@ -86,7 +85,7 @@ Loan<double> BalanceSolver::most_work(const Problem& problem, const Points& x) {
   const Loan<double> of_change = [&] {
     Loan<Vec3> a(x.size());
     parallel_for(
-      a.size(), [&](const std::size_t i) { a[i] = problem.acceleration(x, i); }, worth);
+      a.size(), [&](const std::size_t i) { a[i] = problem.acceleration(x, i); }, many_corners);
     return with_inertia(a);
   }();
   const Loan<Vec3> d = unlike_flight(problem, moved(x, -1, problem.balance.start));

@@ -8,8 +8,6 @@ namespace kerf::dynamics {
 
 namespace {
 
-constexpr double part_of_step = 1e-2; // for velocities of supports, by central differences
-
 /// Values at the two ends of the step before, and the three coefficients.
 struct Past {
   const Points &x_before, &v_before; // at the beginning of the step before

@@ -12,9 +12,9 @@ namespace kerf::dynamics {
 
 namespace {
 
-constexpr double round_off = 1e-9; // of projectors and their sums [1]
+constexpr double round_off_of_projectors = 1e-9; // of projectors and their sums [1]
 
-bool holds_all(const Mat3& held) { return (held - Mat3::Identity()).cwiseAbs().maxCoeff() < round_off; }
+bool holds_all(const Mat3& held) { return (held - Mat3::Identity()).cwiseAbs().maxCoeff() < round_off_of_projectors; }
 
 Constraints::Freedom freedom_beside(const Mat3& sum) {
   const Eigen::SelfAdjointEigenSolver<Mat3> eigen(sum); // ascending: free directions first
@@ -22,7 +22,7 @@ Constraints::Freedom freedom_beside(const Mat3& sum) {
   for (int k = 0; k < 3; ++k) {
     const Vec3 direction = freedom.basis.col(k);
     const double value = eigen.eigenvalues()[k];
-    if (value < round_off) {
+    if (value < round_off_of_projectors) {
       ++freedom.n_free;
       freedom.project += direction * direction.transpose();
     } else {
@@ -104,7 +104,7 @@ void Constraints::add(const std::uint32_t corner, const std::span<const Hold> ho
 
 std::uint32_t Constraints::kind_of(const Mat3& sum) {
   for (std::uint32_t k = 0; k < freedoms_.size(); ++k)
-    if ((freedoms_[k].sum - sum).cwiseAbs().maxCoeff() < round_off)
+    if ((freedoms_[k].sum - sum).cwiseAbs().maxCoeff() < round_off_of_projectors)
       return k;
   freedoms_->push_back(freedom_beside(sum));
   return static_cast<std::uint32_t>(freedoms_.size() - 1);

@@ -16,6 +16,9 @@
 
 namespace kerf::dynamics {
 
+/// For which integrators take the velocity of a support at a time, by central differences.
+constexpr double part_of_step = 1e-2;
+
 class Constraints {
  public:
   /// The loads must outlive it.

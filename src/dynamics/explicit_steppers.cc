@@ -11,8 +11,6 @@ namespace kerf::dynamics {
 
 namespace {
 
-constexpr double part_of_step = 1e-2; // for velocities of supports, by central differences
-
 /// (x, v)' = A (x, v).
 Eigen::Matrix2d derivative(const Mode& mode) {
   Eigen::Matrix2d A;

@@ -1,4 +1,5 @@
 #include "dynamics/forces.h"
+#include "dynamics/points.h"
 
 #include "base/parallel.h"
 #include "dynamics/conjugate_gradients.h"
@@ -12,7 +13,6 @@ namespace kerf::dynamics {
 
 namespace {
 
-constexpr std::size_t worth = 4096; // corners from which on a second thread pays
 
 void add_stiffness_damping(ForceModel& model, const double beta, const Moment& moment, Points& forces) {
   auto* elastic = dynamic_cast<ElasticModel*>(&model);
@@ -54,7 +54,8 @@ void total_force(ForceModel& model, const Loads& loads, const Moment& moment, co
   const auto mass = model.lumped_mass();
   const double alpha = mass_damping == MassDamping::included ? loads.mass_damping : 0;
   parallel_for(
-    forces.size(), [&](const std::size_t i) { forces[i] += mass[i] * (loads.gravity - alpha * moment.v[i]); }, worth);
+    forces.size(), [&](const std::size_t i) { forces[i] += mass[i] * (loads.gravity - alpha * moment.v[i]); },
+    many_corners);
   if (alpha > 0) {
     const Loan<Vec3> more = coupled(model, moment.v);
     for (std::size_t i = 0; i < more.size(); ++i)
@@ -84,7 +85,7 @@ Loan<Vec3> momenta(const ForceModel& model, const Points& v) {
       const Vec3 more = is_lumped ? Vec3(Vec3::Zero()) : sum[i];
       sum[i] = more + mass[i] * v[i];
     },
-    worth);
+    many_corners);
   return sum;
 }
 

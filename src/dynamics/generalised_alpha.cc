@@ -15,8 +15,6 @@ namespace {
 
 /// A corner with less than this part of the largest mass has none but for round-off: it takes no acceleration at first.
 constexpr double massless = 1e-12;
-constexpr double part_of_step = 1e-2; // for velocities of supports, by central differences
-
 const std::string under_way = "under way [1]"; // in State::numbers from the first step on
 
 void require(const bool holds, const std::string& path, const double value, const std::string& rule) {

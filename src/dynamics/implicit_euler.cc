@@ -1,4 +1,5 @@
 #include "dynamics/implicit_euler.h"
+#include "dynamics/points.h"
 
 #include "base/parallel.h"
 
@@ -11,7 +12,6 @@ namespace kerf::dynamics {
 
 namespace {
 
-constexpr std::size_t worth = 4096; // corners from which on a second thread pays
 
 /// Where supports have moved, they take all that is free with them, as nearly as a rigid motion can: else the first
 /// linear system would know a body that is torn where it is held.
@@ -34,7 +34,7 @@ void ride(const Loads& loads, const Constraints& constraints, const Points& from
       if (constraints.is_free(i))
         to[i] = motion.topLeftCorner<3, 3>() * from[i] + motion.topRightCorner<3, 1>();
     },
-    worth);
+    many_corners);
 }
 
 } // namespace
@@ -93,7 +93,7 @@ StepReport ImplicitEuler::step(State& state, const Loads& loads, const double dt
       balance.acceleration[i] = (v - state.v[i]) / dt;
       balance.guess[i] = dt * ((a ? Vec3(state.v[i] + dt * (*a)[i]) : state.v[i]) - v);
     },
-    worth);
+    many_corners);
   Loan<Vec3> x = Loan<Vec3>::with_room(n);
   const StepReport report = accepted(solver_.solve(loads, constraints, std::move(balance), x));
   Points& accelerations = state.history[last_acceleration];
@@ -105,7 +105,7 @@ StepReport ImplicitEuler::step(State& state, const Loads& loads, const double dt
       accelerations[i] = (v - state.v[i]) / dt;
       state.v[i] = v;
     },
-    worth);
+    many_corners);
   state.x.swap(x);
   state.time += dt;
   return report;

@@ -150,21 +150,21 @@ struct MassMatrix {
 };
 
 /// A mode with u.Mu = 1.
-struct Mode {
+struct Eigenpair {
   double value; ///< (2 pi f)^2 [1/s^2]
   Vector u, Mu;
 };
 
 /// Leaves of vectors what is M-orthogonal to modes.
-void take_out(const std::vector<Mode>& modes, Vector& u) {
-  for (const Mode& mode : modes)
+void take_out(const std::vector<Eigenpair>& modes, Vector& u) {
+  for (const Eigenpair& mode : modes)
     u.add(-(mode.Mu * u), mode.u);
 }
 
 /// The inverse, among what is M-orthogonal to the modes that are known.
 struct Rest {
   const Inverse& inverse;
-  const std::vector<Mode>& known;
+  const std::vector<Eigenpair>& known;
   void vmult(Vector& x, const Vector& b) const {
     inverse.vmult(x, b);
     take_out(known, x);
@@ -172,8 +172,8 @@ struct Rest {
 };
 
 /// As many of the lowest modes as are wanted, beside those that are known.
-std::vector<Mode> further_modes(const Pencil& pencil, const Inverse& inverse, const double shift,
-                                const std::vector<Mode>& known, const std::size_t n_wanted) {
+std::vector<Eigenpair> further_modes(const Pencil& pencil, const Inverse& inverse, const double shift,
+                                     const std::vector<Eigenpair>& known, const std::size_t n_wanted) {
   const auto n = static_cast<unsigned int>(pencil.n_numbers());
   const auto wanted = static_cast<unsigned int>(n_wanted);
   const auto room = static_cast<unsigned int>(pencil.constraints().n_free() - known.size());
@@ -196,7 +196,7 @@ std::vector<Mode> further_modes(const Pencil& pencil, const Inverse& inverse, co
   } catch (const dealii::ExceptionBase& error) {
     throw NumericalError(std::string("modes: Lanczos' method failed: ") + error.get_exc_name());
   }
-  std::vector<Mode> modes;
+  std::vector<Eigenpair> modes;
   for (Vector& u : vectors) {
     Vector Ku(n), Mu(n);
     M.vmult(Mu, u);
@@ -209,8 +209,8 @@ std::vector<Mode> further_modes(const Pencil& pencil, const Inverse& inverse, co
   return modes;
 }
 
-void keep_lowest(std::vector<Mode>& modes, const std::size_t n) {
-  std::sort(modes.begin(), modes.end(), [](const Mode& a, const Mode& b) { return a.value < b.value; });
+void keep_lowest(std::vector<Eigenpair>& modes, const std::size_t n) {
+  std::sort(modes.begin(), modes.end(), [](const Eigenpair& a, const Eigenpair& b) { return a.value < b.value; });
   modes.erase(modes.begin() + static_cast<std::ptrdiff_t>(std::min(n, modes.size())), modes.end());
 }
 
@@ -254,16 +254,16 @@ Modes lowest_modes(ElasticModel& model, const Loads& loads, const double time, c
                                    .remedy = "Use fewer modes, fewer supports or smaller cubes"});
   const double shift = shift_of(pencil, x);
   const Inverse inverse(pencil, shift, parameters, n_iterations);
-  std::vector<Mode> modes = further_modes(pencil, inverse, shift, {}, n_wanted);
+  std::vector<Eigenpair> modes = further_modes(pencil, inverse, shift, {}, n_wanted);
   keep_lowest(modes, n_wanted);
   for (bool is_new = true; is_new && modes.size() + spare < pencil.constraints().n_free();) {
-    std::vector<Mode> more = further_modes(pencil, inverse, shift, modes, 1);
+    std::vector<Eigenpair> more = further_modes(pencil, inverse, shift, modes, 1);
     is_new = more.front().value + shift < (1 - same) * (modes.back().value + shift);
     modes.push_back(std::move(more.front()));
     keep_lowest(modes, n_wanted);
   }
   Modes found;
-  for (const Mode& mode : modes) {
+  for (const Eigenpair& mode : modes) {
     found.frequencies.push_back(std::sqrt(std::max(mode.value, 0.0)) / (2 * std::numbers::pi));
     found.shapes.push_back(shape_of(mode.u));
   }

@@ -23,11 +23,12 @@ inline double norm(const Points& values) { return std::sqrt(dot(flat(values), fl
 
 inline double product(const Points& a, const Points& b) { return dot(flat(a), flat(b)); }
 
+constexpr std::size_t many_corners = 4096; // from which on a second thread pays
+
 inline Loan<Vec3> moved(const Points& x, const double length, const Points& d) {
-  constexpr std::size_t worth = 4096; // corners from which on a second thread pays
   Loan<Vec3> end(x.size());
   parallel_for(
-    x.size(), [&](const std::size_t i) { end[i] = x[i] + length * d[i]; }, worth);
+    x.size(), [&](const std::size_t i) { end[i] = x[i] + length * d[i]; }, many_corners);
   return end;
 }
 

@@ -11,12 +11,6 @@ namespace kerf::dynamics {
 
 namespace {
 
-Mat3 cross_matrix(const Vec3& a) {
-  Mat3 A;
-  A << 0, -a[2], a[1], a[2], 0, -a[0], -a[1], a[0], 0;
-  return A;
-}
-
 /// Pi of the midpoint rule, by Newton's method. As the residual is quadratic, a change of d leaves an error of less
 /// than d^2 / |start| where the body turns by less than 1 rad.
 Vec3 middle_momentum(const Mat3& inverse_inertia, const Vec3& start, const double dt) {

@@ -18,7 +18,7 @@ namespace kerf::dynamics {
 
 namespace {
 
-void add(StepReport& sum, const StepReport& part) {
+void add_try(StepReport& sum, const StepReport& part) {
   sum.n_iterations += part.n_iterations;
   sum.n_newton += part.n_newton;
   sum.n_substeps += part.n_substeps;
@@ -137,7 +137,7 @@ double unseen(const ForceModel& model, const State& state, const double dt) {
 }
 
 /// Of the elastic energy, by what it costs to grow by a thousandth [J].
-double round_off(const ForceModel& model, const Points& x) {
+double noise_of_energy(const ForceModel& model, const Points& x) {
   Loan<Vec3> grown(x);
   for (Vec3& p : *grown)
     p *= 1.001;
@@ -247,7 +247,7 @@ void SoundSteps::add_checked(const State& state, const Loads& loads, const doubl
   require_finite(after);
   const EnergyChange change = energy_change(model_, pieces_, energies_, loads, state, after);
   const double shift = options_.kick * change.kick + change.unseen;
-  if (!(change.gained <= options_.most_gain * change.dealt + shift) && change.gained > round_off(model_, after.x))
+  if (!(change.gained <= options_.most_gain * change.dealt + shift) && change.gained > noise_of_energy(model_, after.x))
     throw StepError("the step gained " + in_short(change.gained) + " J that no load and no support gave, " +
                       per_cent(change.gained / change.dealt) + " of the energy that it dealt with",
                     most_thrown(state, after));
@@ -255,13 +255,14 @@ void SoundSteps::add_checked(const State& state, const Loads& loads, const doubl
     require_no_piece_gains(model_, pieces_, loads, state, after, options_.most_gain);
   double& sum = after.numbers[energy_gained];
   sum = std::max(0.0, sum + change.gained);
-  if (change.gained > 0 && !(sum <= options_.most_sum * change.inner + shift) && sum > many * round_off(model_, after.x))
+  if (change.gained > 0 && !(sum <= options_.most_sum * change.inner + shift) &&
+      sum > many * noise_of_energy(model_, after.x))
     throw StepError("the integrator has gained " + per_cent(sum / change.inner) +
                       " of the body's kinetic and elastic energy, step by step: the motion is no more the body's",
                     most_thrown(state, after));
   tried.is_as_wanted = tried.is_as_wanted && change.gained <= options_.wanted_gain * change.dealt + change.unseen;
   tried.gained += std::max(0.0, change.gained);
-  add(tried.report, report);
+  add_try(tried.report, report);
   tried.state = std::move(lent);
 }
 

@@ -11,12 +11,6 @@ namespace {
 /// Twice the area times the normal of a triangle.
 Vec3 double_area(const Vec3& a, const Vec3& b, const Vec3& c) { return (b - a).cross(c - a); }
 
-Mat3 cross_matrix(const Vec3& w) {
-  Mat3 W;
-  W << 0, -w[2], w[1], w[2], 0, -w[0], -w[1], w[0], 0;
-  return W;
-}
-
 } // namespace
 
 void check(const SurfacePatch& patch) {

@@ -9,7 +9,7 @@ namespace kerf::fem {
 
 namespace {
 
-constexpr std::uint32_t none = CellsOfLevel::unused;
+constexpr std::uint32_t no_place = CellsOfLevel::unused;
 
 /// Groups of corners, up to some each, that rows join: one of two joins both; one of four or eight what of its corners
 /// is alone, to each other where these are two, one to the others: so corners beyond a body's own edges, which no row
@@ -17,9 +17,9 @@ constexpr std::uint32_t none = CellsOfLevel::unused;
 std::vector<std::vector<std::uint32_t>> joined(const Weights& rows, const std::size_t n_corners,
                                                const std::size_t most) {
   std::vector<std::vector<std::uint32_t>> groups;
-  std::vector<std::uint32_t> of(n_corners, none);
+  std::vector<std::uint32_t> of(n_corners, no_place);
   const auto group_of = [&](const std::uint32_t corner) {
-    if (of[corner] == none) {
+    if (of[corner] == no_place) {
       of[corner] = static_cast<std::uint32_t>(groups.size());
       groups.push_back({corner});
     }
@@ -55,13 +55,13 @@ std::vector<std::vector<std::uint32_t>> joined(const Weights& rows, const std::s
 
 PointSprings coarsened(const PointSprings& fine, const Coarsening& coarsening) {
   PointSprings coarse{{}, fine.blocks};
-  std::vector<std::uint32_t> place(coarsening.coarse.n_corners, none);
+  std::vector<std::uint32_t> place(coarsening.coarse.n_corners, no_place);
   Weights& rows = coarse.rows;
   for (std::size_t i = 0; i < fine.blocks.size(); ++i) {
     for (std::uint32_t k = fine.rows.begin[i]; k < fine.rows.begin[i + 1]; ++k) {
       coarsening.for_each_weight(fine.rows.column[k], [&](const std::uint32_t corner, const float weight) {
         std::uint32_t& p = place[corner];
-        if (p == none) {
+        if (p == no_place) {
           p = static_cast<std::uint32_t>(rows.column.size());
           rows.column.push_back(corner);
           rows.weight.push_back(0);
@@ -70,7 +70,7 @@ PointSprings coarsened(const PointSprings& fine, const Coarsening& coarsening) {
       });
     }
     for (std::size_t k = rows.begin.back(); k < rows.column.size(); ++k)
-      place[rows.column[k]] = none;
+      place[rows.column[k]] = no_place;
     rows.begin.push_back(static_cast<std::uint32_t>(rows.column.size()));
   }
   return coarse;
@@ -109,7 +109,7 @@ void Clusters::add_bound(const PointSprings& points,
       sum += std::abs(entries.back().weight);
     }
     for (const Entry& a : entries) {
-      if (a.place.cluster == none) {
+      if (a.place.cluster == no_place) {
         add(a.corner, sum * std::abs(a.weight) * block);
         continue;
       }

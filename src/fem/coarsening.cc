@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::uint32_t none = CellsOfLevel::unused;
 
-constexpr std::size_t worth = 4096; // copies or corners from which on a second thread pays
+constexpr std::size_t many_children = 4096; // copies or corners from which on a second thread pays
 
 /// The copies whose lowest vertex is each corner.
 class ByLowestCorner {
@@ -77,7 +77,7 @@ class Glued {
             }
         }
       },
-      worth);
+      many_children);
   }
 
   /// Calls f(above) for each; several threads may.
@@ -113,7 +113,7 @@ void find_copies(const CellsView& fine, const Glued& glued, Coarsening& result) 
         if (!is_upper(fine, c, axis))
           glued.for_each_above(c, axis, [&](const std::uint32_t above) { joined.unite(c, above); });
     },
-    worth);
+    many_children);
   const std::uint32_t n =
     joined.number(result.parent, none, [&](const std::uint32_t c) { return fine.is_used(c); });
   result.octant.resize(fine.n_copies());
@@ -126,14 +126,14 @@ void find_copies(const CellsView& fine, const Glued& glued, Coarsening& result) 
       const int octant = (place[0] & 1) | (place[1] & 1) << 1 | (place[2] & 1) << 2;
       result.octant[c] = static_cast<std::uint8_t>(fine.is_used(c) ? octant : 0);
     },
-    worth);
+    many_children);
   parallel_for(
     n,
     [&](const std::size_t coarse) {
       const Index3& place = fine.place[result.children.of(coarse)[0]];
       result.coarse.place[coarse] = {place[0] >> 1, place[1] >> 1, place[2] >> 1};
     },
-    worth);
+    many_children);
 }
 
 /// Over whole faces, where fine copies are glued that lie in two coarse cubes.
@@ -156,7 +156,7 @@ void find_corners(const CellsView& fine, const Glued& glued, Coarsening& result)
             });
       }
     },
-    worth / 8);
+    many_children / 8);
   result.coarse.n_corners = joined.number(result.coarse.corners);
 }
 
@@ -174,7 +174,7 @@ std::vector<std::uint32_t> users(const CellsView& cells) {
         }
       }
     },
-    worth);
+    many_children);
   return user;
 }
 
@@ -223,7 +223,8 @@ void Coarsening::ask(const CellsView& fine) {
           f(i);
   };
   parallel_for(
-    coarse.n_copies(), [&](const std::size_t c) { for_each(c, [&](std::uint32_t) { ++begin_[c + 1]; }); }, worth / 8);
+    coarse.n_copies(), [&](const std::size_t c) { for_each(c, [&](std::uint32_t) { ++begin_[c + 1]; }); },
+    many_children / 8);
   std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
   corner_.resize(begin_.back());
   place_.resize(begin_.back());
@@ -236,7 +237,7 @@ void Coarsening::ask(const CellsView& fine) {
         place_[at++] = place_of(i);
       });
     },
-    worth / 8);
+    many_children / 8);
 }
 
 Coarsening coarsened(const CellsView& fine) {

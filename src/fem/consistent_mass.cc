@@ -8,7 +8,7 @@ namespace kerf::fem {
 
 namespace {
 
-constexpr std::size_t worth = 1024; // corners from which on a second thread pays
+constexpr std::size_t many_rows = 1024; // corners from which on a second thread pays
 
 Vec3 at(const std::span<const double> values, const std::size_t i) {
   return {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
@@ -77,7 +77,7 @@ void ConsistentMass::add_product(const std::span<const double> p, const std::spa
       for (int k = 0; k < 3; ++k)
         y[3 * i + k] += sum[k];
     },
-    worth);
+    many_rows);
 }
 
 void ConsistentMass::add_entries(const double factor, std::vector<Eigen::Triplet<double>>& entries) const {

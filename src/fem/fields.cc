@@ -11,7 +11,7 @@ namespace kerf::fem {
 
 namespace {
 
-constexpr std::size_t worth = 256;
+constexpr std::size_t many_copies = 256;
 
 /// The copies that hold a corner, ascending; with all around those too, if `rings` is 2.
 std::vector<std::uint32_t> patch(const Incidence& incidence, const std::size_t corner, const int rings) {
@@ -82,7 +82,7 @@ std::vector<Mat3> of_copies(const Hexahedra& model, const Points& x, const Funct
     [&](const std::size_t c) {
       values[c] = model.incidence().is_used(c) ? Mat3(f(model.deformation_gradient(c, x))) : Mat3(Mat3::Zero());
     },
-    worth);
+    many_copies);
   return values;
 }
 
@@ -117,7 +117,7 @@ std::vector<Mat3> at_corners(const Hexahedra& model, const Points& rest, const s
       }
       values[corner] = fitted(model, copies, spread, of_copies, rest[corner] / model.h());
     },
-    worth);
+    many_copies);
   return values;
 }
 

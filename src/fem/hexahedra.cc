@@ -14,7 +14,7 @@ namespace kerf::fem {
 
 namespace {
 
-constexpr std::size_t worth = 4096; // corners from which on a second thread pays
+constexpr std::size_t many_corners_of_copies = 4096; // corners from which on a second thread pays
 constexpr double no_bound = std::numeric_limits<double>::infinity();
 
 using material::Tangent;
@@ -53,7 +53,7 @@ struct TwoRows {
 
 void clear(Row<double>* const rows, const std::size_t n) {
   parallel_for(
-    n, [&](const std::size_t i) { rows[i] = {}; }, worth);
+    n, [&](const std::size_t i) { rows[i] = {}; }, many_corners_of_copies);
 }
 
 /// Three numbers of each row.
@@ -65,7 +65,7 @@ void write(const Row<double>* const rows, const std::span<double> y) {
       y[3 * i + 1] = rows[i].y;
       y[3 * i + 2] = rows[i].z;
     },
-    worth);
+    many_corners_of_copies);
 }
 
 } // namespace
@@ -242,7 +242,7 @@ void Hexahedra::put_rows(const std::span<const double> values, Row<double>* cons
     [&](const std::size_t i) {
       rows[i] = i < n ? Row<double>{values[3 * i], values[3 * i + 1], values[3 * i + 2]} : Row<double>{};
     },
-    worth);
+    many_corners_of_copies);
 }
 
 template <class Function>
@@ -429,7 +429,7 @@ void Hexahedra::stiffness_diagonal(const PutBlock put) const {
       block << d.x + penalty[i], s.x, s.z, s.x, d.y + penalty[i], s.y, s.z, s.y, d.z + penalty[i];
       put(i, block);
     },
-    worth);
+    many_corners_of_copies);
 }
 
 void Hexahedra::make_multigrid() {

@@ -14,7 +14,7 @@ namespace kerf::fem {
 
 namespace {
 
-constexpr std::size_t worth = 8192; // corners from which on a second thread pays
+constexpr std::size_t many_corners = 8192; // corners from which on a second thread pays
 
 using FloatRow = Row<float>;
 
@@ -128,7 +128,7 @@ void Level::resize() {
 
 template <class Function>
 void Level::for_each_corner(const Function& f) const {
-  parallel_for(n_corners, f, worth);
+  parallel_for(n_corners, f, many_corners);
 }
 
 void Level::make_diagonal() {

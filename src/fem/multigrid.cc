@@ -19,7 +19,7 @@ namespace kerf::fem {
 
 namespace {
 
-constexpr std::size_t worth = 8192; // corners from which on a second thread pays
+constexpr std::size_t many_of_a_level = 8192; // corners from which on a second thread pays
 constexpr std::size_t few = 48;     // corners that are factorised as they are
 
 /// Blocks at coarse corners, of the sum of the fine ones.
@@ -350,7 +350,7 @@ void Multigrid::put_masses(const dynamics::LinearEquation& equation) {
   const double factor = equation.mass_factor / equation.stiffness_factor;
   Level& finest = levels_[0];
   parallel_for(
-    finest.n_corners, [&](const std::size_t i) { finest.mass[i] = float(factor * equation.mass[i]); }, worth);
+    finest.n_corners, [&](const std::size_t i) { finest.mass[i] = float(factor * equation.mass[i]); }, many_of_a_level);
   for (std::size_t l = 0; l + 1 < levels_.size(); ++l) {
     const Coarsening& coarsening = levels_[l].to_coarse;
     std::vector<float>& coarse = levels_[l + 1].mass;
@@ -410,7 +410,7 @@ void Multigrid::apply(const std::span<const double> r, const std::span<double> z
     [&](const std::size_t i) {
       b[i] = {float(r[3 * i] / scale), float(r[3 * i + 1] / scale), float(r[3 * i + 2] / scale)};
     },
-    worth);
+    many_of_a_level);
   levels_[0].project(b);
   const Row<float>* const x = cycle_->solve();
   const double back = scale / stiffness_factor_;
@@ -421,7 +421,7 @@ void Multigrid::apply(const std::span<const double> r, const std::span<double> z
       z[3 * i + 1] = back * x[i].y;
       z[3 * i + 2] = back * x[i].z;
     },
-    worth);
+    many_of_a_level);
 }
 
 } // namespace kerf::fem

@@ -39,14 +39,14 @@ std::string to_text(const Vec3& p) {
   return text.str();
 }
 
-[[noreturn]] void refuse(const std::string& path, const std::string& rule, const std::string& remedy) {
+[[noreturn]] void reject(const std::string& path, const std::string& rule, const std::string& remedy) {
   const std::string whole_rule = "the mesh must be the skin of a solid, but " + rule;
   throw DataError(Complaint{.file = path, .rule = whole_rule, .remedy = remedy});
 }
 
 void require_none(const Defects& defects, const std::string& path, const std::string& what, const std::string& remedy) {
   if (defects.n > 0)
-    refuse(path, what + ": " + std::to_string(defects.n) + ", the first at " + to_text(defects.first), remedy);
+    reject(path, what + ": " + std::to_string(defects.n) + ", the first at " + to_text(defects.first), remedy);
 }
 
 Vec3 centroid(const TriangleMesh& mesh, const std::size_t i) {
@@ -134,7 +134,7 @@ void orient_consistently(TriangleMesh& mesh, const std::vector<EdgeSide>& sides,
   for (std::uint32_t i = 0; i < n; ++i) {
     const std::uint32_t as_it_is = orientations.root(i), reversed = orientations.root(i + n);
     if (as_it_is == reversed)
-      refuse(path, "it is not orientable, a one-sided surface through " + to_text(centroid(mesh, i)),
+      reject(path, "it is not orientable, a one-sided surface through " + to_text(centroid(mesh, i)),
              "Rebuild the surface so that it has an inside");
     if (reversed < as_it_is)
       flip(mesh.triangles[i]);
@@ -183,7 +183,7 @@ void require_volume(const TriangleMesh& mesh, const std::vector<std::uint32_t>& 
   const double no_volume = 1e-14 * std::pow((box.upper - box.lower).norm(), 3); // round-off of the sum
   for (const auto& triangles : triangles_of_shells(shell))
     if (std::abs(shell_volume(mesh, triangles)) <= no_volume)
-      refuse(path, "it does not bound a volume: a closed shell without one at " + to_text(centroid(mesh, triangles[0])),
+      reject(path, "it does not bound a volume: a closed shell without one at " + to_text(centroid(mesh, triangles[0])),
              "Remove the shell or give it a thickness");
 }
 
@@ -203,7 +203,7 @@ void require_no_self_intersection(const TriangleMesh& mesh, const std::string& p
   if (pairs.empty())
     return;
   const auto& [i, j] = pairs.front();
-  refuse(path,
+  reject(path,
          "it intersects itself: " + std::to_string(pairs.size()) + " pairs of triangles, the first " +
            std::to_string(i) + " and " + std::to_string(j) + " near " + to_text(centroid(mesh, i)),
          "Repair it with a boolean union or a remesher");
@@ -213,7 +213,7 @@ void require_no_self_intersection(const TriangleMesh& mesh, const std::string& p
 
 TriangleMesh require_solid(TriangleMesh mesh, const std::string& path) {
   if (mesh.vertices.empty() || mesh.triangles.empty())
-    refuse(path, "it is empty", "Export the mesh again");
+    reject(path, "it is empty", "Export the mesh again");
   require_areas(mesh, path);
   const std::vector<EdgeSide> sides = sorted_edge_sides(mesh);
   require_two_sides_an_edge(mesh, sides, path);

@@ -9,11 +9,11 @@ namespace kerf::output {
 
 namespace {
 
-constexpr const char* group = "/bench/rows";
+constexpr const char* bench_rows = "/bench/rows";
 
 /// Calls action(column) for every column, whatever its type.
 template <class Action>
-void for_each_column(const Action& action) {
+void for_each_bench_column(const Action& action) {
   using Row = BenchRow;
   const Columns<Row, Action> columns{action};
   columns.text("path", &Row::path, "what is measured");
@@ -40,8 +40,8 @@ void write_bench_file(const std::filesystem::path& path, const BenchTable& table
       h5::set_attribute(bench, "threads", table.n_threads);
       h5::set_attribute(bench, "peak_flops", table.peak_flops);
       h5::set_attribute(bench, "bandwidth", table.bandwidth);
-      h5::create_group(root, group);
-      for_each_column([&](const auto& column) { write_column(root, group, column, table.rows); });
+      h5::create_group(root, bench_rows);
+      for_each_bench_column([&](const auto& column) { write_column(root, bench_rows, column, table.rows); });
     });
   }
   take_name(path);
@@ -49,7 +49,7 @@ void write_bench_file(const std::filesystem::path& path, const BenchTable& table
 
 void write_bench_csv(const std::filesystem::path& path, const BenchTable& table) {
   CsvTable csv(table.rows.size());
-  for_each_column([&](const auto& column) { csv.add(column.name, column, table.rows); });
+  for_each_bench_column([&](const auto& column) { csv.add(column.name, column, table.rows); });
   csv.write(path);
 }
 
@@ -58,8 +58,8 @@ BenchTable read_bench_file(const std::filesystem::path& path) {
   const h5::Object bench = h5::open_group(root, "/bench");
   BenchTable table{h5::integer_attribute(bench, "threads"), h5::number_attribute(bench, "peak_flops"),
                    h5::number_attribute(bench, "bandwidth")};
-  table.rows.resize(h5::n_rows(h5::open_dataset(root, column_path(group, "seconds"))));
-  for_each_column([&](const auto& column) { read_column(root, group, column, table.rows); });
+  table.rows.resize(h5::n_rows(h5::open_dataset(root, column_path(bench_rows, "seconds"))));
+  for_each_bench_column([&](const auto& column) { read_column(root, bench_rows, column, table.rows); });
   return table;
 }
 

@@ -120,7 +120,7 @@ int write_page(const int descriptor, const std::uint64_t number, const std::span
 }
 
 /// True when this descriptor is the file's only writer, or when the file system has no locks.
-bool lock(const int descriptor) {
+bool lock_for_writing(const int descriptor) {
   struct flock whole {};
   whole.l_type = F_WRLCK;
   whole.l_whence = SEEK_SET;
@@ -147,7 +147,7 @@ JournaledFile::JournaledFile(const std::filesystem::path& path, const Mode mode)
   descriptor_ = open(path.c_str(), O_RDWR | O_CLOEXEC | (mode == Mode::create ? O_CREAT : 0), 0666);
   if (descriptor_ < 0)
     throw_cannot("written", path, errno);
-  const bool locked = lock(descriptor_);
+  const bool locked = lock_for_writing(descriptor_);
   if (!locked || (mode == Mode::create && ftruncate(descriptor_, 0) != 0)) {
     const int error = locked ? errno : ETXTBSY;
     close(descriptor_);
@@ -295,7 +295,7 @@ void recover(const std::filesystem::path& path) {
   if (descriptor < 0)
     throw_cannot("repaired after a kill", path, errno);
   // Looked for again under the lock: while the writer lives, a journal is its own affair.
-  const auto journal = lock(descriptor) ? find_journal(descriptor) : Journal{};
+  const auto journal = lock_for_writing(descriptor) ? find_journal(descriptor) : Journal{};
   int error = 0;
   for (std::size_t i = 0; i < journal.numbers.size() && error == 0; ++i)
     error = write_page(descriptor, journal.numbers[i],

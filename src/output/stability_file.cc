@@ -9,11 +9,11 @@ namespace kerf::output {
 
 namespace {
 
-constexpr const char* group = "/stability/rows";
+constexpr const char* stability_rows = "/stability/rows";
 
 /// Calls action(column) for every column, whatever its type.
 template <class Action>
-void for_each_column(const Action& action) {
+void for_each_stability_column(const Action& action) {
   using Row = StabilityRow;
   const Columns<Row, Action> columns{action};
   columns.text("sweep", &Row::sweep, "which of the study's");
@@ -54,8 +54,8 @@ void write_stability_file(const std::filesystem::path& path, const StabilityTabl
       h5::set_attribute(root, "made_of", table.made_of);
       h5::create_group(root, "/stability");
       h5::write_text(root, "/stability/text", table.text);
-      h5::create_group(root, group);
-      for_each_column([&](const auto& column) { write_column(root, group, column, table.rows); });
+      h5::create_group(root, stability_rows);
+      for_each_stability_column([&](const auto& column) { write_column(root, stability_rows, column, table.rows); });
     });
   }
   take_name(path);
@@ -68,8 +68,8 @@ StabilityTable read_stability_file(const std::filesystem::path& path) {
                        read_outcome(root),
                        {},
                        h5::text_attribute(root, "made_of")};
-  table.rows.resize(h5::n_rows(h5::open_dataset(root, column_path(group, "dt"))));
-  for_each_column([&](const auto& column) { read_column(root, group, column, table.rows); });
+  table.rows.resize(h5::n_rows(h5::open_dataset(root, column_path(stability_rows, "dt"))));
+  for_each_stability_column([&](const auto& column) { read_column(root, stability_rows, column, table.rows); });
   return table;
 }
 

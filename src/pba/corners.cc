@@ -15,7 +15,7 @@ namespace kerf::pba {
 
 namespace {
 
-constexpr std::size_t worth = 512; // corners from which on a second thread pays
+constexpr std::size_t many_corners = 512; // corners from which on a second thread pays
 
 /// x + F (X - X_i) as a + F X: F in columns 0 .. 2, a in column 3.
 using Motion = Eigen::Matrix<double, 3, 4>;
@@ -142,7 +142,7 @@ void follow(const CornerMap& map, const Points& x, const std::vector<Mat3>& F, P
       for (auto k = map.start[r]; k < map.start[r + 1]; ++k)
         rows[r] += map.weight[k] * motions[map.phyxel[k]];
     },
-    worth);
+    many_corners);
   corners.resize(map.corners.size());
   parallel_for(
     corners.size(),
@@ -153,7 +153,7 @@ void follow(const CornerMap& map, const Points& x, const std::vector<Mat3>& F, P
         sum += rows[map.source[k]].leftCols<3>() * map.corners[c] + rows[map.source[k]].col(3);
       corners[c] = sum / (end - begin);
     },
-    worth);
+    many_corners);
 }
 
 std::vector<std::uint32_t> phyxel_pieces(const grid::CellComplex& complex, const std::span<const grid::CopyId> copies) {

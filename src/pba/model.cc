@@ -16,7 +16,7 @@ namespace kerf::pba {
 namespace {
 
 /// Phyxels from which on a second thread pays: 1 us each in every pass.
-constexpr std::size_t worth = 256;
+constexpr std::size_t many_phyxels = 256;
 
 void require(const Range& range, const double value, const char* const name) {
   if (!range.contains(value))
@@ -88,7 +88,7 @@ void PhyxelModel::update(const std::span<const Sight> sights) {
       if (changed[i])
         make(i);
     },
-    worth);
+    many_phyxels);
 }
 
 void PhyxelModel::link(const std::span<const Link> links, const Points& x) {
@@ -131,7 +131,7 @@ void PhyxelModel::archive(Archive& a) {
 void PhyxelModel::make_all() {
   bonds_.resize(neighbours_.phyxel.size() + links_.phyxel.size());
   parallel_for(
-    phyxels_.size(), [&](const std::size_t i) { make(i); }, worth);
+    phyxels_.size(), [&](const std::size_t i) { make(i); }, many_phyxels);
 }
 
 void PhyxelModel::carry(const std::span<const std::uint8_t> carried) {
@@ -179,7 +179,7 @@ void PhyxelModel::pair_forces(const At& at, const Stress& stress, double* const 
       const Fit& fit = fits_[i];
       T[i] = phyxels_.volume[i] * stress(i, B * fit.used) * fit.used * fit.inverse - kappa_[i] * B;
     },
-    worth);
+    many_phyxels);
   parallel_for(
     phyxels_.size(),
     [&](const std::size_t i) {
@@ -190,7 +190,7 @@ void PhyxelModel::pair_forces(const At& at, const Stress& stress, double* const 
                (kappa_[i] + kappa_[bond.other]) * bond.weight * (at(bond.other) - here);
       Eigen::Map<Vec3>(forces + 3 * i) = sum;
     },
-    worth);
+    many_phyxels);
 }
 
 double PhyxelModel::energy(const Points& x) const {
@@ -207,7 +207,7 @@ double PhyxelModel::energy(const Points& x) const {
       energies[i] =
         phyxels_.volume[i] * energy_density(law_, {F, fit.used, fit.determinant}) + 0.5 * kappa_[i] * residual;
     },
-    worth);
+    many_phyxels);
   return std::accumulate(energies.begin(), energies.end(), 0.0);
 }
 
@@ -228,7 +228,7 @@ void PhyxelModel::linearise(const Points& x) {
       const Mat3 F = gradient(i, [&](const std::size_t j) -> const Vec3& { return x[j]; }) * fit.used;
       linearised_[i] = pba::linearise(law_, {F, fit.used, fit.determinant}, options_.tangent);
     },
-    worth);
+    many_phyxels);
 }
 
 void PhyxelModel::apply_stiffness(const std::span<const double> p, const std::span<double> y) const {
@@ -257,7 +257,7 @@ void PhyxelModel::stiffness_diagonal(const PutBlock put) const {
       K += phyxels_.volume[i] * block(linearised_[i], fits_[i].used * g);
       put(i, K + (penalty + kappa_[i] * (total - g.dot(sum))) * Mat3::Identity());
     },
-    worth);
+    many_phyxels);
 }
 
 void PhyxelModel::deformation(const Points& x, std::vector<Mat3>& F) const {
@@ -268,7 +268,7 @@ void PhyxelModel::deformation(const Points& x, std::vector<Mat3>& F) const {
       const Mat3 B = gradient(i, [&](const std::size_t j) -> const Vec3& { return x[j]; });
       F[i] = completed(B * fits_[i].used, fits_[i]);
     },
-    worth);
+    many_phyxels);
 }
 
 } // namespace kerf::pba

@@ -13,7 +13,7 @@ namespace kerf::pba {
 
 namespace {
 
-constexpr std::size_t worth = 256; // points from which on a second thread pays
+constexpr std::size_t many_parts = 256; // points from which on a second thread pays
 
 /// Cube root of a point's share of the box around all of them; positive whatever they are.
 double mean_spacing(const Points& points) {
@@ -51,7 +51,7 @@ std::vector<double> voronoi_volumes(const Points& points, const std::vector<Crum
   const PointGrid grid(points, mean_spacing(points));
   std::vector<std::uint32_t> nearest(parts.size());
   parallel_for(
-    parts.size(), [&](const std::size_t i) { nearest[i] = grid.nearest(parts[i].centre); }, worth);
+    parts.size(), [&](const std::size_t i) { nearest[i] = grid.nearest(parts[i].centre); }, many_parts);
   std::vector<double> volumes(points.size(), 0.0);
   double total = 0;
   for (std::size_t i = 0; i < parts.size(); ++i) {
@@ -71,7 +71,7 @@ std::vector<double> make_supports(const Points& points, const PhyxelOptions& opt
   const PointGrid grid(points, 2 * mean_spacing(points));
   std::vector<double> supports(points.size());
   parallel_for(
-    points.size(), [&](const std::size_t i) { supports[i] = support_of(points[i], grid, options); }, worth);
+    points.size(), [&](const std::size_t i) { supports[i] = support_of(points[i], grid, options); }, many_parts);
   for (std::size_t i = 0; i < points.size(); ++i)
     check_support(points[i], supports[i], grid, options);
   return supports;

@@ -106,7 +106,7 @@ System<dim>::System(const Space<dim>& space) : f(space.dofs.n_dofs()) {
                           update_values | update_JxW_values | update_quadrature_points | update_normal_vectors);
   const unsigned int n = space.element.n_dofs_per_cell();
   FullMatrix<double> cell_K(n, n);
-  Vector<double> cell_f(n);
+  dealii::Vector<double> cell_f(n);
   std::vector<types::global_dof_index> indices(n);
   for (const auto& cell : space.dofs.active_cell_iterators()) {
     shapes.reinit(cell);

@@ -23,12 +23,6 @@ Mat3 cofactors(const Mat3& F) {
   return cof;
 }
 
-Mat3 cross_matrix(const Vec3& a) {
-  Mat3 m;
-  m << 0, -a[2], a[1], a[2], 0, -a[0], -a[1], a[0], 0;
-  return m;
-}
-
 /// Second derivatives of det F by the places of two corners with these gradients of their shape functions.
 Mat3 second_derivative(const Mat3& F, const Vec3& a, const Vec3& b) {
   const Vec3 w = F * a.cross(b); // sum of a_k b_l e_klm f_m

@@ -1,5 +1,6 @@
 #include "study/measure.h"
 
+#include "base/error.h"
 #include "base/interrupt.h"
 #include "output/reader.h"
 #include "scene/compose.h"
@@ -7,6 +8,7 @@
 #include "scene/inputs.h"
 #include "scene/run.h"
 #include "study/memory.h"
+#include "study/rows.h"
 #include "study/units.h"
 
 #include <algorithm>
@@ -21,7 +23,6 @@ namespace kerf::study {
 
 namespace {
 
-constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 const std::string iterations = "solver iterations";
 
 /// The body's section; the first when the study names none.
@@ -125,19 +126,6 @@ void read_run(const std::filesystem::path& file, const Plan& plan, const std::st
   row.value = found(plan.parameters);
   for (std::size_t k = 0; k < plan.norms.size(); ++k)
     row.norms[k].value = found(plan.norms[k].parameters);
-}
-
-std::string joined(const std::vector<std::string>& texts) {
-  std::string all;
-  for (const std::string& text : texts)
-    all += (all.empty() ? "" : " | ") + text;
-  return all;
-}
-
-/// One line: outcomes stand in tables.
-std::string in_one_line(std::string text) {
-  std::replace(text.begin(), text.end(), '\n', ' ');
-  return text;
 }
 
 double cpu_seconds_since(const std::clock_t start) { return double(std::clock() - start) / CLOCKS_PER_SEC; }
@@ -324,7 +312,7 @@ output::StudyRow failed_row(const PlannedRow& planned, const std::string& why) {
   output::StudyRow row;
   row.name = planned.name;
   row.family = planned.family;
-  row.changes = joined(planned.overrides);
+  row.changes = changes_in_one_line(planned.overrides);
   row.reference = planned.reference.value != 0 ? planned.reference.value : unknown;
   row.reference_source = planned.reference.source;
   for (const double reference : planned.norm_references)

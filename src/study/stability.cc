@@ -7,6 +7,7 @@
 #include "scene/compose.h"
 #include "scene/run.h"
 #include "study/resumed.h"
+#include "study/rows.h"
 
 #include <algorithm>
 #include <chrono>
@@ -19,7 +20,6 @@ namespace kerf::study {
 namespace {
 
 constexpr char file_name[] = "stability.h5";
-constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
 /// What was seen of a run.
 struct Seen {
@@ -34,11 +34,6 @@ struct Seen {
   std::int64_t n_iterations = 0;
   double predicted_step = 0; ///< [s]
 };
-
-std::string in_one_line(std::string text) {
-  std::replace(text.begin(), text.end(), '\n', ' ');
-  return text;
-}
 
 Vec3 momentum_of(scene::Body& body) {
   const auto mass = body.physics->model().lumped_mass();
@@ -195,13 +190,6 @@ double largest_step(const StabilityCase& one, const double first, const int n_st
   return low;
 }
 
-std::string joined(const std::vector<std::string>& texts) {
-  std::string all;
-  for (const std::string& text : texts)
-    all += (all.empty() ? "" : " | ") + text;
-  return all;
-}
-
 /// Names, and what is known before the run.
 output::StabilityRow described(const StabilityCase& one) {
   const auto root = scene::parse_scene(one.scene, scene::grammar());
@@ -210,7 +198,7 @@ output::StabilityRow described(const StabilityCase& one) {
   row.sweep = one.sweep;
   row.variant = one.variant;
   row.cases = one.cases;
-  row.changes = joined(one.overrides);
+  row.changes = changes_in_one_line(one.overrides);
   row.backend = body.backend;
   row.integrator = body.backend == "lattice" ? "shape matching" : body.integrator;
   row.dt = root.require("Time").read<scene::TimeParameters>().time_step;

@@ -67,7 +67,7 @@ void add(Hash& hash, const InteriorOptions& options) {
     }
 }
 
-using Bytes = std::vector<char>;
+using FileBytes = std::vector<char>;
 
 class Writer {
  public:
@@ -87,13 +87,13 @@ class Writer {
       put(node[1]);
     }
   }
-  Bytes bytes;
+  FileBytes bytes;
 };
 
 /// Reads what a Writer wrote; `good` turns false where bytes lack.
 class Reader {
  public:
-  explicit Reader(const Bytes& bytes) : bytes_(bytes) {}
+  explicit Reader(const FileBytes& bytes) : bytes_(bytes) {}
   template <class T>
   T get() {
     T value{};
@@ -120,17 +120,17 @@ class Reader {
   bool good = true;
 
  private:
-  const Bytes& bytes_;
+  const FileBytes& bytes_;
   std::size_t at_ = 0;
 };
 
-std::uint64_t hash_of(const Bytes& bytes, const std::size_t n) {
+std::uint64_t hash_of(const FileBytes& bytes, const std::size_t n) {
   Hash hash;
   hash.add_bytes(bytes.data(), n);
   return hash.value();
 }
 
-Bytes encode(const std::uint64_t hash, const Maps& maps) {
+FileBytes encode(const std::uint64_t hash, const Maps& maps) {
   Writer out;
   out.put(magic);
   out.put(hash);
@@ -152,7 +152,7 @@ Bytes encode(const std::uint64_t hash, const Maps& maps) {
   return out.bytes;
 }
 
-std::optional<Maps> decode(const Bytes& bytes, const std::uint64_t hash) {
+std::optional<Maps> decode(const FileBytes& bytes, const std::uint64_t hash) {
   Reader in(bytes);
   if (in.get<std::uint64_t>() != magic || in.get<std::uint64_t>() != hash)
     return std::nullopt;
@@ -193,7 +193,7 @@ std::optional<Maps> load_maps(const std::filesystem::path& file, const std::uint
   std::ifstream in(file, std::ios::binary);
   if (!in)
     return std::nullopt;
-  const Bytes bytes(std::istreambuf_iterator<char>(in), {});
+  const FileBytes bytes(std::istreambuf_iterator<char>(in), {});
   std::uint64_t written = 0;
   if (bytes.size() < sizeof(written))
     return std::nullopt;
@@ -207,7 +207,7 @@ bool save_maps(const std::filesystem::path& file, const std::uint64_t hash, cons
   std::filesystem::create_directories(file.parent_path(), error);
   // Written aside and renamed: whoever reads at the same time sees all of it or nothing.
   const std::filesystem::path aside = file.string() + "." + std::to_string(getpid());
-  const Bytes bytes = encode(hash, maps);
+  const FileBytes bytes = encode(hash, maps);
   {
     std::ofstream out(aside, std::ios::binary);
     out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));

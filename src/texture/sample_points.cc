@@ -7,7 +7,7 @@ namespace kerf::texture {
 
 namespace {
 
-constexpr std::uint32_t none = 0xffffffff;
+constexpr std::uint32_t no_number = 0xffffffff;
 
 bool is_lower(const Vec3& p, const Vec3& q) {
   return std::lexicographical_compare(p.begin(), p.end(), q.begin(), q.end());
@@ -27,7 +27,7 @@ void SamplePoints::collect(const std::span<const std::size_t> triangles, const s
   sides_.clear();
   sides_.reserve(3 * triangles.size());
   for (Slots* const slots : {&corner_slots_, &side_slots_})
-    slots->assign(std::bit_ceil(6 * triangles.size() + 1), none);
+    slots->assign(std::bit_ceil(6 * triangles.size() + 1), no_number);
   for (const std::size_t t : triangles)
     add(corners[t], parts[t]);
 }
@@ -63,9 +63,9 @@ std::uint32_t SamplePoints::find(Slots& slots, const std::uint64_t hash, const s
                                  const IsSame& is_same) {
   const std::size_t mask = slots.size() - 1;
   std::size_t at = (hash * 0x9e3779b97f4a7c15ull >> 32) & mask;
-  while (slots[at] != none && !is_same(slots[at]))
+  while (slots[at] != no_number && !is_same(slots[at]))
     at = (at + 1) & mask;
-  if (slots[at] == none)
+  if (slots[at] == no_number)
     slots[at] = number;
   return slots[at];
 }

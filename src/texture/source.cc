@@ -23,7 +23,7 @@ Vec2 middle_of(const Face& face, const Chart& chart) {
   return chart.plane.to_local(sum / std::max(n, 1.0));
 }
 
-ParameterError refusal(const Exemplar& exemplar, const std::string& key, const std::string& rule,
+ParameterError refused(const Exemplar& exemplar, const std::string& key, const std::string& rule,
                        const std::string& remedy) {
   return ParameterError(Complaint{.path = key, .value = "exemplar " + exemplar.name, .rule = rule, .remedy = remedy});
 }
@@ -113,7 +113,7 @@ void Source::prepare_turning(const Face& face, const Exemplar& exemplar) {
   const Vec3 away = barycentre - centre_;
   if (sweep.path == Sweep::Path::arc) {
     if (!(away.norm() > 1e-6 * size))
-      throw refusal(exemplar, "Centre [m]", "the barycentre of a face lies at the centre of its great arc",
+      throw refused(exemplar, "Centre [m]", "the barycentre of a face lies at the centre of its great arc",
                     "Divide the section by another exemplar through the centre first, or sweep along the normal");
     outward_ = away.normalized();
     axis_ = outward_.cross(normal_);
@@ -121,12 +121,12 @@ void Source::prepare_turning(const Face& face, const Exemplar& exemplar) {
   }
   const Vec3 in_plane = sweep.axis - normal_.dot(sweep.axis) * normal_;
   if (!(in_plane.norm() > 0.9 * sweep.axis.norm()) || !(sweep.axis.norm() > 0))
-    throw refusal(exemplar, "Axis [1]", "the axis of the sweep must lie in the plane",
+    throw refused(exemplar, "Axis [1]", "the axis of the sweep must lie in the plane",
                   "Give an axis at a right angle to the plane's normal");
   axis_ = in_plane.normalized();
   outward_ = away - axis_.dot(away) * axis_;
   if (!(outward_.norm() > 1e-6 * size))
-    throw refusal(exemplar, "Axis [1]", "the axis passes through the barycentre of a face: it has no side to turn to",
+    throw refused(exemplar, "Axis [1]", "the axis passes through the barycentre of a face: it has no side to turn to",
                   "Divide the section by another exemplar through the axis first, or sweep along the normal");
   outward_.normalize();
 }
@@ -140,7 +140,7 @@ void Source::require_one_side(const Face& face, const Exemplar& exemplar, const 
       if (face.pixels(c, r) > 0.5f)
         least = std::min(least, outward_.dot(chart.plane.point(chart.plane.to_local(Vec2(c, r))) - centre_));
   if (least < -2 * chart.plane.pixel())
-    throw refusal(exemplar, exemplar.sweep.path == Sweep::Path::arc ? "Centre [m]" : "Axis [1]",
+    throw refused(exemplar, exemplar.sweep.path == Sweep::Path::arc ? "Centre [m]" : "Axis [1]",
                   "the plane turns about a line that crosses a face: what lies beyond it cannot be reached",
                   "Divide the section by another exemplar through that line first, or sweep along the normal");
 }

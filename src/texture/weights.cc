@@ -19,7 +19,7 @@ void normalise(Shares& shares, const std::size_t n) {
 }
 
 /// How far below zero a coordinate may be before the point counts as not enclosed at all.
-constexpr double margin = 0.1;
+constexpr double margin_of_weights = 0.1;
 
 /// Adds one triangle's part: the mean of the directions in which it is seen, divided among its corners. u are unit
 /// vectors to these, d their distances. False if p lies in the triangle, where `shares` then are those in the plane.
@@ -63,7 +63,7 @@ double enclosed_part(Shares& shares, const std::size_t n) {
     shares[i] = std::max(shares[i], 0.0);
   }
   normalise(shares, n);
-  return std::max(0.0, 1 + least / margin);
+  return std::max(0.0, 1 + least / margin_of_weights);
 }
 
 } // namespace

@@ -58,7 +58,7 @@ int posix_memalign(void** const p, const std::size_t alignment, const std::size_
 }
 }
 
-namespace kerf::scene {
+namespace kerf::scene::steps_test {
 namespace {
 
 /// In the last of the steps.
@@ -146,6 +146,6 @@ INSTANTIATE_TEST_SUITE_P(
   [](const auto& trial) { return trial.param.name; });
 
 } // namespace
-} // namespace kerf::scene
+} // namespace kerf::scene::steps_test
 
 #endif

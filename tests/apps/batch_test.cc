@@ -3,7 +3,7 @@
 #include "output/reader.h"
 #include "tests/apps/program.h"
 
-namespace kerf::apps {
+namespace kerf::apps::batch_test {
 namespace {
 
 using Batch = Program;
@@ -40,4 +40,4 @@ TEST_F(Batch, OneThatFailsLeavesTheOthers) {
 }
 
 } // namespace
-} // namespace kerf::apps
+} // namespace kerf::apps::batch_test

@@ -10,7 +10,7 @@
 #include <cmath>
 #include <set>
 
-namespace kerf::apps {
+namespace kerf::apps::bench_test {
 namespace {
 
 class Bench : public Program {
@@ -89,4 +89,4 @@ TEST_F(Bench, WhatCannotBeIsRefused) {
 }
 
 } // namespace
-} // namespace kerf::apps
+} // namespace kerf::apps::bench_test

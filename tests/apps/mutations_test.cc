@@ -7,7 +7,7 @@
 
 #include <csignal>
 
-namespace kerf::apps {
+namespace kerf::apps::mutations_test {
 namespace {
 
 using support::Vandal;
@@ -79,4 +79,4 @@ INSTANTIATE_TEST_SUITE_P(Short, Mutations, testing::Values(24));
 INSTANTIATE_TEST_SUITE_P(Long, Mutations, testing::Values(300));
 
 } // namespace
-} // namespace kerf::apps
+} // namespace kerf::apps::mutations_test

@@ -7,7 +7,7 @@
 
 #include <sched.h>
 
-namespace kerf::apps {
+namespace kerf::apps::program_test {
 namespace {
 
 const std::string go_on = "  subsection Symplectic Euler\n    set Beyond the stable step = go on\n  end\n";
@@ -236,4 +236,4 @@ TEST_F(ProgramTest, GivesTheSameBitsForAnyNumberOfThreads) {
 }
 
 } // namespace
-} // namespace kerf::apps
+} // namespace kerf::apps::program_test

@@ -4,7 +4,7 @@
 #include "tests/apps/program.h"
 #include "tests/geometry/meshes.h"
 
-namespace kerf::apps {
+namespace kerf::apps::refused_files_test {
 namespace {
 
 class RefusedFile : public Program {
@@ -115,4 +115,4 @@ TEST_F(RefusedFile, MoreCellsThanMemoryCanHold) {
 }
 
 } // namespace
-} // namespace kerf::apps
+} // namespace kerf::apps::refused_files_test

@@ -3,7 +3,7 @@
 #include "image/file.h"
 #include "tests/apps/program.h"
 
-namespace kerf::apps {
+namespace kerf::apps::refused_interior_test {
 namespace {
 
 class RefusedInterior : public Program {
@@ -116,4 +116,4 @@ TEST_F(AcceptedInterior, PixelsAndColumnsOfTheTextureCommand) {
 }
 
 } // namespace
-} // namespace kerf::apps
+} // namespace kerf::apps::refused_interior_test

@@ -3,7 +3,7 @@
 
 #include "tests/apps/program.h"
 
-namespace kerf::apps {
+namespace kerf::apps::refused_physics_test {
 namespace {
 
 /// The cube's scene with lines before its material, and sections behind it.
@@ -230,4 +230,4 @@ TEST_F(RefusedPhysics, FieldsThatAreNotThere) {
 }
 
 } // namespace
-} // namespace kerf::apps
+} // namespace kerf::apps::refused_physics_test

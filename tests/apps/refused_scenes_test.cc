@@ -2,7 +2,7 @@
 
 #include "tests/apps/program.h"
 
-namespace kerf::apps {
+namespace kerf::apps::refused_scenes_test {
 namespace {
 
 using RefusedScene = Program;
@@ -146,4 +146,4 @@ TEST_F(RefusedScene, CameraThatSeesNothing) {
 }
 
 } // namespace
-} // namespace kerf::apps
+} // namespace kerf::apps::refused_scenes_test

@@ -12,7 +12,7 @@
 #include <random>
 #include <thread>
 
-namespace kerf::apps {
+namespace kerf::apps::resume_test {
 namespace {
 
 /// A cube on a foot; a knife comes through while forceps hold it and draw, and all that a run can write is written.
@@ -484,4 +484,4 @@ TEST_F(Resume, TheStoredSceneReproducesTheRun) {
 }
 
 } // namespace
-} // namespace kerf::apps
+} // namespace kerf::apps::resume_test

@@ -5,7 +5,7 @@
 
 #include <regex>
 
-namespace kerf::apps {
+namespace kerf::apps::small_refusals_test {
 namespace {
 
 using SmallRefusals = Program;
@@ -156,4 +156,4 @@ TEST_F(SmallRefusals, ASlabThinnerThanACubeIsToldTheKey) {
 }
 
 } // namespace
-} // namespace kerf::apps
+} // namespace kerf::apps::small_refusals_test

@@ -6,7 +6,7 @@
 
 #include <csignal>
 
-namespace kerf::apps {
+namespace kerf::apps::streams_test {
 namespace {
 
 class Streams : public Program {
@@ -41,4 +41,4 @@ TEST_F(Streams, AreOpenWhereTheyWereClosed) {
 }
 
 } // namespace
-} // namespace kerf::apps
+} // namespace kerf::apps::streams_test

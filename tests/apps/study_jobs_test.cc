@@ -9,7 +9,7 @@
 #include <iterator>
 #include <thread>
 
-namespace kerf::apps {
+namespace kerf::apps::study_jobs_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -148,4 +148,4 @@ TEST_F(StudyJobs, ARowWhoseProcessIsKilledHasFailed) {
 }
 
 } // namespace
-} // namespace kerf::apps
+} // namespace kerf::apps::study_jobs_test

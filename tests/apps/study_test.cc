@@ -3,7 +3,7 @@
 #include "output/study_file.h"
 #include "tests/apps/program.h"
 
-namespace kerf::apps {
+namespace kerf::apps::study_test {
 namespace {
 
 std::string study_text() {
@@ -115,4 +115,4 @@ TEST_F(StudyProgram, ListsItsKeys) {
 }
 
 } // namespace
-} // namespace kerf::apps
+} // namespace kerf::apps::study_test

@@ -5,7 +5,7 @@
 
 #include <set>
 
-namespace kerf::apps {
+namespace kerf::apps::table_test {
 namespace {
 
 namespace cube = grid::cube;
@@ -86,4 +86,4 @@ TEST_F(TableOfTheProgram, RefusesWhatIsNoFile) {
 }
 
 } // namespace
-} // namespace kerf::apps
+} // namespace kerf::apps::table_test

@@ -4,7 +4,7 @@
 #include "tests/apps/program.h"
 #include "tests/support/checkout.h"
 
-namespace kerf::apps {
+namespace kerf::apps::weights_test {
 namespace {
 
 using WeightsCommand = Program;
@@ -65,4 +65,4 @@ TEST_F(WeightsCommand, RefusesWhatMakesNoSense) {
 }
 
 } // namespace
-} // namespace kerf::apps
+} // namespace kerf::apps::weights_test

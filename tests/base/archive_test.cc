@@ -7,7 +7,7 @@
 
 #include <limits>
 
-namespace kerf {
+namespace kerf::archive_test {
 namespace {
 
 using ThingId = Id<struct ThingTag>;
@@ -100,4 +100,4 @@ TEST(Archive, RefusesAnotherName) {
 }
 
 } // namespace
-} // namespace kerf
+} // namespace kerf::archive_test

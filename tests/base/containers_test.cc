@@ -11,7 +11,7 @@
 #include <cmath>
 #include <type_traits>
 
-namespace kerf {
+namespace kerf::containers_test {
 namespace {
 
 using AppleId = Id<struct AppleTag>;
@@ -115,4 +115,4 @@ TEST(Box, IsClosed) {
 }
 
 } // namespace
-} // namespace kerf
+} // namespace kerf::containers_test

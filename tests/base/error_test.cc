@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace kerf {
+namespace kerf::error_test {
 namespace {
 
 TEST(Complaint, SaysEverythingInOneLine) {
@@ -29,4 +29,4 @@ TEST(Error, KeepsItsComplaint) {
 }
 
 } // namespace
-} // namespace kerf
+} // namespace kerf::error_test

@@ -7,7 +7,7 @@
 #include <cstring>
 #include <set>
 
-namespace kerf {
+namespace kerf::loan_test {
 namespace {
 
 TEST(Loan, IsOfTheSmallestMemoryThatIsLargeEnough) {
@@ -87,4 +87,4 @@ TEST(Fingerprint, IsTheSameForAnyNumberOfThreads) {
 }
 
 } // namespace
-} // namespace kerf
+} // namespace kerf::loan_test

@@ -6,7 +6,7 @@
 #include <limits>
 #include <random>
 
-namespace kerf {
+namespace kerf::parameters_test {
 namespace {
 
 /// One key of each type.
@@ -206,4 +206,4 @@ TEST(ToText, ReadsBackAsTheSameBits) {
 }
 
 } // namespace
-} // namespace kerf
+} // namespace kerf::parameters_test

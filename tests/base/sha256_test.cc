@@ -8,7 +8,7 @@
 
 #include <fstream>
 
-namespace kerf {
+namespace kerf::sha256_test {
 namespace {
 
 std::string of(const std::string& text) { return sha256(std::as_bytes(std::span(text))); }
@@ -33,4 +33,4 @@ TEST(Sha256, OfAFileIsThatOfItsBytes) {
 }
 
 } // namespace
-} // namespace kerf
+} // namespace kerf::sha256_test

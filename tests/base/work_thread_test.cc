@@ -8,7 +8,7 @@
 #include <cmath>
 #include <semaphore>
 
-namespace kerf {
+namespace kerf::work_thread_test {
 namespace {
 
 TEST(WorkThread, DoesOnePieceAfterTheOther) {
@@ -69,4 +69,4 @@ TEST(WorkThread, CountsItsTime) {
 }
 
 } // namespace
-} // namespace kerf
+} // namespace kerf::work_thread_test

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace kerf::scene {
+namespace kerf::scene::compare_scenes_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -67,4 +67,4 @@ TEST(CompareScenes, NameTheirBackendOnce) {
 }
 
 } // namespace
-} // namespace kerf::scene
+} // namespace kerf::scene::compare_scenes_test

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace kerf::scene {
+namespace kerf::scene::grind_test {
 namespace {
 
 const std::vector<std::string> backends = {"fem", "pba", "lattice", "mass-spring"};
@@ -77,4 +77,4 @@ TEST_P(GrindLong, TenThousandStrokes) {
 INSTANTIATE_TEST_SUITE_P(Long, GrindLong, testing::ValuesIn(backends), name_of);
 
 } // namespace
-} // namespace kerf::scene
+} // namespace kerf::scene::grind_test

@@ -9,7 +9,7 @@
 #include <iostream>
 #include <set>
 
-namespace kerf::cut {
+namespace kerf::cut::advance_test {
 namespace {
 
 /// In the plane z = 5.4, from x = -2 on, its edge along y, by 1 a second.
@@ -353,4 +353,4 @@ TEST(Advance, GoesOnFromAnArchive) {
 }
 
 } // namespace
-} // namespace kerf::cut
+} // namespace kerf::cut::advance_test

@@ -9,7 +9,7 @@
 #include <iostream>
 #include <limits>
 
-namespace kerf::cut {
+namespace kerf::cut::at_skin_test {
 namespace {
 
 struct Study {
@@ -293,4 +293,4 @@ TEST(AtSkin, AShallowFlapIsAttachedAtTheFrontOfItsCut) {
 }
 
 } // namespace
-} // namespace kerf::cut
+} // namespace kerf::cut::at_skin_test

@@ -9,7 +9,7 @@
 #include <limits>
 #include <numbers>
 
-namespace kerf::cut {
+namespace kerf::cut::blade_edge_test {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -93,4 +93,4 @@ TEST(BladeEdge, SaysWhatIsNoArc) {
 }
 
 } // namespace
-} // namespace kerf::cut
+} // namespace kerf::cut::blade_edge_test

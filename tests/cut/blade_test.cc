@@ -9,7 +9,7 @@
 #include <limits>
 #include <numbers>
 
-namespace kerf::cut {
+namespace kerf::cut::blade_test {
 namespace {
 
 Blade turning_blade() {
@@ -134,4 +134,4 @@ TEST(Blade, CheckNamesWhatIsWrong) {
 }
 
 } // namespace
-} // namespace kerf::cut
+} // namespace kerf::cut::blade_test

@@ -10,7 +10,7 @@
 
 #include <bit>
 
-namespace kerf::cut {
+namespace kerf::cut::cell_triangles_test {
 namespace {
 
 using support::Random;
@@ -95,4 +95,4 @@ TEST(CellTriangles, KnowEveryTriangleInACell) {
 }
 
 } // namespace
-} // namespace kerf::cut
+} // namespace kerf::cut::cell_triangles_test

@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <iostream>
 
-namespace kerf::cut {
+namespace kerf::cut::close_cuts_test {
 namespace {
 
 double between(const Cutter& cutter) { return total(cutter.counts().between); }
@@ -150,4 +150,4 @@ TEST(CloseCuts, OfBladesThatMoveTogetherLieOnOneOfTheirPlanes) {
 }
 
 } // namespace
-} // namespace kerf::cut
+} // namespace kerf::cut::close_cuts_test

@@ -14,7 +14,7 @@
 #include <optional>
 #include <ranges>
 
-namespace kerf::cut {
+namespace kerf::cut::crossing_cuts_test {
 namespace {
 
 /// Segments of the skin whose ends lie on different sides of a plane that has cut, and yet are whole; and the reverse.
@@ -451,4 +451,4 @@ INSTANTIATE_TEST_SUITE_P(Short, RestingBlade, testing::Values(8));
 INSTANTIATE_TEST_SUITE_P(Long, RestingBlade, testing::Values(1000));
 
 } // namespace
-} // namespace kerf::cut
+} // namespace kerf::cut::crossing_cuts_test

@@ -14,7 +14,7 @@
 #include <numbers>
 #include <numeric>
 
-namespace kerf::cut {
+namespace kerf::cut::cut_surface_test {
 namespace {
 
 using grid::EdgeCut;
@@ -497,4 +497,4 @@ TEST(CutSurface, RefusesCornersThatAreNotFinite) {
 }
 
 } // namespace
-} // namespace kerf::cut
+} // namespace kerf::cut::cut_surface_test

@@ -16,7 +16,7 @@
 #include <limits>
 #include <numbers>
 
-namespace kerf::cut {
+namespace kerf::cut::edge_boxes_test {
 namespace {
 
 using grid::EdgeId;
@@ -292,4 +292,4 @@ TEST(EdgeBoxes, RefuseCornersThatAreNotFinite) {
 }
 
 } // namespace
-} // namespace kerf::cut
+} // namespace kerf::cut::edge_boxes_test

@@ -14,7 +14,7 @@
 #include <iostream>
 #include <random>
 
-namespace kerf::cut {
+namespace kerf::cut::embed_test {
 namespace {
 
 using geometry::box_mesh;
@@ -280,4 +280,4 @@ TEST(Embed, BenchmarkPrintsNAndSeconds) {
 }
 
 } // namespace
-} // namespace kerf::cut
+} // namespace kerf::cut::embed_test

@@ -12,7 +12,7 @@
 #include <iostream>
 #include <optional>
 
-namespace kerf::cut {
+namespace kerf::cut::fit_test {
 namespace {
 
 using grid::CellId;
@@ -152,4 +152,4 @@ TEST(Fit, IsTheSameWithOneAndTwoThreads) {
 }
 
 } // namespace
-} // namespace kerf::cut
+} // namespace kerf::cut::fit_test

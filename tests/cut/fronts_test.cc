@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace kerf::cut {
+namespace kerf::cut::fronts_test {
 namespace {
 
 Shape random_shape(support::Random& random, const Vec3& middle, const double size) {
@@ -119,4 +119,4 @@ TEST(Fronts, MoveOnAsTheCutGrows) {
 }
 
 } // namespace
-} // namespace kerf::cut
+} // namespace kerf::cut::fronts_test

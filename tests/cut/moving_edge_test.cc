@@ -9,7 +9,7 @@
 #include <numbers>
 #include <random>
 
-namespace kerf::cut {
+namespace kerf::cut::moving_edge_test {
 namespace {
 
 /// Long beside what it cuts: 0.4 m on either side, and turned by 20 degrees as it sinks by 0.05 m.
@@ -124,4 +124,4 @@ TEST_F(MovingEdge, TheNormalIsThatOfThePlaceThatIsMet) {
 }
 
 } // namespace
-} // namespace kerf::cut
+} // namespace kerf::cut::moving_edge_test

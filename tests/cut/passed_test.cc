@@ -11,7 +11,7 @@
 #include <algorithm>
 #include <iostream>
 
-namespace kerf::cut {
+namespace kerf::cut::passed_test {
 namespace {
 
 using grid::CellId;
@@ -211,4 +211,4 @@ TEST(Passed, IsMetAsTheBladeMovesRelativeToIt) {
 }
 
 } // namespace
-} // namespace kerf::cut
+} // namespace kerf::cut::passed_test

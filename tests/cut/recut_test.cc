@@ -20,7 +20,7 @@
 #include <random>
 #include <set>
 
-namespace kerf::cut {
+namespace kerf::cut::recut_test {
 namespace {
 
 using grid::EdgeCut;
@@ -413,4 +413,4 @@ TEST(PendingCuts, DropEdgesThatWereCutMeanwhile) {
 }
 
 } // namespace
-} // namespace kerf::cut
+} // namespace kerf::cut::recut_test

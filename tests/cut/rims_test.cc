@@ -16,7 +16,7 @@
 #include <map>
 #include <numbers>
 
-namespace kerf::cut {
+namespace kerf::cut::rims_test {
 namespace {
 
 struct Tally {
@@ -181,4 +181,4 @@ INSTANTIATE_TEST_SUITE_P(Short, SlowBlades, testing::Values(12));
 INSTANTIATE_TEST_SUITE_P(Long, SlowBlades, testing::Values(3));
 
 } // namespace
-} // namespace kerf::cut
+} // namespace kerf::cut::rims_test

@@ -11,7 +11,7 @@
 #include <numbers>
 #include <random>
 
-namespace kerf::cut {
+namespace kerf::cut::scissors_test {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -158,4 +158,4 @@ TEST(Scissors, CheckNamesWhatIsWrong) {
 }
 
 } // namespace
-} // namespace kerf::cut
+} // namespace kerf::cut::scissors_test

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace kerf::cut {
+namespace kerf::cut::shreds_test {
 namespace {
 
 /// A block of 4 x 2 x 2 cubes, cut by two flat blades `thickness` cubes apart with a layer of four nodes in between.
@@ -33,4 +33,4 @@ TEST(Shreds, ThickerSlicesAndThoseOfTwoBladesAreParted) {
 }
 
 } // namespace
-} // namespace kerf::cut
+} // namespace kerf::cut::shreds_test

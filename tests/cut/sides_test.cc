@@ -13,7 +13,7 @@
 #include <cmath>
 #include <iostream>
 
-namespace kerf::cut {
+namespace kerf::cut::sides_test {
 namespace {
 
 /// Root mean square over lattice offsets of the error on one side, and of that on the other; parts of the volume of
@@ -78,4 +78,4 @@ INSTANTIATE_TEST_SUITE_P(Short, Sides, testing::Values(std::vector<double>{0.05,
 INSTANTIATE_TEST_SUITE_P(Long, Sides, testing::Values(std::vector<double>{0.06, 0.03, 0.015, 0.0075}));
 
 } // namespace
-} // namespace kerf::cut
+} // namespace kerf::cut::sides_test

@@ -15,7 +15,7 @@
 #include <iostream>
 #include <map>
 
-namespace kerf::cut {
+namespace kerf::cut::strokes_test {
 namespace {
 
 geometry::TriangleMesh skin_of(const Patient& patient) {
@@ -290,4 +290,4 @@ INSTANTIATE_TEST_SUITE_P(Long, Strokes,
                          name_of);
 
 } // namespace
-} // namespace kerf::cut
+} // namespace kerf::cut::strokes_test

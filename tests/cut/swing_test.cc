@@ -14,7 +14,7 @@
 #include <map>
 #include <numbers>
 
-namespace kerf::cut {
+namespace kerf::cut::swing_test {
 namespace {
 
 constexpr int n_strokes = 6, n_steps = 40 * n_strokes;
@@ -161,4 +161,4 @@ INSTANTIATE_TEST_SUITE_P(Short, Swings, testing::Values(6));
 INSTANTIATE_TEST_SUITE_P(Long, Swings, testing::Values(100));
 
 } // namespace
-} // namespace kerf::cut
+} // namespace kerf::cut::swing_test

@@ -9,7 +9,7 @@
 
 #include <cmath>
 
-namespace kerf::dynamics {
+namespace kerf::dynamics::adaptive_test {
 namespace {
 
 const double stiffness = 40;
@@ -119,4 +119,4 @@ TEST(Adaptive, GivesUpWithTheTolerance) {
 }
 
 } // namespace
-} // namespace kerf::dynamics
+} // namespace kerf::dynamics::adaptive_test

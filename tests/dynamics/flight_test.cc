@@ -8,7 +8,7 @@
 #include <cmath>
 #include <random>
 
-namespace kerf::dynamics {
+namespace kerf::dynamics::flight_test {
 namespace {
 
 constexpr std::size_t n_bodies = 101; // the last eight are not full
@@ -133,4 +133,4 @@ TEST(Flight, CarriesPointsAsBodiesDo) {
 }
 
 } // namespace
-} // namespace kerf::dynamics
+} // namespace kerf::dynamics::flight_test

@@ -8,7 +8,7 @@
 
 #include <cmath>
 
-namespace kerf::dynamics {
+namespace kerf::dynamics::implicit_euler_test {
 namespace {
 
 /// Damped oscillator: (1/dt^2 + alpha/dt + (1 + beta/dt) w^2) (x - x_n) = v_n/dt - w^2 x_n, the scheme written out.
@@ -173,4 +173,4 @@ TEST(ImplicitEuler, CountsItsIterations) {
 }
 
 } // namespace
-} // namespace kerf::dynamics
+} // namespace kerf::dynamics::implicit_euler_test

@@ -11,7 +11,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace kerf::dynamics {
+namespace kerf::dynamics::landing_test {
 namespace {
 
 /// Three masses in a row that hold together.
@@ -138,4 +138,4 @@ TEST(Landing, FrictionBooksWhatItTakes) {
 }
 
 } // namespace
-} // namespace kerf::dynamics
+} // namespace kerf::dynamics::landing_test

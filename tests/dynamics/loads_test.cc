@@ -15,7 +15,7 @@
 
 #include <random>
 
-namespace kerf::dynamics {
+namespace kerf::dynamics::loads_test {
 namespace {
 
 Vec3 random_vector(std::mt19937& random, const double size) {
@@ -318,4 +318,4 @@ TEST(Loads, HaveKeysWithRules) {
 }
 
 } // namespace
-} // namespace kerf::dynamics
+} // namespace kerf::dynamics::loads_test

@@ -12,7 +12,7 @@
 #include <numbers>
 #include <random>
 
-namespace kerf::dynamics {
+namespace kerf::dynamics::modal_test {
 namespace {
 
 constexpr double k = 50, m = 0.2; // [N/m], [kg]
@@ -112,4 +112,4 @@ TEST(Modal, MoreModesThanDirectionsAreRefused) {
 }
 
 } // namespace
-} // namespace kerf::dynamics
+} // namespace kerf::dynamics::modal_test

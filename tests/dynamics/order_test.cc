@@ -11,7 +11,7 @@
 #include <complex>
 #include <numbers>
 
-namespace kerf::dynamics {
+namespace kerf::dynamics::order_test {
 namespace {
 
 class Order : public testing::TestWithParam<Integrator> {
@@ -116,4 +116,4 @@ INSTANTIATE_TEST_SUITE_P(All, Order, testing::ValuesIn(integrators()),
                          [](const auto& info) { return info.param.name; });
 
 } // namespace
-} // namespace kerf::dynamics
+} // namespace kerf::dynamics::order_test

@@ -12,7 +12,7 @@
 
 #include <gtest/gtest.h>
 
-namespace kerf::dynamics {
+namespace kerf::dynamics::quantities_test {
 namespace {
 
 Vec3 still(double) { return Vec3::Zero(); }
@@ -120,4 +120,4 @@ TEST(Energy, IsAccountedFor) {
 }
 
 } // namespace
-} // namespace kerf::dynamics
+} // namespace kerf::dynamics::quantities_test

@@ -8,7 +8,7 @@
 #include <array>
 #include <cmath>
 
-namespace kerf::dynamics {
+namespace kerf::dynamics::rigid_body_test {
 namespace {
 
 RigidBody lump() {
@@ -129,4 +129,4 @@ TEST(AngularVelocity, KnowsNoAxisWithoutInertia) {
 }
 
 } // namespace
-} // namespace kerf::dynamics
+} // namespace kerf::dynamics::rigid_body_test

@@ -12,7 +12,7 @@
 
 #include <random>
 
-namespace kerf::dynamics {
+namespace kerf::dynamics::skin_support_test {
 namespace {
 
 constexpr double k = 40; // [N/m^3]
@@ -142,4 +142,4 @@ TEST(SkinSupport, RefusesWhatCannotHold) {
 }
 
 } // namespace
-} // namespace kerf::dynamics
+} // namespace kerf::dynamics::skin_support_test

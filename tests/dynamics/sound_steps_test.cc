@@ -19,7 +19,7 @@
 #include <cmath>
 #include <random>
 
-namespace kerf::dynamics {
+namespace kerf::dynamics::sound_steps_test {
 namespace {
 
 constexpr ExplicitOptions go_on{BeyondStable::go_on};
@@ -368,4 +368,4 @@ TEST(ElasticEnergies, RememberNothingOfWhatFails) {
 }
 
 } // namespace
-} // namespace kerf::dynamics
+} // namespace kerf::dynamics::sound_steps_test

@@ -13,7 +13,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace kerf::dynamics {
+namespace kerf::dynamics::stability_test {
 namespace {
 
 double energy(const ForceModel& model, const State& state) {
@@ -317,4 +317,4 @@ TEST(StableStep, IsRefusedWithTheNumber) {
 }
 
 } // namespace
-} // namespace kerf::dynamics
+} // namespace kerf::dynamics::stability_test

@@ -18,7 +18,7 @@
 #include <cmath>
 #include <set>
 
-namespace kerf::dynamics {
+namespace kerf::dynamics::statics_test {
 namespace {
 
 Vec3 still(double) { return Vec3::Zero(); }
@@ -397,4 +397,4 @@ TEST(Integrators, HaveKeysWithRules) {
 }
 
 } // namespace
-} // namespace kerf::dynamics
+} // namespace kerf::dynamics::statics_test

@@ -11,7 +11,7 @@
 #include <memory>
 #include <string>
 
-namespace kerf::dynamics {
+namespace kerf::dynamics::steppers_test {
 namespace {
 
 constexpr ImplicitEulerOptions tight{.n_newton = 1, .cg_tolerance = 1e-14, .max_cg_iterations = 2000};
@@ -160,4 +160,4 @@ INSTANTIATE_TEST_SUITE_P(Euler, Steppers, testing::Values("implicit", "symplecti
                          [](const auto& info) { return info.param; });
 
 } // namespace
-} // namespace kerf::dynamics
+} // namespace kerf::dynamics::steppers_test

@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-namespace kerf::dynamics {
+namespace kerf::dynamics::supports_test {
 namespace {
 
 Vec3 still(double) { return Vec3::Zero(); }
@@ -151,4 +151,4 @@ TEST_P(Held, FollowsARotation) {
 INSTANTIATE_TEST_SUITE_P(All, Held, testing::ValuesIn(integrators()), [](const auto& info) { return info.param.name; });
 
 } // namespace
-} // namespace kerf::dynamics
+} // namespace kerf::dynamics::supports_test

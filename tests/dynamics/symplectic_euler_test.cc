@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-namespace kerf::dynamics {
+namespace kerf::dynamics::symplectic_euler_test {
 namespace {
 
 const double mass = 2, spring = 50, limit = 2 / std::sqrt(spring / mass); // the longest stable step [s]
@@ -69,4 +69,4 @@ TEST(SymplecticEuler, BeyondTheStableStepItSaysSo) {
 }
 
 } // namespace
-} // namespace kerf::dynamics
+} // namespace kerf::dynamics::symplectic_euler_test

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace kerf::dynamics {
+namespace kerf::dynamics::threads_test {
 namespace {
 
 constexpr std::size_t n_masses = 20000;
@@ -45,4 +45,4 @@ TEST(Threads, DoNotChangeABit) {
 }
 
 } // namespace
-} // namespace kerf::dynamics
+} // namespace kerf::dynamics::threads_test

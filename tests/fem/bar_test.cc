@@ -13,7 +13,7 @@
 
 #include <cmath>
 
-namespace kerf::fem {
+namespace kerf::fem::bar_test {
 namespace {
 
 const material::Elastic rubber{.density = 1000, .youngs_modulus = 1e6, .poissons_ratio = 0.3};
@@ -102,4 +102,4 @@ TEST(Bar, NearEmptyLayersChangeNothing) {
 }
 
 } // namespace
-} // namespace kerf::fem
+} // namespace kerf::fem::bar_test

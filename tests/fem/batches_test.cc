@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <numeric>
 
-namespace kerf::fem {
+namespace kerf::fem::batches_test {
 namespace {
 
 /// A row of cubes in three chunks, every third of them partial, and what they are made of.
@@ -184,4 +184,4 @@ TEST(Batches, RotationsAreKeptOnce) {
 }
 
 } // namespace
-} // namespace kerf::fem
+} // namespace kerf::fem::batches_test

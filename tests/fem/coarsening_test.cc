@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace kerf::fem {
+namespace kerf::fem::coarsening_test {
 namespace {
 
 CellsOfLevel cells_of(const Body& body) {
@@ -109,4 +109,4 @@ TEST(Coarsening, EveryCornerIsAskedOfOneCopy) {
 }
 
 } // namespace
-} // namespace kerf::fem
+} // namespace kerf::fem::coarsening_test

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace kerf::fem {
+namespace kerf::fem::element_test {
 namespace {
 
 const material::Elastic rubber{.density = 1100, .youngs_modulus = 3e4, .poissons_ratio = 0.42};
@@ -144,4 +144,4 @@ TEST(Element, SliverMassesAreNotNegative) {
 }
 
 } // namespace
-} // namespace kerf::fem
+} // namespace kerf::fem::element_test

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 #include <Eigen/Cholesky>
 
-namespace kerf::fem {
+namespace kerf::fem::enhanced_test {
 namespace {
 
 const material::Elastic rubber{.density = 1100, .youngs_modulus = 3e4, .poissons_ratio = 0.42};
@@ -207,4 +207,4 @@ TEST(Enhanced, SliversAreHarmless) {
 }
 
 } // namespace
-} // namespace kerf::fem
+} // namespace kerf::fem::enhanced_test

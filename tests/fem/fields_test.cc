@@ -9,7 +9,7 @@
 
 #include <bit>
 
-namespace kerf::fem {
+namespace kerf::fem::fields_test {
 namespace {
 
 const material::Elastic rubber{.density = 1000, .youngs_modulus = 2e3, .poissons_ratio = 0.4};
@@ -99,4 +99,4 @@ TEST(Fields, VonMisesOfPullAndShear) {
 }
 
 } // namespace
-} // namespace kerf::fem
+} // namespace kerf::fem::fields_test

@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
 
-namespace kerf::fem {
+namespace kerf::fem::force_test {
 namespace {
 
 const material::Elastic rubber{.density = 1000, .youngs_modulus = 2e3, .poissons_ratio = 0.4};
@@ -417,4 +417,4 @@ TEST(Pieces, DoNotFeelEachOther) {
 }
 
 } // namespace
-} // namespace kerf::fem
+} // namespace kerf::fem::force_test

@@ -11,7 +11,7 @@
 
 #include <numeric>
 
-namespace kerf::fem {
+namespace kerf::fem::gathered_mass_test {
 namespace {
 
 constexpr double h = 0.2;
@@ -179,4 +179,4 @@ TEST(GatheredMass, AFollowerDoesNotSwing) {
 }
 
 } // namespace
-} // namespace kerf::fem
+} // namespace kerf::fem::gathered_mass_test

@@ -14,7 +14,7 @@
 #include <algorithm>
 #include <numeric>
 
-namespace kerf::fem {
+namespace kerf::fem::ghost_penalty_test {
 namespace {
 
 using Matrix = Eigen::MatrixXd;
@@ -269,4 +269,4 @@ TEST(GhostPenalty, HoldsCornersFarFromWellFilledCopies) {
 }
 
 } // namespace
-} // namespace kerf::fem
+} // namespace kerf::fem::ghost_penalty_test

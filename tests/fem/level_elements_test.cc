@@ -10,7 +10,7 @@
 
 #include <algorithm>
 
-namespace kerf::fem {
+namespace kerf::fem::level_elements_test {
 namespace {
 
 /// 8 x 8 x 8 cubes, each with material of its own, of which one changes: one of the 64 coarse elements is summed anew,
@@ -64,4 +64,4 @@ TEST(LevelElements, TakeOverWhatHasNotChanged) {
 }
 
 } // namespace
-} // namespace kerf::fem
+} // namespace kerf::fem::level_elements_test

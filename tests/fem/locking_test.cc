@@ -12,7 +12,7 @@
 #include <numeric>
 #include <sstream>
 
-namespace kerf::fem {
+namespace kerf::fem::locking_test {
 namespace {
 
 const material::Elastic base_material{
@@ -169,4 +169,4 @@ TEST(Locking, GuidedTrapeziumNearIncompressible) {
 }
 
 } // namespace
-} // namespace kerf::fem
+} // namespace kerf::fem::locking_test

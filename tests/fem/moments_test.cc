@@ -11,7 +11,7 @@
 
 #include <cmath>
 
-namespace kerf::fem {
+namespace kerf::fem::moments_test {
 namespace {
 
 Moments by_quadrature(const std::vector<WeightedPoint<Vec3>>& rule) {
@@ -165,4 +165,4 @@ TEST(Moments, MakeElementsThatNeverGainEnergy) {
 }
 
 } // namespace
-} // namespace kerf::fem
+} // namespace kerf::fem::moments_test

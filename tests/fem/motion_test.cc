@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
 
-namespace kerf::fem {
+namespace kerf::fem::motion_test {
 namespace {
 
 const material::Elastic rubber{.density = 1000, .youngs_modulus = 1e4, .poissons_ratio = 0.3};
@@ -170,4 +170,4 @@ TEST(Motion, OneAndTwoThreadsGiveTheSameBits) {
 }
 
 } // namespace
-} // namespace kerf::fem
+} // namespace kerf::fem::motion_test

@@ -12,7 +12,7 @@
 
 #include <gtest/gtest.h>
 
-namespace kerf::fem {
+namespace kerf::fem::multigrid_test {
 namespace {
 
 using dynamics::Constraints;
@@ -492,4 +492,4 @@ TEST(Multigrid, FollowsSmallCutsBitByBit) {
 }
 
 } // namespace
-} // namespace kerf::fem
+} // namespace kerf::fem::multigrid_test

@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
 
-namespace kerf::fem {
+namespace kerf::fem::patch_test {
 namespace {
 
 const material::Elastic rubber{.density = 1000, .youngs_modulus = 1, .poissons_ratio = 0.35};
@@ -150,4 +150,4 @@ TEST(Patch, OtherBoundariesDoNotPass) {
 }
 
 } // namespace
-} // namespace kerf::fem
+} // namespace kerf::fem::patch_test

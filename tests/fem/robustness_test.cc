@@ -11,7 +11,7 @@
 #include <numbers>
 #include <span>
 
-namespace kerf::fem {
+namespace kerf::fem::robustness_test {
 namespace {
 
 /// How a block was mistreated.
@@ -201,4 +201,4 @@ INSTANTIATE_TEST_SUITE_P(Laws, Robustness, testing::Values("corotational", "neo-
 });
 
 } // namespace
-} // namespace kerf::fem
+} // namespace kerf::fem::robustness_test

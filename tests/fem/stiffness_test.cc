@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-namespace kerf::fem {
+namespace kerf::fem::stiffness_test {
 namespace {
 
 using Matrix = Eigen::MatrixXd;
@@ -312,4 +312,4 @@ TEST(Stiffness, OneAndTwoThreadsGiveTheSameBits) {
 }
 
 } // namespace
-} // namespace kerf::fem
+} // namespace kerf::fem::stiffness_test

@@ -9,7 +9,7 @@
 
 #include <numeric>
 
-namespace kerf::fem {
+namespace kerf::fem::ties_test {
 namespace {
 
 /// A block with a disc in it whose front lies inside cells.
@@ -125,4 +125,4 @@ TEST(Ties, GoWithTheCut) {
 }
 
 } // namespace
-} // namespace kerf::fem
+} // namespace kerf::fem::ties_test

@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <thread>
 
-namespace kerf::fem {
+namespace kerf::fem::update_test {
 namespace {
 
 const material::Elastic rubber{.density = 1000, .youngs_modulus = 2e3, .poissons_ratio = 0.4};
@@ -181,4 +181,4 @@ TEST(Update, ConstantFunctionsMayRunAtOnce) {
 }
 
 } // namespace
-} // namespace kerf::fem
+} // namespace kerf::fem::update_test

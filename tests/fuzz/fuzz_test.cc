@@ -16,7 +16,7 @@
 #include <cstdlib>
 #include <iostream>
 
-namespace kerf::fuzz {
+namespace kerf::fuzz::fuzz_test {
 namespace {
 
 /// Cases on large specimens have seeds from here, and those of the long run from there, so that a seed alone tells
@@ -168,4 +168,4 @@ TEST(Fuzz, Repeat) {
 }
 
 } // namespace
-} // namespace kerf::fuzz
+} // namespace kerf::fuzz::fuzz_test

@@ -12,7 +12,7 @@
 #include <iostream>
 #include <optional>
 
-namespace kerf::fuzz {
+namespace kerf::fuzz::multigrid_test {
 namespace {
 
 using dynamics::flat;
@@ -148,4 +148,4 @@ TEST(Fuzz, MultigridIsSymmetricAndPositive) { judge_cases(700, 730, 10); }
 TEST(Fuzz, LongMultigridIsSymmetricAndPositive) { judge_cases(1000, 3000, 1000); }
 
 } // namespace
-} // namespace kerf::fuzz
+} // namespace kerf::fuzz::multigrid_test

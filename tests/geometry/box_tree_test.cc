@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <random>
 
-namespace kerf::geometry {
+namespace kerf::geometry::box_tree_test {
 namespace {
 
 /// Corners on a coarse raster, so that many boxes only touch, are flat, or stand in the same place.
@@ -48,4 +48,4 @@ TEST(BoxTree, TakesBoxesInOnePlace) {
 }
 
 } // namespace
-} // namespace kerf::geometry
+} // namespace kerf::geometry::box_tree_test

@@ -9,7 +9,7 @@
 
 #include <random>
 
-namespace kerf::geometry {
+namespace kerf::geometry::inside_test {
 namespace {
 
 TriangleMesh mesh_of(const std::string& name) {
@@ -67,4 +67,4 @@ TEST(Inside, VolumeByCountingAgrees) {
 }
 
 } // namespace
-} // namespace kerf::geometry
+} // namespace kerf::geometry::inside_test

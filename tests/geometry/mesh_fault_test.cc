@@ -12,7 +12,7 @@
 
 #include <unistd.h>
 
-namespace kerf::geometry {
+namespace kerf::geometry::mesh_fault_test {
 namespace {
 
 const std::string off = "OFF # a comment\n4 4 0\n\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n";
@@ -86,4 +86,4 @@ TEST(MeshFault, AHeaderMustFitIntoTheFile) {
 }
 
 } // namespace
-} // namespace kerf::geometry
+} // namespace kerf::geometry::mesh_fault_test

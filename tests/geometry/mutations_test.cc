@@ -14,7 +14,7 @@
 
 #include <unistd.h>
 
-namespace kerf::geometry {
+namespace kerf::geometry::mutations_test {
 namespace {
 
 std::string off(const TriangleMesh& mesh) {
@@ -85,4 +85,4 @@ TEST(DamagedMeshes, AreReadOrRefused) {
 }
 
 } // namespace
-} // namespace kerf::geometry
+} // namespace kerf::geometry::mutations_test

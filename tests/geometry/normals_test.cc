@@ -10,7 +10,7 @@
 #include <cmath>
 #include <random>
 
-namespace kerf::geometry {
+namespace kerf::geometry::normals_test {
 namespace {
 
 Vec3 area_normal(const TriangleMesh& mesh, const std::size_t i) {
@@ -74,4 +74,4 @@ TEST(LocalNormals, AreThoseOfAPlainSearch) {
 }
 
 } // namespace
-} // namespace kerf::geometry
+} // namespace kerf::geometry::normals_test

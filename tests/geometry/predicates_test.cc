@@ -10,7 +10,7 @@
 #include <random>
 #include <set>
 
-namespace kerf::geometry {
+namespace kerf::geometry::predicates_test {
 namespace {
 
 using Corners = std::array<Vec3, 3>;
@@ -264,4 +264,4 @@ TEST(Predicates, DecideBelowRoundOff) {
 }
 
 } // namespace
-} // namespace kerf::geometry
+} // namespace kerf::geometry::predicates_test

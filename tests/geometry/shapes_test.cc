@@ -10,7 +10,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace kerf::geometry {
+namespace kerf::geometry::shapes_test {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -82,4 +82,4 @@ TEST(Shapes, AreTurnedAndShifted) {
 }
 
 } // namespace
-} // namespace kerf::geometry
+} // namespace kerf::geometry::shapes_test

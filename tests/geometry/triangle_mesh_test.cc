@@ -10,7 +10,7 @@
 #include <limits>
 #include <numbers>
 
-namespace kerf::geometry {
+namespace kerf::geometry::triangle_mesh_test {
 namespace {
 
 /// A file in the folder for temporary ones, gone at the end.
@@ -206,4 +206,4 @@ TEST(Solid, SelfIntersectionsArePairs) {
 }
 
 } // namespace
-} // namespace kerf::geometry
+} // namespace kerf::geometry::triangle_mesh_test

@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-namespace kerf::grid {
+namespace kerf::grid::complex_random_test {
 namespace {
 
 struct Tally {
@@ -153,4 +153,4 @@ TEST(Complex, IsAsBuiltWhereFrontsAreTakenBack) {
 }
 
 } // namespace
-} // namespace kerf::grid
+} // namespace kerf::grid::complex_random_test

@@ -13,7 +13,7 @@
 #include <set>
 #include <stdexcept>
 
-namespace kerf::grid {
+namespace kerf::grid::complex_test {
 namespace {
 
 using histories::Plan;
@@ -190,4 +190,4 @@ TEST(Complex, RefusesExactlyTheCutsThatJoin) {
 }
 
 } // namespace
-} // namespace kerf::grid
+} // namespace kerf::grid::complex_test

@@ -14,7 +14,7 @@
 #include <map>
 #include <set>
 
-namespace kerf::grid {
+namespace kerf::grid::crumbs_test {
 namespace {
 
 using support::Body;
@@ -362,4 +362,4 @@ TEST(Crumbs, AreThoseWhoseSamplesSpanNoVolume) {
 }
 
 } // namespace
-} // namespace kerf::grid
+} // namespace kerf::grid::crumbs_test

@@ -9,7 +9,7 @@
 #include <bit>
 #include <set>
 
-namespace kerf::grid::cube {
+namespace kerf::grid::cube::cube_test {
 namespace {
 
 using Info = dealii::GeometryInfo<3>;
@@ -89,4 +89,4 @@ TEST(Cube, ReachesWhatAFloodReaches) {
 }
 
 } // namespace
-} // namespace kerf::grid::cube
+} // namespace kerf::grid::cube::cube_test

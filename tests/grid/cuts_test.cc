@@ -14,7 +14,7 @@
 #include <set>
 #include <stdexcept>
 
-namespace kerf::grid {
+namespace kerf::grid::cuts_test {
 namespace {
 
 using support::Body;
@@ -396,4 +396,4 @@ TEST(Cuts, SayWhereItemsAndSegmentsAre) {
 }
 
 } // namespace
-} // namespace kerf::grid
+} // namespace kerf::grid::cuts_test

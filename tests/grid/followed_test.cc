@@ -11,7 +11,7 @@
 #include <set>
 #include <utility>
 
-namespace kerf::grid {
+namespace kerf::grid::followed_test {
 namespace {
 
 using support::Body;
@@ -171,4 +171,4 @@ TEST(Followed, AreNoneWhereAllCopiesHaveNodes) {
 }
 
 } // namespace
-} // namespace kerf::grid
+} // namespace kerf::grid::followed_test

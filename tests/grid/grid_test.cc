@@ -11,7 +11,7 @@
 #include <algorithm>
 #include <set>
 
-namespace kerf::grid {
+namespace kerf::grid::grid_test {
 namespace {
 
 using support::Random;
@@ -175,4 +175,4 @@ TEST(Grid, RefusesWhatItCannotHold) {
 }
 
 } // namespace
-} // namespace kerf::grid
+} // namespace kerf::grid::grid_test

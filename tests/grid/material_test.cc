@@ -11,7 +11,7 @@
 #include <bit>
 #include <numeric>
 
-namespace kerf::grid {
+namespace kerf::grid::material_test {
 namespace {
 
 using support::Body;
@@ -225,4 +225,4 @@ TEST(Material, OfAPlaneCutIsExact) {
 }
 
 } // namespace
-} // namespace kerf::grid
+} // namespace kerf::grid::material_test

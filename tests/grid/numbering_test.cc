@@ -12,7 +12,7 @@
 #include <map>
 #include <stdexcept>
 
-namespace kerf::grid {
+namespace kerf::grid::numbering_test {
 namespace {
 
 using support::Random;
@@ -227,4 +227,4 @@ TEST(GridNumbering, RefusesRunsInAnotherOrder) {
 }
 
 } // namespace
-} // namespace kerf::grid
+} // namespace kerf::grid::numbering_test

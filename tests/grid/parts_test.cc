@@ -10,7 +10,7 @@
 #include <bit>
 #include <set>
 
-namespace kerf::grid {
+namespace kerf::grid::parts_test {
 namespace {
 
 using slow::Items;
@@ -263,4 +263,4 @@ TEST(Parts, AreThoseOfAllWhoShareThem) {
 }
 
 } // namespace
-} // namespace kerf::grid
+} // namespace kerf::grid::parts_test

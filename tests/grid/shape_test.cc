@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace kerf::grid {
+namespace kerf::grid::shape_test {
 namespace {
 
 using support::Random;
@@ -41,4 +41,4 @@ TEST(Shape, FunctionsAreOneAtTheirVertexAndSumToOne) {
 }
 
 } // namespace
-} // namespace kerf::grid
+} // namespace kerf::grid::shape_test

@@ -11,7 +11,7 @@
 #include <bit>
 #include <numeric>
 
-namespace kerf::grid {
+namespace kerf::grid::skeleton_test {
 namespace {
 
 using slow::Item;
@@ -308,4 +308,4 @@ TEST(Skeleton, IsTheSameOnBothSidesOfAFace) {
 }
 
 } // namespace
-} // namespace kerf::grid
+} // namespace kerf::grid::skeleton_test

@@ -6,7 +6,7 @@
 
 #include <map>
 
-namespace kerf::grid {
+namespace kerf::grid::sparse_index_test {
 namespace {
 
 using Key = Id<struct KeyTag>;
@@ -38,4 +38,4 @@ TEST(SparseIndex, TakesRoomForGroupsThatHoldSomething) {
 }
 
 } // namespace
-} // namespace kerf::grid
+} // namespace kerf::grid::sparse_index_test

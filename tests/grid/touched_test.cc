@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <set>
 
-namespace kerf::grid {
+namespace kerf::grid::touched_test {
 namespace {
 
 /// From every cell's own list of edges.
@@ -82,4 +82,4 @@ TEST(TouchedCells, OfNothingAreNone) {
 }
 
 } // namespace
-} // namespace kerf::grid
+} // namespace kerf::grid::touched_test

@@ -27,7 +27,7 @@
 #include <map>
 #include <sstream>
 
-namespace kerf::grinder {
+namespace kerf::grinder::grinder_test {
 namespace {
 
 std::string setting(const char* name, const std::string& otherwise) {
@@ -182,4 +182,4 @@ TEST(Grinder, Repeat) {
 }
 
 } // namespace
-} // namespace kerf::grinder
+} // namespace kerf::grinder::grinder_test

@@ -19,7 +19,7 @@
 #include <map>
 #include <sstream>
 
-namespace kerf::grinder {
+namespace kerf::grinder::pieces_test {
 namespace {
 
 constexpr double same_motion = 0.1;  // of a cube
@@ -157,4 +157,4 @@ TEST(SamePieces, Long) {
 }
 
 } // namespace
-} // namespace kerf::grinder
+} // namespace kerf::grinder::pieces_test

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace kerf::image {
+namespace kerf::image::distance_test {
 namespace {
 
 TEST(Distance, IsThatOfASearch) {
@@ -46,4 +46,4 @@ TEST(Closed, FillsWhatIsNarrowAndNothingElse) {
 }
 
 } // namespace
-} // namespace kerf::image
+} // namespace kerf::image::distance_test

@@ -11,7 +11,7 @@
 
 #include <jpeglib.h>
 
-namespace kerf::image {
+namespace kerf::image::file_test {
 namespace {
 
 Image ramp(const int width, const int height) {
@@ -134,4 +134,4 @@ TEST(ImageFile, BadFilesAreRefused) {
 }
 
 } // namespace
-} // namespace kerf::image
+} // namespace kerf::image::file_test

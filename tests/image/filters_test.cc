@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numeric>
 
-namespace kerf::image {
+namespace kerf::image::filters_test {
 namespace {
 
 Grey wave(const int n, const double length) {
@@ -114,4 +114,4 @@ TEST(Compare, BandsFindTheirWavelength) {
 }
 
 } // namespace
-} // namespace kerf::image
+} // namespace kerf::image::filters_test

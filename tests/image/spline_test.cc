@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-namespace kerf::image {
+namespace kerf::image::spline_test {
 namespace {
 
 template <class Function>
@@ -61,4 +61,4 @@ TEST(Spline, IsContinuous) {
 }
 
 } // namespace
-} // namespace kerf::image
+} // namespace kerf::image::spline_test

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace kerf::lattice {
+namespace kerf::lattice::bar_test {
 namespace {
 
 constexpr double density = 1000, h = 0.1, dt = 0.01;
@@ -159,4 +159,4 @@ TEST(Calibration, InvertsItself) {
 }
 
 } // namespace
-} // namespace kerf::lattice
+} // namespace kerf::lattice::bar_test

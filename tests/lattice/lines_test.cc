@@ -10,7 +10,7 @@
 #include <algorithm>
 #include <set>
 
-namespace kerf::lattice {
+namespace kerf::lattice::lines_test {
 namespace {
 
 std::vector<double> random_field(const std::size_t n, const unsigned seed) {
@@ -165,4 +165,4 @@ TEST(Lines, RegionsOfNoWidthAreRefused) {
 }
 
 } // namespace
-} // namespace kerf::lattice
+} // namespace kerf::lattice::lines_test

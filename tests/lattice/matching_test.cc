@@ -9,7 +9,7 @@
 
 #include <limits>
 
-namespace kerf::lattice {
+namespace kerf::lattice::matching_test {
 namespace {
 
 constexpr double k = 3600;
@@ -224,4 +224,4 @@ TEST(Matching, RefusesWhatMakesNoSense) {
 }
 
 } // namespace
-} // namespace kerf::lattice
+} // namespace kerf::lattice::matching_test

@@ -12,7 +12,7 @@
 #include <limits>
 #include <memory>
 
-namespace kerf::lattice {
+namespace kerf::lattice::motion_test {
 namespace {
 
 constexpr double dt = 1.0 / 60;
@@ -282,4 +282,4 @@ TEST(ShapeMatching, SaysWhenNumbersAreNone) {
 }
 
 } // namespace
-} // namespace kerf::lattice
+} // namespace kerf::lattice::motion_test

@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-namespace kerf::lattice {
+namespace kerf::lattice::riders_test {
 namespace {
 
 constexpr double k = 3600;
@@ -136,4 +136,4 @@ TEST(Riders, ComeBackWithoutSwinging) {
 }
 
 } // namespace
-} // namespace kerf::lattice
+} // namespace kerf::lattice::riders_test

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <memory>
 
-namespace kerf::lattice {
+namespace kerf::lattice::robustness_test {
 namespace {
 
 constexpr double dt = 1.0 / 60;
@@ -188,4 +188,4 @@ TEST(Robustness, TenThousandCutsCarryOn) {
 }
 
 } // namespace
-} // namespace kerf::lattice
+} // namespace kerf::lattice::robustness_test

@@ -9,7 +9,7 @@
 
 #include <set>
 
-namespace kerf::lattice {
+namespace kerf::lattice::shares_test {
 namespace {
 
 Body rough_block(const unsigned seed, const fem::Interval& t) {
@@ -108,4 +108,4 @@ TEST(Shares, EveryCornerAndEveryNodeHasSome) {
 }
 
 } // namespace
-} // namespace kerf::lattice
+} // namespace kerf::lattice::shares_test

@@ -4,7 +4,7 @@
 
 #include <set>
 
-namespace kerf::material {
+namespace kerf::material::elastic_test {
 namespace {
 
 /// Stress of a small strain by Hooke's law with Lame's parameters.
@@ -48,4 +48,4 @@ TEST(Elastic, RefusesWhatIsNoSolid) {
 }
 
 } // namespace
-} // namespace kerf::material
+} // namespace kerf::material::elastic_test

@@ -11,7 +11,7 @@
 
 #include <random>
 
-namespace kerf::material {
+namespace kerf::material::laws_test {
 namespace {
 
 using Vector9 = Eigen::Matrix<double, 9, 1>;
@@ -290,4 +290,4 @@ TEST(CauchyStress, IsForceOverCurrentArea) {
 }
 
 } // namespace
-} // namespace kerf::material
+} // namespace kerf::material::laws_test

@@ -6,7 +6,7 @@
 
 #include <random>
 
-namespace kerf::material {
+namespace kerf::material::polar_test {
 namespace {
 
 class Polar : public testing::Test {
@@ -127,4 +127,4 @@ TEST_F(Polar, TurnsWithTheBodyAndWithTheFrame) {
 }
 
 } // namespace
-} // namespace kerf::material
+} // namespace kerf::material::polar_test

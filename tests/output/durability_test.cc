@@ -14,7 +14,7 @@
 #include <fstream>
 #include <random>
 
-namespace kerf::output {
+namespace kerf::output::durability_test {
 namespace {
 
 constexpr std::size_t n_copies = 60, n_kills = 20;
@@ -202,4 +202,4 @@ TEST(Durability, AnUnwritablePlaceIsNamed) {
 }
 
 } // namespace
-} // namespace kerf::output
+} // namespace kerf::output::durability_test

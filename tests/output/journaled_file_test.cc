@@ -10,7 +10,7 @@
 #include <fstream>
 #include <random>
 
-namespace kerf::output {
+namespace kerf::output::journaled_file_test {
 namespace {
 
 constexpr auto page = JournaledFile::page_size;
@@ -151,4 +151,4 @@ TEST(JournaledFile, CommitsAllOrNothingUnderKills) {
 }
 
 } // namespace
-} // namespace kerf::output
+} // namespace kerf::output::journaled_file_test

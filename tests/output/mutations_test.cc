@@ -15,7 +15,7 @@
 #include <fstream>
 #include <iterator>
 
-namespace kerf::output {
+namespace kerf::output::mutations_test {
 namespace {
 
 std::string bytes_of(const std::filesystem::path& path) {
@@ -111,4 +111,4 @@ TEST(DamagedCheckpoints, AreReadOrRefused) {
 }
 
 } // namespace
-} // namespace kerf::output
+} // namespace kerf::output::mutations_test

@@ -12,7 +12,7 @@
 #include <csignal>
 #include <fstream>
 
-namespace kerf::output {
+namespace kerf::output::results_folder_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -146,4 +146,4 @@ TEST(Checkpoint, IsReadBackOrRefused) {
 }
 
 } // namespace
-} // namespace kerf::output
+} // namespace kerf::output::results_folder_test

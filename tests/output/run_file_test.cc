@@ -8,7 +8,7 @@
 
 #include <fstream>
 
-namespace kerf::output {
+namespace kerf::output::run_file_test {
 namespace {
 
 const std::vector<double> two_values = {1, 2};
@@ -226,4 +226,4 @@ TEST(Reader, RefusesWhatIsNoRunsFile) {
 }
 
 } // namespace
-} // namespace kerf::output
+} // namespace kerf::output::run_file_test

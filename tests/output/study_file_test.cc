@@ -11,7 +11,7 @@
 #include <fstream>
 #include <limits>
 
-namespace kerf::output {
+namespace kerf::output::study_file_test {
 namespace {
 
 StudyTable sample_table(const std::size_t n) {
@@ -71,4 +71,4 @@ TEST(StudyFile, SaysWhatCannotBeReadOrWritten) {
 }
 
 } // namespace
-} // namespace kerf::output
+} // namespace kerf::output::study_file_test

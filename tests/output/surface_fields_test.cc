@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace kerf::output {
+namespace kerf::output::surface_fields_test {
 namespace {
 
 const std::vector<Field> announced = {{"stress", "Pa", 6, {}}, {"heat", "K", 1, {}}};
@@ -88,4 +88,4 @@ TEST(ArrayFile, HoldsWhatItWasGiven) {
 }
 
 } // namespace
-} // namespace kerf::output
+} // namespace kerf::output::surface_fields_test

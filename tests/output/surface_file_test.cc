@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace kerf::output {
+namespace kerf::output::surface_file_test {
 namespace {
 
 TEST(SurfaceFile, EveryStepReadsBackByTheSpecification) {
@@ -64,4 +64,4 @@ TEST(SurfaceFile, RefusesArraysThatDoNotFitAndTakesTheNext) {
 }
 
 } // namespace
-} // namespace kerf::output
+} // namespace kerf::output::surface_file_test

@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-namespace kerf::output {
+namespace kerf::output::table_file_test {
 namespace {
 
 namespace cube = grid::cube;
@@ -94,4 +94,4 @@ TEST(TableFile, RefusesWhatDoesNotFit) {
 }
 
 } // namespace
-} // namespace kerf::output
+} // namespace kerf::output::table_file_test

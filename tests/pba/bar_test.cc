@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace kerf::pba {
+namespace kerf::pba::bar_test {
 namespace {
 
 const material::Elastic plain{.density = 1000, .youngs_modulus = 1e5, .poissons_ratio = 0};
@@ -102,4 +102,4 @@ TEST(Bar, StabilisationSeesTheShortestWave) {
 }
 
 } // namespace
-} // namespace kerf::pba
+} // namespace kerf::pba::bar_test

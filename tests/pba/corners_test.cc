@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-namespace kerf::pba {
+namespace kerf::pba::corners_test {
 namespace {
 
 const material::Elastic rubber{.density = 1000, .youngs_modulus = 2e3, .poissons_ratio = 0.4};
@@ -235,4 +235,4 @@ TEST(Corners, AreTheSameOnOneAndTwoThreads) {
 }
 
 } // namespace
-} // namespace kerf::pba
+} // namespace kerf::pba::corners_test

@@ -13,7 +13,7 @@
 
 #include <numeric>
 
-namespace kerf::pba {
+namespace kerf::pba::filling_test {
 namespace {
 
 const Box unit_box{Vec3::Zero(), Vec3::Ones()};
@@ -254,4 +254,4 @@ TEST(Phyxels, OptionsSayWhatTheyTake) {
 }
 
 } // namespace
-} // namespace kerf::pba
+} // namespace kerf::pba::filling_test

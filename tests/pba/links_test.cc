@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-namespace kerf::pba {
+namespace kerf::pba::links_test {
 namespace {
 
 std::vector<Link> links_of(const support::Body& body, const Points& points) {
@@ -174,4 +174,4 @@ TEST(Links, BringNoEnergy) {
 }
 
 } // namespace
-} // namespace kerf::pba
+} // namespace kerf::pba::links_test

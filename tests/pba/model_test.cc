@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace kerf::pba {
+namespace kerf::pba::model_test {
 namespace {
 
 using dynamics::flat;
@@ -377,4 +377,4 @@ TEST(Model, RefusesOptionsOutOfRange) {
 }
 
 } // namespace
-} // namespace kerf::pba
+} // namespace kerf::pba::model_test

@@ -8,7 +8,7 @@
 
 #include <numeric>
 
-namespace kerf::pba {
+namespace kerf::pba::motion_test {
 namespace {
 
 using dynamics::State;
@@ -142,4 +142,4 @@ TEST(Motion, GroundToDust) {
 }
 
 } // namespace
-} // namespace kerf::pba
+} // namespace kerf::pba::motion_test

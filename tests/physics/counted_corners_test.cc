@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-namespace kerf::physics {
+namespace kerf::physics::counted_corners_test {
 namespace {
 
 using grid::Counted;
@@ -256,4 +256,4 @@ TEST(CountedCorners, ErrorsNameTheCorner) {
 }
 
 } // namespace
-} // namespace kerf::physics
+} // namespace kerf::physics::counted_corners_test

@@ -14,7 +14,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
-namespace kerf::physics {
+namespace kerf::physics::crumbs_test {
 namespace {
 
 constexpr double h = 0.1, density = 1000;
@@ -440,4 +440,4 @@ TEST(Crumbs, SettleWhereLoadsBalanceTheirWeight) {
 }
 
 } // namespace
-} // namespace kerf::physics
+} // namespace kerf::physics::crumbs_test

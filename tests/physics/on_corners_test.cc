@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace kerf::physics {
+namespace kerf::physics::on_corners_test {
 namespace {
 
 support::Body whole_block() { return support::block({5, 4, 4}, 0.1); }
@@ -225,4 +225,4 @@ TEST(OnCorners, LightCornersOfElementsAreDampedOnceCut) {
 }
 
 } // namespace
-} // namespace kerf::physics
+} // namespace kerf::physics::on_corners_test

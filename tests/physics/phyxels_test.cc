@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-namespace kerf::physics {
+namespace kerf::physics::phyxels_test {
 namespace {
 
 const support::Plane middle{Vec3(0.8, 0.6, 0), 0.45};
@@ -293,4 +293,4 @@ TEST(Phyxels, StateOutlivesACut) {
 }
 
 } // namespace
-} // namespace kerf::physics
+} // namespace kerf::physics::phyxels_test

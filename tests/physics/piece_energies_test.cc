@@ -9,7 +9,7 @@
 
 #include <numeric>
 
-namespace kerf {
+namespace kerf::piece_energies_test {
 namespace {
 
 /// Each has what the energy of the whole changes by where it alone is deformed; together they have all.
@@ -56,4 +56,4 @@ TEST(PieceEnergies, OfSprings) {
 }
 
 } // namespace
-} // namespace kerf
+} // namespace kerf::piece_energies_test

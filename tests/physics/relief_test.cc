@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-namespace kerf::physics {
+namespace kerf::physics::relief_test {
 namespace {
 
 using MakePhysics = std::function<std::unique_ptr<Physics>(const CutBody&)>;
@@ -271,4 +271,4 @@ TEST(Relief, LiftsByNoMoreThanItLetsOut) {
 }
 
 } // namespace
-} // namespace kerf::physics
+} // namespace kerf::physics::relief_test

@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-namespace kerf::reference {
+namespace kerf::reference::known_answers_test {
 namespace {
 
 /// Refined where the estimate is largest, towards the corners, degrees 3 and 4 agree on 23.96774.
@@ -137,4 +137,4 @@ TEST(KnownAnswers, OfASplitBeam) {
 }
 
 } // namespace
-} // namespace kerf::reference
+} // namespace kerf::reference::known_answers_test

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace kerf::reference {
+namespace kerf::reference::mesh_test {
 namespace {
 
 const auto everywhere = [](const Vec3&) { return true; };
@@ -60,4 +60,4 @@ TEST(Mesh, OnlyFacesInThePlaneAreParted) {
 }
 
 } // namespace
-} // namespace kerf::reference
+} // namespace kerf::reference::mesh_test

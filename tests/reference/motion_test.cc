@@ -10,7 +10,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace kerf::reference {
+namespace kerf::reference::motion_test {
 namespace {
 
 using std::numbers::pi;
@@ -108,4 +108,4 @@ TEST(Pins, HoldWhatNothingPullsAt) {
 }
 
 } // namespace
-} // namespace kerf::reference
+} // namespace kerf::reference::motion_test

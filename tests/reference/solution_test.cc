@@ -9,7 +9,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace kerf::reference {
+namespace kerf::reference::solution_test {
 namespace {
 
 using std::numbers::pi;
@@ -125,4 +125,4 @@ TEST(Solution, RefusesWhatCannotBeSolved) {
 }
 
 } // namespace
-} // namespace kerf::reference
+} // namespace kerf::reference::solution_test

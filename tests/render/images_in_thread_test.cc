@@ -9,9 +9,7 @@
 #include <fstream>
 #include <iterator>
 
-using namespace kerf;
-using namespace kerf::render;
-
+namespace kerf::render::images_in_thread_test {
 namespace {
 
 const std::vector<DrawnBlade> no_blades;
@@ -28,8 +26,6 @@ std::string bytes_of(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), {}};
 }
-
-} // namespace
 
 TEST(Renderer, DrawsTheSameInAThreadOfItsOwn) {
   const output::TemporaryFolder folder;
@@ -49,3 +45,6 @@ TEST(Renderer, DrawsTheSameInAThreadOfItsOwn) {
     EXPECT_EQ(bytes_of(path("beside", i)), bytes_of(path("alone", i))) << i;
   }
 }
+
+} // namespace
+} // namespace kerf::render::images_in_thread_test

@@ -14,7 +14,7 @@
 
 #include <algorithm>
 
-namespace kerf::scene {
+namespace kerf::scene::compose_test {
 namespace {
 
 constexpr std::array optional_kinds = {"Gravity", "Blade", "Observables", "Surface file", "Images"};
@@ -142,4 +142,4 @@ TEST(Compose, EveryObservableHasUnitAndSourceAndIsFinite) {
 }
 
 } // namespace
-} // namespace kerf::scene
+} // namespace kerf::scene::compose_test

@@ -5,7 +5,7 @@
 
 #include <Eigen/Geometry>
 
-namespace kerf::scene {
+namespace kerf::scene::crumbs_test {
 namespace {
 
 constexpr double edge = 0.04; // of the cubes of a cube of five nodes across [m]
@@ -106,4 +106,4 @@ TEST(CrumbsScene, DustLandsOnAFloor) {
 }
 
 } // namespace
-} // namespace kerf::scene
+} // namespace kerf::scene::crumbs_test

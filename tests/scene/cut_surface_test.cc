@@ -10,7 +10,7 @@
 #include <fstream>
 #include <sstream>
 
-namespace kerf::scene {
+namespace kerf::scene::cut_surface_test {
 namespace {
 
 std::string surface_text(const std::string& name, const std::string& keys) {
@@ -224,4 +224,4 @@ TEST(CutSurfaceScene, RefusesWhatIsNoCut) {
 }
 
 } // namespace
-} // namespace kerf::scene
+} // namespace kerf::scene::cut_surface_test

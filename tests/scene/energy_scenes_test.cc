@@ -2,7 +2,7 @@
 
 #include "tests/scene/trials.h"
 
-namespace kerf::scene {
+namespace kerf::scene::energy_scenes_test {
 namespace {
 
 constexpr double E = 1e5, dead_load = 10; // [Pa]
@@ -220,4 +220,4 @@ TEST(EnergyScene, CornersWithoutMassDoNotFlyAway) {
 }
 
 } // namespace
-} // namespace kerf::scene
+} // namespace kerf::scene::energy_scenes_test

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <fstream>
 
-namespace kerf::scene {
+namespace kerf::scene::example_scenes_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -95,4 +95,4 @@ TEST(ExampleScenes, ComposeAndRunSomeSteps) {
 }
 
 } // namespace
-} // namespace kerf::scene
+} // namespace kerf::scene::example_scenes_test

@@ -5,7 +5,7 @@
 #include "output/h5_array.h"
 #include "tests/scene/trials.h"
 
-namespace kerf::scene {
+namespace kerf::scene::fields_test {
 namespace {
 
 constexpr double E = 1e5, nu = 0.3, strain = 100 / E; // a bar drawn by 100 Pa along x
@@ -139,4 +139,4 @@ TEST(Fields, OfOtherBackendsAreDisplacementsOnly) {
 }
 
 } // namespace
-} // namespace kerf::scene
+} // namespace kerf::scene::fields_test

@@ -7,7 +7,7 @@
 
 #include <algorithm>
 
-namespace kerf::scene {
+namespace kerf::scene::free_fall_test {
 namespace {
 
 /// A ball whose skin leaves near-empty cubes.
@@ -154,4 +154,4 @@ TEST(FreeFall, OfACutBodyGainsNothingByDamping) {
 }
 
 } // namespace
-} // namespace kerf::scene
+} // namespace kerf::scene::free_fall_test

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <random>
 
-namespace kerf::scene {
+namespace kerf::scene::held_test {
 namespace {
 
 const HalfSpace above{.point = Vec3(0, 0, 0.06), .normal = -Vec3::UnitZ()};
@@ -102,4 +102,4 @@ TEST(Held, PhyxelsAreHeldWhereTheyRest) {
 }
 
 } // namespace
-} // namespace kerf::scene
+} // namespace kerf::scene::held_test

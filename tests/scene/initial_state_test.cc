@@ -9,7 +9,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace kerf::scene {
+namespace kerf::scene::initial_state_test {
 namespace {
 
 World thrown(const std::string& backend, const Keys& initial, const Overrides& more = {}) {
@@ -219,4 +219,4 @@ TEST(InitialState, WhatIsNoExpressionIsRefusedWithItsPlace) {
 }
 
 } // namespace
-} // namespace kerf::scene
+} // namespace kerf::scene::initial_state_test

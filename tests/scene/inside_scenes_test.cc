@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace kerf::scene {
+namespace kerf::scene::inside_scenes_test {
 namespace {
 
 LookedInto look_into(const std::string& scene) {
@@ -73,4 +73,4 @@ TEST(InsideScenes, NoTriangleIsFlippedFromPictureToPicture) {
 }
 
 } // namespace
-} // namespace kerf::scene
+} // namespace kerf::scene::inside_scenes_test

@@ -12,7 +12,7 @@
 #include <fstream>
 #include <map>
 
-namespace kerf::scene {
+namespace kerf::scene::interior_test {
 namespace {
 
 /// A picture of stripes, 64 x 64.
@@ -244,4 +244,4 @@ TEST_F(InteriorScene, ASkinImageColoursTheSkin) {
 }
 
 } // namespace
-} // namespace kerf::scene
+} // namespace kerf::scene::interior_test

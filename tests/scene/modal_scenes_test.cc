@@ -3,7 +3,7 @@
 #include "base/error.h"
 #include "tests/scene/trials.h"
 
-namespace kerf::scene {
+namespace kerf::scene::modal_scenes_test {
 namespace {
 
 constexpr double E = 1e5, speed = 10; // of waves in a rod of 1000 kg/m^3 [m/s]
@@ -111,4 +111,4 @@ TEST(ModalScene, WhatHasNoModesIsRefused) {
 }
 
 } // namespace
-} // namespace kerf::scene
+} // namespace kerf::scene::modal_scenes_test

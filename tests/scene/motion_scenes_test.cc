@@ -3,7 +3,7 @@
 #include "base/error.h"
 #include "tests/scene/trials.h"
 
-namespace kerf::scene {
+namespace kerf::scene::motion_scenes_test {
 namespace {
 
 /// A cube on a clamped foot, which gravity along x swings from rest for 0.1 s.
@@ -123,4 +123,4 @@ TEST(MotionScene, AStepBeyondTheStableOneIsRefusedWithTheStableOne) {
 }
 
 } // namespace
-} // namespace kerf::scene
+} // namespace kerf::scene::motion_scenes_test

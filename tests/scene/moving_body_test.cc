@@ -12,7 +12,7 @@
 #include <set>
 #include <sstream>
 
-namespace kerf::scene {
+namespace kerf::scene::moving_body_test {
 namespace {
 
 constexpr double duration = 0.1;     // [s]
@@ -264,4 +264,4 @@ TEST(MovingBody, IsPartedBetweenSupportsThatCarryIt) {
 }
 
 } // namespace
-} // namespace kerf::scene
+} // namespace kerf::scene::moving_body_test

@@ -6,7 +6,7 @@
 
 #include <random>
 
-namespace kerf::scene {
+namespace kerf::scene::parameter_file_fuzz_test {
 namespace {
 
 struct Fields {
@@ -66,4 +66,4 @@ TEST(ParameterFileFuzz, DamagedScenesParseOrAreOurErrors) {
 }
 
 } // namespace
-} // namespace kerf::scene
+} // namespace kerf::scene::parameter_file_fuzz_test

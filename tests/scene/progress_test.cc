@@ -12,7 +12,7 @@
 #include <string>
 #include <thread>
 
-namespace kerf::scene {
+namespace kerf::scene::progress_test {
 namespace {
 
 using Stream = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
@@ -97,4 +97,4 @@ TEST(Progress, ATerminalGetsTheBar) {
 }
 
 } // namespace
-} // namespace kerf::scene
+} // namespace kerf::scene::progress_test

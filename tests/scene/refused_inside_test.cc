@@ -13,7 +13,7 @@
 #include <cmath>
 #include <fstream>
 
-namespace kerf::scene {
+namespace kerf::scene::refused_inside_test {
 namespace {
 
 using Words = std::vector<std::string>;
@@ -195,4 +195,4 @@ TEST_F(Inside, GreyAndWidePictures) {
 }
 
 } // namespace
-} // namespace kerf::scene
+} // namespace kerf::scene::refused_inside_test

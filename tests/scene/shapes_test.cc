@@ -11,7 +11,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace kerf::scene {
+namespace kerf::scene::shapes_test {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -108,4 +108,4 @@ TEST(BodyShapes, WhatIsNoBodyIsRefused) {
 }
 
 } // namespace
-} // namespace kerf::scene
+} // namespace kerf::scene::shapes_test

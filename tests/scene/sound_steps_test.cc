@@ -15,7 +15,7 @@
 #include <fstream>
 #include <random>
 
-namespace kerf::scene {
+namespace kerf::scene::sound_steps_test {
 namespace {
 
 void spin(Body& body, const Vec3& rate) {
@@ -355,4 +355,4 @@ TEST(SoundScene, StrangersKeepTheirEnergyOrAreRefused) {
 }
 
 } // namespace
-} // namespace kerf::scene
+} // namespace kerf::scene::sound_steps_test

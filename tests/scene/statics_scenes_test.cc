@@ -5,7 +5,7 @@
 
 #include <numbers>
 
-namespace kerf::scene {
+namespace kerf::scene::statics_scenes_test {
 namespace {
 
 constexpr double E = 1e5; // [Pa]
@@ -314,4 +314,4 @@ TEST(StaticScene, LoadsOutOfBalanceOnABodyThatNothingHoldsAreRefused) {
 }
 
 } // namespace
-} // namespace kerf::scene
+} // namespace kerf::scene::statics_scenes_test

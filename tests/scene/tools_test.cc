@@ -13,7 +13,7 @@
 #include <map>
 #include <numbers>
 
-namespace kerf::scene {
+namespace kerf::scene::tools_test {
 namespace {
 
 /// "Kind name" with one key a semicolon-free item.
@@ -364,4 +364,4 @@ TEST(Forceps, SayWhatIsWrong) {
 }
 
 } // namespace
-} // namespace kerf::scene
+} // namespace kerf::scene::tools_test

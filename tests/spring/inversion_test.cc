@@ -11,7 +11,7 @@
 
 #include <cmath>
 
-namespace kerf::spring {
+namespace kerf::spring::inversion_test {
 namespace {
 
 using fem::Body;
@@ -152,4 +152,4 @@ TEST(Inversion, MirroredBodiesComeBack) {
 }
 
 } // namespace
-} // namespace kerf::spring
+} // namespace kerf::spring::inversion_test

@@ -17,7 +17,7 @@
 #include <limits>
 #include <memory>
 
-namespace kerf::spring {
+namespace kerf::spring::mass_spring_test {
 namespace {
 
 using fem::Body;
@@ -435,4 +435,4 @@ TEST(MassSpring, RefusesWhatMakesNoSense) {
 }
 
 } // namespace
-} // namespace kerf::spring
+} // namespace kerf::spring::mass_spring_test

@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-namespace kerf {
+namespace kerf::layers_test {
 namespace {
 
 using Names = std::vector<std::string>;
@@ -325,4 +325,4 @@ TEST(LayersChecker, SeesLongFiles) {
 }
 
 } // namespace
-} // namespace kerf
+} // namespace kerf::layers_test

@@ -11,7 +11,7 @@
 #include <regex>
 #include <string>
 
-namespace kerf {
+namespace kerf::readme_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -68,5 +68,18 @@ TEST(Readme, SectionsOfResultsAreThere) {
   EXPECT_EQ(n, 8u);
 }
 
+/// Files of a room are compiled together: helpers of tests have names like `h` in many of them.
+TEST(Tests, EachFileHasANamespaceOfItsOwn) {
+  std::size_t n = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(root / "tests")) {
+    const std::string name = entry.path().stem().string();
+    if (entry.path().extension() != ".cc" || !name.ends_with("_test"))
+      continue;
+    ++n;
+    EXPECT_NE(text_of(entry.path()).find("::" + name + " {\n"), std::string::npos) << entry.path();
+  }
+  EXPECT_GT(n, 200u);
+}
+
 } // namespace
-} // namespace kerf
+} // namespace kerf::readme_test

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace kerf::study {
+namespace kerf::study::closed_form_test {
 namespace {
 
 Reference evaluated(const std::string& name, const std::string& keys, const std::string& unit = "m") {
@@ -110,4 +110,4 @@ TEST(ClosedForm, IsTheReferenceOfAStudy) {
 }
 
 } // namespace
-} // namespace kerf::study
+} // namespace kerf::study::closed_form_test

@@ -8,7 +8,7 @@
 
 #include <cmath>
 
-namespace kerf::study {
+namespace kerf::study::known_answers_test {
 namespace {
 
 /// The error of a row of a study in params/studies.
@@ -61,4 +61,4 @@ TEST(KnownAnswers, OfAPennyShapedCut) {
 }
 
 } // namespace
-} // namespace kerf::study
+} // namespace kerf::study::known_answers_test

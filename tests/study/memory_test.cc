@@ -4,7 +4,7 @@
 
 #include <vector>
 
-namespace kerf::study {
+namespace kerf::study::memory_test {
 namespace {
 
 TEST(PeakMemory, IsWhatWasNeededSinceItsStart) {
@@ -20,4 +20,4 @@ TEST(PeakMemory, IsWhatWasNeededSinceItsStart) {
 }
 
 } // namespace
-} // namespace kerf::study
+} // namespace kerf::study::memory_test

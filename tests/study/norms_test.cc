@@ -10,7 +10,7 @@
 #include <cmath>
 #include <limits>
 
-namespace kerf::study {
+namespace kerf::study::norms_test {
 namespace {
 
 const double nan = std::numeric_limits<double>::quiet_NaN();
@@ -177,4 +177,4 @@ TEST(ReferenceRow, IsTheOneWithTheShortestStepWhereCubesAreTheSame) {
 }
 
 } // namespace
-} // namespace kerf::study
+} // namespace kerf::study::norms_test

@@ -9,7 +9,7 @@
 
 #include <algorithm>
 
-namespace kerf::study {
+namespace kerf::study::plan_test {
 namespace {
 
 const std::string fem = CubeStudy::variant("fem", "");
@@ -235,4 +235,4 @@ TEST(Plan, OfEveryStudyInParams) {
 }
 
 } // namespace
-} // namespace kerf::study
+} // namespace kerf::study::plan_test

@@ -9,7 +9,7 @@
 
 #include <cstdlib>
 
-namespace kerf::study {
+namespace kerf::study::reference_file_test {
 namespace {
 
 class ReferenceFile : public testing::Test {
@@ -100,4 +100,4 @@ TEST_F(ReferenceFile, IsTheReferenceOfAStudy) {
 }
 
 } // namespace
-} // namespace kerf::study
+} // namespace kerf::study::reference_file_test

@@ -10,7 +10,7 @@
 #include <cmath>
 #include <fstream>
 
-namespace kerf::study {
+namespace kerf::study::stability_test {
 namespace {
 
 class BlockStudy {
@@ -134,4 +134,4 @@ TEST(Stability, TheTableIsReadBackAsItWasWritten) {
 }
 
 } // namespace
-} // namespace kerf::study
+} // namespace kerf::study::stability_test

@@ -10,7 +10,7 @@
 #include <cmath>
 #include <limits>
 
-namespace kerf::study {
+namespace kerf::study::study_test {
 namespace {
 
 const double nan = std::numeric_limits<double>::quiet_NaN();
@@ -229,4 +229,4 @@ TEST(Aligned, SaysWhatIsKnown) {
 }
 
 } // namespace
-} // namespace kerf::study
+} // namespace kerf::study::study_test

@@ -11,7 +11,7 @@
 #include <cmath>
 #include <fstream>
 
-namespace kerf::study {
+namespace kerf::study::truth_test {
 namespace {
 
 const std::string corners = "  set Corners [m] = 0, 0, 0; 10, 0, 0; 10, 1, 0; 0, 1, 0\n";
@@ -188,4 +188,4 @@ TEST(Truth, OfTheStudyOfCooksMembrane) {
 }
 
 } // namespace
-} // namespace kerf::study
+} // namespace kerf::study::truth_test

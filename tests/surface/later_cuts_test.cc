@@ -12,7 +12,7 @@
 #include <iostream>
 #include <numbers>
 
-namespace kerf::surface {
+namespace kerf::surface::later_cuts_test {
 namespace {
 
 using grid::CellId;
@@ -185,4 +185,4 @@ TEST(LaterCuts, MeetWhereTheyCrossInsideTheCell) {
 }
 
 } // namespace
-} // namespace kerf::surface
+} // namespace kerf::surface::later_cuts_test

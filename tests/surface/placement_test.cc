@@ -10,7 +10,7 @@
 #include <iostream>
 #include <numbers>
 
-namespace kerf::surface {
+namespace kerf::surface::placement_test {
 namespace {
 
 using grid::CellId;
@@ -372,4 +372,4 @@ TEST(Placement, APlaneSkinStaysPlaneUnderArbitraryCuts) {
 }
 
 } // namespace
-} // namespace kerf::surface
+} // namespace kerf::surface::placement_test

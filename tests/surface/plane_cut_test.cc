@@ -9,7 +9,7 @@
 #include <numbers>
 #include <numeric>
 
-namespace kerf::surface {
+namespace kerf::surface::plane_cut_test {
 namespace {
 
 using grid::CopyId;
@@ -155,4 +155,4 @@ TEST(PlaneCut, IsAsExactInManySteps) {
 }
 
 } // namespace
-} // namespace kerf::surface
+} // namespace kerf::surface::plane_cut_test

@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-namespace kerf::surface {
+namespace kerf::surface::planes_test {
 namespace {
 
 using support::Random;
@@ -147,4 +147,4 @@ TEST(Planes, AShortRestDoesNotLeadOutOfTheSpace) {
 }
 
 } // namespace
-} // namespace kerf::surface
+} // namespace kerf::surface::planes_test

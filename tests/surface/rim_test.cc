@@ -13,7 +13,7 @@
 #include <map>
 #include <numbers>
 
-namespace kerf::surface {
+namespace kerf::surface::rim_test {
 namespace {
 
 using support::Body;
@@ -202,4 +202,4 @@ TEST(Rim, TrianglesOfCutsAreShortAndHaveArea) {
 }
 
 } // namespace
-} // namespace kerf::surface
+} // namespace kerf::surface::rim_test

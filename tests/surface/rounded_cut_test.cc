@@ -6,7 +6,7 @@
 
 #include <iostream>
 
-namespace kerf::surface {
+namespace kerf::surface::rounded_cut_test {
 namespace {
 
 const std::vector<double> spacings = {1.0 / 8, 1.0 / 12, 1.0 / 18, 1.0 / 27, 1.0 / 40};
@@ -47,4 +47,4 @@ TEST(RoundedCut, IsOfSecondOrder) {
 }
 
 } // namespace
-} // namespace kerf::surface
+} // namespace kerf::surface::rounded_cut_test

@@ -11,7 +11,7 @@
 #include <map>
 #include <set>
 
-namespace kerf::surface {
+namespace kerf::surface::surface_test {
 namespace {
 
 using grid::CellComplex;
@@ -327,4 +327,4 @@ TEST(Surface, IsTheSameOnOneAndTwoThreads) {
 }
 
 } // namespace
-} // namespace kerf::surface
+} // namespace kerf::surface::surface_test

@@ -17,7 +17,7 @@
 #include <numeric>
 #include <set>
 
-namespace kerf::surface {
+namespace kerf::surface::table_test {
 namespace {
 
 namespace cube = grid::cube;
@@ -358,4 +358,4 @@ TEST(Table, Has144ClassesAnd218UnderRotationsAlone) {
 }
 
 } // namespace
-} // namespace kerf::surface
+} // namespace kerf::surface::table_test

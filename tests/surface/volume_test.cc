@@ -10,7 +10,7 @@
 #include <numbers>
 #include <numeric>
 
-namespace kerf::surface {
+namespace kerf::surface::volume_test {
 namespace {
 
 using grid::CellId;
@@ -227,4 +227,4 @@ TEST(Volume, OfTheLiverApproachesItsMesh) {
 }
 
 } // namespace
-} // namespace kerf::surface
+} // namespace kerf::surface::volume_test

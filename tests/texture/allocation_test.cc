@@ -28,7 +28,7 @@ std::atomic<std::size_t> n_allocations = 0;
 [[gnu::noinline]] void operator delete(void* const p) noexcept { std::free(p); }
 [[gnu::noinline]] void operator delete(void* const p, std::size_t) noexcept { std::free(p); }
 
-namespace kerf::texture {
+namespace kerf::texture::allocation_test {
 namespace {
 
 TEST(Allocation, AColourTakesNone) {
@@ -64,4 +64,4 @@ TEST(Allocation, FinerSamplesOfATriangleTakeNoMoreOfThem) {
 }
 
 } // namespace
-} // namespace kerf::texture
+} // namespace kerf::texture::allocation_test

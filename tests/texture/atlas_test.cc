@@ -5,7 +5,7 @@
 
 #include <Eigen/Geometry>
 
-namespace kerf::texture {
+namespace kerf::texture::atlas_test {
 namespace {
 
 const Interior& five() {
@@ -197,4 +197,4 @@ TEST(Atlas, CountsTrianglesThatAreTooLargeForTheirResolution) {
 }
 
 } // namespace
-} // namespace kerf::texture
+} // namespace kerf::texture::atlas_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace kerf::texture {
+namespace kerf::texture::detail_test {
 namespace {
 
 TEST(Detail, PutsBackWhatBlendingLoses) {
@@ -60,4 +60,4 @@ TEST(Detail, FollowsTheOrientationOfTheSurface) {
 }
 
 } // namespace
-} // namespace kerf::texture
+} // namespace kerf::texture::detail_test

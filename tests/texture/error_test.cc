@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace kerf::texture {
+namespace kerf::texture::error_test {
 namespace {
 
 struct Known {
@@ -55,4 +55,4 @@ INSTANTIATE_TEST_SUITE_P(Solids, Error,
                          [](const auto& info) { return std::string(info.param.name); });
 
 } // namespace
-} // namespace kerf::texture
+} // namespace kerf::texture::error_test

@@ -5,7 +5,7 @@
 
 #include <numeric>
 
-namespace kerf::texture {
+namespace kerf::texture::flat_test {
 namespace {
 
 constexpr double pixel = 0.001;
@@ -65,4 +65,4 @@ TEST(FlatGroups, HoldEachTriangleOnceWithinTheirBounds) {
 }
 
 } // namespace
-} // namespace kerf::texture
+} // namespace kerf::texture::flat_test

@@ -14,7 +14,7 @@
 
 #include <fstream>
 
-namespace kerf::texture {
+namespace kerf::texture::interior_test {
 namespace {
 
 const Interior& five() {
@@ -266,4 +266,4 @@ TEST(Fit, DrawsAPartialPictureToTheSection) {
 }
 
 } // namespace
-} // namespace kerf::texture
+} // namespace kerf::texture::interior_test

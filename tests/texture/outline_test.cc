@@ -12,7 +12,7 @@
 
 #include <cmath>
 
-namespace kerf::texture {
+namespace kerf::texture::outline_test {
 namespace {
 
 using image::Grey;
@@ -247,4 +247,4 @@ TEST(Outline, WhatIsSymmetricIsDrawnSymmetrically) {
 }
 
 } // namespace
-} // namespace kerf::texture
+} // namespace kerf::texture::outline_test

@@ -6,7 +6,7 @@
 #include <numeric>
 #include <set>
 
-namespace kerf::texture {
+namespace kerf::texture::sample_points_test {
 namespace {
 
 /// A square of n x n squares, each in two triangles, on a curved surface; corners of each start elsewhere.
@@ -90,4 +90,4 @@ TEST(SamplePoints, HaveTheSameBitsInAnyOrder) {
 }
 
 } // namespace
-} // namespace kerf::texture
+} // namespace kerf::texture::sample_points_test

@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-namespace kerf::texture {
+namespace kerf::texture::storage_test {
 namespace {
 
 using Change = std::vector<Exemplar> (*)(const std::vector<Exemplar>&);
@@ -97,4 +97,4 @@ INSTANTIATE_TEST_SUITE_P(
   [](const auto& info) { return std::string(info.param.name); });
 
 } // namespace
-} // namespace kerf::texture
+} // namespace kerf::texture::storage_test

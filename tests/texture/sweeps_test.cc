@@ -10,7 +10,7 @@
 
 #include <numeric>
 
-namespace kerf::texture {
+namespace kerf::texture::sweeps_test {
 namespace {
 
 /// What an interior is made from.
@@ -300,4 +300,4 @@ TEST(Components, EachOrTogether) {
 }
 
 } // namespace
-} // namespace kerf::texture
+} // namespace kerf::texture::sweeps_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace kerf::texture {
+namespace kerf::texture::weights_test {
 namespace {
 
 constexpr Blending by_mean_value = {Morph::blend, Weights::mean_value, 1};
@@ -103,4 +103,4 @@ TEST(MeanValueInside, IsContinuousAndExact) {
 }
 
 } // namespace
-} // namespace kerf::texture
+} // namespace kerf::texture::weights_test

@@ -154,7 +154,7 @@ double lowest_eigenvalue(const Sparse& K, const Sparse& M, const Sparse& free, c
 }
 
 /// What theory expects of the modes of a square beam of thickness 1 and E = 1 Pa, density 1000 kg/m^3.
-struct Wave {
+struct BeamWave {
   double k, nu, density = 1000;
 
   double shear_modulus() const { return 0.5 / (1 + nu); }
@@ -196,7 +196,7 @@ Sparse free_components(const Points& rest, const double length) {
 
 BeamResult frequency(const Vibration kind, const double slenderness, const int n_over_thickness, const MassMatrix mass,
                      const BeamModel& model) {
-  const Wave wave{std::numbers::pi / slenderness, 0.3};
+  const BeamWave wave{std::numbers::pi / slenderness, 0.3};
   auto options = options_of(model, 1, wave.nu);
   options.mass = mass;
   Built built = build(

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <string>
 
-namespace kerf::verification {
+namespace kerf::verification::beams_test {
 namespace {
 
 void record(const std::string& name, const double error) {
@@ -163,4 +163,4 @@ TEST(DoubleCantilever, BladesStopInsideCells) {
 }
 
 } // namespace
-} // namespace kerf::verification
+} // namespace kerf::verification::beams_test

@@ -9,7 +9,7 @@
 
 #include <cmath>
 
-namespace kerf::verification {
+namespace kerf::verification::calculix_test {
 namespace {
 
 using calculix::Deck;
@@ -118,4 +118,4 @@ TEST_F(CalculiX, ArmsPressedApartAgree) {
 }
 
 } // namespace
-} // namespace kerf::verification
+} // namespace kerf::verification::calculix_test

@@ -8,7 +8,7 @@
 
 #include <cmath>
 
-namespace kerf::verification {
+namespace kerf::verification::manufactured_test {
 namespace {
 
 struct Orders {
@@ -81,4 +81,4 @@ TEST(Manufactured, OtherBoundaryTreatmentsLoseAnOrder) {
 }
 
 } // namespace
-} // namespace kerf::verification
+} // namespace kerf::verification::manufactured_test

@@ -8,7 +8,7 @@
 #include <string>
 #include <tuple>
 
-namespace kerf::verification {
+namespace kerf::verification::plates_test {
 namespace {
 
 /// Its inclined sides pass between nodes everywhere.
@@ -102,4 +102,4 @@ TEST(Condition, OfSliversIsBoundedByTheGhostPenalty) {
 }
 
 } // namespace
-} // namespace kerf::verification
+} // namespace kerf::verification::plates_test

@@ -7,7 +7,7 @@
 
 #include <numbers>
 
-namespace kerf::visibility {
+namespace kerf::visibility::cpu_rasteriser_test {
 namespace {
 
 std::vector<std::uint32_t> rasterised(const Pair& pair, const MaskShape& shape, const std::vector<Face>& faces) {
@@ -169,4 +169,4 @@ TEST(CpuRasteriser, TwoThreadsGiveTheSameBits) {
 }
 
 } // namespace
-} // namespace kerf::visibility
+} // namespace kerf::visibility::cpu_rasteriser_test

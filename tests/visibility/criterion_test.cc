@@ -13,7 +13,7 @@
 
 #include <limits>
 
-namespace kerf::visibility {
+namespace kerf::visibility::criterion_test {
 namespace {
 
 CriterionChoice choice(const std::string& name) {
@@ -317,4 +317,4 @@ TEST(AllCriteria, RefusePairsThatAreNowhere) {
 }
 
 } // namespace
-} // namespace kerf::visibility
+} // namespace kerf::visibility::criterion_test

@@ -8,7 +8,7 @@
 
 #include <numbers>
 
-namespace kerf::visibility {
+namespace kerf::visibility::disk_test {
 namespace {
 
 TEST(MaskShape, HasTheTexelsOfADisk) {
@@ -97,4 +97,4 @@ TEST(Disk, LooksOnlyPastFacesThatOccludeNothing) {
 }
 
 } // namespace
-} // namespace kerf::visibility
+} // namespace kerf::visibility::disk_test

@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <map>
 
-namespace kerf::visibility {
+namespace kerf::visibility::field_test {
 namespace {
 
 CriterionChoice choice(const std::string& name) {
@@ -138,4 +138,4 @@ TEST(MergingStrips, ShareTheirLastCorners) {
 }
 
 } // namespace
-} // namespace kerf::visibility
+} // namespace kerf::visibility::field_test

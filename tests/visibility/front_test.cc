@@ -9,7 +9,7 @@
 
 #include <limits>
 
-namespace kerf::visibility {
+namespace kerf::visibility::front_test {
 namespace {
 
 CutFaces cut_of(const std::vector<std::vector<Face>>& parts) {
@@ -143,4 +143,4 @@ TEST(Front, FacesWithoutAreaHaveNone) {
 }
 
 } // namespace
-} // namespace kerf::visibility
+} // namespace kerf::visibility::front_test

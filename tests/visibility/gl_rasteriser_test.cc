@@ -7,7 +7,7 @@
 
 #include <cstdio>
 
-namespace kerf::visibility {
+namespace kerf::visibility::gl_rasteriser_test {
 namespace {
 
 /// More disks than one image holds, of several shapes and sizes of faces.
@@ -85,4 +85,4 @@ TEST(GlRasteriser, LeavesWithoutTakingWhatIsOfAnother) {
 }
 
 } // namespace
-} // namespace kerf::visibility
+} // namespace kerf::visibility::gl_rasteriser_test

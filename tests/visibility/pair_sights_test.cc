@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace kerf::visibility {
+namespace kerf::visibility::pair_sights_test {
 namespace {
 
 struct Crowd {
@@ -199,4 +199,4 @@ TEST(PairSights, PairsCanChange) {
 }
 
 } // namespace
-} // namespace kerf::visibility
+} // namespace kerf::visibility::pair_sights_test

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-namespace kerf::warp {
+namespace kerf::warp::energy_test {
 namespace {
 
 image::Grey waves(const double phase) {
@@ -92,4 +92,4 @@ TEST(Energy, RotationsCostNothingWhenRigid) {
 }
 
 } // namespace
-} // namespace kerf::warp
+} // namespace kerf::warp::energy_test

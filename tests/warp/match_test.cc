@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace kerf::warp {
+namespace kerf::warp::match_test {
 namespace {
 
 using image::Grey;
@@ -206,4 +206,4 @@ TEST(Partners, GoOnceAroundForwards) {
 }
 
 } // namespace
-} // namespace kerf::warp
+} // namespace kerf::warp::match_test

@@ -9,9 +9,7 @@
 #include <limits>
 #include <random>
 
-using namespace kerf;
-using namespace kerf::render;
-
+namespace kerf::render::renderer_test {
 namespace {
 
 const std::vector<DrawnSurface> no_surfaces;
@@ -48,8 +46,6 @@ std::size_t n_covered(const Image& image) {
     n += image.rgb[i] < 188 ? 1 : 0;
   return n;
 }
-
-} // namespace
 
 TEST(Renderer, AnEmptySceneIsTheBackground) {
   const Look look{.background_top = {1, 0.5, 0.2}, .background_bottom = {0, 0.3, 0.2}};
@@ -239,3 +235,6 @@ TEST(Renderer, RefusesWhatCannotBeDrawn) {
   EXPECT_THROW(draw_one(mesh), NumericalError);
   EXPECT_THROW(Renderer(Camera{.field_of_view = 0}, {}), ParameterError);
 }
+
+} // namespace
+} // namespace kerf::render::renderer_test

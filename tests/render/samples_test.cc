@@ -5,9 +5,7 @@
 
 #include <algorithm>
 
-using namespace kerf;
-using namespace kerf::render;
-
+namespace kerf::render::samples_test {
 namespace {
 
 /// One triangle, seen from above, whose samples are red at its first corner's end and green at the others.
@@ -32,8 +30,6 @@ struct Sampled {
   }
 };
 
-} // namespace
-
 TEST(Samples, AreTheColoursOfTheTriangle) {
   const Image image = Sampled().draw();
   const auto red = image.pixel(24, 50), green = image.pixel(48, 58);
@@ -56,3 +52,6 @@ TEST(Samples, MustFitTheTriangles) {
   many.parts.push_back(8);
   EXPECT_THROW(many.draw(), DataError);
 }
+
+} // namespace
+} // namespace kerf::render::samples_test

@@ -7,9 +7,7 @@
 
 #include <gtest/gtest.h>
 
-using namespace kerf;
-using namespace kerf::gl;
-
+namespace kerf::gl::framebuffer_test {
 namespace {
 
 constexpr int size = 16;
@@ -46,8 +44,6 @@ void add_triangle(std::vector<float>& vertices, const float (&corners)[3][2], fl
   for (const auto& [x, y] : corners)
     vertices.insert(vertices.end(), {clip(x), clip(y), z, c[0], c[1], c[2], c[3]});
 }
-
-} // namespace
 
 TEST(Framebuffer, ReadsBackExactColours) {
   const Context context;
@@ -133,3 +129,6 @@ TEST(Framebuffer, RefusesSizesThatOpenGLCannotHold) {
   EXPECT_THROW(Framebuffer({.width = 0, .height = 4}), ParameterError);
   EXPECT_THROW(Framebuffer({.width = 4, .height = 1 << 20}), ParameterError);
 }
+
+} // namespace
+} // namespace kerf::gl::framebuffer_test

@@ -8,8 +8,8 @@
 #include <limits>
 #include <numbers>
 
-using namespace kerf;
-using namespace kerf::render;
+namespace kerf::render::camera_test {
+namespace {
 
 TEST(Camera, ViewIsARigidMotionThatLooksDownMinusZ) {
   const Camera camera{.eye = {1, 2, 3}, .target = {-2, 0.5, 1}, .up = {0.1, 0, 1}};
@@ -42,3 +42,6 @@ TEST(Camera, RefusesWhatCannotSee) {
   EXPECT_THROW(check(Camera{.field_of_view = 180}), ParameterError);
   EXPECT_THROW(check(Camera{.width = 0}), ParameterError);
 }
+
+} // namespace
+} // namespace kerf::render::camera_test

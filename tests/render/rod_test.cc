@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
-using namespace kerf;
-using namespace kerf::render;
+namespace kerf::render::rod_test {
+namespace {
 
 TEST(Rod, IsAClosedTube) {
   const ToolMesh mesh = rod_mesh({{1, 2, 3}, {1, 2, 3}, {1, 2.5, 3}, {1, 4, 3}}, 0.1);
@@ -41,3 +41,6 @@ TEST(Rod, ThatTurnsBackHasFiniteVertices) {
   for (const Vec3& p : rod_mesh({{0, 0, 0}, {1, 0, 0}, {0, 0, 0}}, 0.1).positions)
     EXPECT_TRUE(p.allFinite());
 }
+
+} // namespace
+} // namespace kerf::render::rod_test

@@ -10,9 +10,7 @@
 #include <filesystem>
 #include <random>
 
-using namespace kerf;
-using namespace kerf::render;
-
+namespace kerf::render::image_test {
 namespace {
 
 Image noise(int width, int height) {
@@ -33,8 +31,6 @@ std::string message_of_writing(const Image& image, const std::string& path) {
 }
 
 bool holds(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
-
-} // namespace
 
 TEST(Image, AFileHoldsThePixels) {
   const auto path = std::filesystem::temp_directory_path() / "kerf_test_image.png";
@@ -72,3 +68,6 @@ TEST(Image, RefusesPixelsThatDoNotFit) {
   EXPECT_THROW(write_png(Image{2, 2, {1, 2, 3}}, "/dev/null"), DataError);
   EXPECT_THROW(write_png(Image{}, "/dev/null"), DataError);
 }
+
+} // namespace
+} // namespace kerf::render::image_test

@@ -7,8 +7,8 @@
 #include <array>
 #include <set>
 
-using namespace kerf;
-using namespace kerf::render;
+namespace kerf::render::shading_test {
+namespace {
 
 TEST(Shading, ASphereIsSmooth) {
   const auto mesh = shapes::sphere(0.3, 4);
@@ -68,3 +68,6 @@ TEST(Shading, TrianglesWithoutAreaDoNoHarm) {
   for (const ShadedVertex& v : shaded.vertices)
     EXPECT_NEAR(v.normal.z(), 1, 1e-14);
 }
+
+} // namespace
+} // namespace kerf::render::shading_test

@@ -9,8 +9,7 @@
 
 #include <vector>
 
-using namespace kerf::gl;
-
+namespace kerf::gl::words_test {
 namespace {
 
 /// Writes the four bytes of the word at its pixel.
@@ -37,8 +36,6 @@ const ShaderText clipped = {"clipped.vert",
                             "  gl_ClipDistance[0] = x;\n"
                             "}\n"};
 const ShaderText white = {"white.frag", "#version 330 core\nout vec4 c;\nvoid main() { c = vec4(1.0); }\n"};
-
-} // namespace
 
 TEST(Words, ReachTheShaderBitByBit) {
   const Context context;
@@ -71,3 +68,6 @@ TEST(Context, ClipsWhereADistanceIsNegative) {
   EXPECT_EQ(pixels[0], 0);
   EXPECT_EQ(pixels[12], 255);
 }
+
+} // namespace
+} // namespace kerf::gl::words_test

@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
-using namespace kerf;
-using namespace kerf::render;
+namespace kerf::render::blade_test {
+namespace {
 
 TEST(Blade, IsAClosedTaperedPlate) {
   const Vec3 spine(0, 0, 0.02);
@@ -37,3 +37,6 @@ TEST(Blade, AlongItsSpineHasFiniteVertices) {
   for (const Vec3& p : blade_mesh({{0, 0, 0}, {0, 0, 1}}, {0, 0, 1}).positions)
     EXPECT_TRUE(p.allFinite());
 }
+
+} // namespace
+} // namespace kerf::render::blade_test

@@ -4,7 +4,8 @@
 
 #include <gtest/gtest.h>
 
-using namespace kerf::gl;
+namespace kerf::gl::context_test {
+namespace {
 
 TEST(Context, IsCoreProfile33OrLater) {
   const Context context;
@@ -29,3 +30,6 @@ TEST(Context, TwoAtOnceKeepTheirImagesApart) {
   first.make_current();
   EXPECT_EQ(red.read_rgba8()[0], 255);
 }
+
+} // namespace
+} // namespace kerf::gl::context_test

@@ -6,9 +6,7 @@
 
 #include <gtest/gtest.h>
 
-using namespace kerf;
-using namespace kerf::gl;
-
+namespace kerf::gl::program_test {
 namespace {
 
 const ShaderText vertex = {"flat.vert",
@@ -31,8 +29,6 @@ std::string message_of(const auto& action) {
 }
 
 bool holds(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
-
-} // namespace
 
 TEST(Program, SaysWhereAShaderDoesNotCompile) {
   const Context context;
@@ -73,3 +69,6 @@ TEST(Shaders, NamesWhatIsEmbedded) {
   EXPECT_TRUE(holds(message, "no_such.frag")) << message;
   EXPECT_TRUE(holds(message, "solid.frag")) << message;
 }
+
+} // namespace
+} // namespace kerf::gl::program_test
