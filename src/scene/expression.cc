@@ -66,12 +66,13 @@ class Expressions {
       has_time_(variables != "x, y, z"),
       place_(section
                .complaint(key, "",
-                          variables == "t" ? "Choose an expression that is finite at all times of the run"
-                                           : "Choose an expression that is finite in the whole body")
+                          variables == "t"
+                            ? "Choose an expression that is finite at all times of the run. " + example(n)
+                            : "Choose an expression that is finite in the whole body")
                .complaint()),
       parser_(std::make_shared<dealii::FunctionParser<3>>(n)) {
     const std::string of = (n == 1 ? "one expression of " : "three expressions of ") + variables;
-    const std::string remedy = n == 1 ? "For example: 100*sin(2*pi*t)" : "For example: 0; 0; 0.01*sin(2*pi*t)";
+    const std::string remedy = example(n);
     const std::string separated = n == 1 ? "" : ", separated by semicolons";
     if (std::count(text.begin(), text.end(), ';') != n - 1)
       throw section.complaint(key, "must be " + of + separated, remedy);
@@ -87,8 +88,8 @@ class Expressions {
         require_no_others<1>("t", text);
       if (!has_time_)
         require_no_others<3>("x,y,z", text);
-      for (int i = 0; i < n && !has_place_; ++i)
-        (*this)(i, Vec3::Zero(), 0);
+      for (int i = 0; i < n; ++i) // in a body, the origin may be outside
+        has_place_ ? parser_->value(dealii::Point<3>(), static_cast<unsigned>(i)) : (*this)(i, Vec3::Zero(), 0);
     } catch (const dealii::ExceptionBase&) {
       throw section.complaint(key, "must be " + of + " that can be evaluated", remedy);
     }
@@ -108,6 +109,9 @@ class Expressions {
   }
 
  private:
+  static std::string example(const int n) {
+    return n == 1 ? "For example: 100*sin(2*pi*t)" : "For example: 0; 0; 0.01*sin(2*pi*t)";
+  }
   /// The parser knows x, y, z and t; not every expression may. Throws its exceptions.
   template <int n_variables>
   void require_no_others(const std::string& variables, const std::string& text) const {

@@ -3,6 +3,7 @@
 #include "scene/text_suggest.h"
 
 #include <algorithm>
+#include <cctype>
 
 namespace kerf::scene {
 namespace {
@@ -107,18 +108,26 @@ class Checker {
                   "Write a shorter one");
   }
 
-  /// An override may add a section, but not where its name looks like a slip.
+  static std::string without_digits(std::string text) {
+    std::erase_if(text, [](const unsigned char c) { return std::isdigit(c) != 0; });
+    return text;
+  }
+  /// An override may add a section, but not where its name looks like a slip. Numbers may differ.
   static void check_is_meant(const WrittenSection& section, const Heading& match, const WrittenSection& parent,
                              const std::string& path) {
     if (!section.origin.is_override() || match.kind->occurrence == Occurrence::once)
       return;
     std::vector<std::string> in_scene;
     for (const WrittenSection& other : parent.sections)
-      if (!other.origin.is_override() && other.heading.starts_with(match.kind->kind + " "))
-        in_scene.push_back(other.heading);
-    if (const auto meant = nearest(section.heading, in_scene))
+      if (!other.origin.is_override() && other.heading.starts_with(match.kind->kind + " ")) {
+        const std::string name = other.heading.substr(match.kind->kind.size() + 1);
+        if (without_digits(name) != without_digits(match.name))
+          in_scene.push_back(name);
+      }
+    if (const auto meant = nearest(match.name, in_scene))
       throw error(section.origin, path, "", "there is no such section in the scene",
-                  "Did you mean '" + *meant + "'? A new one must have a name that is less like it");
+                  "Did you mean '" + match.kind->kind + " " + *meant +
+                    "'? A new one must have a name that is less like it");
   }
 
   void check_keys(const WrittenSection& section, const std::vector<Parameter>& allowed, const std::string& path) const {

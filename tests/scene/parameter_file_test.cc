@@ -264,6 +264,7 @@ TEST(Overrides, AddNoSectionThatLooksLikeASlip) {
   const auto c = complaint_of(scene, {"Body bll/Cube edge [m]=2"});
   EXPECT_EQ(c.path, "Body bll");
   EXPECT_NE(c.remedy.find("Did you mean 'Body ball'?"), std::string::npos) << c.remedy;
+  EXPECT_NO_THROW(parse(scene, {"Body ball2/Mesh=ball.off", "Body ball2/Cube edge [m]=2"}));
   EXPECT_NO_THROW(parse(scene, {"Body other/Mesh=ball.off", "Body other/Cube edge [m]=2"}));
 }
 
