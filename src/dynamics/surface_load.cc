@@ -11,6 +11,41 @@ namespace {
 /// Twice the area times the normal of a triangle.
 Vec3 double_area(const Vec3& a, const Vec3& b, const Vec3& c) { return (b - a).cross(c - a); }
 
+/// Calls f(vertex, weight) for what is linear between the vertices: half of the k-th one's value, a quarter of the
+/// others'.
+template <class Function>
+void for_each_weight(const Triangle& triangle, const std::size_t k, const Function& f) {
+  for (std::size_t j = 0; j < 3; ++j)
+    f(triangle[j], j == k ? 0.5 : 0.25);
+}
+
+Interpolation means_of_linear(const SurfacePatch& patch) {
+  Interpolation means;
+  std::vector<std::uint32_t> corners;
+  std::vector<double> weights;
+  for (const Triangle& triangle : patch.triangles)
+    for (std::size_t k = 0; k < 3; ++k) {
+      corners.clear();
+      weights.clear();
+      for_each_weight(triangle, k, [&](const std::uint32_t vertex, const double weight) {
+        for (auto i = patch.points.start[vertex]; i < patch.points.start[vertex + 1]; ++i) {
+          corners.push_back(patch.points.corners[i]);
+          weights.push_back(weight * patch.points.values[i]);
+        }
+      });
+      means.add_point(corners, weights);
+    }
+  return means;
+}
+
+/// Where a mean rests: at rest triangles are flat.
+Vec3 mean_rest(const SurfacePatch& patch, const std::size_t mean) {
+  Vec3 sum = Vec3::Zero();
+  for_each_weight(patch.triangles[mean / 3], mean % 3,
+                  [&](const std::uint32_t vertex, const double weight) { sum += weight * patch.rest[vertex]; });
+  return sum;
+}
+
 } // namespace
 
 void check(const SurfacePatch& patch) {
@@ -20,6 +55,8 @@ void check(const SurfacePatch& patch) {
     for (const auto vertex : triangle)
       if (vertex >= patch.rest.size())
         throw ParameterError("a surface load has a triangle of a vertex that it does not know");
+  if (const std::size_t n = patch.means.n_points(); n != 0 && n != 3 * patch.triangles.size())
+    throw ParameterError("a surface load needs three means a triangle");
 }
 
 void require_triangles(const SurfacePatch& patch) {
@@ -37,36 +74,35 @@ double rest_area(const SurfacePatch& patch) {
 
 Traction::Traction(SurfacePatch patch, Field traction) : patch_(std::move(patch)), traction_(std::move(traction)) {
   check(patch_);
+  if (patch_.means.n_points() == 0)
+    patch_.means = means_of_linear(patch_);
 }
 
-Loan<Vec3> Traction::vertex_forces(const double time) const {
-  Loan<Vec3> forces(patch_.rest.size(), Vec3::Zero());
-  for (const auto& triangle : patch_.triangles) {
-    Vec3 t[3], sum = Vec3::Zero();
-    for (int k = 0; k < 3; ++k)
-      sum += t[k] = traction_(patch_.rest[triangle[k]], time);
-    const auto& [a, b, c] = triangle;
+Loan<Vec3> Traction::forces(const double time) const {
+  Loan<Vec3> forces(3 * patch_.triangles.size(), Vec3::Zero());
+  for (std::size_t t = 0; t < patch_.triangles.size(); ++t) {
+    const auto& [a, b, c] = patch_.triangles[t];
     const double area = 0.5 * double_area(patch_.rest[a], patch_.rest[b], patch_.rest[c]).norm();
-    for (int k = 0; k < 3; ++k)
-      forces[triangle[k]] += area / 12 * (sum + t[k]);
+    for (std::size_t k = 0; k < 3; ++k)
+      forces[3 * t + k] = area / 3 * traction_(patch_.rest[patch_.triangles[t][k]], time);
   }
   return forces;
 }
 
 double Traction::energy(const double time, const Points& x) const {
-  const Loan<Vec3> forces = vertex_forces(time);
+  const Loan<Vec3> of_means = forces(time);
   double sum = 0;
-  for (std::size_t i = 0; i < forces.size(); ++i)
-    if (!forces[i].isZero(0))
-      sum -= forces[i].dot(patch_.points.at(i, x) - patch_.rest[i]);
+  for (std::size_t i = 0; i < of_means.size(); ++i)
+    if (!of_means[i].isZero(0))
+      sum -= of_means[i].dot(patch_.means.at(i, x) - mean_rest(patch_, i));
   return sum;
 }
 
 void Traction::add_force(const Moment& moment, Points& forces) const {
-  const Loan<Vec3> of_vertices = vertex_forces(moment.time);
-  for (std::size_t i = 0; i < of_vertices.size(); ++i)
-    if (!of_vertices[i].isZero(0))
-      patch_.points.add_force(i, of_vertices[i], forces);
+  const Loan<Vec3> of_means = this->forces(moment.time);
+  for (std::size_t i = 0; i < of_means.size(); ++i)
+    if (!of_means[i].isZero(0))
+      patch_.means.add_force(i, of_means[i], forces);
 }
 
 Pressure::Pressure(SurfacePatch patch, ScalarField pressure)

@@ -2,8 +2,11 @@
 
 /// Loads on a part of a body's surface.
 ///
-/// Traction t(X, time) per rest area is dead: linear in each triangle between its vertices, so a vertex a of a
-/// triangle of rest area A gets A/12 (2 t_a + t_b + t_c). Pressure p(X, time) follows the body: each vertex of a
+/// Traction t(X, time) per rest area is dead: linear in each triangle between its vertices. So its work on a triangle
+/// of rest area A is A/3 times the sum over the vertices a of t_a . u_a, with u_a the mean of 3 L_a u over the triangle,
+/// L_a linear, 1 at a and 0 at the others. With the means of the corners' shape functions a constant stress and its
+/// traction are in balance wherever the skin passes through the grid; where triangles are linear between their vertices,
+/// a vertex gets A/12 (2 t_a + t_b + t_c). Pressure p(X, time) follows the body: each vertex of a
 /// triangle gets -p c / 6 with c = (x_1 - x_0) x (x_2 - x_0), which is twice the current area times the outward
 /// normal, and p the mean of the three vertices. It has a potential only on a closed surface, so none is used; its
 /// stiffness -df/dx_k = -(p/6) [x_{k+1} - x_{k+2}]x is not symmetric on an open one and is left out of the positive
@@ -20,6 +23,7 @@ struct SurfacePatch {
   Interpolation points;            ///< the vertices
   Points rest;                     ///< of the vertices [m]
   std::vector<Triangle> triangles; ///< of vertices, counter-clockwise seen from outside
+  Interpolation means = {};        ///< u_a, three a triangle; none: triangles are linear between their vertices
 };
 
 /// Throws ParameterError when triangles, rest positions and vertices do not fit together.
@@ -40,7 +44,8 @@ class Traction : public Load {
   void add_tangent(Tangent, const Moment&, double, LoadTangent&) const override {} // does not depend on x
 
  private:
-  Loan<Vec3> vertex_forces(double time) const;
+  /// At each mean.
+  Loan<Vec3> forces(double time) const;
 
   SurfacePatch patch_;
   Field traction_;

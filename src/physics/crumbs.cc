@@ -190,18 +190,26 @@ Vec3 momentum(const std::span<const double> mass, const Crumbs& crumbs, const dy
 
 void restore_momentum(const Vec3& had, const std::span<const std::uint32_t> particles,
                       const std::span<const double> mass, const Crumbs& crumbs, dynamics::State& state) {
-  constexpr double round_off = 1e-13;
-  double all = 0, sum = 0;
-  for (const auto i : particles)
-    all += mass[i];
-  for (std::size_t i = 0; i < mass.size(); ++i)
-    sum += mass[i] * state.v[i].norm();
+  constexpr double round_off = 1e-13, little = 0.01;
   const Vec3 missing = had - momentum(mass, crumbs, state);
-  if (!(all > 0) || missing.norm() <= round_off * sum)
+  double all = 0, moved = 0, of_particles = 0, moved_of_particles = 0;
+  for (std::size_t i = 0; i < mass.size(); ++i) {
+    all += mass[i];
+    moved += mass[i] * state.v[i].norm();
+  }
+  if (!(all > 0) || missing.norm() <= round_off * moved)
     return;
-  const Vec3 more = missing / all;
-  for (const auto i : particles)
-    state.v[i] += more;
+  for (const auto i : particles) {
+    of_particles += mass[i];
+    moved_of_particles += mass[i] * state.v[i].norm();
+  }
+  if (missing.norm() <= little * moved_of_particles)
+    for (const auto i : particles)
+      state.v[i] += missing / of_particles;
+  else
+    for (std::size_t i = 0; i < mass.size(); ++i)
+      if (mass[i] > 0)
+        state.v[i] += missing / all;
 }
 
 } // namespace kerf::physics

@@ -144,7 +144,8 @@ class Crumbs {
 /// Of all of the body: what its model moves, and its crumbs [kg m/s].
 Vec3 momentum(std::span<const double> mass, const Crumbs& crumbs, const dynamics::State& state);
 
-/// Gives these particles one velocity more, so that the body's momentum is what it was.
+/// Gives these particles one velocity more, so that the body's momentum is what it was; all of them, where that were
+/// more than a hundredth of theirs.
 void restore_momentum(const Vec3& had, std::span<const std::uint32_t> particles, std::span<const double> mass,
                       const Crumbs& crumbs, dynamics::State& state);
 

@@ -8,6 +8,7 @@
 #include "dynamics/skin_support.h"
 #include "dynamics/surface_load.h"
 #include "geometry/box_tree.h"
+#include "grid/shape.h"
 #include "material/elastic.h"
 #include "scene/expression.h"
 #include "scene/grammar_body.h"
@@ -65,24 +66,66 @@ std::vector<double> volumes(const Body& body) {
   return volumes;
 }
 
-/// The triangles of the faces ("skin", "revealed", "all") whose rest centres are in a region.
-dynamics::SurfacePatch patch_of(const Body& body, const std::string& faces, const Region& region) {
+/// Calls f(triangle) for those of the faces ("skin", "revealed", "all") whose rest centres are in a region.
+template <class Function>
+void for_each_triangle(const Body& body, const std::string& faces, const Region& region, const Function& f) {
   const surface::Surface& surface = body.surface;
-  dynamics::SurfacePatch patch{body.physics->carry(surface.weights), surface.rest, {}};
   for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
     const bool is_skin = surface.labels[t] == 0;
     if ((faces == "skin" && !is_skin) || (faces == "revealed" && is_skin))
       continue;
     const auto& [a, b, c] = surface.triangles[t];
     if (contains(region, (surface.rest[a] + surface.rest[b] + surface.rest[c]) / 3))
-      patch.triangles.push_back(surface.triangles[t]);
+      f(t);
   }
+}
+
+dynamics::SurfacePatch patch_of(const Body& body, const std::string& faces, const Region& region) {
+  dynamics::SurfacePatch patch{body.physics->carry(body.surface.weights), body.surface.rest, {}};
+  for_each_triangle(body, faces, region,
+                    [&](const std::size_t t) { patch.triangles.push_back(body.surface.triangles[t]); });
   return patch;
 }
 
 /// The triangles of the faces and box that a section names.
 dynamics::SurfacePatch patch_of(const Body& body, const dynamics::PatchParameters& parameters) {
   return patch_of(body, parameters.faces, Box{parameters.lower, parameters.upper});
+}
+
+/// The means of a triangle (SurfacePatch::means) of its copy's shape functions, by a rule of degree 4 (Dunavant 1985,
+/// High degree efficient symmetrical Gaussian quadrature rules for the triangle, Int. J. Numer. Meth. Eng. 21): in a
+/// plane these are cubic.
+void add_means(const Body& body, const std::size_t triangle, Interpolation& means) {
+  constexpr double places[] = {0.44594849091596488632, 0.09157621350977074346};
+  constexpr double weights[] = {0.22338158967801146570, 0.10995174365532186764};
+  const grid::Grid& grid = body.solid.grid;
+  const grid::Copy& copy = body.solid.complex.copies[body.surface.copies[triangle]];
+  const Vec3 lower = grid.position(grid.nodes(copy.cell)[0]);
+  const auto& [a, b, c] = body.surface.triangles[triangle];
+  const Points& rest = body.surface.rest;
+  std::array<std::array<double, 8>, 3> N{};
+  for (int rule = 0; rule < 2; ++rule)
+    for (int apart = 0; apart < 3; ++apart) {
+      Vec3 L = Vec3::Constant(places[rule]);
+      L[apart] = 1 - 2 * places[rule];
+      const Vec3 xi = (L[0] * rest[a] + L[1] * rest[b] + L[2] * rest[c] - lower) / grid.h();
+      for (int k = 0; k < 3; ++k)
+        for (int v = 0; v < 8; ++v)
+          N[k][v] += 3 * weights[rule] * L[k] * grid::shape(v, xi);
+    }
+  std::array<std::uint32_t, 8> corners;
+  std::ranges::transform(copy.corners, corners.begin(), [](const grid::CornerId corner) { return corner.value; });
+  for (const auto& of_vertex : N)
+    means.add_point(corners, of_vertex);
+}
+
+dynamics::SurfacePatch patch_with_means(const Body& body, const dynamics::PatchParameters& parameters) {
+  dynamics::SurfacePatch patch = patch_of(body, parameters);
+  Interpolation means;
+  for_each_triangle(body, parameters.faces, Box{parameters.lower, parameters.upper},
+                    [&](const std::size_t t) { add_means(body, t, means); });
+  patch.means = body.physics->carry(means);
+  return patch;
 }
 
 bool holds_skin(const Section& support) { return support.read<SupportParameters>().hold_at == "skin"; }
@@ -138,8 +181,8 @@ void compose_traction(const Section& section, Body& body) {
   const auto parameters = section.read<dynamics::TractionParameters>();
   const auto traction = vector_of_place(section, "Traction [N/m^2]", parameters.traction);
   body.load_makers.push_back({section.name(), [=](const Body& b, LoadList& loads) {
-                                loads.push_back(
-                                  std::make_unique<dynamics::Traction>(patch_of(b, parameters.patch), traction));
+                                auto patch = patch_with_means(b, parameters.patch);
+                                loads.push_back(std::make_unique<dynamics::Traction>(std::move(patch), traction));
                               }});
 }
 
