@@ -270,5 +270,26 @@ TEST(Crack, FacesInTheTubeMustBeFreeOfLoads) {
   EXPECT_NO_THROW(world_of(with({"Faces = skin"})));
 }
 
+/// What moves is in no equilibrium, and what is held as a whole tells nothing.
+TEST(Crack, WarnsOfMotionAndOfBodiesThatAreHeldAsAWhole) {
+  const auto says = [](const std::string& integrator, const std::string& upper, const std::string& words) {
+    Keys keys = of_box(Vec3(1, 0.25, 2), 0.125, ".5, .5, .5");
+    keys.back() = "Integrator = " + integrator;
+    const Keys front = {"First [m] = .4, 0, 1", "Second [m] = .4, .25, 1", "Growth [1] = 1, 0, 0"};
+    const World world = world_of(steps(0.01, 1) +
+                                 section("Body plate", keys,
+                                         section("Crack front tip", front) +
+                                           section("Support base", box("-9, -9, -9", upper))) +
+                                 rectangle(Vec3(0, 0.125, 1), 0.8, 0.5));
+    return std::ranges::any_of(world.composition,
+                               [&](const std::string& said) { return said.find(words) != std::string::npos; });
+  };
+  const std::string moves = "energy release rates are those of equilibria", whole = "hold all of its";
+  EXPECT_TRUE(says("Newmark", "9, 9, 0.2", moves));
+  EXPECT_FALSE(says("quasi-static", "9, 9, 0.2", moves));
+  EXPECT_TRUE(says("quasi-static", "9, 9, 9", whole));
+  EXPECT_FALSE(says("quasi-static", "9, 9, 0.2", whole));
+}
+
 } // namespace
 } // namespace kerf::scene::crack_test
