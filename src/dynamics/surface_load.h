@@ -2,19 +2,19 @@
 
 /// Loads on a part of a body's surface.
 ///
-/// Traction t(X, time) per rest area is dead: linear in each triangle between its vertices. So its work on a triangle
-/// of rest area A is A/3 times the sum over the vertices a of t_a . u_a, with u_a the mean of 3 L_a u over the triangle,
-/// L_a linear, 1 at a and 0 at the others. With the means of the corners' shape functions a constant stress and its
-/// traction are in balance wherever the skin passes through the grid; where triangles are linear between their vertices,
-/// a vertex gets A/12 (2 t_a + t_b + t_c). Pressure p(X, time) follows the body: each vertex of a
-/// triangle gets -p c / 6 with c = (x_1 - x_0) x (x_2 - x_0), which is twice the current area times the outward
-/// normal, and p the mean of the three vertices. It has a potential only on a closed surface, so none is used; its
-/// stiffness -df/dx_k = -(p/6) [x_{k+1} - x_{k+2}]x is not symmetric on an open one and is left out of the positive
-/// tangent.
+/// A triangle of a copy's surface is carried by the copy's trilinear map, so its image is cubic (cubic_triangle.h), and
+/// loads are integrated over it with the corners' own shape functions: a constant stress and what acts on its surface
+/// are in balance wherever the skin passes through the grid. Fields are linear in a triangle between its vertices.
+///
+/// Traction t(X, time) per rest area is dead. Pressure p(X, time) follows the body: a node a of the triangle gets
+/// -int p L_a (x_u x x_v) du dv for the position x(u, v) of the image. Uniform on a closed surface, that is p times the
+/// derivative of the volume inside, so it gives neither force nor moment. It has a potential only there, so none is
+/// used; its stiffness is not symmetric on an open surface, and is left out of the positive tangent.
 
 #include "base/loan.h"
 #include "base/parameters.h"
 #include "dynamics/body_force.h"
+#include "dynamics/cubic_triangle.h"
 
 namespace kerf::dynamics {
 
@@ -23,7 +23,7 @@ struct SurfacePatch {
   Interpolation points;            ///< the vertices
   Points rest;                     ///< of the vertices [m]
   std::vector<Triangle> triangles; ///< of vertices, counter-clockwise seen from outside
-  Interpolation means = {};        ///< u_a, three a triangle; none: triangles are linear between their vertices
+  Interpolation nodes = {};        ///< ten a triangle (cubic_triangle.h); none: triangles stay flat
 };
 
 /// Throws ParameterError when triangles, rest positions and vertices do not fit together.
@@ -44,7 +44,7 @@ class Traction : public Load {
   void add_tangent(Tangent, const Moment&, double, LoadTangent&) const override {} // does not depend on x
 
  private:
-  /// At each mean.
+  /// On each node.
   Loan<Vec3> forces(double time) const;
 
   SurfacePatch patch_;
@@ -65,9 +65,11 @@ class Pressure : public Load {
   void add_tangent(Tangent kind, const Moment& moment, double velocity_factor, LoadTangent& tangent) const override;
 
  private:
-  double mean_pressure(const Triangle& triangle, double time) const;
+  /// Of the three vertices.
+  Vec3 pressures(const Triangle& triangle, double time) const;
 
   SurfacePatch patch_;
+  Interpolation corners_; // each by itself
   ScalarField pressure_;
 };
 

@@ -92,39 +92,31 @@ dynamics::SurfacePatch patch_of(const Body& body, const dynamics::PatchParameter
   return patch_of(body, parameters.faces, Box{parameters.lower, parameters.upper});
 }
 
-/// The means of a triangle (SurfacePatch::means) of its copy's shape functions, by a rule of degree 4 (Dunavant 1985,
-/// High degree efficient symmetrical Gaussian quadrature rules for the triangle, Int. J. Numer. Meth. Eng. 21): in a
-/// plane these are cubic.
-void add_means(const Body& body, const std::size_t triangle, Interpolation& means) {
-  constexpr double places[] = {0.44594849091596488632, 0.09157621350977074346};
-  constexpr double weights[] = {0.22338158967801146570, 0.10995174365532186764};
+/// The nodes of a triangle's image (SurfacePatch::nodes), by its copy's shape functions.
+void add_nodes(const Body& body, const std::size_t triangle, Interpolation& nodes) {
   const grid::Grid& grid = body.solid.grid;
   const grid::Copy& copy = body.solid.complex.copies[body.surface.copies[triangle]];
   const Vec3 lower = grid.position(grid.nodes(copy.cell)[0]);
   const auto& [a, b, c] = body.surface.triangles[triangle];
   const Points& rest = body.surface.rest;
-  std::array<std::array<double, 8>, 3> N{};
-  for (int rule = 0; rule < 2; ++rule)
-    for (int apart = 0; apart < 3; ++apart) {
-      Vec3 L = Vec3::Constant(places[rule]);
-      L[apart] = 1 - 2 * places[rule];
-      const Vec3 xi = (L[0] * rest[a] + L[1] * rest[b] + L[2] * rest[c] - lower) / grid.h();
-      for (int k = 0; k < 3; ++k)
-        for (int v = 0; v < 8; ++v)
-          N[k][v] += 3 * weights[rule] * L[k] * grid::shape(v, xi);
-    }
   std::array<std::uint32_t, 8> corners;
   std::ranges::transform(copy.corners, corners.begin(), [](const grid::CornerId corner) { return corner.value; });
-  for (const auto& of_vertex : N)
-    means.add_point(corners, of_vertex);
+  for (std::size_t i = 0; i < dynamics::n_triangle_nodes; ++i) {
+    const Vec3 L = dynamics::triangle_node(i),
+               xi = (L[0] * rest[a] + L[1] * rest[b] + L[2] * rest[c] - lower) / grid.h();
+    std::array<double, 8> of_corners;
+    for (int v = 0; v < 8; ++v)
+      of_corners[v] = grid::shape(v, xi);
+    nodes.add_point(corners, of_corners);
+  }
 }
 
-dynamics::SurfacePatch patch_with_means(const Body& body, const dynamics::PatchParameters& parameters) {
+dynamics::SurfacePatch patch_with_nodes(const Body& body, const dynamics::PatchParameters& parameters) {
   dynamics::SurfacePatch patch = patch_of(body, parameters);
-  Interpolation means;
+  Interpolation nodes;
   for_each_triangle(body, parameters.faces, Box{parameters.lower, parameters.upper},
-                    [&](const std::size_t t) { add_means(body, t, means); });
-  patch.means = body.physics->carry(means);
+                    [&](const std::size_t t) { add_nodes(body, t, nodes); });
+  patch.nodes = body.physics->carry(nodes);
   return patch;
 }
 
@@ -181,7 +173,7 @@ void compose_traction(const Section& section, Body& body) {
   const auto parameters = section.read<dynamics::TractionParameters>();
   const auto traction = vector_of_place(section, "Traction [N/m^2]", parameters.traction);
   body.load_makers.push_back({section.name(), [=](const Body& b, LoadList& loads) {
-                                auto patch = patch_with_means(b, parameters.patch);
+                                auto patch = patch_with_nodes(b, parameters.patch);
                                 loads.push_back(std::make_unique<dynamics::Traction>(std::move(patch), traction));
                               }});
 }
@@ -190,8 +182,8 @@ void compose_pressure(const Section& section, Body& body) {
   const auto parameters = section.read<dynamics::PressureParameters>();
   const auto pressure = number_of_place(section, "Pressure [Pa]", parameters.pressure);
   body.load_makers.push_back({section.name(), [=](const Body& b, LoadList& loads) {
-                                loads.push_back(
-                                  std::make_unique<dynamics::Pressure>(patch_of(b, parameters.patch), pressure));
+                                auto patch = patch_with_nodes(b, parameters.patch);
+                                loads.push_back(std::make_unique<dynamics::Pressure>(std::move(patch), pressure));
                               }});
 }
 

@@ -13,6 +13,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <random>
 
 namespace kerf::dynamics::loads_test {
@@ -43,6 +44,44 @@ SurfacePatch tetrahedron() {
     const double weights[] = {0.5, 0.8, -0.3};
     patch.points.add_point(corners, weights);
   }
+  return patch;
+}
+
+/// Shape function v of the unit cube's corners, and its gradient.
+double shape_of_cube(const std::uint32_t v, const Vec3& X) {
+  double product = 1;
+  for (int k = 0; k < 3; ++k)
+    product *= v >> k & 1 ? X[k] : 1 - X[k];
+  return product;
+}
+Vec3 shape_gradient_of_cube(const std::uint32_t v, const Vec3& X) {
+  Vec3 gradient = Vec3::Ones();
+  for (int i = 0; i < 3; ++i)
+    for (int k = 0; k < 3; ++k)
+      gradient[i] *= k == i ? (v >> k & 1 ? 1 : -1) : v >> k & 1 ? X[k] : 1 - X[k];
+  return gradient;
+}
+
+/// The tetrahedron in a cube that carries it by its eight corners.
+SurfacePatch tetrahedron_in_a_cube() {
+  SurfacePatch patch = tetrahedron();
+  const auto add = [](Interpolation& points, const Vec3& X) {
+    std::array<std::uint32_t, 8> corners{};
+    std::array<double, 8> weights{};
+    for (std::uint32_t v = 0; v < 8; ++v) {
+      corners[v] = v;
+      weights[v] = shape_of_cube(v, X);
+    }
+    points.add_point(corners, weights);
+  };
+  patch.points = {};
+  for (const Vec3& X : patch.rest)
+    add(patch.points, X);
+  for (const auto& [a, b, c] : patch.triangles)
+    for (std::size_t i = 0; i < n_triangle_nodes; ++i) {
+      const Vec3 L = triangle_node(i);
+      add(patch.nodes, L[0] * patch.rest[a] + L[1] * patch.rest[b] + L[2] * patch.rest[c]);
+    }
   return patch;
 }
 
@@ -89,6 +128,9 @@ const std::vector<Case> cases = {
   {"traction", [] { return alone<Traction>(tetrahedron(), field); }},
   {"pressure",
    [] { return alone<Pressure>(tetrahedron(), [](const Vec3& X, const double t) { return 3 + t + X[0]; }); }},
+  {"traction_on_a_bent_surface", [] { return alone<Traction>(tetrahedron_in_a_cube(), field); }},
+  {"pressure_on_a_bent_surface",
+   [] { return alone<Pressure>(tetrahedron_in_a_cube(), [](const Vec3& X, const double t) { return 3 + t + X[0]; }); }},
   {"handle_spring", [] { return alone<HandleSpring>(point_of_three(), 70, path); }},
   {"handle_damper", [] { return alone<HandleDamper>(point_of_three(), 7, path); }},
   {"floor", [] { return alone<Floor>(eight_points(), slanted); }},
@@ -239,6 +281,47 @@ TEST(Pressure, OfAClosedSurfaceOnlyChangesItsVolume) {
       back[i][k] -= 1e-6;
       EXPECT_NEAR(forces[i][k], -5 * (volume(forward) - volume(back)) / 2e-6, 1e-8);
     }
+}
+
+/// The volume of the tetrahedron's image, the integral of the map's determinant, by five points a direction.
+double volume_of_image(const Points& x) {
+  constexpr std::array places = {-0.906179845938664, -0.538469310105683, 0.0, 0.538469310105683, 0.906179845938664};
+  constexpr std::array weights = {0.236926885056189, 0.478628670499366, 0.568888888888889, 0.478628670499366,
+                                  0.236926885056189};
+  double sum = 0;
+  for (int i = 0; i < 5; ++i)
+    for (int j = 0; j < 5; ++j)
+      for (int k = 0; k < 5; ++k) {
+        const double u = (1 + places[i]) / 2, v = (1 + places[j]) / 2, w = (1 + places[k]) / 2;
+        const Vec3 X(u, (1 - u) * v, (1 - u) * (1 - v) * w);
+        Mat3 F = Mat3::Zero();
+        for (std::uint32_t c = 0; c < 8; ++c)
+          F += x[c] * shape_gradient_of_cube(c, X).transpose();
+        sum += weights[i] * weights[j] * weights[k] / 8 * (1 - u) * (1 - u) * (1 - v) * F.determinant();
+      }
+  return sum;
+}
+
+/// The same where the cube bends it: what matters is the volume of the bent one.
+TEST(Pressure, OfABentClosedSurfaceOnlyChangesItsVolume) {
+  const Pressure load(tetrahedron_in_a_cube(), [](const Vec3&, double) { return 5.0; });
+  const Points x = random_points(8, 6, 1);
+  Points forces(8, Vec3::Zero());
+  load.add_force({0, x, x}, forces);
+  EXPECT_LT(sum(forces).norm(), 1e-14);
+  Vec3 moment = Vec3::Zero();
+  for (int i = 0; i < 8; ++i)
+    moment += x[i].cross(forces[i]);
+  EXPECT_LT(moment.norm(), 1e-14);
+  for (int i = 0; i < 8; ++i)
+    for (int k = 0; k < 3; ++k) {
+      Points forward = x, back = x;
+      forward[i][k] += 1e-4;
+      back[i][k] -= 1e-4;
+      EXPECT_NEAR(forces[i][k], -5 * (volume_of_image(forward) - volume_of_image(back)) / 2e-4, 1e-10);
+    }
+  EXPECT_NEAR(volume_of_image({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {0, 0, 1}, {1, 0, 1}, {0, 1, 1}, {1, 1, 1}}),
+              1.0 / 6, 1e-14);
 }
 
 /// One triangle pushed against its outward normal, which turns with it.
