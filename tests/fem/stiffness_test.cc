@@ -3,10 +3,14 @@
 #include "base/parallel.h"
 #include "dynamics/state.h"
 #include "fem/batches.h"
+#include "material/polar.h"
 #include "tests/fem/bodies.h"
 #include "tests/support/spectrum.h"
 
 #include <gtest/gtest.h>
+
+#include <limits>
+#include <numeric>
 
 namespace kerf::fem::stiffness_test {
 namespace {
@@ -285,6 +289,81 @@ TEST(Stiffness, EnergiesBesideForcesAreThoseAloneBitByBit) {
         EXPECT_NE(alone[0], 0);
       }
     }
+}
+
+/// Sixteen cubes apart from each other, each deformed by a matrix of its own.
+struct CubesApart {
+  Batching batching;
+  BatchedElements<double> batched;
+
+  CubesApart() {
+    const Element full = make_element(full_cube_moments(), h, rubber, {});
+    const std::vector<Kind> kinds(n_lanes, Kind::full);
+    std::vector<std::uint32_t> order(n_lanes), corners(8 * n_lanes);
+    std::iota(order.begin(), order.end(), 0);
+    std::iota(corners.begin(), corners.end(), 0);
+    const std::array<std::uint32_t, 1> ends = {n_lanes};
+    batching = Batching({order, ends, kinds, corners.data(), 8 * n_lanes});
+    batched =
+      fem::batched<double>(batching, h, rubber, full, {[&](std::uint32_t) -> const Element& { return full; }});
+  }
+  struct Found {
+    std::array<Mat3, n_lanes> R;
+    std::array<bool, n_lanes> is_known;
+  };
+  Found turn(const InstructionSet set, const std::array<Mat3, n_lanes>& F) const {
+    std::vector<Row<double>> x(batching.n_rows());
+    for (std::size_t e = 0; e < n_lanes; ++e)
+      for (int a = 0; a < 8; ++a) {
+        const Vec3 at = F[e] * (h * Vec3(a & 1, a >> 1 & 1, a >> 2 & 1));
+        x[8 * e + a] = {at[0], at[1], at[2]};
+      }
+    Turns turns{};
+    const unsigned unknown = force_kernels(set).turn(batched.cube, batched.batch(batching, 0), x.data(), turns);
+    Found found;
+    for (std::size_t lane = 0; lane < n_lanes; ++lane) {
+      const std::uint32_t e = batching.batches()[0].copies[lane];
+      found.is_known[e] = (unknown >> lane & 1) == 0;
+      for (int i = 0; i < 9; ++i)
+        found.R[e].data()[i] = turns.R[i][lane];
+    }
+    return found;
+  }
+
+  static constexpr double h = 0.25;
+};
+
+/// Whatever a kernel says it knows is the rotation, also beside lanes that are flat, inverted or no numbers.
+TEST(Stiffness, RotationsOfKernelsAreThoseOfThePolarDecomposition) {
+  const CubesApart cubes;
+  Draw draw(38);
+  double worst = 0;
+  for (const InstructionSet set : instruction_sets())
+    for (const double strain : {0.0, 1e-8, 1e-3, 0.03, 0.3, 1.2, 4.0})
+      for (int n = 0; n < 50; ++n) {
+        std::array<Mat3, n_lanes> F;
+        for (Mat3& one : F) {
+          const Mat3 V = draw.rotation();
+          const Vec3 stretches = (strain * Vec3(draw(-1, 1), draw(-1, 1), draw(-1, 1))).array().exp();
+          one = draw.rotation() * V * stretches.asDiagonal() * V.transpose();
+        }
+        const CubesApart::Found plain = cubes.turn(set, F);
+        F[1] = Mat3::Zero();
+        F[6] = F[6] * Vec3(1, 1, -1).asDiagonal();
+        F[11] = F[11] * Vec3(1, 0, 1).asDiagonal();
+        F[12].setConstant(std::numeric_limits<double>::quiet_NaN());
+        const CubesApart::Found found = cubes.turn(set, F);
+        EXPECT_EQ(found.R[3], plain.R[3]);
+        for (const std::size_t e : {1, 6, 11, 12})
+          EXPECT_FALSE(found.is_known[e]) << e;
+        for (std::size_t e = 0; e < n_lanes; ++e)
+          if (found.is_known[e])
+            worst = std::max(worst, (found.R[e] - material::rotation_of(F[e])).norm());
+          else
+            EXPECT_TRUE(strain > 2 || e == 1 || e == 6 || e == 11 || e == 12) << strain;
+      }
+  EXPECT_LT(worst, 1e-12);
+  RecordProperty("worst", std::to_string(worst * 1e16) + "e-16");
 }
 
 TEST(Stiffness, OneAndTwoThreadsGiveTheSameBits) {
