@@ -40,24 +40,26 @@ Mat3 inverse(const Mat3& B) {
 }
 
 /// Of a Chebyshev polynomial, small on [lower, upper].
-constexpr int n_steps = 3;
-std::array<ChebyshevStep, n_steps> chebyshev_steps(const double lower, const double upper) {
-  const double middle = (upper + lower) / 2, half = (upper - lower) / 2, sigma = middle / half;
-  std::array<ChebyshevStep, n_steps> steps;
-  double rho = 1 / sigma;
-  steps[0] = {0, float(1 / middle)};
-  for (int k = 1; k < n_steps; ++k) {
-    const double next = 1 / (2 * sigma - rho);
-    steps[k] = {float(next * rho), float(2 * next / half)};
-    rho = next;
+struct ChebyshevSteps {
+  int n;
+  std::array<ChebyshevStep, Level::most_steps> step;
+
+  ChebyshevSteps(const double lower, const double upper, const int n_steps) : n(n_steps) {
+    const double middle = (upper + lower) / 2, half = (upper - lower) / 2, sigma = middle / half;
+    double rho = 1 / sigma;
+    step[0] = {0, float(1 / middle)};
+    for (int k = 1; k < n; ++k) {
+      const double next = 1 / (2 * sigma - rho);
+      step[k] = {float(next * rho), float(2 * next / half)};
+      rho = next;
+    }
   }
-  return steps;
-}
-std::array<ChebyshevStep, n_steps> chebyshev_steps(const double bound) {
-  // Of the spectrum's range that the coarse level sees to. Of 1/16, 1/30, 1/50, 1/80 that with the fewest iterations of
-  // a liver while it is cut: 6.6, 6.3, 6.3, 6.7 a step.
-  constexpr double part = 1.0 / 30;
-  return chebyshev_steps(part * bound, bound);
+};
+ChebyshevSteps chebyshev_steps(const double bound, const int n) {
+  // Of the spectrum's range that the coarse level sees to. Of 1/16, 1/30, 1/50, 1/80 with three steps that with the
+  // fewest iterations of a liver while it is cut: 6.6, 6.3, 6.3, 6.7 a step.
+  const double part = 1.0 / (10 * n);
+  return {part * bound, bound, n};
 }
 
 } // namespace
@@ -253,22 +255,22 @@ void Level::add_of_clusters(const float after, FloatRow* const x) {
 /// each other one. From zero, x and t are not looked at.
 template <bool from_zero>
 void Level::take_steps(const FloatRow* const b, FloatRow* const x) {
-  const auto steps = chebyshev_steps(bound);
+  const auto [n, step] = chebyshev_steps(bound, n_steps);
   for_each_corner([&](const std::size_t i) {
     const Four left = from_zero ? load(b[i]) : load(b[i]) - load(t_[i]),
-               change = steps[0].after * product(&inverse[2 * i], left);
+               change = step[0].after * product(&inverse[2 * i], left);
     store(r_[i], left);
     store(d_[i], change);
     store(x[i], from_zero ? change : load(x[i]) + change);
     store(t_[i], mass[i] * change);
   });
-  add_of_clusters(steps[0].after, x);
-  for (std::size_t k = 1; k < steps.size(); ++k) {
+  add_of_clusters(step[0].after, x);
+  for (int k = 1; k < n; ++k) {
     add_products(d_.data(), t_.data());
-    const bool is_last = k + 1 == steps.size() && clusters.empty();
+    const bool is_last = k + 1 == n && clusters.empty();
     for_each_corner([&](const std::size_t i) {
       const Four left = load(r_[i]) - load(t_[i]),
-                 change = steps[k].before * load(d_[i]) + steps[k].after * product(&inverse[2 * i], left);
+                 change = step[k].before * load(d_[i]) + step[k].after * product(&inverse[2 * i], left);
       add(x[i], change);
       if (is_last)
         return;
@@ -276,7 +278,7 @@ void Level::take_steps(const FloatRow* const b, FloatRow* const x) {
       store(d_[i], change);
       store(t_[i], mass[i] * change);
     });
-    add_of_clusters(steps[k].after, x);
+    add_of_clusters(step[k].after, x);
   }
 }
 

@@ -43,6 +43,8 @@ struct Level {
   std::shared_ptr<const Batching> batching;
   BatchedElements<float> elements;
   double bound = 0; ///< of the eigenvalues of D^-1 A [1]
+  static constexpr int fewest_steps = 3, most_steps = 12;
+  int n_steps = fewest_steps; ///< of the smoother
   std::vector<GhostLine> lines;
   std::vector<Tie> ties;
   Coarsening to_coarse; ///< of no use on the coarsest

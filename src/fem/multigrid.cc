@@ -230,6 +230,9 @@ Multigrid::Multigrid(FinestLevel finest, const FormerLevels& former) {
     coarse.lines = coarsened(fine.lines, cells, coarsening);
     coarse.ties = coarsened(fine.ties, coarsening);
     coarse.n_corners = coarsening.coarse.n_corners;
+    constexpr std::size_t little = 4; // so few corners that twice the steps are half the work
+    coarse.n_steps = little * coarse.n_corners <= fine.n_corners ? std::min(2 * fine.n_steps, fem::Level::most_steps)
+                                                                 : fine.n_steps;
     put_batches(h, finest.material, coarsening.coarse, coarse);
     fine.to_coarse = std::move(coarsening);
     coarse.resize();

@@ -14,9 +14,11 @@
 /// levels do not know supports, but springs in their place, of the size of the stiffness that they hold.
 ///
 /// A cycle is deal.II's V (cycle.h), smoothed before and after by the same Chebyshev polynomial of block Jacobi's
-/// matrix (Adams, Brezina, Hu and Tuminaro 2003, Parallel multigrid smoothing, J. Comput. Phys. 188), so it is
-/// symmetric; it is positive as long as the polynomial knows a bound for the largest eigenvalue, which is had element
-/// by element (jacobi_bound): elements whose own bound is above that of a full cube count more in the diagonal blocks.
+/// matrix (Adams, Brezina, Hu and Tuminaro 2003, Parallel multigrid smoothing, J. Comput. Phys. 188), of twice the
+/// degree on a coarser level, up to four times (the variable V-cycle of Bramble and Pasciak 1987, New convergence
+/// estimates for multigrid algorithms, Math. Comp. 49). So it is symmetric; it is positive as long as the polynomial
+/// knows a bound for the largest eigenvalue, which is had element by element (jacobi_bound): elements whose own bound
+/// is above that of a full cube count more in the diagonal blocks.
 /// The coarsest level is factorised, unless it is large as dust is. All is single precision, but that.
 ///
 /// Departs from Galerkin: a coarse cube turns as a whole, and masses and penalties are lumped; laws other than
