@@ -2,7 +2,8 @@
 
 #include <deal.II/base/quadrature_lib.h>
 
-#include <vector>
+#include <array>
+#include <stdexcept>
 
 namespace kerf::dynamics {
 
@@ -35,31 +36,33 @@ Value factor(const int n, const double L) {
   return of;
 }
 
-TrianglePoint point_at(const Vec3& L, const double weight) {
-  TrianglePoint point{weight, L, {}, {}, {}};
-  for (std::size_t i = 0; i < n_triangle_nodes; ++i) {
+void put(TriangleRule& rule, const int q, const Vec3& L, const double weight) {
+  rule.weight[q] = weight;
+  rule.L.row(q) = L;
+  for (int i = 0; i < n_triangle_nodes; ++i) {
     const Value a = factor(thirds[i][0], L[0]), b = factor(thirds[i][1], L[1]), c = factor(thirds[i][2], L[2]);
     const double from_first = a.slope * b.value * c.value;
-    point.shape[i] = a.value * b.value * c.value;
-    point.du[i] = a.value * b.slope * c.value - from_first;
-    point.dv[i] = a.value * b.value * c.slope - from_first;
+    rule.shape(q, i) = a.value * b.value * c.value;
+    rule.du(q, i) = a.value * b.slope * c.value - from_first;
+    rule.dv(q, i) = a.value * b.value * c.slope - from_first;
   }
-  return point;
 }
 
 } // namespace
 
-Vec3 triangle_node(const std::size_t i) { return Vec3(thirds[i][0], thirds[i][1], thirds[i][2]) / 3; }
+Vec3 triangle_node(const int i) { return Vec3(thirds[i][0], thirds[i][1], thirds[i][2]) / 3; }
 
-std::span<const TrianglePoint> triangle_rule() {
-  static const auto rule = [] {
-    std::vector<TrianglePoint> points;
+const TriangleRule& triangle_rule() {
+  static const TriangleRule rule = [] {
     const dealii::QWitherdenVincentSimplex<2> places(4);
-    for (unsigned q = 0; q < places.size(); ++q) {
+    if (places.size() != n_triangle_points)
+      throw std::logic_error("deal.II's rule of degree 7 for triangles has other points");
+    TriangleRule of;
+    for (int q = 0; q < n_triangle_points; ++q) {
       const auto& at = places.point(q);
-      points.push_back(point_at(Vec3(1 - at[0] - at[1], at[0], at[1]), places.weight(q)));
+      put(of, q, Vec3(1 - at[0] - at[1], at[0], at[1]), places.weight(q));
     }
-    return points;
+    return of;
   }();
   return rule;
 }

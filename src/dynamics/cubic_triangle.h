@@ -6,28 +6,24 @@
 
 #include "base/vec.h"
 
-#include <array>
-#include <span>
-
 namespace kerf::dynamics {
 
-constexpr std::size_t n_triangle_nodes = 10;
-
-/// Numbers at a triangle's ten nodes.
-using AtNodes = std::array<double, n_triangle_nodes>;
+constexpr int n_triangle_nodes = 10, n_triangle_points = 15;
 
 /// Barycentric coordinates of node i.
-Vec3 triangle_node(std::size_t i);
+Vec3 triangle_node(int i);
 
-/// A point of an integration rule.
-struct TrianglePoint {
-  double weight; ///< they sum to 1/2
-  Vec3 L;        ///< barycentric coordinates
-  AtNodes shape; ///< shape functions, 1 at one node and 0 at the others
+/// An integration rule that is exact for degree 7: a shape function times the normal of the image, which is of degree
+/// 4. A row a point.
+struct TriangleRule {
+  using AtNodes = Eigen::Matrix<double, n_triangle_points, n_triangle_nodes>;
+
+  Eigen::Matrix<double, n_triangle_points, 1> weight; ///< they sum to 1/2
+  Eigen::Matrix<double, n_triangle_points, 3> L;      ///< barycentric coordinates
+  AtNodes shape;                                      ///< shape functions, 1 at one node and 0 at the others
   AtNodes du, dv; ///< their derivatives along the sides from vertex 0 to 1 and to 2
 };
 
-/// Exact for degree 7: a shape function times the normal of the image, which is of degree 4.
-std::span<const TrianglePoint> triangle_rule();
+const TriangleRule& triangle_rule();
 
 } // namespace kerf::dynamics

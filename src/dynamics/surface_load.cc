@@ -5,7 +5,7 @@
 
 #include <Eigen/Geometry>
 
-#include <algorithm>
+#include <map>
 
 namespace kerf::dynamics {
 
@@ -14,78 +14,62 @@ namespace {
 /// Twice the area times the normal of a triangle.
 Vec3 double_area(const Vec3& a, const Vec3& b, const Vec3& c) { return (b - a).cross(c - a); }
 
-/// Nodes of triangles that are flat between their vertices.
-Interpolation flat_nodes(const SurfacePatch& patch) {
-  Interpolation nodes;
-  std::vector<std::uint32_t> corners;
-  std::vector<double> weights;
-  for (const Triangle& triangle : patch.triangles)
-    for (std::size_t node = 0; node < n_triangle_nodes; ++node) {
-      const Vec3 L = triangle_node(node);
-      corners.clear();
-      weights.clear();
-      for (int k = 0; k < 3; ++k)
-        for (auto i = patch.points.start[triangle[k]]; i < patch.points.start[triangle[k] + 1]; ++i) {
-          corners.push_back(patch.points.corners[i]);
-          weights.push_back(L[k] * patch.points.values[i]);
-        }
-      nodes.add_point(corners, weights);
-    }
-  return nodes;
+/// Vertices that carry flat triangles.
+TriangleCarriers flat_carriers(const SurfacePatch& patch) {
+  TriangleCarriers carriers{patch.points, {}, {}};
+  Eigen::Matrix<double, n_triangle_nodes, 8> linear = Eigen::Matrix<double, n_triangle_nodes, 8>::Zero();
+  for (int i = 0; i < n_triangle_nodes; ++i)
+    linear.row(i).head<3>() = triangle_node(i);
+  for (const auto& [a, b, c] : patch.triangles)
+    carriers.of_triangle.push_back({a, b, c, a, a, a, a, a});
+  carriers.shape_at_nodes.assign(patch.triangles.size(), linear);
+  return carriers;
 }
 
-/// Where a node rests: at rest triangles are flat.
-Vec3 rest_of_node(const SurfacePatch& patch, const std::size_t node) {
-  const Triangle& triangle = patch.triangles[node / n_triangle_nodes];
-  const Vec3 L = triangle_node(node % n_triangle_nodes);
-  return L[0] * patch.rest[triangle[0]] + L[1] * patch.rest[triangle[1]] + L[2] * patch.rest[triangle[2]];
+TriangleCarriers carriers_of(const SurfacePatch& patch) {
+  check(patch);
+  return patch.carriers.of_triangle.empty() ? flat_carriers(patch) : patch.carriers;
 }
 
-/// A point of a triangle's image.
-struct Tangents {
-  Vec3 u = Vec3::Zero(), v = Vec3::Zero(); ///< derivatives of its position
-};
-
-class Image {
- public:
-  Image(const Interpolation& nodes, const std::size_t triangle, const Points& x) {
-    for (std::size_t i = 0; i < n_triangle_nodes; ++i)
-      nodes_[i] = nodes.at(n_triangle_nodes * triangle + i, x);
+/// What the corners get of the traction of each vertex [m^2].
+Interpolation shares_of_vertices(const SurfacePatch& patch, const TriangleCarriers& carriers) {
+  const TriangleRule& rule = triangle_rule();
+  const Eigen::Matrix<double, n_triangle_nodes, 3> of_nodes =
+    2 * rule.shape.transpose() * rule.weight.asDiagonal() * rule.L;
+  std::vector<std::map<std::uint32_t, double>> shares(patch.rest.size());
+  for (std::size_t t = 0; t < patch.triangles.size(); ++t) {
+    const auto& [a, b, c] = patch.triangles[t];
+    const double area = 0.5 * double_area(patch.rest[a], patch.rest[b], patch.rest[c]).norm();
+    const Eigen::Matrix<double, 8, 3> of_corners = area * carriers.shape_at_nodes[t].transpose() * of_nodes;
+    for (int k = 0; k < 3; ++k)
+      for (int v = 0; v < 8; ++v)
+        shares[patch.triangles[t][k]][carriers.of_triangle[t][v]] += of_corners(v, k);
   }
-  Tangents at(const TrianglePoint& point) const {
-    Tangents tangents;
-    for (std::size_t i = 0; i < n_triangle_nodes; ++i) {
-      tangents.u += point.du[i] * nodes_[i];
-      tangents.v += point.dv[i] * nodes_[i];
+  Interpolation all;
+  for (const auto& of_vertex : shares) {
+    std::vector<std::uint32_t> corners;
+    std::vector<double> values;
+    for (const auto& [corner, value] : of_vertex) {
+      corners.push_back(corner);
+      values.push_back(value);
     }
-    return tangents;
+    all.add_point(corners, values);
   }
+  return all;
+}
 
- private:
-  std::array<Vec3, n_triangle_nodes> nodes_;
-};
+/// Where the corners of carriers are.
+Loan<Vec3> places_of(const Interpolation& corners, const Points& x) {
+  Loan<Vec3> places(corners.n_points());
+  for (std::size_t i = 0; i < places.size(); ++i)
+    places[i] = corners.at(i, x);
+  return places;
+}
 
-/// A pair of a triangle's nodes meets a 3 x 3 matrix [s]x; three such numbers for all pairs.
-using PairsOfNodes = std::array<Eigen::Matrix<double, n_triangle_nodes, n_triangle_nodes>, 3>;
-
-/// The corners of a triangle's nodes, each once, and how nodes follow them.
-struct CornersOfNodes {
-  std::vector<std::uint32_t> corners;
-  Eigen::Matrix<double, n_triangle_nodes, Eigen::Dynamic> weights;
-
-  CornersOfNodes(const Interpolation& nodes, const std::size_t triangle) {
-    const std::size_t first = n_triangle_nodes * triangle;
-    corners.assign(nodes.corners.begin() + nodes.start[first],
-                   nodes.corners.begin() + nodes.start[first + n_triangle_nodes]);
-    sort_unique(corners);
-    weights.setZero(n_triangle_nodes, static_cast<Eigen::Index>(corners.size()));
-    for (std::size_t i = 0; i < n_triangle_nodes; ++i)
-      for (auto k = nodes.start[first + i]; k < nodes.start[first + i + 1]; ++k) {
-        const auto at = std::ranges::lower_bound(corners, nodes.corners[k]);
-        weights(static_cast<Eigen::Index>(i), at - corners.begin()) += nodes.values[k];
-      }
-  }
-};
+void add_forces(const Interpolation& corners, const Points& of_corners, Points& forces) {
+  for (std::size_t i = 0; i < of_corners.size(); ++i)
+    corners.add_force(i, of_corners[i], forces);
+}
 
 } // namespace
 
@@ -96,8 +80,10 @@ void check(const SurfacePatch& patch) {
     for (const auto vertex : triangle)
       if (vertex >= patch.rest.size())
         throw ParameterError("a surface load has a triangle of a vertex that it does not know");
-  if (const std::size_t n = patch.nodes.n_points(); n != 0 && n != n_triangle_nodes * patch.triangles.size())
-    throw ParameterError("a surface load needs ten nodes a triangle");
+  const TriangleCarriers& carriers = patch.carriers;
+  if (carriers.of_triangle.size() != carriers.shape_at_nodes.size() ||
+      (!carriers.of_triangle.empty() && carriers.of_triangle.size() != patch.triangles.size()))
+    throw ParameterError("a surface load needs carriers for each triangle, or for none");
 }
 
 void require_triangles(const SurfacePatch& patch) {
@@ -113,104 +99,129 @@ double rest_area(const SurfacePatch& patch) {
   return sum;
 }
 
-Traction::Traction(SurfacePatch patch, Field traction) : patch_(std::move(patch)), traction_(std::move(traction)) {
-  check(patch_);
-  if (patch_.nodes.n_points() == 0)
-    patch_.nodes = flat_nodes(patch_);
-}
-
-Loan<Vec3> Traction::forces(const double time) const {
-  Loan<Vec3> forces(n_triangle_nodes * patch_.triangles.size(), Vec3::Zero());
-  for (std::size_t t = 0; t < patch_.triangles.size(); ++t) {
-    const auto& [a, b, c] = patch_.triangles[t];
-    const double twice_area = double_area(patch_.rest[a], patch_.rest[b], patch_.rest[c]).norm();
-    const Vec3 of_a = traction_(patch_.rest[a], time), of_b = traction_(patch_.rest[b], time),
-               of_c = traction_(patch_.rest[c], time);
-    for (const TrianglePoint& q : triangle_rule()) {
-      const Vec3 force = q.weight * twice_area * (q.L[0] * of_a + q.L[1] * of_b + q.L[2] * of_c);
-      for (std::size_t i = 0; i < n_triangle_nodes; ++i)
-        forces[n_triangle_nodes * t + i] += q.shape[i] * force;
-    }
+Traction::Traction(const SurfacePatch& patch, Field traction)
+  : rest_(patch.rest), moments_(patch.rest.size(), Vec3::Zero()), traction_(std::move(traction)) {
+  TriangleCarriers carriers = carriers_of(patch);
+  shares_ = shares_of_vertices(patch, carriers);
+  corners_ = std::move(carriers.corners);
+  for (const Triangle& triangle : patch.triangles) {
+    const auto& [a, b, c] = triangle;
+    const double area = 0.5 * double_area(rest_[a], rest_[b], rest_[c]).norm();
+    for (const auto vertex : triangle)
+      moments_[vertex] += area / 12 * (rest_[a] + rest_[b] + rest_[c] + rest_[vertex]);
   }
-  return forces;
 }
 
 double Traction::energy(const double time, const Points& x) const {
-  const Loan<Vec3> of_nodes = forces(time);
+  const Loan<Vec3> places = places_of(corners_, x);
   double sum = 0;
-  for (std::size_t i = 0; i < of_nodes.size(); ++i)
-    if (!of_nodes[i].isZero(0))
-      sum -= of_nodes[i].dot(patch_.nodes.at(i, x) - rest_of_node(patch_, i));
+  for (std::size_t i = 0; i < rest_.size(); ++i)
+    if (shares_.start[i] != shares_.start[i + 1])
+      sum -= traction_(rest_[i], time).dot(shares_.at(i, places) - moments_[i]);
   return sum;
 }
 
 void Traction::add_force(const Moment& moment, Points& forces) const {
-  const Loan<Vec3> of_nodes = this->forces(moment.time);
-  for (std::size_t i = 0; i < of_nodes.size(); ++i)
-    if (!of_nodes[i].isZero(0))
-      patch_.nodes.add_force(i, of_nodes[i], forces);
+  Loan<Vec3> of_corners(corners_.n_points(), Vec3::Zero());
+  for (std::size_t i = 0; i < rest_.size(); ++i)
+    if (shares_.start[i] != shares_.start[i + 1])
+      shares_.add_force(i, traction_(rest_[i], moment.time), of_corners);
+  add_forces(corners_, of_corners, forces);
 }
+
+/// Of all triangles, at a time and at places.
+class Pressure::Images {
+ public:
+  using AtPoints = Eigen::Matrix<double, n_triangle_points, 3>;
+  using AtCorners = Eigen::Matrix<double, 8, 3>;
+
+  Images(const Pressure& of, const double time, const Points& x)
+    : patch_(of.patch_), places_(places_of(patch_.carriers.corners, x)), pressures_(patch_.rest.size()) {
+    for (const auto vertex : of.vertices_)
+      pressures_[vertex] = of.pressure_(patch_.rest[vertex], time);
+  }
+  /// Derivatives of positions along two sides, and weight times pressure, at the points of the rule.
+  struct Image {
+    AtPoints u, v;
+    Eigen::Matrix<double, n_triangle_points, 1> pressure;
+  };
+  /// False where there is no pressure.
+  bool make(const std::size_t triangle, Image& image) const {
+    const auto& [a, b, c] = patch_.triangles[triangle];
+    const Vec3 p(pressures_[a], pressures_[b], pressures_[c]);
+    if (p.isZero(0))
+      return false;
+    const TriangleRule& rule = triangle_rule();
+    AtCorners x;
+    for (int v = 0; v < 8; ++v)
+      x.row(v) = places_[patch_.carriers.of_triangle[triangle][v]];
+    const Eigen::Matrix<double, n_triangle_nodes, 3> nodes =
+      patch_.carriers.shape_at_nodes[triangle].lazyProduct(x); // Eigen's own blocks cost more than such small products
+    image.u = rule.du.lazyProduct(nodes);
+    image.v = rule.dv.lazyProduct(nodes);
+    image.pressure = rule.weight.cwiseProduct(rule.L * p);
+    return true;
+  }
+
+ private:
+  const SurfacePatch& patch_;
+  Loan<Vec3> places_;
+  Loan<double> pressures_;
+};
 
 Pressure::Pressure(SurfacePatch patch, ScalarField pressure)
   : patch_(std::move(patch)), pressure_(std::move(pressure)) {
-  check(patch_);
-  if (patch_.nodes.n_points() == 0)
-    patch_.nodes = flat_nodes(patch_);
-  const std::vector<std::uint32_t>& corners = patch_.nodes.corners;
-  corners_ = corners_themselves(corners.empty() ? 0 : 1 + *std::ranges::max_element(corners));
-}
-
-Vec3 Pressure::pressures(const Triangle& triangle, const double time) const {
-  return {pressure_(patch_.rest[triangle[0]], time), pressure_(patch_.rest[triangle[1]], time),
-          pressure_(patch_.rest[triangle[2]], time)};
+  patch_.carriers = carriers_of(patch_);
+  for (const Triangle& triangle : patch_.triangles)
+    vertices_.insert(vertices_.end(), triangle.begin(), triangle.end());
+  sort_unique(vertices_);
 }
 
 void Pressure::add_force(const Moment& moment, Points& forces) const {
+  const TriangleCarriers& carriers = patch_.carriers;
+  const Images images(*this, moment.time, moment.x);
+  Loan<Vec3> of_corners(carriers.corners.n_points(), Vec3::Zero());
+  Images::Image image;
   for (std::size_t t = 0; t < patch_.triangles.size(); ++t) {
-    const Vec3 p = pressures(patch_.triangles[t], moment.time);
-    if (p.isZero(0))
+    if (!images.make(t, image))
       continue;
-    const Image image(patch_.nodes, t, moment.x);
-    std::array<Vec3, n_triangle_nodes> of_nodes;
-    of_nodes.fill(Vec3::Zero());
-    for (const TrianglePoint& q : triangle_rule()) {
-      const Tangents x = image.at(q);
-      const Vec3 force = -q.weight * p.dot(q.L) * x.u.cross(x.v);
-      for (std::size_t i = 0; i < n_triangle_nodes; ++i)
-        of_nodes[i] += q.shape[i] * force;
+    Images::AtPoints at_points;
+    for (int k = 0; k < 3; ++k) {
+      const int i = (k + 1) % 3, j = (k + 2) % 3;
+      at_points.col(k) = image.pressure.cwiseProduct(image.v.col(i).cwiseProduct(image.u.col(j)) -
+                                                     image.u.col(i).cwiseProduct(image.v.col(j)));
     }
-    for (std::size_t i = 0; i < n_triangle_nodes; ++i)
-      patch_.nodes.add_force(n_triangle_nodes * t + i, of_nodes[i], forces);
+    const Eigen::Matrix<double, n_triangle_nodes, 3> at_nodes =
+      triangle_rule().shape.transpose().lazyProduct(at_points);
+    const Images::AtCorners at_corners = carriers.shape_at_nodes[t].transpose().lazyProduct(at_nodes);
+    for (int v = 0; v < 8; ++v)
+      of_corners[carriers.of_triangle[t][v]] += Vec3(at_corners.row(v));
   }
+  add_forces(carriers.corners, of_corners, forces);
 }
 
 /// -d(force on a)/dx_c = int p L_a (L_c,v [x_u]x - L_c,u [x_v]x).
 void Pressure::add_tangent(const Tangent kind, const Moment& moment, double, LoadTangent& tangent) const {
   if (kind == Tangent::positive)
     return;
+  const TriangleRule& rule = triangle_rule();
+  const TriangleCarriers& carriers = patch_.carriers;
+  const Images images(*this, moment.time, moment.x);
+  Images::Image image;
+  std::array<Eigen::Matrix<double, 8, 8>, 3> pairs; // [s]x of two corners
   for (std::size_t t = 0; t < patch_.triangles.size(); ++t) {
-    const Vec3 p = pressures(patch_.triangles[t], moment.time);
-    if (p.isZero(0))
+    if (!images.make(t, image))
       continue;
-    const Image image(patch_.nodes, t, moment.x);
-    PairsOfNodes pairs;
-    for (auto& one : pairs)
-      one.setZero();
-    for (const TrianglePoint& q : triangle_rule()) {
-      const Tangents x = image.at(q);
-      const Eigen::Map<const Eigen::Matrix<double, n_triangle_nodes, 1>> L(q.shape.data()), du(q.du.data()),
-        dv(q.dv.data());
-      for (int k = 0; k < 3; ++k)
-        pairs[k] += q.weight * p.dot(q.L) * L * (x.u[k] * dv - x.v[k] * du).transpose();
-    }
-    const CornersOfNodes of(patch_.nodes, t);
-    std::array<Eigen::MatrixXd, 3> by_corner;
+    const Eigen::Matrix<double, n_triangle_points, 8> L = rule.shape * carriers.shape_at_nodes[t],
+                                                      du = rule.du * carriers.shape_at_nodes[t],
+                                                      dv = rule.dv * carriers.shape_at_nodes[t];
     for (int k = 0; k < 3; ++k)
-      by_corner[k] = of.weights.transpose() * pairs[k] * of.weights;
-    for (std::size_t a = 0; a < of.corners.size(); ++a)
-      for (std::size_t c = 0; c < of.corners.size(); ++c)
-        tangent.add(corners_, of.corners[a], of.corners[c],
-                    cross_matrix(Vec3(by_corner[0](a, c), by_corner[1](a, c), by_corner[2](a, c))));
+      pairs[k] = L.transpose() * image.pressure.asDiagonal() *
+                 (image.u.col(k).asDiagonal() * dv - image.v.col(k).asDiagonal() * du);
+    for (int a = 0; a < 8; ++a)
+      for (int c = 0; c < 8; ++c)
+        if (const Vec3 s(pairs[0](a, c), pairs[1](a, c), pairs[2](a, c)); !s.isZero(0))
+          tangent.add(carriers.corners, carriers.of_triangle[t][a], carriers.of_triangle[t][c], cross_matrix(s));
   }
 }
 

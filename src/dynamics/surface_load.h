@@ -16,14 +16,23 @@
 #include "dynamics/body_force.h"
 #include "dynamics/cubic_triangle.h"
 
+#include <array>
+
 namespace kerf::dynamics {
+
+/// What carries triangles by trilinear maps, as a copy carries what is in its cube.
+struct TriangleCarriers {
+  Interpolation corners; ///< each once, so that fields and forces go through points that follow them once
+  std::vector<std::array<std::uint32_t, 8>> of_triangle;                 ///< eight of these
+  std::vector<Eigen::Matrix<double, n_triangle_nodes, 8>> shape_at_nodes; ///< theirs at the nodes of the triangle
+};
 
 /// Some triangles of a surface whose vertices follow the corners.
 struct SurfacePatch {
   Interpolation points;            ///< the vertices
   Points rest;                     ///< of the vertices [m]
   std::vector<Triangle> triangles; ///< of vertices, counter-clockwise seen from outside
-  Interpolation nodes = {};        ///< ten a triangle (cubic_triangle.h); none: triangles stay flat
+  TriangleCarriers carriers = {};  ///< none: triangles stay flat
 };
 
 /// Throws ParameterError when triangles, rest positions and vertices do not fit together.
@@ -36,7 +45,7 @@ double rest_area(const SurfacePatch& patch);
 class Traction : public Load {
  public:
   /// traction [N/m^2], world frame, per rest area. Throws as check().
-  Traction(SurfacePatch patch, Field traction);
+  Traction(const SurfacePatch& patch, Field traction);
 
   Nature nature() const override { return Nature::conservative; }
   double energy(double time, const Points& x) const override;
@@ -44,10 +53,9 @@ class Traction : public Load {
   void add_tangent(Tangent, const Moment&, double, LoadTangent&) const override {} // does not depend on x
 
  private:
-  /// On each node.
-  Loan<Vec3> forces(double time) const;
-
-  SurfacePatch patch_;
+  Interpolation corners_, shares_; // of each vertex what the corners get of its traction [m^2]
+  Points rest_;                    // of vertices [m]
+  Points moments_;                 // of the same shares: their sum of rest positions [m^3]
   Field traction_;
 };
 
@@ -65,11 +73,10 @@ class Pressure : public Load {
   void add_tangent(Tangent kind, const Moment& moment, double velocity_factor, LoadTangent& tangent) const override;
 
  private:
-  /// Of the three vertices.
-  Vec3 pressures(const Triangle& triangle, double time) const;
+  class Images;
 
   SurfacePatch patch_;
-  Interpolation corners_; // each by itself
+  std::vector<std::uint32_t> vertices_; // of triangles
   ScalarField pressure_;
 };
 

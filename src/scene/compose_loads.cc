@@ -92,31 +92,47 @@ dynamics::SurfacePatch patch_of(const Body& body, const dynamics::PatchParameter
   return patch_of(body, parameters.faces, Box{parameters.lower, parameters.upper});
 }
 
-/// The nodes of a triangle's image (SurfacePatch::nodes), by its copy's shape functions.
-void add_nodes(const Body& body, const std::size_t triangle, Interpolation& nodes) {
+/// The copies that carry these triangles.
+dynamics::TriangleCarriers carriers_of(const Body& body, const std::span<const std::size_t> triangles) {
   const grid::Grid& grid = body.solid.grid;
-  const grid::Copy& copy = body.solid.complex.copies[body.surface.copies[triangle]];
-  const Vec3 lower = grid.position(grid.nodes(copy.cell)[0]);
-  const auto& [a, b, c] = body.surface.triangles[triangle];
-  const Points& rest = body.surface.rest;
-  std::array<std::uint32_t, 8> corners;
-  std::ranges::transform(copy.corners, corners.begin(), [](const grid::CornerId corner) { return corner.value; });
-  for (std::size_t i = 0; i < dynamics::n_triangle_nodes; ++i) {
-    const Vec3 L = dynamics::triangle_node(i),
-               xi = (L[0] * rest[a] + L[1] * rest[b] + L[2] * rest[c] - lower) / grid.h();
-    std::array<double, 8> of_corners;
-    for (int v = 0; v < 8; ++v)
-      of_corners[v] = grid::shape(v, xi);
-    nodes.add_point(corners, of_corners);
+  const grid::CellComplex& complex = body.solid.complex;
+  constexpr std::uint32_t none = 0xffffffff;
+  dynamics::TriangleCarriers carriers;
+  Interpolation corners;
+  std::vector<std::uint32_t> number(complex.n_corners(), none); // among those that carry
+  for (const std::size_t triangle : triangles) {
+    const grid::Copy& copy = complex.copies[body.surface.copies[triangle]];
+    const Vec3 lower = grid.position(grid.nodes(copy.cell)[0]);
+    auto& of_triangle = carriers.of_triangle.emplace_back();
+    for (int v = 0; v < 8; ++v) {
+      const std::uint32_t corner = copy.corners[v].value;
+      if (number[corner] == none) {
+        constexpr double one = 1;
+        number[corner] = static_cast<std::uint32_t>(corners.n_points());
+        corners.add_point({&corner, 1}, {&one, 1});
+      }
+      of_triangle[v] = number[corner];
+    }
+    const auto& [a, b, c] = body.surface.triangles[triangle];
+    const Points& rest = body.surface.rest;
+    auto& shapes = carriers.shape_at_nodes.emplace_back();
+    for (int i = 0; i < dynamics::n_triangle_nodes; ++i) {
+      const Vec3 L = dynamics::triangle_node(i),
+                 xi = (L[0] * rest[a] + L[1] * rest[b] + L[2] * rest[c] - lower) / grid.h();
+      for (int v = 0; v < 8; ++v)
+        shapes(i, v) = grid::shape(v, xi);
+    }
   }
+  carriers.corners = body.physics->carry(corners);
+  return carriers;
 }
 
-dynamics::SurfacePatch patch_with_nodes(const Body& body, const dynamics::PatchParameters& parameters) {
+dynamics::SurfacePatch carried_patch_of(const Body& body, const dynamics::PatchParameters& parameters) {
   dynamics::SurfacePatch patch = patch_of(body, parameters);
-  Interpolation nodes;
+  std::vector<std::size_t> triangles;
   for_each_triangle(body, parameters.faces, Box{parameters.lower, parameters.upper},
-                    [&](const std::size_t t) { add_nodes(body, t, nodes); });
-  patch.nodes = body.physics->carry(nodes);
+                    [&](const std::size_t t) { triangles.push_back(t); });
+  patch.carriers = carriers_of(body, triangles);
   return patch;
 }
 
@@ -173,8 +189,8 @@ void compose_traction(const Section& section, Body& body) {
   const auto parameters = section.read<dynamics::TractionParameters>();
   const auto traction = vector_of_place(section, "Traction [N/m^2]", parameters.traction);
   body.load_makers.push_back({section.name(), [=](const Body& b, LoadList& loads) {
-                                auto patch = patch_with_nodes(b, parameters.patch);
-                                loads.push_back(std::make_unique<dynamics::Traction>(std::move(patch), traction));
+                                loads.push_back(std::make_unique<dynamics::Traction>(
+                                  carried_patch_of(b, parameters.patch), traction));
                               }});
 }
 
@@ -182,8 +198,8 @@ void compose_pressure(const Section& section, Body& body) {
   const auto parameters = section.read<dynamics::PressureParameters>();
   const auto pressure = number_of_place(section, "Pressure [Pa]", parameters.pressure);
   body.load_makers.push_back({section.name(), [=](const Body& b, LoadList& loads) {
-                                auto patch = patch_with_nodes(b, parameters.patch);
-                                loads.push_back(std::make_unique<dynamics::Pressure>(std::move(patch), pressure));
+                                loads.push_back(std::make_unique<dynamics::Pressure>(
+                                  carried_patch_of(b, parameters.patch), pressure));
                               }});
 }
 

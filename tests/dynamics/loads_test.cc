@@ -65,23 +65,26 @@ Vec3 shape_gradient_of_cube(const std::uint32_t v, const Vec3& X) {
 /// The tetrahedron in a cube that carries it by its eight corners.
 SurfacePatch tetrahedron_in_a_cube() {
   SurfacePatch patch = tetrahedron();
-  const auto add = [](Interpolation& points, const Vec3& X) {
+  patch.points = {};
+  for (const Vec3& X : patch.rest) {
     std::array<std::uint32_t, 8> corners{};
     std::array<double, 8> weights{};
     for (std::uint32_t v = 0; v < 8; ++v) {
       corners[v] = v;
       weights[v] = shape_of_cube(v, X);
     }
-    points.add_point(corners, weights);
-  };
-  patch.points = {};
-  for (const Vec3& X : patch.rest)
-    add(patch.points, X);
-  for (const auto& [a, b, c] : patch.triangles)
-    for (std::size_t i = 0; i < n_triangle_nodes; ++i) {
+    patch.points.add_point(corners, weights);
+  }
+  patch.carriers.corners = corners_themselves(8);
+  for (const auto& [a, b, c] : patch.triangles) {
+    patch.carriers.of_triangle.push_back({0, 1, 2, 3, 4, 5, 6, 7});
+    auto& shapes = patch.carriers.shape_at_nodes.emplace_back();
+    for (int i = 0; i < n_triangle_nodes; ++i) {
       const Vec3 L = triangle_node(i);
-      add(patch.nodes, L[0] * patch.rest[a] + L[1] * patch.rest[b] + L[2] * patch.rest[c]);
+      for (std::uint32_t v = 0; v < 8; ++v)
+        shapes(i, v) = shape_of_cube(v, L[0] * patch.rest[a] + L[1] * patch.rest[b] + L[2] * patch.rest[c]);
     }
+  }
   return patch;
 }
 
@@ -256,6 +259,14 @@ TEST(Traction, HasTheResultantOfItsIntegral) {
   EXPECT_NEAR(rest_area(patch), 1.5 + std::sqrt(3) / 2, 1e-14);
 }
 
+void expect_neither_force_nor_moment(const Points& x, const Points& forces) {
+  EXPECT_LT(sum(forces).norm(), 1e-14);
+  Vec3 moment = Vec3::Zero();
+  for (std::size_t i = 0; i < x.size(); ++i)
+    moment += x[i].cross(forces[i]);
+  EXPECT_LT(moment.norm(), 1e-14);
+}
+
 /// A closed surface under uniform pressure: no force, no moment, and p dV is its work.
 TEST(Pressure, OfAClosedSurfaceOnlyChangesItsVolume) {
   const SurfacePatch patch = on_its_own_corners(tetrahedron());
@@ -269,11 +280,7 @@ TEST(Pressure, OfAClosedSurfaceOnlyChangesItsVolume) {
   };
   Points forces(4, Vec3::Zero());
   load.add_force({0, x, x}, forces);
-  EXPECT_LT(sum(forces).norm(), 1e-14);
-  Vec3 moment = Vec3::Zero();
-  for (int i = 0; i < 4; ++i)
-    moment += x[i].cross(forces[i]);
-  EXPECT_LT(moment.norm(), 1e-14);
+  expect_neither_force_nor_moment(x, forces);
   for (int i = 0; i < 4; ++i)
     for (int k = 0; k < 3; ++k) {
       Points forward = x, back = x;
@@ -308,11 +315,7 @@ TEST(Pressure, OfABentClosedSurfaceOnlyChangesItsVolume) {
   const Points x = random_points(8, 6, 1);
   Points forces(8, Vec3::Zero());
   load.add_force({0, x, x}, forces);
-  EXPECT_LT(sum(forces).norm(), 1e-14);
-  Vec3 moment = Vec3::Zero();
-  for (int i = 0; i < 8; ++i)
-    moment += x[i].cross(forces[i]);
-  EXPECT_LT(moment.norm(), 1e-14);
+  expect_neither_force_nor_moment(x, forces);
   for (int i = 0; i < 8; ++i)
     for (int k = 0; k < 3; ++k) {
       Points forward = x, back = x;
