@@ -4,6 +4,7 @@
 #include "base/loan.h"
 #include "dynamics/constraints.h"
 #include "dynamics/forces.h"
+#include "dynamics/points.h"
 
 #include <cmath>
 
@@ -52,10 +53,7 @@ void take_over(State& state, Points& x, Points& v, const double dt, const char* 
 } // namespace
 
 void require_finite(const Points& v, const char* name) {
-  double total = 0; // sum, not maximum: it keeps NaN
-  for (const Vec3& velocity : v)
-    total += velocity.squaredNorm();
-  if (!std::isfinite(total))
+  if (!std::isfinite(product(v, v))) // a sum, not a maximum: it keeps NaN
     throw NumericalError("velocities are no longer finite: " + std::string(name) +
                          " is unstable beyond a time step that the largest frequency sets. Use a smaller time step, "
                          "or implicit Euler");

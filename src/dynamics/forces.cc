@@ -13,7 +13,6 @@ namespace kerf::dynamics {
 
 namespace {
 
-
 void add_stiffness_damping(ForceModel& model, const double beta, const Moment& moment, Points& forces) {
   auto* elastic = dynamic_cast<ElasticModel*>(&model);
   if (!elastic)
@@ -91,14 +90,30 @@ Loan<Vec3> momenta(const ForceModel& model, const Points& v) {
 
 double kinetic_energy(const ForceModel& model, const Points& v) {
   const auto mass = model.lumped_mass();
-  double sum = sum_in_blocks(v.size(), 0.0, [&](const std::size_t begin, const std::size_t end, double& part) {
-    for (std::size_t i = begin; i < end; ++i)
-      part += 0.5 * mass[i] * v[i].squaredNorm();
-  });
+  return kinetic_energy_of_coupling(model, v) +
+         sum_in_blocks(v.size(), 0.0, [&](const std::size_t begin, const std::size_t end, double& part) {
+           for (std::size_t i = begin; i < end; ++i)
+             part += 0.5 * mass[i] * v[i].squaredNorm();
+         });
+}
+
+double kinetic_energy_of_coupling(const ForceModel& model, const Points& v) {
   const Loan<Vec3> more = coupled(model, v);
+  double sum = 0;
   for (std::size_t i = 0; i < more.size(); ++i)
     sum += 0.5 * v[i].dot(more[i]);
   return sum;
+}
+
+MassSums mass_sums(const ForceModel& model, const State& state) {
+  const auto mass = model.lumped_mass();
+  return sum_in_blocks(
+    state.x.size(), MassSums(), [&](const std::size_t begin, const std::size_t end, MassSums& part) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const Vec3 &x = state.x[i], &v = state.v[i], moment = mass[i] * x, momentum = mass[i] * v;
+        part += {{mass[i], momentum}, moment, moment.dot(x), 0.5 * momentum.dot(v)};
+      }
+    });
 }
 
 MassAndMomentum mass_and_momentum(const ForceModel& model, const Points& v) {
@@ -111,17 +126,23 @@ MassAndMomentum mass_and_momentum(const ForceModel& model, const Points& v) {
 }
 
 double inner_kinetic_energy(const ForceModel& model, const Pieces& pieces, const Points& v) {
-  const auto of_mean = [](const MassAndMomentum& all) {
-    return all.mass > 0 ? 0.5 * all.momentum.squaredNorm() / all.mass : 0;
+  return inner_kinetic_energy(model, pieces, v, kinetic_energy(model, v),
+                              pieces.n() == 1 ? mass_and_momentum(model, v) : MassAndMomentum());
+}
+
+double inner_kinetic_energy(const ForceModel& model, const Pieces& pieces, const Points& v, const double kinetic,
+                            const MassAndMomentum& all) {
+  const auto of_mean = [](const MassAndMomentum& of) {
+    return of.mass > 0 ? 0.5 * of.momentum.squaredNorm() / of.mass : 0;
   };
-  const double kinetic = kinetic_energy(model, v);
   if (pieces.n() == 1)
-    return std::max(0.0, kinetic - of_mean(mass_and_momentum(model, v)));
+    return std::max(0.0, kinetic - of_mean(all));
   const auto mass = model.lumped_mass();
-  Loan<MassAndMomentum> all(pieces.n(), MassAndMomentum());
+  Loan<MassAndMomentum> of_pieces(pieces.n(), MassAndMomentum());
   for (std::size_t i = 0; i < v.size(); ++i)
-    all[pieces.of(i)] += {mass[i], mass[i] * v[i]};
-  return std::max(0.0, std::transform_reduce(all->begin(), all->end(), kinetic, std::minus<>(), of_mean));
+    of_pieces[pieces.of(i)] += {mass[i], mass[i] * v[i]};
+  return std::max(0.0,
+                  std::transform_reduce(of_pieces->begin(), of_pieces->end(), kinetic, std::minus<>(), of_mean));
 }
 
 double gravity_energy(const ForceModel& model, const Loads& loads, const Points& x) {

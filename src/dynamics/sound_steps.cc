@@ -28,20 +28,6 @@ void add_try(StepReport& sum, const StepReport& part) {
   sum.begins_anew |= part.begins_anew;
 }
 
-/// Of corners, with a value of each.
-struct MassAndMoment {
-  double mass = 0;
-  Vec3 moment = Vec3::Zero(); ///< mass times value
-  double square = 0;          ///< mass times the value's square
-
-  MassAndMoment& operator+=(const MassAndMoment& more) {
-    mass += more.mass;
-    moment += more.moment;
-    square += more.square;
-    return *this;
-  }
-};
-
 /// The first particle that is not at a finite place, or has no finite velocity.
 struct FirstLost {
   std::size_t particle = std::numeric_limits<std::size_t>::max();
@@ -116,24 +102,10 @@ double work_on(const ForceModel& model, const Loads& loads, const State& before,
   return loads.acting.empty() ? work : work + std::max({0.0, by_time(before.x), by_time(after.x)});
 }
 
-double mass_of(const ForceModel& model) {
-  const auto mass = model.lumped_mass();
-  return sum_in_blocks(mass.size(), 0.0, [&](const std::size_t begin, const std::size_t end, double& part) {
-    for (std::size_t i = begin; i < end; ++i)
-      part += mass[i];
-  });
-}
-
 /// Kinetic energy of a motion by a millionth of the body's size in a step: it is as good as at rest [J].
-double unseen(const ForceModel& model, const State& state, const double dt) {
-  const auto mass = model.lumped_mass();
-  const MassAndMoment sum = sum_in_blocks(
-    mass.size(), MassAndMoment(), [&](const std::size_t begin, const std::size_t end, MassAndMoment& part) {
-      for (std::size_t i = begin; i < end; ++i)
-        part += {mass[i], mass[i] * state.x[i], mass[i] * state.x[i].squaredNorm()};
-    });
-  const auto& [all, centre, square] = sum;
-  return all > 0 ? 1e-12 * std::max(0.0, square - centre.squaredNorm() / all) / (dt * dt) : 0;
+double unseen(const MassSums& sums, const double dt) {
+  const double mass = sums.all.mass;
+  return mass > 0 ? 1e-12 * std::max(0.0, sums.second_moment - sums.moment.squaredNorm() / mass) / (dt * dt) : 0;
 }
 
 /// Of the elastic energy, by what it costs to grow by a thousandth [J].
@@ -172,17 +144,43 @@ void keep_carried(const Loads& loads, const State& before, State& after) {
     }
 }
 
-} // namespace
+/// What a step did to the energy.
+struct EnergyChange {
+  double gained = 0; ///< that nobody gave [J]
+  double dealt = 0;  ///< with which it dealt: what a gain is measured by [J]
+  double kick = 0;   ///< what first order may misplace of gravity [J]
+  double unseen = 0; ///< round-off, and motions that are none [J]
+  double inner = 0;  ///< kinetic and elastic energy at the end [J]
+};
 
-std::string in_short(const double value) {
-  std::array<char, 32> text;
-  std::snprintf(text.data(), text.size(), "%.3g", value);
-  return text.data();
+EnergyChange energy_change(const ForceModel& model, const Pieces& pieces, ElasticEnergies& energies, const Loads& loads,
+                           const State& before, const State& after, const MassSums& sums_1) {
+  const MassSums sums_0 = mass_sums(model, before);
+  const double elastic_0 = energies.at(before.x), elastic_1 = energies.at(after.x),
+               kinetic_0 = sums_0.kinetic_energy + kinetic_energy_of_coupling(model, before.v),
+               kinetic_1 = sums_1.kinetic_energy + kinetic_energy_of_coupling(model, after.v),
+               load_0 = load_energy(loads, before.time, before.x), load_1 = load_energy(loads, after.time, after.x),
+               gravity_0 = -loads.gravity.dot(sums_0.moment), gravity_1 = -loads.gravity.dot(sums_1.moment),
+               inner_0 = inner_kinetic_energy(model, pieces, before.v, kinetic_0, sums_0.all),
+               inner_1 = inner_kinetic_energy(model, pieces, after.v, kinetic_1, sums_1.all),
+               work = work_on(model, loads, before, after), dt = after.time - before.time,
+               exchanged = std::abs(kinetic_1 - kinetic_0) + std::abs(gravity_1 - gravity_0);
+  constexpr double drowned = 1e-9; // see balance.cc: of energies whose difference counts
+  constexpr double solved = 1e-5;  // ten times what the default leaves of forces, over those that balance
+  const double sizes = kinetic_0 + kinetic_1 + std::abs(elastic_0) + std::abs(elastic_1) + std::abs(gravity_0) +
+                       std::abs(gravity_1) + std::abs(load_0) + std::abs(load_1);
+  return {
+    .gained = elastic_1 - elastic_0 + (kinetic_1 - kinetic_0) + (load_1 - load_0) + (gravity_1 - gravity_0) - work,
+    .dealt = inner_0 + inner_1 + std::abs(elastic_0) + std::abs(elastic_1) + std::abs(load_1 - load_0) + work,
+    .kick = 4 * sums_1.all.mass * loads.gravity.squaredNorm() * dt * dt,
+    .unseen = drowned * sizes + solved * exchanged + unseen(sums_1, dt),
+    .inner = kinetic_1 + std::abs(elastic_1)};
 }
 
-std::string per_cent(const double part) { return in_short(100 * part) + " %"; }
-
-void require_finite(const State& state) {
+/// Throws StepError when a position or a velocity is not finite.
+void require_finite(const State& state, const MassSums& sums) {
+  if (std::isfinite(sums.second_moment + sums.kinetic_energy))
+    return;
   const FirstLost all = sum_in_blocks(
     state.x.size(), FirstLost(), [&](const std::size_t begin, const std::size_t end, FirstLost& part) {
       for (std::size_t i = begin; i < end; ++i)
@@ -192,6 +190,16 @@ void require_finite(const State& state) {
   if (all.particle != FirstLost().particle)
     throw StepError("a position or a velocity is no longer finite", all.particle);
 }
+
+} // namespace
+
+std::string in_short(const double value) {
+  std::array<char, 32> text;
+  std::snprintf(text.data(), text.size(), "%.3g", value);
+  return text.data();
+}
+
+std::string per_cent(const double part) { return in_short(100 * part) + " %"; }
 
 double ElasticEnergies::at(const Points& x) {
   const std::uint64_t where = fingerprint(x);
@@ -203,27 +211,6 @@ double ElasticEnergies::at(const Points& x) {
     known_[0] = {where, energy};
   }
   return known_[0].energy;
-}
-
-EnergyChange energy_change(const ForceModel& model, const Pieces& pieces, ElasticEnergies& energies, const Loads& loads,
-                           const State& before, const State& after) {
-  const double elastic_0 = energies.at(before.x), elastic_1 = energies.at(after.x),
-               kinetic_0 = kinetic_energy(model, before.v), kinetic_1 = kinetic_energy(model, after.v),
-               load_0 = load_energy(loads, before.time, before.x), load_1 = load_energy(loads, after.time, after.x),
-               gravity_0 = gravity_energy(model, loads, before.x), gravity_1 = gravity_energy(model, loads, after.x),
-               work = work_on(model, loads, before, after), dt = after.time - before.time,
-               exchanged = std::abs(kinetic_1 - kinetic_0) + std::abs(gravity_1 - gravity_0);
-  constexpr double drowned = 1e-9; // see balance.cc: of energies whose difference counts
-  constexpr double solved = 1e-5;  // ten times what the default leaves of forces, over those that balance
-  const double sizes = kinetic_0 + kinetic_1 + std::abs(elastic_0) + std::abs(elastic_1) + std::abs(gravity_0) +
-                       std::abs(gravity_1) + std::abs(load_0) + std::abs(load_1);
-  return {
-    .gained = elastic_1 - elastic_0 + (kinetic_1 - kinetic_0) + (load_1 - load_0) + (gravity_1 - gravity_0) - work,
-    .dealt = inner_kinetic_energy(model, pieces, before.v) + inner_kinetic_energy(model, pieces, after.v) +
-             std::abs(elastic_0) + std::abs(elastic_1) + std::abs(load_1 - load_0) + work,
-    .kick = 4 * mass_of(model) * loads.gravity.squaredNorm() * dt * dt,
-    .unseen = drowned * sizes + solved * exchanged + unseen(model, after, dt),
-    .inner = kinetic_1 + std::abs(elastic_1)};
 }
 
 SoundSteps::LentState SoundSteps::lend(const State& like) {
@@ -244,8 +231,9 @@ void SoundSteps::add_checked(const State& state, const Loads& loads, const doubl
   energies_.at(state.x); // while the step asks for forces here too: the model knows them at one place alone
   const StepReport report = stepper_->step(after, loads, dt);
   keep_carried(loads, state, after);
-  require_finite(after);
-  const EnergyChange change = energy_change(model_, pieces_, energies_, loads, state, after);
+  const MassSums sums = mass_sums(model_, after);
+  require_finite(after, sums);
+  const EnergyChange change = energy_change(model_, pieces_, energies_, loads, state, after, sums);
   const double shift = options_.kick * change.kick + change.unseen;
   if (!(change.gained <= options_.most_gain * change.dealt + shift) && change.gained > noise_of_energy(model_, after.x))
     throw StepError("the step gained " + in_short(change.gained) + " J that no load and no support gave, " +

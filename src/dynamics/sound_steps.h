@@ -128,22 +128,8 @@ class SoundSteps : public Stepper {
   std::vector<std::unique_ptr<State>> idle_;
 };
 
-/// What a step did to the energy.
-struct EnergyChange {
-  double gained = 0; ///< that nobody gave [J]
-  double dealt = 0;  ///< with which it dealt: what a gain is measured by [J]
-  double kick = 0;   ///< what first order may misplace of gravity [J]
-  double unseen = 0; ///< round-off, and motions that are none [J]
-  double inner = 0;  ///< kinetic and elastic energy at the end [J]
-};
-EnergyChange energy_change(const ForceModel& model, const Pieces& pieces, ElasticEnergies& energies, const Loads& loads,
-                           const State& before, const State& after);
-
 /// Numbers in messages, with three digits.
 std::string in_short(double value);
 std::string per_cent(double part);
-
-/// Throws StepError when a position or a velocity is not finite.
-void require_finite(const State& state);
 
 } // namespace kerf::dynamics

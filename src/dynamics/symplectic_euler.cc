@@ -5,6 +5,7 @@
 #include "dynamics/constraints.h"
 #include "dynamics/explicit_steppers.h"
 #include "dynamics/forces.h"
+#include "dynamics/points.h"
 
 namespace kerf::dynamics {
 
@@ -27,15 +28,15 @@ StepReport SymplecticEuler::step(State& state, const Loads& loads, const double 
   const Constraints constraints(loads, state.x.size());
   const auto mass = model_.lumped_mass();
   total_force(model_, loads, {state.time, state.x, state.v}, MassDamping::left_out, force_);
-  Loan<Vec3> x(state.x), v(state.v);
-  constexpr std::size_t worth = 4096; // particles from which on a second thread pays
+  const std::size_t n = state.x.size();
+  Loan<Vec3> x(n, AnyValues()), v(n, AnyValues());
   parallel_for(
-    x.size(),
+    n,
     [&](const std::size_t i) {
-      v[i] = (v[i] + per_mass(dt, mass[i]) * force_[i]) / (1 + dt * loads.mass_damping);
-      x[i] += dt * v[i];
+      v[i] = (state.v[i] + per_mass(dt, mass[i]) * force_[i]) / (1 + dt * loads.mass_damping);
+      x[i] = state.x[i] + dt * v[i];
     },
-    worth);
+    many_corners);
   constraints.place(state.time + dt, x);
   for (const auto& held : constraints.held())
     v[held.corner] = (x[held.corner] - state.x[held.corner]) / dt;

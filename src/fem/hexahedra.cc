@@ -51,11 +51,6 @@ struct TwoRows {
   Row<double>*first, *second;
 };
 
-void clear(Row<double>* const rows, const std::size_t n) {
-  parallel_for(
-    n, [&](const std::size_t i) { rows[i] = {}; }, many_corners_of_copies);
-}
-
 /// Three numbers of each row.
 void write(const Row<double>* const rows, const std::span<double> y) {
   parallel_for(
@@ -235,12 +230,15 @@ Turned Hexahedra::turned_element(const std::size_t copy, const Points& x) const 
   return turned(elements_[copy], h_, corners_of(copy, x), frame_);
 }
 
-void Hexahedra::put_rows(const std::span<const double> values, Row<double>* const rows) const {
+void Hexahedra::put_rows(const std::span<const double> values, Row<double>* const rows,
+                         Row<double>* const sums) const {
   const std::size_t n = numbers_.size();
   parallel_for(
     batching_->n_rows(),
     [&](const std::size_t i) {
       rows[i] = i < n ? Row<double>{values[3 * i], values[3 * i + 1], values[3 * i + 2]} : Row<double>{};
+      if (sums)
+        sums[i] = {};
     },
     many_corners_of_copies);
 }
@@ -315,7 +313,7 @@ Loan<double> Hexahedra::energies(const Points& x, const dynamics::Pieces& pieces
 }
 
 double Hexahedra::energy(const Points& x) const {
-  if (const auto known = known_.energy(x))
+  if (const auto known = known_.energy(fingerprint(x)))
     return *known;
   const TwoRows lent(batching_->n_rows());
   Row<double>* const rows = lent.first;
@@ -331,29 +329,32 @@ double Hexahedra::energy(const Points& x) const {
 }
 
 double Hexahedra::energy_ahead(const Points& x) const {
-  if (known_.are_known(x)) {
+  const std::uint64_t at = fingerprint(x);
+  if (const auto known = known_.energy(at))
+    return *known;
+  if (known_.are_known(at)) {
     const double energy = this->energy(x);
-    known_.put_energy(x, energy);
+    known_.put_energy(at, energy);
     return energy;
   }
   Loan<Vec3> forces = Loan<Vec3>::with_room(x.size());
   const double energy = *force(x, forces, WithEnergy::always);
-  known_.put(x, forces, energy);
+  known_.exchange(at, forces, energy);
   return energy;
 }
 
 void Hexahedra::force(const Points& x, Points& forces) const {
-  if (known_.forces(x, forces))
+  const std::uint64_t at = fingerprint(x);
+  if (known_.forces(at, forces))
     return;
   const auto energy = force(x, forces, WithEnergy::where_cheap);
-  known_.put(x, forces, energy);
+  known_.put(at, forces, energy);
 }
 
 std::optional<double> Hexahedra::force(const Points& x, Points& forces, const WithEnergy with_energy) const {
   const TwoRows lent(batching_->n_rows());
   Row<double>*const rows = lent.first, *const sums = lent.second;
-  put_rows(dynamics::flat(x), rows);
-  clear(sums, batching_->n_rows());
+  put_rows(dynamics::flat(x), rows, sums);
   const double spins = frame_ == Frame::turning ? 1 : 0;
   Loan<double> energies(with_energy == WithEnergy::always || is_hookean() ? batching_->batches().size() : 0);
   batching_->for_each_in_order([&](const std::size_t i) {
@@ -406,8 +407,7 @@ void Hexahedra::linearise(const Points& x) {
 
 void Hexahedra::apply_stiffness(const std::span<const double> p, const std::span<double> y) const {
   const TwoRows lent(batching_->n_rows());
-  put_rows(p, lent.first);
-  clear(lent.second, batching_->n_rows());
+  put_rows(p, lent.first, lent.second);
   add_product(*batching_, batched_, lent.first, lent.second);
   write(lent.second, y);
   ghost_penalty_.add_product(p, y);
@@ -419,7 +419,8 @@ void Hexahedra::stiffness_diagonal(const PutBlock put) const {
   ties_.add_diagonal(penalty);
   const TwoRows lent(batching_->n_rows());
   Row<double>* const sums = lent.first; // two a corner
-  clear(sums, 2 * batching_->n_rows());
+  parallel_for(
+    2 * batching_->n_rows(), [&](const std::size_t i) { sums[i] = {}; }, many_corners_of_copies);
   add_diagonal(*batching_, batched_, sums);
   parallel_for(
     numbers_.size(),

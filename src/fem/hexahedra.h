@@ -134,8 +134,8 @@ class Hexahedra : public dynamics::ElasticModel, public dynamics::StiffnessMatri
   Turned turned_element(std::size_t copy, const Points& x) const;
   Matrix24 element_matrix(std::size_t copy, const Points& x, dynamics::Tangent kind) const;
 
-  /// A row for each corner, and zeros after them.
-  void put_rows(std::span<const double> values, Row<double>* rows) const;
+  /// A row for each corner, and zeros after them; clears as many `sums` on the way, where there are some.
+  void put_rows(std::span<const double> values, Row<double>* rows, Row<double>* sums = nullptr) const;
   /// F and R of a batch.
   Turns turns(std::size_t batch, const Row<double>* x) const;
   /// Calls f(lane, copy) for each lane of a batch that is used.

@@ -12,36 +12,39 @@ namespace kerf::fem {
 
 class KnownForces {
  public:
-  bool are_known(const Points& x) const {
-    const std::uint64_t at = fingerprint(x);
+  /// `at`: fingerprint of the positions.
+  bool are_known(const std::uint64_t at) const {
     const std::lock_guard lock(mutex_);
-    return is_at(at);
+    return where_ == at;
   }
   /// False: not known there.
-  bool forces(const Points& x, Points& forces) const {
-    const std::uint64_t at = fingerprint(x);
+  bool forces(const std::uint64_t at, Points& forces) const {
     const std::lock_guard lock(mutex_);
-    if (!is_at(at))
+    if (where_ != at)
       return false;
     forces = forces_;
     return true;
   }
-  std::optional<double> energy(const Points& x) const {
-    const std::uint64_t at = fingerprint(x);
+  std::optional<double> energy(const std::uint64_t at) const {
     const std::lock_guard lock(mutex_);
-    return is_at(at) ? energy_ : std::nullopt;
+    return where_ == at ? energy_ : std::nullopt;
   }
-  void put(const Points& x, const Points& forces, const std::optional<double>& energy) {
-    const std::uint64_t at = fingerprint(x);
+  void put(const std::uint64_t at, const Points& forces, const std::optional<double>& energy) {
     const std::lock_guard lock(mutex_);
     where_ = at;
     forces_ = forces;
     energy_ = energy;
   }
-  void put_energy(const Points& x, const double energy) {
-    const std::uint64_t at = fingerprint(x);
+  /// The same, and gives the memory of earlier ones for what it takes.
+  void exchange(const std::uint64_t at, Points& forces, const std::optional<double>& energy) {
     const std::lock_guard lock(mutex_);
-    if (is_at(at))
+    where_ = at;
+    forces_.swap(forces);
+    energy_ = energy;
+  }
+  void put_energy(const std::uint64_t at, const double energy) {
+    const std::lock_guard lock(mutex_);
+    if (where_ == at)
       energy_ = energy;
   }
   void forget() {
@@ -50,8 +53,6 @@ class KnownForces {
   }
 
  private:
-  bool is_at(const std::uint64_t fingerprint) const { return where_ == fingerprint; }
-
   mutable std::mutex mutex_;
   std::optional<std::uint64_t> where_;
   Points forces_;

@@ -102,22 +102,6 @@ std::string worst_copy(const Body& body, const std::function<bool(std::size_t)>&
   return in_words(body, worst);
 }
 
-/// What becomes of the cubes of copies.
-struct Cubes {
-  std::size_t n_nodes = 0, n_inverted = 0; ///< of them: those of copies that are inside out in their middle
-  std::size_t longest = 0;                 ///< the copy that has the longest edge
-  double squared_length = 0;               ///< of that [m^2]
-
-  void take_in(const Cubes& more) {
-    n_nodes += more.n_nodes;
-    n_inverted += more.n_inverted;
-    if (more.squared_length > squared_length) {
-      longest = more.longest;
-      squared_length = more.squared_length;
-    }
-  }
-};
-
 bool is_rigid(const Body& body, const std::size_t c) {
   return body.solid.crumbs.holds(grid::CopyId(static_cast<std::uint32_t>(c)));
 }
@@ -126,48 +110,123 @@ std::size_t n_nodes(const grid::Copy& copy) {
   return static_cast<std::size_t>(std::popcount(static_cast<unsigned>(copy.nodes)));
 }
 
-/// Of all copies that are not rigid. Fills det F of each, in its middle.
-Cubes cubes(const Body& body, const std::span<double> ratios) {
-  constexpr std::size_t block = 4096;
-  const Points& x = corners(body);
-  const std::size_t n = body.solid.complex.n_copies();
-  Loan<Cubes> blocks((n + block - 1) / block);
-  parallel_for(blocks.size(), [&](const std::size_t b) {
-    Cubes& all = blocks[b];
-    for (std::size_t c = b * block; c < std::min(n, (b + 1) * block); ++c) {
-      if (is_rigid(body, c))
-        continue;
-      const grid::Copy& copy = copy_of(body, c);
-      const auto e = edges(x, copy);
-      ratios[c] = volume_ratio(e, body.solid.grid.h());
-      all.n_nodes += n_nodes(copy);
-      all.n_inverted += ratios[c] < 0 ? n_nodes(copy) : 0;
-      double longest = 0;
-      for (const Vec3& edge : e)
-        longest = std::max(longest, edge.squaredNorm());
-      all.take_in({0, 0, c, longest});
-    }
-  });
-  Cubes all;
-  for (const Cubes& one : *blocks)
-    all.take_in(one);
-  return all;
-}
-
 /// The material of a piece over that of a cube, by its nodes: an eighth for each. None of a rigid one.
 struct PieceVolume {
   double rest = 0, now = 0;
 };
 
-Loan<PieceVolume> piece_volumes(const Body& body, const std::span<const double> ratios) {
-  Loan<PieceVolume> all(body.pieces.n_pieces, PieceVolume());
-  for (std::size_t c = 0; c < ratios.size(); ++c) {
-    if (is_rigid(body, c))
-      continue;
-    PieceVolume& piece = all[body.pieces.piece[grid::CopyId(static_cast<std::uint32_t>(c))]];
-    const double rest = double(n_nodes(copy_of(body, c))) / 8;
-    piece.rest += rest;
-    piece.now += rest * ratios[c];
+/// What becomes of the cubes of copies that are not rigid.
+struct Cubes {
+  std::size_t n_nodes = 0, n_inverted = 0; ///< of them: those of copies that are inside out in their middle
+  std::size_t longest = 0;                 ///< the copy that has the longest edge
+  double squared_length = 0;               ///< of that [m^2]
+  PieceVolume volume = {};                 ///< of all pieces
+
+  Cubes& operator+=(const Cubes& more) {
+    n_nodes += more.n_nodes;
+    n_inverted += more.n_inverted;
+    volume.rest += more.volume.rest;
+    volume.now += more.volume.now;
+    if (more.squared_length > squared_length) {
+      longest = more.longest;
+      squared_length = more.squared_length;
+    }
+    return *this;
+  }
+};
+
+/// Copies side by side, a lane each.
+struct Lanes {
+  static constexpr std::size_t n = 8;
+  using Values = Eigen::Array<double, n, 1>;
+
+  std::array<std::size_t, n> copies;
+  std::size_t n_used = 0;
+  Values corners[8][3]; ///< [m]
+
+  void add(const std::size_t c, const grid::Copy& copy, const Points& x) {
+    for (std::size_t v = 0; v < 8; ++v)
+      for (int i = 0; i < 3; ++i)
+        corners[v][i][static_cast<Eigen::Index>(n_used)] = x[copy.corners[v].value][i];
+    copies[n_used++] = c;
+  }
+};
+
+/// det F in the middle of each copy, and the square of its longest edge [m^2].
+void measure(const Lanes& lanes, const double h, Lanes::Values& ratio, Lanes::Values& squared_length) {
+  Lanes::Values F[3][3];
+  squared_length.setZero();
+  for (int axis = 0; axis < 3; ++axis) {
+    for (Lanes::Values& entry : F[axis])
+      entry.setZero();
+    for (int v = 0; v < 8; ++v) {
+      if ((v >> axis & 1) != 0)
+        continue;
+      Lanes::Values square = Lanes::Values::Zero();
+      for (int i = 0; i < 3; ++i) {
+        const Lanes::Values along = lanes.corners[v | 1 << axis][i] - lanes.corners[v][i];
+        F[axis][i] += along;
+        square += along * along;
+      }
+      squared_length = squared_length.max(square);
+    }
+  }
+  const double four = 4 * h;
+  ratio = (F[0][0] * (F[1][1] * F[2][2] - F[1][2] * F[2][1]) + F[0][1] * (F[1][2] * F[2][0] - F[1][0] * F[2][2]) +
+           F[0][2] * (F[1][0] * F[2][1] - F[1][1] * F[2][0])) /
+          (four * four * four);
+}
+
+/// Of all copies that are not rigid. Calls put(copy, rest, now), from several threads at once, with the material of
+/// each over that of a cube.
+template <class Put>
+Cubes cubes(const Body& body, const Put& put) {
+  const Points& x = corners(body);
+  const double h = body.solid.grid.h();
+  const auto take = [&](Lanes& lanes, Cubes& all) {
+    Lanes::Values ratio, squared_length;
+    measure(lanes, h, ratio, squared_length);
+    for (std::size_t lane = 0; lane < lanes.n_used; ++lane) {
+      const std::size_t c = lanes.copies[lane], n = n_nodes(copy_of(body, c));
+      const auto l = static_cast<Eigen::Index>(lane);
+      const double rest = double(n) / 8, now = rest * ratio[l];
+      all += {n, ratio[l] < 0 ? n : 0, c, squared_length[l], {rest, now}};
+      put(c, rest, now);
+    }
+    lanes.n_used = 0;
+  };
+  return dynamics::sum_in_blocks(
+    body.solid.complex.n_copies(), Cubes(), [&](const std::size_t begin, const std::size_t end, Cubes& all) {
+      Lanes lanes = {};
+      for (std::size_t c = begin; c < end; ++c) {
+        if (is_rigid(body, c))
+          continue;
+        lanes.add(c, copy_of(body, c), x);
+        if (lanes.n_used == Lanes::n)
+          take(lanes, all);
+      }
+      take(lanes, all);
+    });
+}
+Cubes cubes(const Body& body) {
+  return cubes(body, [](std::size_t, double, double) {});
+}
+
+/// The same, and of each piece.
+Cubes cubes(const Body& body, Loan<PieceVolume>& pieces) {
+  pieces = Loan<PieceVolume>(body.pieces.n_pieces, PieceVolume());
+  if (pieces.size() == 1) {
+    const Cubes all = cubes(body);
+    pieces[0] = all.volume;
+    return all;
+  }
+  Loan<PieceVolume> volumes(body.solid.complex.n_copies(), PieceVolume()); // of copies
+  const Cubes all =
+    cubes(body, [&](const std::size_t c, const double rest, const double now) { volumes[c] = {rest, now}; });
+  for (std::size_t c = 0; c < volumes.size(); ++c) {
+    PieceVolume& piece = pieces[body.pieces.piece[grid::CopyId(static_cast<std::uint32_t>(c))]];
+    piece.rest += volumes[c].rest;
+    piece.now += volumes[c].now;
   }
   return all;
 }
@@ -272,9 +331,8 @@ void require_sound_motion(const Body& body, const Points& before, const double d
 
 UnsoundVolume unsound_volume(const Body& body) {
   constexpr double most = 10, most_inverted = 0.1;
-  Loan<double> ratios(body.solid.complex.n_copies(), AnyValues());
-  const Cubes all = cubes(body, *ratios);
-  const Loan<PieceVolume> pieces = piece_volumes(body, *ratios);
+  Loan<PieceVolume> pieces;
+  const Cubes all = cubes(body, pieces);
   const bool is_small_strain = is_of_small_strain(body);
   constexpr double most_turned = 1.25; // small strain takes I + tan(a) x for a turn by a: 1 + tan^2(a) of the volume
   for (std::uint32_t p = 0; p < pieces.size(); ++p) {
@@ -305,8 +363,7 @@ UnsoundVolume unsound_volume(const Body& body) {
 }
 
 Stretch largest_stretch(const Body& body) {
-  Loan<double> ratios(body.solid.complex.n_copies(), AnyValues());
-  return stretch_of(cubes(body, *ratios), body);
+  return stretch_of(cubes(body), body);
 }
 
 void require_sound_volume(const Body& body, Watch& watch) {
