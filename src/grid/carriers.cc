@@ -8,8 +8,7 @@ namespace {
 
 /// The same for each copy: itself where it can carry.
 std::vector<std::uint32_t> carriers_of_copies(const CellComplex& complex,
-                                              const std::span<const std::uint8_t> is_heavy) {
-  constexpr int enough = 4; // corners of a cube that are not in a row
+                                              const std::span<const std::uint8_t> is_heavy, const int enough) {
   std::vector<std::uint32_t> carrier(complex.n_copies(), no_carrier), front;
   for (const auto c : ids<CopyId>(complex.n_copies()))
     if (std::ranges::count_if(complex.copies[c].corners, [&](const auto a) { return is_heavy[a.value] != 0; }) >=
@@ -39,8 +38,9 @@ bool is_cut(const Cuts& cuts) {
   return !cuts.skin_cuts().empty() || (!cuts.all().empty() && cuts.all().back().label != skin_label);
 }
 
-std::vector<std::uint32_t> nearest_carriers(const CellComplex& complex, const std::span<const std::uint8_t> is_heavy) {
-  const auto carrier_of_copy = carriers_of_copies(complex, is_heavy);
+std::vector<std::uint32_t> nearest_carriers(const CellComplex& complex, const std::span<const std::uint8_t> is_heavy,
+                                            const int enough) {
+  const auto carrier_of_copy = carriers_of_copies(complex, is_heavy, enough);
   std::vector<std::uint32_t> carrier(is_heavy.size(), no_carrier);
   for (const auto c : ids<CopyId>(complex.n_copies()))
     for (const auto corner : complex.copies[c].corners)

@@ -5,8 +5,10 @@
 
 #include "dynamics/relief.h"
 #include "fem/hexahedra.h"
+#include "grid/carriers.h"
 #include "lattice/relief.h"
 #include "lattice/shape_matching.h"
+#include "physics/bearers.h"
 #include "physics/carry_all.h"
 #include "physics/narrowed.h"
 #include "physics/physics.h"
@@ -30,6 +32,16 @@ inline void damp_riders(const dynamics::ForceModel&, const lattice::Riders&, std
 /// `mass` by corner [kg]. What is held keeps its velocity: supports take the impulse.
 void damp_riders(const fem::Hexahedra& model, const lattice::Riders& riders, std::span<const double> mass,
                  const dynamics::Loads& loads, double dt, dynamics::State& state);
+
+/// Elements hold light corners by themselves, and the skin's loads are in balance with them; but for what a blade has
+/// made thin, which may have any surface.
+inline Bearers bearers_of(const fem::Hexahedra&, const CutBody& body) {
+  return grid::is_cut(body.solid.cuts) ? Bearers(body.solid, corners_of_cut_copies(body.solid, body.surface)) : Bearers();
+}
+template <class Model>
+Bearers bearers_of(const Model&, const CutBody& body) {
+  return Bearers(body.solid, std::vector<std::uint8_t>(body.solid.complex.n_corners(), 1));
+}
 
 /// Corners that lapse bring their heirs what they had of momentum, angular momentum and place, by mass as it was [kg].
 /// The heirs turn for that by what the joining has taken of the kinetic energy at most: one heir has no inertia but
@@ -168,6 +180,9 @@ class OnCorners : public Physics {
 
   const Points& corners(const dynamics::State& state) const override { return state.x; }
   Interpolation carry(const Interpolation& of_corners) const override { return of_corners; }
+  Interpolation bear(const CutBody& body, const Interpolation& of_corners) const override {
+    return bearers_of(*model_, body).carry(of_corners);
+  }
 
   const dynamics::Stepper& stepper() const { return *stepper_; }
 

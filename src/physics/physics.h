@@ -71,6 +71,8 @@ class Physics {
   /// Points that follow corners, as points that follow particles: for forces on them. Sums of weights, and of weights
   /// times rest positions, stay what they are.
   virtual Interpolation carry(const Interpolation& of_corners) const = 0;
+  /// The same of points on which loads act that do not yield: to particles with enough material to bear them.
+  virtual Interpolation bear(const CutBody&, const Interpolation& of_corners) const { return carry(of_corners); }
 };
 
 /// A body at rest: all particles where they are at rest, at time 0.

@@ -8,6 +8,7 @@
 #include "dynamics/skin_support.h"
 #include "dynamics/surface_load.h"
 #include "geometry/box_tree.h"
+#include "grid/material.h"
 #include "grid/shape.h"
 #include "material/elastic.h"
 #include "scene/expression.h"
@@ -87,11 +88,6 @@ dynamics::SurfacePatch patch_of(const Body& body, const std::string& faces, cons
   return patch;
 }
 
-/// The triangles of the faces and box that a section names.
-dynamics::SurfacePatch patch_of(const Body& body, const dynamics::PatchParameters& parameters) {
-  return patch_of(body, parameters.faces, Box{parameters.lower, parameters.upper});
-}
-
 /// The copies that carry these triangles.
 dynamics::TriangleCarriers carriers_of(const Body& body, const std::span<const std::size_t> triangles) {
   const grid::Grid& grid = body.solid.grid;
@@ -123,15 +119,34 @@ dynamics::TriangleCarriers carriers_of(const Body& body, const std::span<const s
         shapes(i, v) = grid::shape(v, xi);
     }
   }
-  carriers.corners = body.physics->carry(corners);
+  carriers.corners = body.physics->bear(seen(body), corners);
   return carriers;
 }
 
+/// The names of crumbs of less material than a copy that holds its corners by itself. Ascending.
+std::vector<std::uint32_t> names_of_dust(const grid::Solid& solid) {
+  std::vector<std::uint32_t> names;
+  for (const grid::Crumb& crumb : solid.crumbs.all) {
+    double cubes = 0;
+    for (const grid::CopyId copy : crumb.copies)
+      cubes += grid::fill(solid, solid.complex.copies[copy]);
+    if (cubes < grid::well_filled)
+      names.push_back(crumb.name);
+  }
+  return names;
+}
+
+/// Dust gets nothing of what acts on surfaces: it would fly and spin faster than steps resolve.
 dynamics::SurfacePatch carried_patch_of(const Body& body, const dynamics::PatchParameters& parameters) {
-  dynamics::SurfacePatch patch = patch_of(body, parameters);
+  dynamics::SurfacePatch patch{body.physics->bear(seen(body), body.surface.weights), body.surface.rest, {}};
+  const std::vector<std::uint32_t> dust = names_of_dust(body.solid);
   std::vector<std::size_t> triangles;
-  for_each_triangle(body, parameters.faces, Box{parameters.lower, parameters.upper},
-                    [&](const std::size_t t) { triangles.push_back(t); });
+  for_each_triangle(body, parameters.faces, Box{parameters.lower, parameters.upper}, [&](const std::size_t t) {
+    if (std::ranges::binary_search(dust, body.solid.crumbs.of(body.surface.copies[t])))
+      return;
+    triangles.push_back(t);
+    patch.triangles.push_back(body.surface.triangles[t]);
+  });
   patch.carriers = carriers_of(body, triangles);
   return patch;
 }
@@ -272,7 +287,7 @@ void require_loaded_triangles(const Section& section, const dynamics::PatchParam
     return;
   }
   try {
-    dynamics::require_triangles(patch_of(body, parameters));
+    dynamics::require_triangles(carried_patch_of(body, parameters));
   } catch (const ParameterError& error) {
     throw section.complaint(error.complaint().rule, clause(error.complaint().remedy));
   }
