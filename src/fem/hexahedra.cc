@@ -230,8 +230,7 @@ Turned Hexahedra::turned_element(const std::size_t copy, const Points& x) const 
   return turned(elements_[copy], h_, corners_of(copy, x), frame_);
 }
 
-void Hexahedra::put_rows(const std::span<const double> values, Row<double>* const rows,
-                         Row<double>* const sums) const {
+void Hexahedra::put_rows(const std::span<const double> values, Row<double>* const rows, Row<double>* const sums) const {
   const std::size_t n = numbers_.size();
   parallel_for(
     batching_->n_rows(),

@@ -6,9 +6,9 @@
 /// others, and so gets loads like others; but its corners have next to no mass, and what holds them next to no
 /// stiffness. So it flies off by cubes in a step, however short.
 ///
-/// The method: a point that follows a corner of which less than 1/64 of a cube is material follows the nearest copy
-/// instead (fewest steps between copies of the piece) of which all corners have more. It does so by the affine motion of
-/// that copy's corners: with the middle c of the cube and its vertices p_v at rest, a corner at X has the weights
+/// The method: a corner is light if it holds less material than 1/64 of a cube. A point that follows a light corner
+/// follows the nearest copy instead (fewest steps between copies of the piece) that has no light ones, by the affine
+/// motion of its corners: with the middle c of that cube and its vertices p_v at rest, a corner at X has the weights
 ///
 ///     w_v = 1 / 8 + (X - c).(p_v - c) / (2 h^2).
 ///

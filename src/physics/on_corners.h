@@ -36,7 +36,9 @@ void damp_riders(const fem::Hexahedra& model, const lattice::Riders& riders, std
 /// Elements hold light corners by themselves, and the skin's loads are in balance with them; but for what a blade has
 /// made thin, which may have any surface.
 inline Bearers bearers_of(const fem::Hexahedra&, const CutBody& body) {
-  return grid::is_cut(body.solid.cuts) ? Bearers(body.solid, corners_of_cut_copies(body.solid, body.surface)) : Bearers();
+  if (!grid::is_cut(body.solid.cuts))
+    return {};
+  return Bearers(body.solid, corners_of_cut_copies(body.solid, body.surface));
 }
 template <class Model>
 Bearers bearers_of(const Model&, const CutBody& body) {
