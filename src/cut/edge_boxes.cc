@@ -79,7 +79,7 @@ grid::NodeId lowest_material_node(const grid::Grid& grid, const grid::CellId cel
 
 } // namespace
 
-EdgeBoxes::EdgeBoxes(const grid::Solid& solid) {
+EdgeBoxes::EdgeBoxes(const grid::Solid& solid) : h_(solid.grid.h()) {
   const Nodes nodes = list_nodes(solid.grid);
   starts_.resize(nodes.start.size());
   list_rows(solid, nodes);

@@ -13,6 +13,7 @@
 #include "geometry/box_tree.h"
 #include "grid/solid.h"
 
+#include <algorithm>
 #include <functional>
 
 namespace kerf::cut {
@@ -87,8 +88,9 @@ class EdgeBoxes {
   }
 
   /// The block's box holds edges between material nodes; edges of the skin begin at one of those. How far they reach,
-  /// to corners outside of the material, is not known: not farther than four times the longest edge of the body [m].
-  double reach_of_skin() const { return 4 * longest(); }
+  /// to corners outside of the material, is not known: not farther than four times the longest edge of the body, now or
+  /// at rest, as of one that is squashed they may stand out further than its edges [m].
+  double reach_of_skin() const { return 4 * std::max(longest(), h_); }
   /// Holds all of a block: edges, edges of the skin, cells [m].
   Box with_skin(const Block& block) const {
     const Vec3 slack = Vec3::Constant(reach_of_skin());
@@ -158,6 +160,7 @@ class EdgeBoxes {
   std::vector<grid::CellId> skin_cells_;      // by block
   std::vector<SkinEdge> skin_;                // by block
   bool moves_ = false;
+  double h_; ///< edge of the cubes at rest [m]
   std::vector<Block> now_, before_;        // as the corners stand now, and as they stood before
   std::vector<std::vector<Block>> levels_; // the blocks, eights of them, ... one
 };

@@ -128,7 +128,6 @@ class Target {
   void judge_later(grid::EdgeId edge, grid::CutLabel label, const Judge& judge, SweepCuts& result) const;
   Box box_around_copies(grid::CellId cell) const; // before and now
   Vec3 normal_among(std::span<const grid::CellId> cells, const Verdict& verdict) const;
-  double longest() const { return std::max(boxes_->longest(), solid_.grid.h()); }
 
   const grid::Solid& solid_;
   const Points& x_before_;

@@ -85,12 +85,9 @@ Vec3 load_force(const Load& load, const State& state) {
 
 Power power(ForceModel& model, const Loads& loads, const State& state, const Points& acceleration) {
   Power power;
-  for (const auto& load : loads.acting) {
+  for (const auto& load : loads.acting)
     if (load->nature() == Nature::dissipative)
       power.dissipated -= power_of(*load, state);
-    if (load->nature() == Nature::driving)
-      power.loads += power_of(*load, state);
-  }
   const Constraints constraints(loads, state.x.size());
   if (constraints.held().empty())
     return power;
@@ -102,11 +99,19 @@ Power power(ForceModel& model, const Loads& loads, const State& state, const Poi
   return power;
 }
 
+double driving_power(const Loads& loads, const State& state) {
+  double sum = 0;
+  for (const auto& load : loads.acting)
+    if (load->nature() == Nature::driving)
+      sum += power_of(*load, state);
+  return sum;
+}
+
 void book(const Power& at_begin, const Power& at_end, const double dt, State& after) {
   const auto add = [&](const std::string& name, const double a, const double b) {
     after.numbers[name] += 0.5 * dt * (a + b);
   };
-  add("dissipated energy [J]", at_begin.dissipated, at_end.dissipated);
+  add(dissipated_energy, at_begin.dissipated, at_end.dissipated);
   add("work of supports [J]", at_begin.supports, at_end.supports);
   add("work of loads [J]", at_begin.loads, at_end.loads);
 }

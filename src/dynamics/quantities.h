@@ -42,8 +42,11 @@ struct Power {
   double supports = 0;   ///< work of the reactions
   double loads = 0;      ///< work of driving loads
 };
-/// Damping (damping_power) is left out.
+/// Damping (damping_power) and driving loads (driving_power) are left out.
 Power power(ForceModel& model, const Loads& loads, const State& state, const Points& acceleration);
+
+/// Of driving loads [W].
+double driving_power(const Loads& loads, const State& state);
 
 /// Adds what flowed during a step, by the trapezoidal rule, to State::numbers "dissipated energy [J]", "work of
 /// supports [J]" and "work of loads [J]" of `after`. Potentials that change with time do work that is not booked.

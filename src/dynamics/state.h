@@ -30,7 +30,8 @@ struct State {
 };
 
 /// Names that are looked for in every step: longer than what a string holds in itself.
-inline const std::string last_acceleration = "acceleration of the last step", energy_gained = "energy gained [J]";
+inline const std::string last_acceleration = "acceleration of the last step", energy_gained = "energy gained [J]",
+                         dissipated_energy = "dissipated energy [J]";
 
 /// Makes one state the other, in the memory that it has.
 inline void assign(State& to, const State& from) {

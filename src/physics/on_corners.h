@@ -29,7 +29,8 @@ inline lattice::Riders riders_of(const dynamics::ForceModel&, const CutBody&) { 
 lattice::Riders riders_of(const fem::Hexahedra& model, const CutBody& body);
 inline void damp_riders(const dynamics::ForceModel&, const lattice::Riders&, std::span<const double>,
                         const dynamics::Loads&, double, dynamics::State&) {}
-/// `mass` by corner [kg]. What is held keeps its velocity: supports take the impulse.
+/// `mass` by corner [kg]. What is held keeps its velocity: supports take the impulse. What that takes of the kinetic
+/// energy is in State::numbers "dissipated energy [J]".
 void damp_riders(const fem::Hexahedra& model, const lattice::Riders& riders, std::span<const double> mass,
                  const dynamics::Loads& loads, double dt, dynamics::State& state);
 

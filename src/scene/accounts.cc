@@ -61,12 +61,13 @@ void Accounts::after_step(physics::Physics& physics, const dynamics::Loads& load
   auto at_end = dynamics::power(physics.model(), loads, to, none),
        at_begin = begins_anew ? at_end : dynamics::power(physics.model(), loads, from, none);
   // Half-way, where the way of a step in which a body turns is one by a rotation; at its ends it is a strain as well.
-  dynamics::State half_way{state.x, from.v, state.time};
+  dynamics::State half_way{state.x, from.v, 0.5 * (before_.time + state.time)};
   for (std::size_t i = 0; i < state.x.size(); ++i)
     half_way.x[i] = 0.5 * (before_.x[i] + state.x[i]);
   const double by_damping = dynamics::damping_power(physics.model(), loads, half_way);
   at_begin.dissipated += by_damping;
   at_end.dissipated += by_damping;
+  at_begin.loads = at_end.loads = dynamics::driving_power(loads, half_way);
   const double inertia = power_of_inertia(physics.model(), loads, before_, state, acceleration);
   at_begin.supports += inertia;
   at_end.supports += inertia;

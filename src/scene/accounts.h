@@ -2,7 +2,8 @@
 
 /// Where a body's energy goes, and what holds it: kept only when an observable asks.
 ///
-/// Work is force times displacement by the trapezoidal rule over a step, so statics has work too; but what supports
+/// Work is force times displacement by the trapezoidal rule over a step, so statics has work too; of loads that drive,
+/// as a pressure, by the force half-way, which on a body that turns is nearer; and what supports
 /// spend on inertia is mass times mean acceleration times mean velocity, which is the kinetic energy's growth: a held
 /// corner's velocity is that of the step that led there, and lags. Reactions are those at the end of the step. In a
 /// step that begins anew after a cut, where forces of stiff loads may have been ringing, those at its end count alone.

@@ -104,9 +104,9 @@ World compose(const SceneText& text) {
   const auto h = [](const Body& body) { return body.solid.grid.h(); };
   for (cut::Blade& blade : world.blades)
     cut::divide_edge_of_turning(blade, h(*std::ranges::min_element(world.bodies, {}, h)));
-  require_meeting_of_all(root, world);
   for (const Section* section : root.all("Forceps"))
     compose_forceps(*section, world);
+  require_meeting_of_all(root, world);
   require_static_answers(root, world);
 
   if (const Section* section = root.find("Output"))

@@ -82,14 +82,33 @@ std::pair<double, double> times_of_motion(const cut::Blade& blade) {
   return {first, last};
 }
 
-/// The box of a body is grown by half its size, for what it may move.
-bool comes_near(const cut::Blade& blade, const Body& body) {
+/// How far a body may go until a time [m]: by half its size as it deforms, as it was thrown and falls, and as supports
+/// carry it; anywhere where other loads or tools move it.
+double way_until(const double time, const Body& body, const World& world) {
+  constexpr double anywhere = 1e9;
+  if (!body.load_makers.empty() || !world.forceps.empty())
+    return anywhere;
+  const Box box = geometry::box_around(positions(body));
+  double fastest = 0, carried = 0;
+  for (const Vec3& v : body.state.v)
+    fastest = std::max(fastest, v.norm());
+  for (const dynamics::Support& support : body.loads.supports) {
+    constexpr int n_times = 100;
+    for (int i = 0; i <= n_times; ++i)
+      for (const Vec3& rest : support.rest)
+        carried = std::max(carried, (support.places(i * time / n_times)(rest) - rest).norm());
+  }
+  return 0.5 * (box.upper - box.lower).norm() + fastest * time + 0.5 * body.loads.gravity.norm() * time * time +
+         carried;
+}
+
+bool comes_near(const cut::Blade& blade, const Body& body, const World& world) {
   const auto [first, last] = times_of_motion(blade);
   Points path = cut::world_points(blade, first);
   for (const auto& triangle : cut::sweep(blade, first, last))
     path.insert(path.end(), triangle.begin(), triangle.end());
   const Box swept = geometry::box_around(path), box = geometry::box_around(positions(body));
-  const Vec3 slack = Vec3::Constant(0.5 * (box.upper - box.lower).norm());
+  const Vec3 slack = Vec3::Constant(way_until(std::min(last, world.n_steps * world.time_step), body, world));
   return geometry::overlap(swept, Box{box.lower - slack, box.upper + slack});
 }
 
@@ -183,7 +202,7 @@ void compose_forceps(const Section& section, World& world) {
 void require_meeting(const Section& section, const std::span<const cut::Blade> blades, const World& world) {
   for (const cut::Blade& blade : blades)
     for (const Body& body : world.bodies)
-      if (comes_near(blade, body))
+      if (comes_near(blade, body, world))
         return;
   throw section.complaint("the blade never comes near a body",
                           "Check units and key frames: positions are in metres, in the world frame");
