@@ -13,7 +13,7 @@
 /// by the inverses L^-T L^-1 of A's diagonal 3 x 3 blocks (L: Cholesky factors), in which the lumped masses stand for
 /// M, as they bound it from above: each corner counts in its own measure, one of hardly any mass like every other. The
 /// same are the preconditioner, or what the model offers in their place (preconditioner.h), as long as that comes to an
-/// end within 100 iterations.
+/// end within 400 iterations.
 ///
 /// The line search halves a correction until the incremental potential falls by 1e-4 of what its slope promises
 /// (Armijo), or, where the fall drowns in round-off, until the slope has (Hager and Zhang 2005, A new conjugate
