@@ -160,7 +160,7 @@ class EdgeBoxes {
   std::vector<grid::CellId> skin_cells_;      // by block
   std::vector<SkinEdge> skin_;                // by block
   bool moves_ = false;
-  double h_; ///< edge of the cubes at rest [m]
+  double h_;                               // edge of the cubes at rest [m]
   std::vector<Block> now_, before_;        // as the corners stand now, and as they stood before
   std::vector<std::vector<Block>> levels_; // the blocks, eights of them, ... one
 };

@@ -84,7 +84,7 @@ Vec3 load_force(const Load& load, const State& state) {
 }
 
 Power power(ForceModel& model, const Loads& loads, const State& state, const Points& acceleration) {
-  Power power{.loads = driving_power(loads, state)};
+  Power power;
   for (const auto& load : loads.acting)
     if (load->nature() == Nature::dissipative)
       power.dissipated -= power_of(*load, state);

@@ -42,7 +42,7 @@ struct Power {
   double supports = 0;   ///< work of the reactions
   double loads = 0;      ///< work of driving loads
 };
-/// Damping (damping_power) is left out.
+/// Damping (damping_power) and driving loads (driving_power) are left out.
 Power power(ForceModel& model, const Loads& loads, const State& state, const Points& acceleration);
 
 /// Of driving loads [W].

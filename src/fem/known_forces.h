@@ -3,8 +3,9 @@
 /// Forces at the positions for which they were asked last, and the energy there: integrators ask again where a step
 /// ends and the next one starts. May be asked by several threads at once.
 
-#include "base/fingerprint.h"
+#include "base/vec.h"
 
+#include <cstdint>
 #include <mutex>
 #include <optional>
 

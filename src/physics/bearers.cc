@@ -1,8 +1,6 @@
 #include "physics/bearers.h"
 
-#include "base/parallel.h"
 #include "grid/carriers.h"
-#include "grid/material.h"
 
 #include <algorithm>
 #include <ranges>
@@ -17,17 +15,6 @@ constexpr int all_corners = 8;
 
 } // namespace
 
-std::vector<double> material_of_corners(const grid::Solid& solid) {
-  const grid::CellComplex& complex = solid.complex;
-  std::vector<double> fill(complex.n_copies()), material(complex.n_corners(), 0);
-  parallel_for(
-    fill.size(), [&](const std::size_t c) { fill[c] = grid::fill(solid, complex.copies[grid::CopyId(c)]); }, 256);
-  for (const auto c : ids<grid::CopyId>(complex.n_copies()))
-    for (const grid::CornerId corner : complex.copies[c].corners)
-      material[corner.value] += fill[c.value] / 8;
-  return material;
-}
-
 std::vector<std::uint8_t> corners_of_cut_copies(const grid::Solid& solid, const surface::Surface& surface) {
   const grid::CellComplex& complex = solid.complex;
   std::vector<std::uint8_t> is_cut(complex.n_copies(), 0), all(complex.n_corners(), 1);
@@ -41,8 +28,8 @@ std::vector<std::uint8_t> corners_of_cut_copies(const grid::Solid& solid, const 
   return all;
 }
 
-Bearers::Bearers(const grid::Solid& solid, const std::span<const std::uint8_t> may_be_light) {
-  const std::vector<double> material = material_of_corners(solid);
+Bearers::Bearers(const grid::Solid& solid, const std::span<const double> material,
+                 const std::span<const std::uint8_t> may_be_light) {
   std::vector<std::uint8_t> has_enough(material.size());
   std::ranges::transform(material, has_enough.begin(), [](const double cubes) { return cubes >= light ? 1 : 0; });
   const auto is_light = [&](const std::size_t i) { return may_be_light[i] != 0 && has_enough[i] == 0; };

@@ -25,8 +25,9 @@ namespace kerf::physics {
 class Bearers {
  public:
   Bearers() = default; ///< each corner bears what acts on it
-  /// `may_be_light`: 1 for each corner that need not bear what acts on it.
-  Bearers(const grid::Solid& solid, std::span<const std::uint8_t> may_be_light);
+  /// Of each corner: the part of a cube that it holds of its copies' material [1], and 1 if it need not bear what acts
+  /// on it.
+  Bearers(const grid::Solid& solid, std::span<const double> material, std::span<const std::uint8_t> may_be_light);
 
   /// Points that follow corners, as they follow those that bear their loads.
   Interpolation carry(const Interpolation& of_corners) const;
@@ -35,9 +36,6 @@ class Bearers {
   std::vector<std::uint32_t> which_; // of each corner, in rows_; `itself` of those that bear; none where all do
   Interpolation rows_;
 };
-
-/// The part of a cube that each corner holds of its copies' material, an eighth of each [1].
-std::vector<double> material_of_corners(const grid::Solid& solid);
 
 /// 1 for each corner all copies of which have a face that a cut has revealed.
 std::vector<std::uint8_t> corners_of_cut_copies(const grid::Solid& solid, const surface::Surface& surface);

@@ -1,6 +1,5 @@
 #include "physics/on_corners.h"
 
-#include "dynamics/conjugate_gradients.h"
 #include "dynamics/rigid_body.h"
 #include "grid/carriers.h"
 
@@ -42,18 +41,16 @@ lattice::Riders riders_of(const fem::Hexahedra& model, const CutBody& body) {
   return {body.solid.complex, material_mass(model), body.density * h * h * h, light};
 }
 
-namespace {
-
-double kinetic_energy_of(const std::span<const double> mass, const Points& v) {
-  return dynamics::sum_of(v.size(), [&](const std::size_t begin, const std::size_t end) {
-    double sum = 0;
-    for (std::size_t i = begin; i < end; ++i)
-      sum += 0.5 * mass[i] * v[i].squaredNorm();
-    return sum;
-  });
+Bearers bearers_of(const fem::Hexahedra& model, const CutBody& body, std::span<const double>) {
+  if (!grid::is_cut(body.solid.cuts))
+    return {};
+  const double eight = 8 * std::pow(model.h(), 3);
+  std::vector<double> material(model.incidence().n_corners(), 0.0);
+  for (std::size_t i = 0; i < material.size(); ++i)
+    for (const auto user : model.incidence().users(i))
+      material[i] += model.element(user / 8).volume / eight;
+  return {body.solid, material, corners_of_cut_copies(body.solid, body.surface)};
 }
-
-} // namespace
 
 void damp_riders(const fem::Hexahedra& model, const lattice::Riders& riders, const std::span<const double> mass,
                  const dynamics::Loads& loads, const double dt, dynamics::State& state) {
@@ -66,13 +63,11 @@ void damp_riders(const fem::Hexahedra& model, const lattice::Riders& riders, con
   for (const dynamics::Support& support : loads.supports)
     for (const auto i : support.corners)
       before->push_back(state.v[i]);
-  const double had = kinetic_energy_of(mass, state.v);
   riders.damp(state.x, mass, alpha, state.v);
   std::size_t k = 0;
   for (const dynamics::Support& support : loads.supports)
     for (const auto i : support.corners)
       state.v[i] -= support.held * (state.v[i] - before[k++]);
-  state.numbers[dynamics::dissipated_energy] += had - kinetic_energy_of(mass, state.v);
 }
 
 std::vector<std::uint8_t> touched_corners(const grid::CellComplex& complex, const grid::CutChange& change) {

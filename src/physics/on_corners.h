@@ -3,9 +3,9 @@
 /// Backends whose particles are the corners of the copies: elements, springs, lattice shape matching. New corners take
 /// position, velocity and history from the corner they come from.
 
+#include "dynamics/forces.h"
 #include "dynamics/relief.h"
 #include "fem/hexahedra.h"
-#include "grid/carriers.h"
 #include "lattice/relief.h"
 #include "lattice/shape_matching.h"
 #include "physics/bearers.h"
@@ -16,6 +16,7 @@
 #include "spring/mass_spring.h"
 
 #include <functional>
+#include <optional>
 #include <span>
 #include <type_traits>
 #include <utility>
@@ -29,21 +30,21 @@ inline lattice::Riders riders_of(const dynamics::ForceModel&, const CutBody&) { 
 lattice::Riders riders_of(const fem::Hexahedra& model, const CutBody& body);
 inline void damp_riders(const dynamics::ForceModel&, const lattice::Riders&, std::span<const double>,
                         const dynamics::Loads&, double, dynamics::State&) {}
-/// `mass` by corner [kg]. What is held keeps its velocity: supports take the impulse. What that takes of the kinetic
-/// energy is in State::numbers "dissipated energy [J]".
+/// `mass` by corner [kg]. What is held keeps its velocity: supports take the impulse.
 void damp_riders(const fem::Hexahedra& model, const lattice::Riders& riders, std::span<const double> mass,
                  const dynamics::Loads& loads, double dt, dynamics::State& state);
 
 /// Elements hold light corners by themselves, and the skin's loads are in balance with them; but for what a blade has
 /// made thin, which may have any surface.
-inline Bearers bearers_of(const fem::Hexahedra&, const CutBody& body) {
-  if (!grid::is_cut(body.solid.cuts))
-    return {};
-  return Bearers(body.solid, corners_of_cut_copies(body.solid, body.surface));
-}
+Bearers bearers_of(const fem::Hexahedra& model, const CutBody& body, std::span<const double> mass);
+/// `mass` by corner [kg].
 template <class Model>
-Bearers bearers_of(const Model&, const CutBody& body) {
-  return Bearers(body.solid, std::vector<std::uint8_t>(body.solid.complex.n_corners(), 1));
+Bearers bearers_of(const Model&, const CutBody& body, const std::span<const double> mass) {
+  const double h = body.solid.grid.h();
+  std::vector<double> material(mass.begin(), mass.end());
+  for (double& m : material)
+    m /= body.density * h * h * h;
+  return {body.solid, material, std::vector<std::uint8_t>(mass.size(), 1)};
 }
 
 /// Corners that lapse bring their heirs what they had of momentum, angular momentum and place, by mass as it was [kg].
@@ -111,7 +112,11 @@ class OnCorners : public Physics {
     if (carry_all(crumbs_)) {
       state.time += dt;
     } else {
-      damp_riders(*model_, riders_, model().lumped_mass(), loads, dt, state);
+      if (riders_.n_riders() > 0) {
+        const double had = dynamics::kinetic_energy(model(), state.v);
+        damp_riders(*model_, riders_, model().lumped_mass(), loads, dt, state);
+        state.numbers[dynamics::dissipated_energy] += had - dynamics::kinetic_energy(model(), state.v);
+      }
       report =
         widened_ ? narrowed_step(*stepper_, model_->numbers(), state, loads, dt) : stepper_->step(state, loads, dt);
     }
@@ -184,7 +189,9 @@ class OnCorners : public Physics {
   const Points& corners(const dynamics::State& state) const override { return state.x; }
   Interpolation carry(const Interpolation& of_corners) const override { return of_corners; }
   Interpolation bear(const CutBody& body, const Interpolation& of_corners) const override {
-    return bearers_of(*model_, body).carry(of_corners);
+    if (!bearers_)
+      bearers_ = bearers_of(*model_, body, widened_ ? widened_->lumped_mass() : model_->lumped_mass());
+    return bearers_->carry(of_corners);
   }
 
   const dynamics::Stepper& stepper() const { return *stepper_; }
@@ -253,6 +260,7 @@ class OnCorners : public Physics {
     // The complex outlives the call, as the stepper asks at once.
     stepper_ = make_integrator_(*model_, [&] { return own_pieces(body); });
     riders_ = riders_of(*model_, body);
+    bearers_ = std::nullopt;
   }
 
   ModelMaker make_model_;
@@ -263,6 +271,7 @@ class OnCorners : public Physics {
   Crumbs crumbs_;
   std::unique_ptr<dynamics::Stepper> stepper_;
   lattice::Riders riders_;
+  mutable std::optional<Bearers> bearers_; // none until a load asks
   std::vector<grid::Lapse> lapsed_;
 };
 

@@ -2,11 +2,12 @@
 
 /// Where a body's energy goes, and what holds it: kept only when an observable asks.
 ///
-/// Work is force times displacement by the trapezoidal rule over a step, so statics has work too; of loads that drive,
-/// as a pressure, by the force half-way, which on a body that turns is nearer; and what supports
-/// spend on inertia is mass times mean acceleration times mean velocity, which is the kinetic energy's growth: a held
-/// corner's velocity is that of the step that led there, and lags. Reactions are those at the end of the step. In a
-/// step that begins anew after a cut, where forces of stiff loads may have been ringing, those at its end count alone.
+/// Work is force times displacement, so statics has work too. Of supports, and of loads that dissipate, the force is
+/// the mean of those at the step's ends; in a step that begins anew after a cut, where forces of stiff loads may have
+/// been ringing, that at its end. Of loads that drive, as a pressure, it is that half-way: at the ends of its chord a
+/// body that turns is swollen. What supports spend on inertia is mass times mean acceleration times mean velocity,
+/// which is the kinetic energy's growth: a held corner's velocity is that of the step that led there, and lags.
+/// Reactions are those at the end of the step.
 /// Everything that happens to the energy at an instant of cutting is the work of the cut.
 /// energy + dissipated - works of supports, loads and cut stays what it was at the start, up to the integrator's error;
 /// in statics what is missing is what the body gave away on its way from one equilibrium to the next: for a cut that

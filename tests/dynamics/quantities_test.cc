@@ -102,6 +102,7 @@ TEST(Energy, IsAccountedFor) {
         a[0][1] = -0.8 * std::sin(4 * state.time);
         Power all = power(model, loads, state, a);
         all.dissipated += damping_power(model, loads, state);
+        all.loads = driving_power(loads, state);
         return all;
       };
       const Power begin = power_now();
