@@ -1,12 +1,14 @@
 #include "lattice/riders.h"
 
 #include "grid/carriers.h"
+#include "material/polar.h"
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace kerf::lattice {
 
@@ -50,14 +52,45 @@ Rigid rigid_motion(const std::span<const std::uint32_t> corners, const Points& x
   return body;
 }
 
+Vec3 middle_of(const std::span<const std::uint32_t> corners, const Points& x) {
+  Vec3 sum = Vec3::Zero();
+  for (const auto c : corners)
+    sum += x[c];
+  return sum / static_cast<double>(corners.size());
+}
+
 } // namespace
 
 Riders::Riders(const grid::CellComplex& complex, const std::span<const double> mass, const double mass_of_cube,
                const double light) {
+  ride(complex, mass, mass_of_cube, light, 4);
+}
+
+Riders::Riders(const grid::CellComplex& complex, const std::span<const double> mass, const double mass_of_cube,
+               const double light, const Points& rest, const double h)
+  : h_(h) {
+  ride(complex, mass, mass_of_cube, light, 5);
+  for (const Carrier& carrier : carriers_) {
+    const auto corners = carrier.own_corners();
+    const Vec3 middle = middle_of(corners, rest);
+    Mat3 spread = Mat3::Zero();
+    for (const auto c : corners)
+      spread += (rest[c] - middle) * (rest[c] - middle).transpose();
+    const Mat3 inverse = spread.inverse();
+    Slopes& slopes = slopes_.emplace_back();
+    for (std::size_t k = 0; k < corners.size(); ++k)
+      slopes[k] = inverse * (rest[corners[k]] - middle);
+    for (const Rider& rider : riders_of(carrier))
+      offsets_.push_back(rest[rider.corner] - middle);
+  }
+}
+
+void Riders::ride(const grid::CellComplex& complex, const std::span<const double> mass, const double mass_of_cube,
+                  const double light, const int n_heavy) {
   const double heavy = light / 8;
   std::vector<std::uint8_t> is_heavy(mass.size());
   std::ranges::transform(mass, is_heavy.begin(), [&](const double m) { return m >= heavy * mass_of_cube ? 1 : 0; });
-  const auto carrier = grid::nearest_carriers(complex, is_heavy);
+  const auto carrier = grid::nearest_carriers(complex, is_heavy, n_heavy);
   std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs; // carrier, corner
   for (std::uint32_t i = 0; i < mass.size(); ++i)
     if (carrier[i] != grid::no_carrier && mass[i] < light * mass_of_cube)
@@ -78,17 +111,24 @@ Riders::Riders(const grid::CellComplex& complex, const std::span<const double> m
 
 void Riders::count_by(const grid::CornerNumbers& numbers) {
   std::vector<Rider> counted;
+  std::vector<Vec3> offsets;
   for (Carrier& carrier : carriers_) {
     for (std::uint32_t k = 0; k < carrier.n_corners; ++k)
       carrier.corners[k] = numbers[carrier.corners[k]];
     const auto first = static_cast<std::uint32_t>(counted.size());
-    for (const auto& [corner, need] : riders_of(carrier))
-      if (numbers.counts(corner))
-        counted.push_back({numbers[corner], need});
+    for (std::uint32_t i = carrier.first; i < carrier.last; ++i) {
+      const auto& [corner, need] = riders_[i];
+      if (!numbers.counts(corner))
+        continue;
+      counted.push_back({numbers[corner], need});
+      if (!offsets_.empty())
+        offsets.push_back(offsets_[i]);
+    }
     carrier.first = first;
     carrier.last = static_cast<std::uint32_t>(counted.size());
   }
   riders_ = std::move(counted);
+  offsets_ = std::move(offsets);
 }
 
 void Riders::settle(const Points& goals, const std::span<const double> mass, Points& x, Points& v) const {
@@ -119,29 +159,48 @@ void Riders::settle(const Carrier& carrier, const Points& goals, const std::span
   }
 }
 
+Riders::Place Riders::place(const std::size_t carrier, const Points& x) const {
+  const auto corners = carriers_[carrier].own_corners();
+  Mat3 F = Mat3::Zero();
+  for (std::size_t k = 0; k < corners.size(); ++k)
+    F += x[corners[k]] * slopes_[carrier][k].transpose();
+  return {middle_of(corners, x), material::rotation_of(F)};
+}
+
+double Riders::part(const Place& carrier, const std::size_t rider, const Points& x) const {
+  constexpr double from = 0.5, wholly = 1, beside = 1.7; // cubes
+  if (offsets_[rider].squaredNorm() > beside * beside * h_ * h_)
+    return 1;
+  const Vec3 away = x[riders_[rider].corner] - carrier.middle - carrier.rotation * offsets_[rider];
+  return std::clamp((away.norm() / h_ - from) / (wholly - from), 0.0, 1.0);
+}
+
 void Riders::damp(const Points& x, const std::span<const double> mass, const double alpha, Points& v) const {
   const double kappa = 2 * std::sqrt(alpha) - alpha;
-  for (const Carrier& carrier : carriers_)
+  for (std::size_t carrier = 0; carrier < carriers_.size(); ++carrier)
     damp(carrier, x, mass, kappa, v);
 }
 
-void Riders::damp(const Carrier& carrier, const Points& x, const std::span<const double> mass, const double kappa,
+void Riders::damp(const std::size_t number, const Points& x, const std::span<const double> mass, const double kappa,
                   Points& v) const {
+  const Carrier& carrier = carriers_[number];
   const auto corners = carrier.own_corners();
-  const auto riders = riders_of(carrier);
   const Rigid body = rigid_motion(corners, x, v, mass);
   if (body.mobility == 0)
     return;
   const auto weight = [&](const std::uint32_t i) {
     return std::sqrt(mass[i] * (1 / body.mass + (x[i] - body.centre).squaredNorm() * body.mobility));
   };
+  const std::optional<Place> place = h_ > 0 ? std::optional(this->place(number, x)) : std::nullopt;
   double sum = 0;
-  for (const Rider& rider : riders)
+  for (const Rider& rider : riders_of(carrier))
     sum += weight(rider.corner);
   Vec3 impulse = Vec3::Zero(), angular = Vec3::Zero(); // on the carrier
-  for (const Rider& rider : riders) {
-    const auto i = rider.corner;
-    const Vec3 change = rider.need * kappa / (1 + weight(i) * sum) * (v[i] - body.velocity_at(x[i]));
+  for (std::size_t rider = carrier.first; rider < carrier.last; ++rider) {
+    const auto i = riders_[rider].corner;
+    const double part = place ? this->part(*place, rider, x) : 1;
+    const double by = part * riders_[rider].need * kappa / (1 + weight(i) * sum);
+    const Vec3 change = by * (v[i] - body.velocity_at(x[i]));
     v[i] -= change;
     impulse += mass[i] * change;
     angular += mass[i] * (x[i] - body.centre).cross(change);

@@ -33,12 +33,12 @@ double part_within(const double a, const double b, const double c) {
 } // namespace
 
 lattice::Riders riders_of(const fem::Hexahedra& model, const CutBody& body) {
-  constexpr double light =
-    1.0 / 32; // of a cube: what holds corners of less fades with their mass (fem/ghost_penalty.h)
+  constexpr double light = 1.0 / 32; // of a cube: what holds corners of less fades with their mass (ghost_penalty.h)
   if (model.inertia() != fem::Inertia::extended || !grid::is_cut(body.solid.cuts))
     return {};
   const double h = body.solid.grid.h();
-  return {body.solid.complex, material_mass(model), body.density * h * h * h, light};
+  return {body.solid.complex, material_mass(model), body.density * h * h * h, light, grid::rest_positions(body.solid),
+          h};
 }
 
 Bearers bearers_of(const fem::Hexahedra& model, const CutBody& body, std::span<const double>) {

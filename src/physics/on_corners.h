@@ -24,8 +24,8 @@
 namespace kerf::physics {
 
 /// Elements with explicit integrators: corners of hardly any mass ring for ever once a cut has moved them, take up what
-/// the body's vibrations have, and turn their copies inside out. They are damped against what carries them, as those of
-/// a lattice are (lattice/riders.h), critically for the frequency of a cube. Of the others none.
+/// the body's vibrations have, and turn their copies inside out. They are riders with slack (lattice/riders.h), damped
+/// critically for the frequency of a cube. Of the others none.
 inline lattice::Riders riders_of(const dynamics::ForceModel&, const CutBody&) { return {}; }
 lattice::Riders riders_of(const fem::Hexahedra& model, const CutBody& body);
 inline void damp_riders(const dynamics::ForceModel&, const lattice::Riders&, std::span<const double>,

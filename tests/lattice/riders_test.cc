@@ -78,6 +78,46 @@ TEST(Riders, DoNotSeeRigidMotions) {
     EXPECT_LT((v[i] - before[i]).norm(), 1e-10) << i;
 }
 
+/// Those with slack that are near are free up to half a cube from where the carrier's rotation has them, and no more a
+/// cube away from there.
+TEST(Riders, WithSlackAreFreeWhereTheCarrierHasThem) {
+  const support::Body body = shallow_block(1e-3); // of cubes of 1 m
+  const Matching model(body, {.density = 1000, .half_width = 2, .stiffness = k});
+  const auto mass = model.lumped_mass();
+  const Points rest = grid::rest_positions(body);
+  const Riders riders(body.complex, mass, 1000, grid::well_filled, rest, 1);
+  EXPECT_EQ(riders.n_riders(), 6u * 5u * 5u - 4u * 3u * 3u) << "all but the nodes";
+  const Mat3 turn = Draw(8).rotation();
+  const auto lost = [&](const Vec3& at, const double away) { // of the velocity of one that alone moves [1]
+    const auto i = static_cast<std::size_t>(std::ranges::find(rest, at) - rest.begin());
+    if (i == rest.size()) {
+      ADD_FAILURE() << "no corner there";
+      return 0.0;
+    }
+    Points x, v(rest.size(), Vec3::Zero());
+    for (const Vec3& p : rest)
+      x.push_back(turn * p + Vec3(3, 1, 2));
+    x[i] += away * Vec3(1, 2, 2) / 3;
+    v[i] = Vec3(1, 0, 0);
+    riders.damp(x, mass, 0.2, v);
+    return 1 - v[i].norm();
+  };
+  Points free; // of those above the block's nodes, whose carriers may be beneath
+  for (int i = 1; i <= 4; ++i)
+    for (int j = 1; j <= 3; ++j)
+      if (lost(Vec3(i, j, 4), 0) == 0)
+        free.emplace_back(i, j, 4);
+  ASSERT_FALSE(free.empty());
+  for (const Vec3& near : free) {
+    EXPECT_EQ(lost(near, 0.49), 0);
+    const double wholly = lost(near, 1.01);
+    EXPECT_GT(wholly, 0.5);
+    EXPECT_NEAR(lost(near, 0.75), wholly / 2, 0.02);
+    EXPECT_NEAR(lost(near, 2), wholly, 0.02);
+  }
+  EXPECT_GT(lost(Vec3(2, 0, 4), 0), 0.5) << "above an edge of the block: too far";
+}
+
 Vec3 moment(const Matching& model, const Points& x) {
   Vec3 sum = Vec3::Zero();
   for (std::size_t i = 0; i < x.size(); ++i)

@@ -40,17 +40,23 @@ TEST(Books, OfAPressureOnABodyThatTurns) {
   }
 }
 
-/// What the damping of light corners takes is dissipated.
+/// What the damping of light corners takes is dissipated, and that is little of what a body vibrates with: of corners
+/// that ring far out.
 TEST(Books, CloseWhereLightCornersAreDamped) {
-  const Trial cut(steps(2e-4, 500) +
-                  turned_box({"Integrator = velocity Verlet"},
-                             section("Initial state", {"Velocity [m/s] = 0.3*sin(20*x); 0.2*y; 0"})) +
-                  knife(0.02) +
-                  observe("kinetic energy, elastic energy, dissipated energy, missing energy, work of the cut, pieces"));
-  EXPECT_EQ(cut.last("pieces"), 2);
+  const Trial cut(
+    steps(5e-4, 1000) +
+    section("Body b",
+            Keys{"Shape = box", "Sides [m] = 0.25, 0.1, 0.08", "Rotation [degrees] = 10, -15, 5",
+                 "Cube edge [m] = 0.025", "Integrator = velocity Verlet"},
+            material(3e4, 0.4) + section("Initial state", {"Velocity [m/s] = x; 0; z"})) +
+    section("Cut surface knife",
+            {"Time [s] = 0.02", "Shape = plane", "Point [m] = 0.012, 0.005, 0.004", "Normal [1] = 1, 0.1, 0.05"}) +
+    observe("kinetic energy, elastic energy, dissipated energy, missing energy, work of the cut, pieces"));
+  EXPECT_GE(cut.last("pieces"), 2);
   const double had = cut.series("kinetic energy").front();
-  EXPECT_GT(cut.last("dissipated energy"), 0.01 * had);
-  EXPECT_NEAR(cut.last("missing energy"), 0, 2e-3 * had);
+  EXPECT_GT(cut.last("dissipated energy"), 1e-3 * had);
+  EXPECT_LT(cut.last("dissipated energy"), 0.1 * had);
+  EXPECT_NEAR(cut.last("missing energy"), 0, 5e-3 * had);
 }
 
 /// A body may come to its knife: it falls, is thrown or is carried there.
