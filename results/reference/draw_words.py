@@ -128,6 +128,23 @@ def draw_now(axes, complex_, position, layer):
     return cells
 
 
+def arc(sides, seen, lower, h):
+    """The two segments of the skin in a face: points on edges at both ends, one in the face between them."""
+    around = {}
+    for (a, b), labels in sides.items():
+        if labels == {0}:
+            around.setdefault(a, []).append(b)
+            around.setdefault(b, []).append(a)
+
+    def is_on_edge(v):
+        cubes = (seen[v][list(AXES)] - lower) / h
+        return np.min(np.abs(cubes - np.round(cubes))) < 1e-6
+
+    arcs = [seen[[ends[0], v, ends[1]]][:, AXES] for v, ends in around.items()
+            if len(ends) == 2 and not is_on_edge(v) and all(map(is_on_edge, ends))]
+    return max(arcs, key=lambda a: a[1][0] - a[1][1])  # to the lower right
+
+
 def main(folder, file):
     complex_, surface, position = read(folder)
     first = complex_["corners"][0]
@@ -147,6 +164,9 @@ def main(folder, file):
     left.plot([lowest[0]] * 2, [lowest[1], lowest[1] + h], color=NODE, lw=2.5, zorder=2)
     name(left, "edge", (lowest[0], lowest[1] + h / 2), (-75, -20))
     name(left, "segment of the skin", segment.mean(axis=0), (-65, 40), SKIN)
+    curve = arc(sides, seen, complex_["rest_position"][first[0]][list(AXES)], h)
+    left.plot(curve[:, 0], curve[:, 1], color=SKIN, lw=5, zorder=2)
+    name(left, "arc", curve[1], (55, -30), SKIN)
     name(left, "cut", min(cut, key=lambda s: s[:, 1].mean()).mean(axis=0) if cut else (0, 0), (65, 10), CUT)
     for rim in sorted(rims, key=lambda p: p[0])[:1]:
         name(left, "rim", rim, (-45, 28), RIM)
@@ -166,6 +186,9 @@ def main(folder, file):
     name(right, "real corner", min(real, key=lambda p: p[0]), (-40, -80))
     if unreal:
         name(right, "virtual corner", max(unreal, key=lambda p: p[0]), (75, 30))
+    whole = np.array([position[complex_["corners"][c]][:, AXES].mean(axis=0) for cell, cs in cells.items()
+                      if cell[ACROSS] == layer for c in cs])
+    name(right, "piece: all of them", whole[np.argmin(whole[:, 1])], (-95, -10))
     for axes, title in ((left, "a plane of the grid, at rest"), (right, "copies below it, as they stand")):
         axes.set_title(title, fontsize=12)
         axes.set_aspect("equal")

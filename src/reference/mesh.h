@@ -54,7 +54,7 @@ Mesh extruded(const Mesh& plane, const std::vector<double>& z);
 void map_vertices(Mesh& mesh, const std::function<Vec3(const Vec3&)>& to);
 
 /// Parts the cells at all faces (of quadrilaterals: edges) that lie in the plane through `point` across `normal` and
-/// whose vertices are all `within` a patch, its rim included: vertices there are made double, but those at the crack's
+/// whose vertices are all `within` a patch or on its border: vertices there are made double, but those at the crack's
 /// front, around which cells still hold together. Returns how many faces were parted.
 std::size_t split(Mesh& mesh, const Vec3& point, const Vec3& normal, const std::function<bool(const Vec3&)>& within);
 

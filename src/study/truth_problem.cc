@@ -77,7 +77,7 @@ void require_disc_in_square(const TruthParameters& p, const Section& section) {
   if (p.heights.empty() || !(p.heights[0] < 0 && p.heights[1] > 0))
     throw section.complaint("Heights [m]", "a body with a disc reaches below and above z = 0", "Write -1, 1");
   if (p.cells.empty() || p.cells[0] < 2)
-    throw section.complaint("Cells [1]", "a disc in a square has two layers at its rim or more", "Write 3 or 4");
+    throw section.complaint("Cells [1]", "a disc in a square has two layers at its border or more", "Write 3 or 4");
 }
 
 /// How many numbers say the cells of a shape.
@@ -137,7 +137,7 @@ void extend(std::vector<double>& at, const double to, const double ratio) {
   at.push_back(to);
 }
 
-/// Layers on both sides of the rim of the disc, and above and below it, shrink towards it.
+/// Layers on both sides of the border of the disc, and above and below it, shrink towards it.
 reference::Mesh disc_in_block(const TruthParameters& p, const int n_layers) {
   constexpr double outwards = 2;
   const std::vector<double> near = reference::graded(0, 0.6 * p.radius, n_layers, layer_ratio);
@@ -224,15 +224,15 @@ void TruthParameters::describe(Parameters& p) {
   p.choice(
     "Shape", shape, {quadrilateral_shape, disc_shape, disc_in_square_shape},
     "The body in the plane z = 0. A disc lies around the origin; with heights it is a cylinder. In the square cells "
-    "are fitted to a disc whose rim a crack may have as its front.");
+    "are fitted to a disc whose border a crack may have as its front.");
   p.points("Corners [m]", corners, "Of the quadrilateral: four, counter-clockwise.");
   p.number("Half width [m]", half_width, non_negative, "Of the square around the origin.");
   p.number("Radius [m]", radius, non_negative, "Of the disc.");
   p.numbers("Heights [m]", heights, any_number, "It reaches from the first to the second. None: plane strain.");
   p.numbers("Cells [1]", cells, positive,
             "Cells along the first side, the second, and the height, before adaptation. Of a disc: rings around its "
-            "core, and the height. Of a disc in a square: layers inside and outside of its rim, which shrink towards "
-            "it; the answer is extrapolated from that many and one less.");
+            "core, and the height. Of a disc in a square: layers inside and outside of its border, which shrink "
+            "towards it; the answer is extrapolated from that many and one less.");
   p.number("Young's modulus [Pa]", youngs_modulus, positive, "Of the material.");
   p.require_last();
   p.number("Poisson's ratio [1]", poissons_ratio, {.min = -1, .max = 0.5, .min_excluded = true, .max_excluded = true},

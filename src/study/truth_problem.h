@@ -37,9 +37,9 @@ struct TruthAnswerParameters {
 /// The sections below Truth.
 std::vector<scene::SectionKind> truth_parts();
 
-/// The layers of cells at a disc's rim: each is as wide as the one before times this, towards the rim. The square root
-/// that displacements have at the front of a crack leaves an error in proportion to the innermost layer, whatever the
-/// degree.
+/// The layers of cells at a disc's border: each is as wide as the one before times this, towards the border. The square
+/// root that displacements have at the front of a crack leaves an error in proportion to the innermost layer, whatever
+/// the degree.
 constexpr double layer_ratio = 0.3;
 /// Whether a body has such layers.
 bool has_layers(const TruthParameters& p);

@@ -286,6 +286,12 @@ double work(const SplitArms& arms, const DoubleCantilever& beam) {
 
 } // namespace
 
+BeamResult work_on_double_cantilever(const DoubleCantilever& beam, const BeamModel& model) {
+  SplitArms arms = split_arms(beam, by_rectangle(beam, cut::Fronts::inside_cells), pull(beam), model);
+  arms.result.value = work(arms, beam);
+  return arms.result;
+}
+
 BeamResult double_cantilever_by_work(const DoubleCantilever& beam, const BeamModel& model) {
   const double b = 2 * beam.arm / beam.n_over_arm, c = length_of_cut(beam) / beam.arm;
   const auto of = [&](const int n_more) {

@@ -70,6 +70,8 @@ struct DoubleCantilever {
 BeamResult double_cantilever(const DoubleCantilever& beam, const BeamModel& model);
 /// The same by work: half of what that of P grows by as c grows from an arm less to an arm more.
 BeamResult double_cantilever_by_work(const DoubleCantilever& beam, const BeamModel& model);
+/// The arms pulled apart likewise: P times the opening, twice the energy that the beam has; value [J].
+BeamResult work_on_double_cantilever(const DoubleCantilever& beam, const BeamModel& model);
 /// The arms pulled apart likewise: the work of P after a blade has come from x = 0 to the front in so many steps, over
 /// that after a rectangle has cut as far at once.
 BeamResult blade_over_rectangle(const DoubleCantilever& beam, int n_steps, const BeamModel& model);
