@@ -82,8 +82,8 @@ std::pair<double, double> times_of_motion(const cut::Blade& blade) {
   return {first, last};
 }
 
-/// How far a body may go until a time [m]: by half its size as it deforms, as it was thrown and falls, and as supports
-/// carry it; anywhere where other loads or tools move it.
+/// How far a body may go until a time, but for its fall [m]: by half its size as it deforms, as it was thrown, and as
+/// supports carry it; anywhere where other loads or tools move it.
 double way_until(const double time, const Body& body, const World& world) {
   constexpr double anywhere = 1e9;
   if (!body.load_makers.empty() || !world.forceps.empty())
@@ -98,8 +98,7 @@ double way_until(const double time, const Body& body, const World& world) {
       for (const Vec3& rest : support.rest)
         carried = std::max(carried, (support.places(i * time / n_times)(rest) - rest).norm());
   }
-  return 0.5 * (box.upper - box.lower).norm() + fastest * time + 0.5 * body.loads.gravity.norm() * time * time +
-         carried;
+  return 0.5 * (box.upper - box.lower).norm() + fastest * time + carried;
 }
 
 bool comes_near(const cut::Blade& blade, const Body& body, const World& world) {
@@ -108,8 +107,9 @@ bool comes_near(const cut::Blade& blade, const Body& body, const World& world) {
   for (const auto& triangle : cut::sweep(blade, first, last))
     path.insert(path.end(), triangle.begin(), triangle.end());
   const Box swept = geometry::box_around(path), box = geometry::box_around(positions(body));
-  const Vec3 slack = Vec3::Constant(way_until(std::min(last, world.n_steps * world.time_step), body, world));
-  return geometry::overlap(swept, Box{box.lower - slack, box.upper + slack});
+  const double time = std::min(last, world.n_steps * world.time_step);
+  const Vec3 slack = Vec3::Constant(way_until(time, body, world)), fall = 0.5 * time * time * body.loads.gravity;
+  return geometry::overlap(swept, Box{box.lower - slack + fall.cwiseMin(0), box.upper + slack + fall.cwiseMax(0)});
 }
 
 /// The particles of all bodies that rest in a region [m].

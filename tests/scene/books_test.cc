@@ -69,6 +69,8 @@ TEST(Books, BodiesMayComeToTheirKnives) {
   EXPECT_THROW(world_of(with("")), ParameterError);
   EXPECT_THROW(world_of(with("", section("Gravity", {"Acceleration [m/s^2] = 0, 0, -0.5"}))), ParameterError);
   EXPECT_NO_THROW(world_of(with("", section("Gravity", {}))));
+  const std::string sideways = section("Gravity", {"Acceleration [m/s^2] = -9.81, 0, 9.81"});
+  EXPECT_THROW(world_of(with("", sideways)), ParameterError) << "it falls elsewhere";
   EXPECT_NO_THROW(world_of(with(section("Initial state", {"Velocity [m/s] = 0; 0; -4"}))));
   EXPECT_NO_THROW(world_of(
     with(section("Support hand", box("-1, -1, -1", "0, 1, 1") + Keys{"Displacement [m] = 0; 0; -4*t"}))));
