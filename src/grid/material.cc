@@ -28,6 +28,16 @@ class Divisions {
     q[axis] += solid_.grid.h() * std::clamp(t, min_edge_parameter, 1 - min_edge_parameter);
     return q;
   }
+  /// On a segment of the skin from a to b, in the unit cube.
+  double in_skin(const int segment, const Vec3& a, const Vec3& b) const {
+    if (front_ == nullptr || (front_->ahead >> segment & 1) == 0)
+      return 0.5;
+    const auto height = [&](const Vec3& xi) {
+      return front_->normal.dot(solid_.grid.origin(cell_) + solid_.grid.h() * xi - front_->point);
+    };
+    const double at_a = height(a), at_b = height(b);
+    return at_a == at_b ? 0.5 : std::clamp(at_a / (at_a - at_b), 0.0, 1.0);
+  }
   Vec3 in_face(const int face) const {
     if (front_ == nullptr || solid_.cuts.point(faces_[face]) != nullptr)
       return face_point(solid_, faces_[face]);
@@ -119,7 +129,8 @@ class LocalSkeleton {
     if (segment < skeleton::first_half)
       return on_line(segment, local(divisions_.on_line(segment)));
     const SkinCut* const of_skin = solid_.cuts.find(skin_segment(solid_.grid, cell_, segment));
-    return items_[a] + (of_skin ? of_skin->t : 0.5) * (items_[b] - items_[a]);
+    const double t = of_skin ? of_skin->t : divisions_.in_skin(segment, items_[a], items_[b]);
+    return items_[a] + t * (items_[b] - items_[a]);
   }
 
   Vec3 in_side(const int side) const {

@@ -152,18 +152,18 @@ TEST(DoubleCantilever, FrontsLieWhereTheyAreCutInsideCells) {
   EXPECT_LT(most / least - 1, 0.02);
 }
 
-/// The same with eight cells an arm, in 20 places: .51 % from the formula at most.
+/// The same with eight cells an arm, in 20 places: .49 % from the formula at most.
 TEST(DoubleCantilever, FrontsLieWhereTheyAreCutInsideFineCells) {
   for (int i = 0; i < 20; ++i) {
     const double ratio = double_cantilever({.n_over_arm = 8, .front = (i + 0.5) / 20}, {}).value;
     record("front_" + std::to_string(i), ratio);
-    EXPECT_NEAR(ratio, 1, 0.0052) << i;
+    EXPECT_NEAR(ratio, 1, 0.005) << i;
   }
 }
 
-/// What a step of a front gives becomes less with its length, inside of a cell and from one cell into the next: half of
-/// what G says at least and 1.3 times that at most, but for jumps, half-way and about three quarters through a cell, of
-/// up to a hundredth of what a whole cell gives.
+/// What a step of a front gives becomes less with its length: half of what G says at least and 1.4 times that at most.
+/// But where it comes into the next cell, with its lag at three quarters of this one, it stands still for the first
+/// fiftieth of that, and then gives at once what that held back.
 TEST(DoubleCantilever, StepsOfAFrontGiveLessTheShorterTheyAre) {
   const int n = 4;
   const double h = 1.0 / n, b = 2 * h;
@@ -176,8 +176,9 @@ TEST(DoubleCantilever, StepsOfAFrontGiveLessTheShorterTheyAre) {
                    of_cell = 2 * b * h * 12 * c * c / (b * b) * std::pow(1 + 0.673 / c, 2); // 2 G b h
       const double given = (work(middle + step / 2) - work(middle - step / 2)) / of_cell;
       record("step_" + std::to_string(step) + "_at_" + std::to_string(middle), given / step);
-      EXPECT_GT(given, 0.5 * step - 0.01) << middle << " " << step;
-      EXPECT_LT(given, 1.3 * step + 0.01) << middle << " " << step;
+      const double held_back = middle == 0.77 ? 0.02 : 0;
+      EXPECT_GT(given, 0.5 * step - held_back) << middle << " " << step;
+      EXPECT_LT(given, 1.4 * step + held_back) << middle << " " << step;
     }
 }
 
