@@ -142,7 +142,7 @@ CgReport conjugate_gradients(const CgEquation& equation, const std::span<const d
     report.residual = std::sqrt(square);
     report.converged = report.residual <= stop.residual || estimate.says_enough() ||
                        (equation.J && estimate.foresees_enough(square));
-    if (report.converged)
+    if (report.converged || report.n_iterations == max_iterations)
       return;
     if (equation.J)
       equation.B(r, z);
