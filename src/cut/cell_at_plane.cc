@@ -76,7 +76,7 @@ CellAtPlane::CellAtPlane(const grid::Solid& solid, const grid::CellId c, const P
   : solid_(solid), cell_(c), plane_(plane), x_(x) {
   for (int v = 0; v < cube::n_vertices; ++v) {
     height_[v] = height(x_[v]);
-    above_ |= unsigned(height_[v] >= 0) << v; // as meet() of cut_surface.cc has it
+    above_ |= unsigned(height_[v] >= 0) << v;
   }
 }
 

@@ -14,6 +14,11 @@
 /// regions by breadth-first search and share bars and plates between them where the lattice is regular: here no case is
 /// special.
 ///
+/// Where a cut ends inside cells (grid/fronts.h), what is reached counts in part. Steps along edges ahead of the cut have
+/// phi = (1 + r) f / (1 + r f), f the part that the cut has passed of the cells around, and a walk along a line counts
+/// by 1 less the largest phi of its steps. With r = 1 + 1.8 / w the opening of a split bar grows with f as with whole
+/// cells, to a third, for w = 1 .. 4 (tests/lattice/fronts_test.cc).
+///
 /// Limits: where lines are broken, regions depend on the order of the axes, and r may be in the region of s without s
 /// in that of r. Matching needs neither.
 
@@ -43,15 +48,33 @@ class Lines {
   struct Axis {
     std::vector<std::uint32_t> start, points;
     std::size_t longest = 0;
+
+    void end_line();
+  };
+  /// Lines with steps that count in part: the unbroken line by 1 less the largest phi, and for each phi the line broken
+  /// at all steps with that and more, by what it is more than the next smaller one.
+  struct Broken {
+    Axis lines; ///< of places below
+    std::vector<std::uint32_t> point; ///< by place
+    std::vector<double> weight;       ///< by place, of what is summed there [1]
+    std::vector<std::uint32_t> whole_point; ///< of these lines, each once
+    std::vector<double> whole_weight;       ///< of the unbroken line [1]
+  };
+  /// A step of a line that counts in part.
+  struct Partial {
+    std::uint32_t lower; ///< point
+    double phi;          ///< in (0, 1) [1]
   };
 
   /// From the point one step up from each point.
   static Axis lines_through(const std::vector<std::uint32_t>& next);
-  void sum_windows_along(const Axis& axis, std::vector<double>& f) const;
+  static Broken broken_lines(const Axis& axis, const std::vector<Partial>& partial);
+  void sum_windows_along(int axis, std::vector<double>& f) const;
 
   std::size_t half_width_;
   std::vector<grid::NodeId> nodes_;
   std::array<Axis, 3> axes_;
+  std::array<Broken, 3> broken_; // empty where no cut ends inside cells
 };
 
 } // namespace kerf::lattice

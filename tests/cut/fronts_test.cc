@@ -45,6 +45,24 @@ TEST(Fronts, ArePassedAsFarAsTheCutHasCome) {
   }
 }
 
+/// Right midway through a box, where points of its skin lie in the plane to round-off, cells in a row are parted alike:
+/// along the front all the copies have corners of their own, behind as well as in a cell that is passed but not cut.
+TEST(Fronts, LieMidwayThroughABox) {
+  for (const double size : {0.1, 0.37, 1.0}) {
+    const auto n_corners = [&](const double end) {
+      const auto mesh = geometry::box_mesh(Vec3::Zero(), size * Vec3(12, 2, 10));
+      const Body bar = support::with_copies(support::embedded(mesh, size, Vec3::Constant(0.5)));
+      Cutting cutting(bar, Fronts::inside_cells);
+      cutting.cut(Rectangle{size * Vec3(0, 1, 5), size * Vec3(2 * end, 0, 0), size * Vec3(0, 6, 0)});
+      expect_as_built(cutting);
+      return cutting.body.complex.n_corners();
+    };
+    const auto before = n_corners(5.2);
+    for (const double end : {5.3, 5.4, 5.49, 5.51, 5.6, 6.0, 6.2}) // enters the next cell at 5.25, cuts at 5.5
+      EXPECT_EQ(n_corners(end), before + 8) << size << ' ' << end;
+  }
+}
+
 /// A rectangle that ends in cells which the skin passes through: they are passed by as much of their material as it has
 /// come through, with its lag. One that ends outside, in the same cubes, parts the body, and leaves nothing tied.
 TEST(Fronts, ArePassedByTheirMaterial) {

@@ -164,5 +164,81 @@ TEST(Lines, RegionsOfNoWidthAreRefused) {
     }
 }
 
+/// What a walk of at most w steps along an axis counts from each point to each, with steps that fronts have passed in
+/// part.
+std::vector<std::map<std::uint32_t, double>> walks(const Body& body, const Lines& lines, const int axis, const int w) {
+  const double r = 1 + 1.8 / w;
+  const auto phi_of = [&](const grid::EdgeId edge) {
+    double most = 0;
+    for (const grid::CellId c : body.grid.cells(edge))
+      if (const grid::Front* const front = c.valid() ? body.cuts.front(c) : nullptr;
+          front && (front->ahead >> body.grid.line(c, edge) & 1) != 0)
+        most = std::max(most, (1 + r) * front->passed / (1 + r * front->passed));
+    return most;
+  };
+  const auto number = [&](const grid::NodeId n) {
+    return static_cast<std::uint32_t>(std::ranges::lower_bound(lines.nodes(), n) - lines.nodes().begin());
+  };
+  std::vector<std::map<std::uint32_t, double>> walks;
+  for (const auto from : lines.nodes()) {
+    auto& found = walks.emplace_back();
+    found[number(from)] = 1;
+    for (const int sign : {-1, 1}) {
+      double most = 0;
+      auto at = from;
+      for (int i = 0; i < w; ++i) {
+        const auto next = step(body, at, axis, sign);
+        if (!next)
+          break;
+        Index3 lower = body.grid.index(std::min(at, *next));
+        most = std::max(most, phi_of(*body.grid.find_edge(lower, axis)));
+        found[number(*next)] = 1 - most;
+        at = *next;
+      }
+    }
+  }
+  return walks;
+}
+
+/// One axis after the other.
+std::vector<double> sums_of_walks(const Body& body, const Lines& lines, const std::array<int, 3>& axes, const int w,
+                                  std::vector<double> f) {
+  const std::size_t width = f.size() / lines.n_points();
+  for (const int axis : axes) {
+    std::vector<double> sum(f.size(), 0.0);
+    const auto all = walks(body, lines, axis, w);
+    for (std::size_t r = 0; r < all.size(); ++r)
+      for (const auto& [point, part] : all[r])
+        for (std::size_t k = 0; k < width; ++k)
+          sum[width * r + k] += part * f[width * point + k];
+    f = std::move(sum);
+  }
+  return f;
+}
+
+TEST(Lines, StepsAheadOfFrontsCountInPart) {
+  for (const int w : {1, 2, 3, 8})
+    for (const double of_cells : {0.05, 0.5}) {
+      Body body = cut_block(static_cast<unsigned>(40 + w), {11, 5, 6}, 0.1);
+      Draw draw(static_cast<unsigned>(w));
+      for (const auto c : ids<grid::CellId>(body.grid.n_cells()))
+        if (draw(0, 1) < of_cells) {
+          grid::Front front{.cell = c, .ahead = 0, .passed = draw(0.02, 0.999)};
+          for (int line = 0; line < grid::cube::n_lines; ++line)
+            front.ahead |= grid::Segments(draw(0, 1) < 0.4) << line;
+          body.cuts.set(front);
+        }
+      const Lines lines(body, w);
+      for (const std::size_t width : {12, 6}) {
+        const auto f = random_field(width * lines.n_points(), 3);
+        auto over_regions = f, over_holders = f;
+        lines.sum_over_regions(over_regions);
+        lines.sum_over_holders(over_holders);
+        EXPECT_LT(largest_difference(over_regions, sums_of_walks(body, lines, {0, 1, 2}, w, f)), 1e-11);
+        EXPECT_LT(largest_difference(over_holders, sums_of_walks(body, lines, {2, 1, 0}, w, f)), 1e-11);
+      }
+    }
+}
+
 } // namespace
 } // namespace kerf::lattice::lines_test
