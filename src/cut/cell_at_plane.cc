@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <numeric>
 
 namespace kerf::cut {
 
@@ -20,11 +21,23 @@ using grid::Segments;
 
 constexpr double little_room = 1e-3; // of a cube
 
-/// The points of a convex polygon in their order around it.
-void sort_around(Polygon& points, const Vec3& normal) {
+/// The order of a convex polygon's points around it.
+std::vector<std::size_t> order_around(const Polygon& points, const Vec3& normal) {
   const Vec3 u = normal.unitOrthogonal(), v = normal.cross(u), middle = mean(points);
-  const auto angle = [&](const Vec3& p) { return std::atan2(v.dot(p - middle), u.dot(p - middle)); };
-  std::sort(points.begin(), points.end(), [&](const Vec3& p, const Vec3& q) { return angle(p) < angle(q); });
+  std::vector<double> angle;
+  for (const Vec3& p : points)
+    angle.push_back(std::atan2(v.dot(p - middle), u.dot(p - middle)));
+  std::vector<std::size_t> order(points.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::ranges::sort(order, {}, [&](const std::size_t i) { return angle[i]; });
+  return order;
+}
+
+Polygon in_order(const Polygon& points, const std::vector<std::size_t>& order) {
+  Polygon result;
+  for (const std::size_t i : order)
+    result.push_back(points[i]);
+  return result;
 }
 
 } // namespace
@@ -44,16 +57,9 @@ double area(const Polygon& polygon) {
 }
 
 Polygon clipped(const Polygon& polygon, const HalfSpace& side) {
-  Polygon result;
-  for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const Vec3 &p = polygon[i], &q = polygon[(i + 1) % polygon.size()];
-    const double at_p = side.beyond(p), at_q = side.beyond(q);
-    if (at_p <= 0)
-      result.push_back(p);
-    if ((at_p < 0) != (at_q < 0) && at_p != 0 && at_q != 0)
-      result.push_back(p + at_p / (at_p - at_q) * (q - p));
-  }
-  return result;
+  return clipped(
+    polygon, [&](const Vec3& p) { return side.beyond(p); },
+    [](const Vec3& p, const Vec3& q, const double t) -> Vec3 { return p + t * (q - p); });
 }
 
 Vec3 mean(const Polygon& points) {
@@ -116,9 +122,8 @@ CellAtPlane::Section CellAtPlane::section() const {
     section.there.push_back(x_[v] + t * (x_[w] - x_[v]));
     section.rest.push_back(p + t * (q - p));
   }
-  sort_around(section.there, plane_.normal);
-  sort_around(section.rest, normal(section.rest));
-  return section;
+  const auto order = order_around(section.there, plane_.normal);
+  return {in_order(section.there, order), in_order(section.rest, order)};
 }
 
 /// A little above the plane, as what is cut already has its vertices in it.
@@ -141,8 +146,7 @@ std::vector<Polygon> CellAtPlane::material() const {
           piece.push_back(p[i] + at_i / (at_i - at_j) * (p[j] - p[i]));
     if (piece.empty())
       return;
-    sort_around(piece, plane_.normal);
-    pieces.push_back(std::move(piece));
+    pieces.push_back(in_order(piece, order_around(piece, plane_.normal)));
   });
   return pieces;
 }

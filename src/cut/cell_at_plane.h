@@ -19,6 +19,20 @@ struct HalfSpace {
 
   double beyond(const Vec3& p) const { return outward.dot(p) - height; }
 };
+/// What of a convex polygon lies where `beyond` is not positive; between(p, q, t) is on the way from p to q.
+template <class Point, class Beyond, class Between>
+std::vector<Point> clipped(const std::vector<Point>& polygon, const Beyond& beyond, const Between& between) {
+  std::vector<Point> result;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Point &p = polygon[i], &q = polygon[(i + 1) % polygon.size()];
+    const double at_p = beyond(p), at_q = beyond(q);
+    if (at_p <= 0)
+      result.push_back(p);
+    if ((at_p < 0) != (at_q < 0) && at_p != 0 && at_q != 0)
+      result.push_back(between(p, q, at_p / (at_p - at_q)));
+  }
+  return result;
+}
 /// What of a polygon lies in a half-space.
 Polygon clipped(const Polygon& polygon, const HalfSpace& side);
 
@@ -41,7 +55,7 @@ class CellAtPlane {
   /// either side of it?
   bool is_clear(double margin) const;
 
-  /// Where the plane meets the cube, around, there and at rest. A plane that only grazes the cell is moved into it by a
+  /// Where the plane meets the cube, around, there and at rest, point by point. A plane that only grazes the cell is moved into it by a
   /// little, so that its section has an area.
   struct Section {
     Polygon there, rest;

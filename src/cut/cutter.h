@@ -70,8 +70,8 @@ enum class Release { queued, at_once };
 /// Where cuts may end (fronts.h, advance.h).
 enum class Fronts {
   at_faces,                 ///< with the last cell that they part
-  of_surfaces_inside_cells, ///< blades so; what cuts at once wherever it does, in cells whose copies are tied
-  inside_cells              ///< all of them so: for a physics that knows ties (grid/fronts.h)
+  of_surfaces_inside_cells, ///< blades so; what cuts at once wherever it does (grid/fronts.h)
+  inside_cells              ///< all of them wherever they do: for steps that ties do not shorten
 };
 
 class Cutter {

@@ -46,27 +46,58 @@ Outline outline_of(const Rectangle& rectangle, const double more) {
   return outline;
 }
 
-/// With the lag of its front.
+/// Of a shape, and with the lag of its front.
+struct Outlines {
+  Outline own, with_lag;
+};
 template <class Flat>
-std::optional<Outline> outline_with_lag(const Flat& shape, const double h) {
-  return outline_of(shape, grid::front_lag(outline_of(shape, 0).normal) * h);
+std::optional<Outlines> outlines_of(const Flat& shape, const double h) {
+  const Outline own = outline_of(shape, 0);
+  return Outlines{own, outline_of(shape, grid::front_lag(own.normal) * h)};
 }
 template <class Shape>
-requires(!std::is_same_v<Shape, Disc> &&
-         !std::is_same_v<Shape, Rectangle>) std::optional<Outline> outline_with_lag(const Shape&, double) {
+requires(!std::is_same_v<Shape, Disc> && !std::is_same_v<Shape, Rectangle>) std::optional<Outlines>
+  outlines_of(const Shape&, double) {
   return std::nullopt;
 }
 
+/// What of the section lies in the shape, at rest. The section is taken a little larger, so that what neighbours have of
+/// the cut has no seam.
+Points come_in(const CellAtPlane::Section& section, const Outline& shape) {
+  constexpr double larger = 1.02;
+  const Vec3 middle = mean(section.there), middle_at_rest = mean(section.rest);
+  struct Place {
+    Vec3 there, rest;
+  };
+  std::vector<Place> places;
+  for (std::size_t i = 0; i < section.rest.size(); ++i)
+    places.push_back({middle + larger * (section.there[i] - middle),
+                      middle_at_rest + larger * (section.rest[i] - middle_at_rest)});
+  for (const HalfSpace& side : shape.sides)
+    places = clipped(
+      places, [&](const Place& p) { return side.beyond(p.there); },
+      [](const Place& p, const Place& q, const double t) {
+        return Place{p.there + t * (q.there - p.there), p.rest + t * (q.rest - p.rest)};
+      });
+  Points come;
+  for (const Place& place : places)
+    come.push_back(place.rest);
+  return come;
+}
+
 /// How far the shape has come in the cell.
-Front front_in(const CellAtPlane& cell, const Outline& outline) {
+Front front_in(const CellAtPlane& cell, const Outlines& outlines) {
   double inside = 0, all = 0;
   for (Polygon piece : cell.material()) {
     all += area(piece);
-    for (const HalfSpace& side : outline.sides)
+    for (const HalfSpace& side : outlines.with_lag.sides)
       piece = clipped(piece, side);
     inside += area(piece);
   }
-  return cell.front(cell.section(), all > 0 ? inside / all : 0);
+  const CellAtPlane::Section section = cell.section();
+  Front front = cell.front(section, all > 0 ? inside / all : 0);
+  front.come = come_in(section, outlines.own);
+  return front;
 }
 
 bool is_same_plane(const Front& one, const Front& other, const double h) {
@@ -74,8 +105,9 @@ bool is_same_plane(const Front& one, const Front& other, const double h) {
   return one.normal.cross(other.normal).norm() < same && std::abs(one.normal.dot(one.point - other.point)) < same * h;
 }
 
-Front moved_on(Front front, const double passed) {
+Front moved_on(Front front, const double passed, const Points& come) {
   front.passed = passed;
+  front.come = come;
   return front;
 }
 
@@ -83,26 +115,26 @@ Front moved_on(Front front, const double passed) {
 
 std::vector<Front> find_fronts(const CutSurface& surface, const Solid& solid, const Points& x) {
   const double h = solid.grid.h();
-  const auto outline =
-    std::visit([&](const auto& shape) -> std::optional<Outline> { return outline_with_lag(shape, h); }, surface.shape);
+  const auto outlines = std::visit([&](const auto& shape) { return outlines_of(shape, h); }, surface.shape);
   std::vector<Front> fronts, corners;
-  if (!outline)
+  if (!outlines)
     return fronts;
+  const Outline& outline = outlines->with_lag;
   for (const auto c : ids<CellId>(solid.grid.n_cells())) {
     const grid::Copy& copy = solid.complex.copies[solid.complex.first_copy[c]];
     const double size = (x[copy.corners[7].value] - x[copy.corners[0].value]).norm();
-    if ((x[copy.corners[0].value] - outline->point).norm() > outline->reach + 2 * size)
+    if ((x[copy.corners[0].value] - outline.point).norm() > outline.reach + 2 * size)
       continue;
     const Front* const earlier = solid.cuts.front(c);
     if (copy.next.valid() && !earlier)
       continue;
-    const CellAtPlane cell(solid, c, {outline->point, outline->normal}, grid::corners_of(copy, x));
+    const CellAtPlane cell(solid, c, {outline.point, outline.normal}, grid::corners_of(copy, x));
     if (!cell.is_met())
       continue;
-    Front front = front_in(cell, *outline);
+    Front front = front_in(cell, *outlines);
     if (earlier) {
       if (front.passed > earlier->passed && is_same_plane(front, *earlier, h))
-        fronts.push_back(moved_on(*earlier, front.passed));
+        fronts.push_back(moved_on(*earlier, front.passed, front.come));
       continue;
     }
     front.label = surface.label;
@@ -111,7 +143,7 @@ std::vector<Front> find_fronts(const CutSurface& surface, const Solid& solid, co
     if (front.passed >= least_passed)
       fronts.push_back(front);
     else
-      corners.push_back(moved_on(front, least_passed));
+      corners.push_back(moved_on(front, least_passed, front.come));
   }
   FrontsOfCells begun;
   for (const Front& front : fronts)

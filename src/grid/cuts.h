@@ -86,8 +86,9 @@ struct Front {
   double area = 0;                                   ///< of the material in it, in the cell [m^2]
   double passed = 1;                                 ///< the part of it that the cut has come to, in (0, 1] [1]
   CutLabel label = 1;
+  Points come = {}; ///< of a surface: around where it is in the cell and a little beside it, convex, rest frame [m]
 
-  void archive(Archive& a) { a(cell, ahead, point, normal, area, passed, label); }
+  void archive(Archive& a) { a(cell, ahead, point, normal, area, passed, label, come); }
 };
 
 class Cuts {

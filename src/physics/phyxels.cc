@@ -39,6 +39,16 @@ std::vector<visibility::Face> faces_of(const surface::Surface& surface, const Pa
   return faces;
 }
 
+/// Of cuts that end inside cells, in these.
+std::vector<visibility::Face> faces_of_fronts(const grid::Solid& solid, const std::vector<grid::CellId>& cells) {
+  std::vector<visibility::Face> faces;
+  for (const grid::CellId c : cells)
+    if (const grid::Front* const front = solid.cuts.front(c))
+      for (std::size_t i = 2; i < front->come.size(); ++i)
+        faces.push_back({front->come[0], front->come[i - 1], front->come[i]});
+  return faces;
+}
+
 /// Pseudo-inverse of a symmetric matrix whose small eigenvalues say nothing.
 Mat3 inverse_where_known(const Mat3& A) {
   constexpr double smallest = 1e-6;
@@ -210,6 +220,7 @@ void Phyxels::follow_cut(const CutBody& body, const grid::CutChange& change, dyn
   if (!sights_)
     begin_to_look(body.surface);
   add_faces(faces_of(body.surface, Part::cuts));
+  add_faces(faces_of_fronts(body.solid, change.cells));
   find_pieces(body);
   const Vec3 had = momentum(model_.lumped_mass(), crumbs_, state);
   const std::vector<std::uint8_t> carried = crumbs_.carried();

@@ -149,14 +149,12 @@ std::string describe_physics(const Section& section, const BodyParameters& param
 }
 
 /// Elements and springs know ties. Those of a front that moves are as stiff as the material that it has parted so far,
-/// on corners that may hold hardly any: explicit steps would have to be several times shorter. The lattice is made anew
-/// whenever a front moves.
+/// on corners that may hold hardly any: explicit steps would have to be several times shorter. The lattice and the links
+/// of phyxels are made anew whenever a front moves.
 cut::Fronts fronts_of(const BodyParameters& parameters) {
-  if (parameters.backend == "lattice")
-    return cut::Fronts::of_surfaces_inside_cells;
-  if (parameters.backend != "fem" && parameters.backend != "mass-spring")
-    return cut::Fronts::at_faces;
-  return is_explicit(parameters.integrator) ? cut::Fronts::of_surfaces_inside_cells : cut::Fronts::inside_cells;
+  const bool knows_ties = parameters.backend == "fem" || parameters.backend == "mass-spring";
+  return knows_ties && !is_explicit(parameters.integrator) ? cut::Fronts::inside_cells
+                                                           : cut::Fronts::of_surfaces_inside_cells;
 }
 
 /// Which parts of the mesh the grid takes for pieces of their own, too thin to be deformed.

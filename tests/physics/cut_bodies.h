@@ -13,9 +13,10 @@ struct GrowingCut {
   support::Body body;
   surface::SurfaceIndex index = {};
   surface::Surface surface;
-  cut::Cutter cutter{9};
+  cut::Cutter cutter;
 
-  explicit GrowingCut(const support::Body& whole) : body(support::with_placed_skin(whole)) {
+  explicit GrowingCut(const support::Body& whole, const cut::Fronts fronts = cut::Fronts::at_faces)
+    : body(support::with_placed_skin(whole)), cutter(9, cut::Release::queued, fronts) {
     body.complex = grid::build_complex(body);
     surface = surface::build_surface(body, index);
     cutter.begin(body, rest());
@@ -26,7 +27,14 @@ struct GrowingCut {
 
   /// Cuts, and lets physics and state follow. Returns what has changed.
   grid::CutChange cut(const cut::SweepCuts& cuts, Physics& physics, dynamics::State& state) {
-    const auto change = cutter.cut(body, cuts);
+    return follow(cutter.cut(body, cuts), physics, state);
+  }
+  grid::CutChange cut(const cut::Shape& shape, Physics& physics, dynamics::State& state) {
+    return follow(cutter.at_once(body, {"cut", shape, 1}, rest()), physics, state);
+  }
+
+ private:
+  grid::CutChange follow(const grid::CutChange& change, Physics& physics, dynamics::State& state) {
     surface::place(body, change, {});
     surface::update_surface(body, change, surface, index);
     physics.follow_cut(seen(), change, state);

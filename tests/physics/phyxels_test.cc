@@ -142,6 +142,48 @@ TEST(Phyxels, PiecesStayTogether) {
   EXPECT_GT(n_links, 10u);
 }
 
+/// Sum of what weights differ by.
+double difference(const std::span<const double> a, const std::span<const double> b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i)
+    sum += std::abs(a[i] - b[i]);
+  return sum;
+}
+
+/// A rectangle that ends inside cells weakens bonds as its own two triangles would, wherever it ends.
+TEST(Phyxels, SeeARectangleAsFarAsItHasCome) {
+  for (const double end : {0.27, 0.31, 0.33, 0.36, 0.40, 0.43}) {
+    GrowingCut block(whole_block(), cut::Fronts::of_surfaces_inside_cells);
+    std::vector<visibility::Face> skin;
+    for (const auto& t : block.surface.triangles)
+      skin.push_back({block.surface.rest[t[0]], block.surface.rest[t[1]], block.surface.rest[t[2]]});
+    Phyxels physics(block.seen(), options(), verlet);
+    dynamics::State state = state_at_rest(physics);
+    const std::span<const double> now = physics.model().weights();
+    const std::vector<double> whole(now.begin(), now.end());
+    const Vec3 centre(end / 2, 0.25, 0.23), first(end, 0, 0), second(0, 1, 0);
+    block.cut(cut::Rectangle{centre, first, second}, physics, state);
+    const std::span<const double> after = physics.model().weights();
+    const std::vector<double> cut(after.begin(), after.end());
+
+    visibility::PairSights sights(visibility::make_criterion(options().visibility.choice, skin));
+    const auto& [pairs, supports] = std::tie(physics.model().neighbours().pairs, physics.model().neighbours().support);
+    std::vector<visibility::Pair> watched;
+    for (std::size_t p = 0; p < pairs.size(); ++p)
+      watched.push_back({physics.rest()[pairs[p][0]], physics.rest()[pairs[p][1]], supports[p]});
+    sights.watch(visibility::PairId(0), watched);
+    const auto corner = [&](const double a, const double b) -> Vec3 { return centre + a * first + b * second; };
+    sights.add_faces(std::vector<visibility::Face>{{corner(-0.5, -0.5), corner(0.5, -0.5), corner(0.5, 0.5)},
+                                                   {corner(-0.5, -0.5), corner(0.5, 0.5), corner(-0.5, 0.5)}});
+    sights.update(pairs.size());
+    std::vector<pba::Sight> seen;
+    for (std::uint32_t p = 0; p < pairs.size(); ++p)
+      seen.push_back(sights.sights()[visibility::PairId(p)]);
+    physics.model().update(seen);
+    EXPECT_LT(difference(cut, physics.model().weights()), 0.05 * difference(whole, physics.model().weights())) << end;
+  }
+}
+
 /// Whether all phyxels that a corner follows know their gradient in all directions; a cut may have left some too few
 /// neighbours.
 bool sees_whole_gradients(Phyxels& physics, const std::size_t corner) {
