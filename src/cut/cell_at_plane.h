@@ -55,8 +55,8 @@ class CellAtPlane {
   /// either side of it?
   bool is_clear(double margin) const;
 
-  /// Where the plane meets the cube, around, there and at rest, point by point. A plane that only grazes the cell is moved into it by a
-  /// little, so that its section has an area.
+  /// Where the plane meets the cube, around, there and at rest, point by point. A plane that only grazes the cell is
+  /// moved into it by a little, so that its section has an area.
   struct Section {
     Polygon there, rest;
   };

@@ -29,8 +29,8 @@ struct Plane {
   Vec3 normal = Vec3::UnitZ(); ///< unit
 };
 
-/// Of a point above the plane, in cubes of edge h [m]: 0, and so above it, where it lies within 1e-9 cubes of it. A skin
-/// that lies right in a plane, as that midway through a box may, is not to be parted by round-off, here and there.
+/// Of a point above the plane, in cubes of edge h [m]: 0, and so above it, where it lies within 1e-9 cubes of it. A
+/// skin that lies right in a plane, as midway through a box, is not to be parted by round-off, here and there.
 double height_above(const Plane& plane, const Vec3& p, double h);
 
 struct Sphere {

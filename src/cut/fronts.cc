@@ -61,8 +61,8 @@ requires(!std::is_same_v<Shape, Disc> && !std::is_same_v<Shape, Rectangle>) std:
   return std::nullopt;
 }
 
-/// What of the section lies in the shape, at rest. The section is taken a little larger, so that what neighbours have of
-/// the cut has no seam.
+/// What of the section lies in the shape, at rest. The section is taken a little larger, so that what neighbours have
+/// of the cut has no seam.
 Points come_in(const CellAtPlane::Section& section, const Outline& shape) {
   constexpr double larger = 1.02;
   const Vec3 middle = mean(section.there), middle_at_rest = mean(section.rest);

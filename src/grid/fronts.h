@@ -23,8 +23,8 @@
 /// for which it is the same to .01 to .03 cubes, and to .09 for a front across the diagonals of faces. Who finds fronts
 /// lets the cut go on by that much (front_lag, cut/fronts.h).
 ///
-/// The lattice has no ties, but counts steps ahead of a front in part (lattice/lines.h); phyxels see what of the plane a
-/// surface has come to (Front::come).
+/// The lattice has no ties, but counts steps ahead of a front in part (lattice/lines.h); phyxels see what of the plane
+/// a surface has come to (Front::come).
 ///
 /// A front is provisional: when its blade has come between the cell's nodes, the cell is parted as that has cut it
 /// (complex.h). Until then copies are not joined again, however the blade goes on, as they may gape.

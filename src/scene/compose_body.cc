@@ -149,8 +149,8 @@ std::string describe_physics(const Section& section, const BodyParameters& param
 }
 
 /// Elements and springs know ties. Those of a front that moves are as stiff as the material that it has parted so far,
-/// on corners that may hold hardly any: explicit steps would have to be several times shorter. The lattice and the links
-/// of phyxels are made anew whenever a front moves.
+/// on corners that may hold hardly any: explicit steps would have to be several times shorter. The lattice and the
+/// links of phyxels are made anew whenever a front moves.
 cut::Fronts fronts_of(const BodyParameters& parameters) {
   const bool knows_ties = parameters.backend == "fem" || parameters.backend == "mass-spring";
   return knows_ties && !is_explicit(parameters.integrator) ? cut::Fronts::inside_cells
