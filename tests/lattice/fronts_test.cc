@@ -13,11 +13,16 @@ namespace {
 
 constexpr double h = 0.1, dt = 0.01, arm = 5 * h, length = 18 * h;
 
-/// A bar of 18 x 2 x 10 cubes, split midway from x = 0 to `front` cubes beyond an arm's height.
-cut::Cutting split_bar(const double front) {
+/// A bar of 18 x 2 x 10 cubes.
+cut::Cutting bar() {
   const auto mesh = geometry::box_mesh(Vec3::Zero(), Vec3(length, 2 * h, 2 * arm));
-  cut::Cutting cutting(support::with_copies(support::embedded(mesh, h, Vec3::Constant(0.5))),
-                       cut::Fronts::inside_cells);
+  return cut::Cutting(support::with_copies(support::embedded(mesh, h, Vec3::Constant(0.5))),
+                      cut::Fronts::inside_cells);
+}
+
+/// Split midway from x = 0 to `front` cubes beyond an arm's height.
+cut::Cutting split_bar(const double front) {
+  cut::Cutting cutting = bar();
   cutting.cut(cut::Rectangle{Vec3(0, h, arm), Vec3(2 * (arm + front * h), 0, 0), Vec3(0, 6 * h, 0)});
   return cutting;
 }
@@ -33,9 +38,20 @@ void hold(const Points& rest, const Vec3& by, const Holds& holds, dynamics::Load
   loads.supports.push_back(std::move(support));
 }
 
+/// The same by a blade, in so many steps.
+cut::Cutting bar_split_by_blade(const double front, const int n_steps) {
+  cut::Cutting cutting = bar();
+  const cut::Blade blade{
+    .name = "blade",
+    .edge = {Vec3(0, -h, arm), Vec3(0, 3 * h, arm)},
+    .key_frames = {{0, Vec3(-h, 0, 0), Vec3::Zero()}, {1, Vec3(arm + front * h, 0, 0), Vec3::Zero()}}};
+  for (int k = 0; k < n_steps || cutting.cutter.n_waiting() > 0; ++k)
+    cutting.step(blade, std::min(1.0, k / double(n_steps)), std::min(1.0, (k + 1) / double(n_steps)));
+  return cutting;
+}
+
 /// What a beam would be as long as, up to a factor, that has the energy of the arms when their ends stand apart.
-double length_of_arms(const double front, const int w) {
-  const cut::Cutting cutting = split_bar(front);
+double length_of_arms(const cut::Cutting& cutting, const int w) {
   const Matching model(cutting.body, matching_options({.half_width = w}, 1000, dt));
   const Points rest = grid::rest_positions(cutting.body);
   constexpr double opening = 0.02 * h;
@@ -56,15 +72,23 @@ double length_of_arms(const double front, const int w) {
 TEST(Fronts, MoveOnEvenly) {
   for (const int w : {2, 3}) {
     constexpr int n = 10;
-    double before = length_of_arms(0.05, w);
-    const double of_step = (length_of_arms(1.05, w) - before) / n;
+    double before = length_of_arms(split_bar(0.05), w);
+    const double of_step = (length_of_arms(split_bar(1.05), w) - before) / n;
     for (int i = 1; i <= n; ++i) {
-      const double now = length_of_arms(0.05 + i / double(n), w);
+      const double now = length_of_arms(split_bar(0.05 + i / double(n)), w);
       EXPECT_GT(now - before, 0.7 * of_step) << w << ' ' << i;
       EXPECT_LT(now - before, 1.4 * of_step) << w << ' ' << i;
       before = now;
     }
   }
+}
+
+/// A blade that stops anywhere in a cell leaves what a rectangle leaves.
+TEST(Fronts, OfBladesAreThoseOfRectangles) {
+  const double of_cell = length_of_arms(split_bar(1.05), 2) - length_of_arms(split_bar(0.05), 2);
+  for (const double front : {0.1, 0.35, 0.6, 0.85})
+    EXPECT_NEAR(length_of_arms(bar_split_by_blade(front, 50), 2), length_of_arms(split_bar(front), 2), 0.1 * of_cell)
+      << front;
 }
 
 /// Forces are those of the energy, and sum to nothing.
