@@ -72,7 +72,7 @@ class CellAtPlane {
   grid::Segments ahead() const;
 
  private:
-  double height(const Vec3& p) const { return height_above(plane_, p, solid_.grid.h()); }
+  double height(const Vec3& p) const { return height_above(plane_, p); }
   double level() const;
   std::array<double, grid::skeleton::n_items> heights_of_items(const grid::CellCuts& cuts) const;
   Vec3 position(int item) const;

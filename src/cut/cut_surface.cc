@@ -119,16 +119,15 @@ Verdict judge(const Chord& chord, const Side p, const Side q) {
   return passes ? Verdict{2, chord.enter, chord.normal_at_enter} : Verdict();
 }
 
-/// With cubes of edge h.
-Verdict meet(const Plane& plane, const Segment& segment, const double h) {
-  const double at_p = height_above(plane, segment[0], h), at_q = height_above(plane, segment[1], h);
+Verdict meet(const Plane& plane, const Segment& segment) {
+  const double at_p = height_above(plane, segment[0]), at_q = height_above(plane, segment[1]);
   if ((at_p < 0) == (at_q < 0))
     return {};
   return {1, at_p / (at_p - at_q), plane.normal};
 }
 
-Verdict meet(const Disc& disc, const Segment& segment, const double h) {
-  const Verdict verdict = meet(Plane{disc.centre, disc.normal}, segment, h);
+Verdict meet(const Disc& disc, const Segment& segment) {
+  const Verdict verdict = meet(Plane{disc.centre, disc.normal}, segment);
   const auto& [p, q] = segment;
   const Vec3 from_centre = p + verdict.t * (q - p) - disc.centre;
   return verdict.n_crossings > 0 && from_centre.squaredNorm() < disc.radius * disc.radius ? verdict : Verdict();
@@ -138,8 +137,8 @@ Vec3 normal_of(const Rectangle& rectangle) {
   return rectangle.first_side.stableNormalized().cross(rectangle.second_side.stableNormalized()).normalized();
 }
 
-Verdict meet(const Rectangle& rectangle, const Segment& segment, const double h) {
-  const Verdict verdict = meet(Plane{rectangle.centre, normal_of(rectangle)}, segment, h);
+Verdict meet(const Rectangle& rectangle, const Segment& segment) {
+  const Verdict verdict = meet(Plane{rectangle.centre, normal_of(rectangle)}, segment);
   const auto& [p, q] = segment;
   const Vec3 from_centre = p + verdict.t * (q - p) - rectangle.centre;
   const auto lies_between = [&](const Vec3& side) {
@@ -150,14 +149,14 @@ Verdict meet(const Rectangle& rectangle, const Segment& segment, const double h)
   return is_met ? verdict : Verdict();
 }
 
-Verdict meet(const Sphere& sphere, const Segment& segment, double) {
+Verdict meet(const Sphere& sphere, const Segment& segment) {
   const Vec3 p = segment[0] - sphere.centre, q = segment[1] - sphere.centre;
   const double r = sphere.radius;
   const auto side = [r](const Vec3& e) { return e.squaredNorm() < r * r ? Side::inside : Side::outside; };
   return judge(ball_chord(p, q - p, r), side(p), side(q));
 }
 
-Verdict meet(const Cylinder& cylinder, const Segment& segment, double) {
+Verdict meet(const Cylinder& cylinder, const Segment& segment) {
   const Vec3 &axis = cylinder.axis, p = segment[0] - cylinder.centre, q = segment[1] - cylinder.centre;
   const double r = cylinder.radius, half = 0.5 * cylinder.height, up_p = axis.dot(p), up_q = axis.dot(q);
   const Vec3 out_p = p - up_p * axis, out_q = q - up_q * axis;
@@ -216,10 +215,10 @@ std::vector<std::array<Vec3, 3>> triangles_of(const geometry::TriangleMesh& mesh
 
 } // namespace
 
-double height_above(const Plane& plane, const Vec3& p, const double h) {
-  constexpr double right_in_plane = 1e-9; // cubes
+double height_above(const Plane& plane, const Vec3& p) {
+  constexpr double roundoff = 4e-14; // less than boxes leave room for (may_meet.cc)
   const double height = plane.normal.dot(p - plane.point);
-  return std::abs(height) < right_in_plane * h ? 0 : height;
+  return std::abs(height) < roundoff * (p.norm() + plane.point.norm()) ? 0 : height;
 }
 
 void check(const CutSurface& surface) {
@@ -234,7 +233,7 @@ SweepCuts cut_edges(const CutSurface& surface, const grid::Solid& solid, const P
     } else {
       const Target target(solid, x, x, boxes);
       return target.cut(surface.label, {Box(), [&](const Box& box) { return near(shape, box); }},
-                        [&](const Segment&, const Segment& now) { return meet(shape, now, solid.grid.h()); });
+                        [&](const Segment&, const Segment& now) { return meet(shape, now); });
     }
   };
   return std::visit(cut_by, surface.shape);

@@ -29,9 +29,10 @@ struct Plane {
   Vec3 normal = Vec3::UnitZ(); ///< unit
 };
 
-/// Of a point above the plane, in cubes of edge h [m]: 0, and so above it, where it lies within 1e-9 cubes of it. A
-/// skin that lies right in a plane, as midway through a box, is not to be parted by round-off, here and there.
-double height_above(const Plane& plane, const Vec3& p, double h);
+/// Of a point above the plane [m]: 0, and so above it, where it lies nearer to that than some hundred times what its
+/// coordinates are rounded by. A skin that lies right in a plane, as midway through a box, is not to be parted by
+/// round-off, here and there.
+double height_above(const Plane& plane, const Vec3& p);
 
 struct Sphere {
   Vec3 centre = Vec3::Zero(); ///< [m]
