@@ -17,8 +17,8 @@
 /// Where a cut ends inside cells (grid/fronts.h), what is reached counts in part. Steps along edges ahead of the cut
 /// have phi = (1 + r) f / (1 + r f), f the most that the cut has passed of a cell around, and a walk along a line counts
 /// by 1 less the largest phi of its steps. With r = 1 + 1.8 / w a split bar opens evenly as f grows, to a third, for
-/// w = 2 .. 4 (tests/lattice/fronts_test.cc); with w = 1 it does so but where the front comes into a cell, which opens it
-/// at once by a sixth of what the cell does.
+/// w = 2 and 3 (tests/lattice/fronts_test.cc), and 4 by hand; with w = 1 it does so but where the front comes into a
+/// cell, which opens it at once by a sixth of what the cell does.
 ///
 /// Limits: where lines are broken, regions depend on the order of the axes, and r may be in the region of s without s
 /// in that of r. Matching needs neither.

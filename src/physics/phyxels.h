@@ -14,8 +14,8 @@
 ///
 /// The faces are those of the surface that cuts have revealed, in the rest configuration, each once; where a later cut
 /// moves a vertex, the moved faces come beside the earlier ones. Where a disc or a rectangle ends inside a cell, what
-/// it has come to is a face too (Front, grid/cuts.h). Criteria that look for ways around a cut see the skin
-/// too; to extended visibility it tells which part of a disk is in the body.
+/// it has come to is a face too (Front, grid/cuts.h). Criteria that look for ways around a cut see the skin too; to
+/// extended visibility it tells which part of a disk is in the body.
 
 #include "pba/corners.h"
 #include "pba/model.h"
