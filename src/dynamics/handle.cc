@@ -7,7 +7,7 @@ namespace kerf::dynamics {
 namespace {
 
 void check(const Interpolation& point, const double strength, const std::string& name) {
-  if (point.n_points() != 1 || point.corners.empty())
+  if (point.n_points() != 1 || point.columns.empty())
     throw ParameterError(Complaint{.rule = "a handle holds one point of the body, and found none",
                                    .remedy = "Choose a point inside the body at rest"});
   if (!(strength >= 0))

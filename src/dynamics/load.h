@@ -58,7 +58,7 @@ class LoadTangent {
     template <class Function>
     void for_each_corner(const std::size_t point, const Function& f) const {
       for (auto k = points->start[point]; k < points->start[point + 1]; ++k) {
-        const std::uint32_t corner = numbers ? numbers[points->corners[k]] : points->corners[k];
+        const std::uint32_t corner = numbers ? numbers[points->columns[k]] : points->columns[k];
         if (corner != uncounted)
           f(corner, points->values[k]);
       }

@@ -53,7 +53,7 @@ Interpolation shares_of_vertices(const SurfacePatch& patch, const TriangleCarrie
       corners.push_back(corner);
       values.push_back(value);
     }
-    all.add_point(corners, values);
+    all.add_row(corners, values);
   }
   return all;
 }

@@ -14,7 +14,7 @@ constexpr std::uint32_t no_place = CellsOfLevel::unused;
 /// Groups of corners, up to some each, that rows join: one of two joins both; one of four or eight what of its corners
 /// is alone, to each other where these are two, one to the others: so corners beyond a body's own edges, which no row
 /// of two knows, belong to somebody.
-std::vector<std::vector<std::uint32_t>> joined(const Weights& rows, const std::size_t n_corners,
+std::vector<std::vector<std::uint32_t>> joined(const SparseRows<float>& rows, const std::size_t n_corners,
                                                const std::size_t most) {
   std::vector<std::vector<std::uint32_t>> groups;
   std::vector<std::uint32_t> of(n_corners, no_place);
@@ -36,17 +36,17 @@ std::vector<std::vector<std::uint32_t>> joined(const Weights& rows, const std::s
   };
   std::vector<std::uint32_t> alone;
   for (const std::size_t n : {2u, 4u, 8u})
-    for (std::size_t i = 0; i + 1 < rows.begin.size(); ++i) {
-      if (rows.begin[i + 1] - rows.begin[i] != n)
+    for (std::size_t i = 0; i < rows.n_rows(); ++i) {
+      if (rows.start[i + 1] - rows.start[i] != n)
         continue;
       alone.clear();
-      for (std::uint32_t k = rows.begin[i]; k < rows.begin[i + 1]; ++k)
-        if (n == 2 || groups[group_of(rows.column[k])].size() == 1)
-          alone.push_back(rows.column[k]);
+      for (std::uint32_t k = rows.start[i]; k < rows.start[i + 1]; ++k)
+        if (n == 2 || groups[group_of(rows.columns[k])].size() == 1)
+          alone.push_back(rows.columns[k]);
       if (alone.size() == 2)
         join(alone[0], alone[1]);
-      for (std::uint32_t k = rows.begin[i]; k < rows.begin[i + 1] && alone.size() == 1; ++k)
-        join(rows.column[k], alone[0]); // the first with room
+      for (std::uint32_t k = rows.start[i]; k < rows.start[i + 1] && alone.size() == 1; ++k)
+        join(rows.columns[k], alone[0]); // the first with room
     }
   return groups;
 }
@@ -56,22 +56,21 @@ std::vector<std::vector<std::uint32_t>> joined(const Weights& rows, const std::s
 PointSprings coarsened(const PointSprings& fine, const Coarsening& coarsening) {
   PointSprings coarse{{}, fine.blocks};
   std::vector<std::uint32_t> place(coarsening.coarse.n_corners, no_place);
-  Weights& rows = coarse.rows;
+  SparseRows<float>& rows = coarse.rows;
   for (std::size_t i = 0; i < fine.blocks.size(); ++i) {
-    for (std::uint32_t k = fine.rows.begin[i]; k < fine.rows.begin[i + 1]; ++k) {
-      coarsening.for_each_weight(fine.rows.column[k], [&](const std::uint32_t corner, const float weight) {
+    for (std::uint32_t k = fine.rows.start[i]; k < fine.rows.start[i + 1]; ++k) {
+      coarsening.for_each_weight(fine.rows.columns[k], [&](const std::uint32_t corner, const float weight) {
         std::uint32_t& p = place[corner];
         if (p == no_place) {
-          p = static_cast<std::uint32_t>(rows.column.size());
-          rows.column.push_back(corner);
-          rows.weight.push_back(0);
+          p = static_cast<std::uint32_t>(rows.columns.size());
+          rows.add_entry(corner, 0);
         }
-        rows.weight[p] += fine.rows.weight[k] * weight;
+        rows.values[p] += fine.rows.values[k] * weight;
       });
     }
-    for (std::size_t k = rows.begin.back(); k < rows.column.size(); ++k)
-      place[rows.column[k]] = no_place;
-    rows.begin.push_back(static_cast<std::uint32_t>(rows.column.size()));
+    for (std::size_t k = rows.start.back(); k < rows.columns.size(); ++k)
+      place[rows.columns[k]] = no_place;
+    rows.end_row();
   }
   return coarse;
 }
@@ -103,9 +102,9 @@ void Clusters::add_bound(const PointSprings& points,
     const Mat3 block = points.blocks[i].cast<double>();
     entries.clear();
     double sum = 0;
-    for (std::uint32_t k = points.rows.begin[i]; k < points.rows.begin[i + 1]; ++k) {
-      const std::uint32_t corner = points.rows.column[k];
-      entries.push_back({place_[corner], corner, double(points.rows.weight[k])});
+    for (std::uint32_t k = points.rows.start[i]; k < points.rows.start[i + 1]; ++k) {
+      const std::uint32_t corner = points.rows.columns[k];
+      entries.push_back({place_[corner], corner, double(points.rows.values[k])});
       sum += std::abs(entries.back().weight);
     }
     for (const Entry& a : entries) {

@@ -2,6 +2,7 @@
 
 /// Springs at points that follow corners, and the blocks of Jacobi's matrix for corners that they join.
 
+#include "base/sparse_rows.h"
 #include "fem/coarsening.h"
 
 #include <functional>
@@ -9,16 +10,9 @@
 
 namespace kerf::fem {
 
-/// A sparse matrix of weights, row by row.
-struct Weights {
-  std::vector<std::uint32_t> begin = {0}; ///< of each row, and the end
-  std::vector<std::uint32_t> column;
-  std::vector<float> weight;
-};
-
 /// The square of w u in the measure of a block, for a row w of weights.
 struct PointSprings {
-  Weights rows;
+  SparseRows<float> rows;
   std::vector<Eigen::Matrix3f> blocks; ///< one a row, over the stiffness factor [N/m]
 
   bool empty() const { return blocks.empty(); }

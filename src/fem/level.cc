@@ -205,8 +205,8 @@ void Level::add_products(const FloatRow* const x, FloatRow* const y) const {
   for (std::size_t i = 0; i < points.blocks.size(); ++i) {
     Eigen::Vector3f u = Eigen::Vector3f::Zero();
     const auto for_each = [&](const auto& function) {
-      for (std::uint32_t k = points.rows.begin[i]; k < points.rows.begin[i + 1]; ++k)
-        function(points.rows.column[k], points.rows.weight[k]);
+      for (std::uint32_t k = points.rows.start[i]; k < points.rows.start[i + 1]; ++k)
+        function(points.rows.columns[k], points.rows.values[k]);
     };
     for_each([&](const std::uint32_t corner, const float w) {
       u += w * Eigen::Vector3f(x[corner].x, x[corner].y, x[corner].z);

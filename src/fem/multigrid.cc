@@ -42,12 +42,9 @@ Loan<Spring> restricted(const std::vector<Spring>& fine, const Coarsening& coars
 PointSprings point_springs(const dynamics::LinearEquation& equation) {
   PointSprings springs;
   equation.loads.for_each_point(
-    [&](const std::uint32_t corner, const double weight) {
-      springs.rows.column.push_back(corner);
-      springs.rows.weight.push_back(float(weight));
-    },
+    [&](const std::uint32_t corner, const double weight) { springs.rows.add_entry(corner, float(weight)); },
     [&](const Mat3& block) {
-      springs.rows.begin.push_back(static_cast<std::uint32_t>(springs.rows.column.size()));
+      springs.rows.end_row();
       springs.blocks.push_back((block / equation.stiffness_factor).cast<float>());
     });
   return springs;
@@ -133,10 +130,10 @@ void add_entries(const Level& level, const CellsOfLevel& cells, const FunctionRe
     add(spring.corner, spring.corner, spring.block);
   const auto& [rows, blocks] = level.points;
   for (std::size_t i = 0; i < blocks.size(); ++i)
-    for (std::uint32_t k = rows.begin[i]; k < rows.begin[i + 1]; ++k)
-      for (std::uint32_t l = rows.begin[i]; l < rows.begin[i + 1]; ++l)
-        add(rows.column[k], rows.column[l],
-            Mat3(double(rows.weight[k]) * double(rows.weight[l]) * blocks[i].cast<double>()));
+    for (std::uint32_t k = rows.start[i]; k < rows.start[i + 1]; ++k)
+      for (std::uint32_t l = rows.start[i]; l < rows.start[i + 1]; ++l)
+        add(rows.columns[k], rows.columns[l],
+            Mat3(double(rows.values[k]) * double(rows.values[l]) * blocks[i].cast<double>()));
   constexpr double unseen = 1e-5;
   for (std::uint32_t i = 0; i < level.n_corners; ++i) {
     const Row<float>& d = level.diagonal[2 * std::size_t(i)];

@@ -84,29 +84,27 @@ void Matching::count_shares(const std::vector<Share>& shares) {
   for (const Share& share : shares)
     mass_[numbers_[share.corner.value]] += share.mass;
 
-  of_points_.start.push_back(0);
   of_corners_.start.assign(mass_.size() + 1, 0);
   std::size_t k = 0;
   for (std::size_t p = 0; p < lines_.n_points(); ++p) {
     for (; k < shares.size() && shares[k].node == lines_.nodes()[p]; ++k) {
       const auto corner = numbers_[shares[k].corner.value];
-      of_points_.column.push_back(corner);
-      of_points_.weight.push_back(shares[k].mass / holders[6 * p]);
+      of_points_.add_entry(corner, shares[k].mass / holders[6 * p]);
       ++of_corners_.start[corner + 1];
     }
-    of_points_.start.push_back(static_cast<std::uint32_t>(of_points_.column.size()));
+    of_points_.end_row();
   }
   for (std::size_t c = 0; c < mass_.size(); ++c)
     of_corners_.start[c + 1] += of_corners_.start[c];
 
   std::vector<std::uint32_t> next(of_corners_.start.begin(), of_corners_.start.end() - 1);
-  of_corners_.column.resize(of_points_.column.size());
-  of_corners_.weight.resize(of_points_.column.size());
+  of_corners_.columns.resize(of_points_.columns.size());
+  of_corners_.values.resize(of_points_.columns.size());
   for (std::uint32_t p = 0; p < lines_.n_points(); ++p)
     for (auto i = of_points_.start[p]; i < of_points_.start[p + 1]; ++i) {
-      const auto c = of_points_.column[i];
-      of_corners_.column[next[c]] = p;
-      of_corners_.weight[next[c]++] = of_points_.weight[i] / mass_[c];
+      const auto c = of_points_.columns[i];
+      of_corners_.columns[next[c]] = p;
+      of_corners_.values[next[c]++] = of_points_.values[i] / mass_[c];
     }
 }
 
@@ -131,7 +129,7 @@ void Matching::sum_over_regions() const {
   const std::size_t width = corner_field_.size() / mass_.size();
   region_field_.resize(width * lines_.n_points());
   parallel_ranges(lines_.n_points(), worth_items, [&](const std::size_t first, const std::size_t last) {
-    weighted_sums({first, last, of_points_.start.data(), of_points_.column.data(), of_points_.weight.data()}, width,
+    weighted_sums({first, last, of_points_.start.data(), of_points_.columns.data(), of_points_.values.data()}, width,
                   corner_field_.data(), region_field_.data());
   });
   lines_.sum_over_regions(region_field_);
@@ -146,7 +144,7 @@ void Matching::average_over_regions() const {
   corner_field_.resize(width * mass_.size());
   lines_.sum_over_holders(region_field_);
   parallel_ranges(mass_.size(), worth_items, [&](const std::size_t first, const std::size_t last) {
-    weighted_sums({first, last, of_corners_.start.data(), of_corners_.column.data(), of_corners_.weight.data()}, width,
+    weighted_sums({first, last, of_corners_.start.data(), of_corners_.columns.data(), of_corners_.values.data()}, width,
                   region_field_.data(), corner_field_.data());
   });
 }

@@ -24,6 +24,7 @@
 /// (nu = 0); where regions are inverted the direction of least extent is taken as the inverted one, so folds that are
 /// as long as a region may hold each other.
 
+#include "base/sparse_rows.h"
 #include "dynamics/model.h"
 #include "grid/corner_numbers.h"
 #include "lattice/lines.h"
@@ -66,11 +67,6 @@ class Matching : public dynamics::ForceModel {
   const Riders& riders() const { return riders_; }
 
  private:
-  /// A sparse matrix, row by row.
-  struct Rows {
-    std::vector<std::uint32_t> start, column;
-    std::vector<double> weight;
-  };
   /// What a region is at rest.
   struct Region {
     double mass = 0;            ///< M_r [kg]
@@ -99,7 +95,7 @@ class Matching : public dynamics::ForceModel {
   Points rest_;              // of the corners, from the body's middle [m]
   std::vector<double> mass_; // of the corners [kg]
   Riders riders_;
-  Rows of_points_, of_corners_; // s_cn / N_n by point; by corner, over m_c
+  SparseRows<double> of_points_, of_corners_; // s_cn / N_n by point; by corner, over m_c
   std::vector<Region> regions_;
   mutable std::vector<double> corner_field_, region_field_; // scratch
 };

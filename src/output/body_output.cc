@@ -56,7 +56,7 @@ void write_surface(const h5::Object& group, const Surface& surface) {
   const auto& start = surface.weights.start;
   write_table<std::uint64_t>(weights, "row_start", std::vector<std::uint64_t>(start.begin(), start.end()),
                              {"1", "first entry of each vertex"});
-  write_table<std::uint32_t>(weights, "column", surface.weights.corners, {"1", "corner of each entry"});
+  write_table<std::uint32_t>(weights, "column", surface.weights.columns, {"1", "corner of each entry"});
   write_table<double>(weights, "value", surface.weights.values, {"1", "weight of each entry"});
 }
 
@@ -120,7 +120,7 @@ void check_surface(const Surface& surface, const Checks& checks) {
   const auto& w = surface.weights;
   checks.equal("surface/label", surface.labels.size(), surface.triangles.size());
   checks.equal("surface/weights/row_start", w.start.size(), surface.rest_positions.size() + 1);
-  checks.equal("surface/weights/column", w.corners.size(), w.start.back());
+  checks.equal("surface/weights/column", w.columns.size(), w.start.back());
   checks.equal("surface/weights/value", w.values.size(), w.start.back());
 }
 

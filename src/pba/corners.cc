@@ -44,19 +44,14 @@ void fill_rows(const grid::Solid& solid, const Phyxels& phyxels, std::span<const
   const Reached reached = reach(solid, pairs.nodes, pairs.rest, phyxels.rest, copies, blind);
   map.n_orphans = reached.n_orphans;
 
-  map.start.push_back(0);
   std::size_t p = 0, b = 0;
   for (std::uint32_t r = 0; r < sums.size(); ++r) {
     for (; p < pairs.pairs.size() && pairs.pairs[p][0] == r; ++p)
-      if (sums[r] > 0 && weights[p] > 0) {
-        map.phyxel.push_back(pairs.pairs[p][1]);
-        map.weight.push_back(weights[p] / sums[r]);
-      }
-    if (!(sums[r] > 0)) {
-      map.phyxel.push_back(reached.phyxel[b++]);
-      map.weight.push_back(1);
-    }
-    map.start.push_back(static_cast<std::uint32_t>(map.phyxel.size()));
+      if (sums[r] > 0 && weights[p] > 0)
+        map.rows.add_entry(pairs.pairs[p][1], weights[p] / sums[r]);
+    if (!(sums[r] > 0))
+      map.rows.add_entry(reached.phyxel[b++], 1);
+    map.rows.end_row();
   }
 }
 
@@ -132,15 +127,15 @@ CornerMap build_corner_map(const grid::Solid& solid, const Phyxels& phyxels, con
 }
 
 void follow(const CornerMap& map, const Points& x, const std::vector<Mat3>& F, Points& corners) {
-  Loan<Motion> motions(x.size()), rows(map.start.size() - 1);
+  Loan<Motion> motions(x.size()), rows(map.rows.n_rows());
   for (std::size_t i = 0; i < x.size(); ++i)
     motions[i] << F[i], x[i] - F[i] * map.rest[i];
   parallel_for(
     rows.size(),
     [&](const std::size_t r) {
       rows[r].setZero();
-      for (auto k = map.start[r]; k < map.start[r + 1]; ++k)
-        rows[r] += map.weight[k] * motions[map.phyxel[k]];
+      for (auto k = map.rows.start[r]; k < map.rows.start[r + 1]; ++k)
+        rows[r] += map.rows.values[k] * motions[map.rows.columns[k]];
     },
     many_corners);
   corners.resize(map.corners.size());

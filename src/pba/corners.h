@@ -15,6 +15,7 @@
 /// Material nodes never change, so pairs of nodes and phyxels, and their sights, outlive every cut; the map is built
 /// anew from them.
 
+#include "base/sparse_rows.h"
 #include "pba/neighbours.h"
 #include "pba/region.h"
 
@@ -31,16 +32,15 @@ struct NodePairs {
 NodePairs find_node_pairs(const grid::Grid& grid, const Phyxels& phyxels);
 
 struct CornerMap {
-  std::vector<std::uint32_t> start, phyxel; ///< phyxels of row r: start[r] .. start[r + 1]
-  std::vector<double> weight;               ///< of each, a row's summing to 1 [1]
-  std::vector<std::uint32_t> source_start;  ///< by corner
-  std::vector<std::uint32_t> source;        ///< rows whose mean motion a corner takes
-  Points rest;                              ///< of the phyxels [m]
-  Points corners;                           ///< rest positions of the corners [m]
-  std::size_t n_blind = 0;                  ///< nodes that see no phyxel
-  std::size_t n_orphans = 0;                ///< pieces that hold none
+  SparseRows<double> rows;                 ///< of phyxels; a row's values sum to 1
+  std::vector<std::uint32_t> source_start; ///< by corner
+  std::vector<std::uint32_t> source;       ///< rows whose mean motion a corner takes
+  Points rest;                             ///< of the phyxels [m]
+  Points corners;                          ///< rest positions of the corners [m]
+  std::size_t n_blind = 0;                 ///< nodes that see no phyxel
+  std::size_t n_orphans = 0;               ///< pieces that hold none
 
-  void archive(Archive& a) { a(start, phyxel, weight, source_start, source, rest, corners, n_blind, n_orphans); }
+  void archive(Archive& a) { a(rows, source_start, source, rest, corners, n_blind, n_orphans); }
 };
 
 /// `copies`: the copy of each phyxel (copies_around()); `sights`: of each of pairs.pairs.

@@ -52,7 +52,7 @@ Bearers::Bearers(const grid::Solid& solid, const std::span<const double> materia
       weights[v] = 0.125 + slope.dot(at_rest(copy.corners[v]) - middle);
     }
     which_[i] = static_cast<std::uint32_t>(rows_.n_points());
-    rows_.add_point(corners, weights);
+    rows_.add_row(corners, weights);
   }
 }
 
@@ -66,18 +66,18 @@ Interpolation Bearers::carry(const Interpolation& of_corners) const {
     corners.clear();
     weights.clear();
     for (auto k = of_corners.start[i]; k < of_corners.start[i + 1]; ++k) {
-      const std::uint32_t corner = of_corners.corners[k], row = which_[corner];
+      const std::uint32_t corner = of_corners.columns[k], row = which_[corner];
       if (row == itself) {
         corners.push_back(corner);
         weights.push_back(of_corners.values[k]);
         continue;
       }
       for (auto l = rows_.start[row]; l < rows_.start[row + 1]; ++l) {
-        corners.push_back(rows_.corners[l]);
+        corners.push_back(rows_.columns[l]);
         weights.push_back(of_corners.values[k] * rows_.values[l]);
       }
     }
-    points.add_point(corners, weights);
+    points.add_row(corners, weights);
   }
   return points;
 }

@@ -24,7 +24,7 @@ Interpolation body_point(const CutBody& body, const Vec3& rest) {
     corners[v] = copy.corners[v].value;
     weights[v] = grid::shape(v, (rest - origin) / body.solid.grid.h());
   }
-  point.add_point(corners, weights);
+  point.add_row(corners, weights);
   return point;
 }
 

@@ -103,9 +103,9 @@ dynamics::TriangleCarriers carriers_of(const Body& body, const std::span<const s
     for (int v = 0; v < 8; ++v) {
       const std::uint32_t corner = copy.corners[v].value;
       if (number[corner] == none) {
-        constexpr double one = 1;
         number[corner] = static_cast<std::uint32_t>(corners.n_points());
-        corners.add_point({&corner, 1}, {&one, 1});
+        corners.add_entry(corner, 1);
+        corners.end_row();
       }
       of_triangle[v] = number[corner];
     }

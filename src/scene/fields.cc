@@ -120,7 +120,7 @@ std::vector<output::Field> at_vertices(const surface::Surface& surface, const st
     for (std::size_t row = 0; row < W.n_points(); ++row)
       for (auto k = W.start[row]; k < W.start[row + 1]; ++k)
         for (std::size_t i = 0; i < n; ++i)
-          field.values[n * row + i] += W.values[k] * from.values[n * W.corners[k] + i];
+          field.values[n * row + i] += W.values[k] * from.values[n * W.columns[k] + i];
     fields.push_back(std::move(field));
   }
   return fields;

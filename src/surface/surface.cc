@@ -26,7 +26,7 @@ void reserve(Surface& surface, const std::size_t n_cut_edges) {
   const std::size_t n = n_triangles / 2;
   surface.rest.reserve(n);
   surface.weights.start.reserve(n + 1);
-  surface.weights.corners.reserve(static_cast<std::size_t>(entries_per_vertex * static_cast<double>(n)));
+  surface.weights.columns.reserve(static_cast<std::size_t>(entries_per_vertex * static_cast<double>(n)));
   surface.weights.values.reserve(static_cast<std::size_t>(entries_per_vertex * static_cast<double>(n)));
 }
 
@@ -48,7 +48,7 @@ std::size_t bytes(const std::vector<T>& items) {
 
 std::size_t Surface::n_bytes() const {
   return bytes(rest) + bytes(triangles) + bytes(labels) + bytes(copies) + bytes(weights.start) +
-         bytes(weights.corners) + bytes(weights.values);
+         bytes(weights.columns) + bytes(weights.values);
 }
 
 std::size_t SurfaceIndex::n_bytes() const {

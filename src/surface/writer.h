@@ -433,7 +433,7 @@ class Writer {
       id = static_cast<std::uint32_t>(surface_.rest.size());
       surface_.rest.push_back(p);
       w.start.push_back(w.start.back() + static_cast<std::uint32_t>(std::bitset<8>(support).count()));
-      w.corners.resize(w.start.back());
+      w.columns.resize(w.start.back());
       w.values.resize(w.start.back());
     } else
       surface_.rest[id] = p;
@@ -442,7 +442,7 @@ class Writer {
     std::uint32_t entry = w.start[id];
     for (unsigned left = support; left != 0; left &= left - 1, ++entry) {
       const int v = std::countr_zero(left);
-      w.corners[entry] = corners[v].value;
+      w.columns[entry] = corners[v].value;
       w.values[entry] = factors[0][v & 1] * factors[1][v >> 1 & 1] * factors[2][v >> 2 & 1];
     }
   }

@@ -42,7 +42,7 @@ SurfacePatch tetrahedron() {
   for (std::uint32_t i = 0; i < 4; ++i) {
     const std::uint32_t corners[] = {2 * i, 2 * i + 1, (2 * i + 3) % 8};
     const double weights[] = {0.5, 0.8, -0.3};
-    patch.points.add_point(corners, weights);
+    patch.points.add_row(corners, weights);
   }
   return patch;
 }
@@ -73,7 +73,7 @@ SurfacePatch tetrahedron_in_a_cube() {
       corners[v] = v;
       weights[v] = shape_of_cube(v, X);
     }
-    patch.points.add_point(corners, weights);
+    patch.points.add_row(corners, weights);
   }
   patch.carriers.corners = corners_themselves(8);
   for (const auto& [a, b, c] : patch.triangles) {
@@ -92,7 +92,7 @@ Interpolation point_of_three() {
   Interpolation point;
   const std::uint32_t corners[] = {1, 4, 6};
   const double weights[] = {0.2, 0.5, 0.3};
-  point.add_point(corners, weights);
+  point.add_row(corners, weights);
   return point;
 }
 

@@ -87,7 +87,7 @@ TEST(Energy, IsAccountedFor) {
     Interpolation tip;
     const std::uint32_t corner = 2;
     const double one = 1;
-    tip.add_point({&corner, 1}, {&one, 1});
+    tip.add_row({&corner, 1}, {&one, 1});
     loads.acting.push_back(std::make_unique<HandleDamper>(tip, 0.8, target));
     State state = model.state();
     state.v[0][1] = 0.2;

@@ -26,7 +26,7 @@ SurfacePatch square() {
   for (std::uint32_t i = 0; i < 5; ++i) {
     const std::uint32_t corners[] = {i, (i + 2) % 8, (3 * i + 5) % 8};
     const double weights[] = {0.5, 0.8, -0.3};
-    patch.points.add_point(corners, weights);
+    patch.points.add_row(corners, weights);
   }
   return patch;
 }

@@ -236,7 +236,7 @@ TEST(Integrators, StiffLoadsLeadByWhatItTakes) {
     Interpolation point;
     const std::uint32_t corner = 0;
     const double one = 1;
-    point.add_point({&corner, 1}, {&one, 1});
+    point.add_row({&corner, 1}, {&one, 1});
     const auto target = [&](const double t) { return Vec3(0.3 * t, 0, 0.5 * acceleration * t * t); };
     Loads loads;
     loads.acting.push_back(std::make_unique<HandleSpring>(point, stiffness, target));
@@ -263,7 +263,7 @@ TEST(StableStep, KnowsSupportsAndLoads) {
   Interpolation tip;
   const std::uint32_t corner = 1;
   const double one = 1;
-  tip.add_point({&corner, 1}, {&one, 1});
+  tip.add_row({&corner, 1}, {&one, 1});
   loads.acting.push_back(std::make_unique<HandleSpring>(tip, 225, [&](double) { return model.rest()[1]; }));
   EXPECT_NEAR(StepLimit(model, VelocityVerlet::scheme(), {}).at(model.state(), loads), 1 / std::sqrt(75 / 0.2), 1e-5);
 }

@@ -205,7 +205,7 @@ TEST(QuasiStatic, FollowerPressureOnHandles) {
   for (std::uint32_t i = 0; i < 3; ++i) {
     Interpolation point;
     const double one = 1;
-    point.add_point({&i, 1}, {&one, 1});
+    point.add_row({&i, 1}, {&one, 1});
     loads.acting.push_back(
       std::make_unique<HandleSpring>(point, i == 0 ? 40 : 90, [X = truss.rest()[i]](double) { return X; }));
   }
@@ -267,7 +267,7 @@ TEST(RigidModes, LoadsThatResistCount) {
   Interpolation point;
   const std::uint32_t corner = 2;
   const double one = 1;
-  point.add_point({&corner, 1}, {&one, 1});
+  point.add_row({&corner, 1}, {&one, 1});
   loads.acting.push_back(std::make_unique<HandleSpring>(point, 3, still));
   EXPECT_TRUE(free_rigid_modes(body, loads, 0, body.rest(), {}).empty());
 }

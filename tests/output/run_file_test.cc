@@ -129,7 +129,7 @@ TEST(RunFile, KeepsBodiesThroughAChangeOfTopology) {
   EXPECT_EQ(back.labels, surface.labels);
   EXPECT_EQ(back.rest_positions, surface.rest_positions);
   EXPECT_EQ(back.weights.start, surface.weights.start);
-  EXPECT_EQ(back.weights.corners, surface.weights.corners);
+  EXPECT_EQ(back.weights.columns, surface.weights.columns);
   EXPECT_EQ(back.weights.values, surface.weights.values);
 
   EXPECT_EQ(reader.attribute("/bodies/liver/frames/000002/position", "configuration"), "current");

@@ -59,7 +59,7 @@ inline Surface sample_surface() {
   return {.triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}},
           .labels = {0, 0, 1, 2},
           .rest_positions = sample_points(4, 3),
-          .weights = {{0, 1, 2, 3, 5}, {0, 1, 2, 3, 4}, {1, 1, 1, 0.5, 0.5}}};
+          .weights = {{{0, 1, 2, 3, 5}, {0, 1, 2, 3, 4}, {1, 1, 1, 0.5, 0.5}}}};
 }
 
 inline RunInfo sample_info() {

@@ -148,8 +148,8 @@ TEST(Corners, VirtualOnesAreExtrapolated) {
     const auto row = map.source[map.source_start[c]];
     const auto real = scene.body.complex.real_corner[scene.pairs.nodes[row]].value;
     Mat3 J = Mat3::Zero();
-    for (auto k = map.start[row]; k < map.start[row + 1]; ++k)
-      J += map.weight[k] * F[map.phyxel[k]];
+    for (auto k = map.rows.start[row]; k < map.rows.start[row + 1]; ++k)
+      J += map.rows.values[k] * F[map.rows.columns[k]];
     const Vec3 expected = corners[real] + J * (map.corners[c] - map.corners[real]);
     EXPECT_LT((corners[c] - expected).norm(), 1e-12);
     n_checked += c != real;
@@ -166,12 +166,12 @@ TEST(Corners, ThatSeeNothingTakeWhatTheyCanReach) {
   const CornerMap map = scene.map();
   EXPECT_GE(map.n_blind, scene.pairs.nodes.size() / 3);
   for (std::uint32_t row = 0; row < scene.pairs.nodes.size(); ++row) {
-    ASSERT_LT(map.start[row], map.start[row + 1]);
-    for (auto k = map.start[row]; k < map.start[row + 1]; ++k)
-      EXPECT_EQ(pieces[map.phyxel[k]], nodes[row]);
+    ASSERT_LT(map.rows.start[row], map.rows.start[row + 1]);
+    for (auto k = map.rows.start[row]; k < map.rows.start[row + 1]; ++k)
+      EXPECT_EQ(pieces[map.rows.columns[k]], nodes[row]);
     if (row % 3 == 0) {
-      EXPECT_EQ(map.start[row + 1] - map.start[row], 1u);
-      EXPECT_LT((scene.phyxels.rest[map.phyxel[map.start[row]]] - scene.pairs.rest[row]).norm(), 0.4);
+      EXPECT_EQ(map.rows.start[row + 1] - map.rows.start[row], 1u);
+      EXPECT_LT((scene.phyxels.rest[map.rows.columns[map.rows.start[row]]] - scene.pairs.rest[row]).norm(), 0.4);
     }
   }
 }

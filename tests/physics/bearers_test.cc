@@ -40,7 +40,7 @@ TEST(Bearers, TakeUpForcesWithTheirSumAndTheirMoment) {
       double sum = 0;
       for (auto k = carried.start[c]; k < carried.start[c + 1]; ++k) {
         sum += carried.values[k];
-        EXPECT_GE(ball.material[carried.corners[k]], light);
+        EXPECT_GE(ball.material[carried.columns[k]], light);
       }
       EXPECT_NEAR(sum, 1, 1e-13);
       EXPECT_NEAR((carried.at(c, ball.rest) - ball.rest[c]).norm(), 0, 1e-13);
@@ -62,13 +62,13 @@ TEST(Bearers, TakeUpWhatActsBetweenCorners) {
     weights.fill(0.125);
     for (int v = 0; v < 8; ++v)
       corners[v] = copy.corners[v].value;
-    middles.add_point(corners, weights);
+    middles.add_row(corners, weights);
   }
   const Interpolation carried = ball.bearers().carry(middles);
   for (std::size_t i = 0; i < middles.n_points(); ++i) {
     EXPECT_NEAR((carried.at(i, ball.rest) - middles.at(i, ball.rest)).norm(), 0, 1e-13);
     for (auto k = carried.start[i]; k < carried.start[i + 1]; ++k)
-      EXPECT_GE(ball.material[carried.corners[k]], light);
+      EXPECT_GE(ball.material[carried.columns[k]], light);
   }
 }
 
@@ -78,12 +78,12 @@ TEST(Bearers, LeaveWhatIsToBear) {
   const Interpolation all = corners_themselves(ball.rest.size()),
                       carried =
                         Bearers(ball.body, ball.material, std::vector<std::uint8_t>(ball.rest.size(), 0)).carry(all);
-  EXPECT_EQ(carried.corners, all.corners);
+  EXPECT_EQ(carried.columns, all.columns);
   EXPECT_EQ(carried.values, all.values);
   const std::vector<double> next_to_nothing(ball.rest.size(), 1e-6);
   const std::vector<std::uint8_t> may_all(ball.rest.size(), 1);
   const auto left = Bearers(ball.body, next_to_nothing, may_all).carry(all);
-  EXPECT_EQ(left.corners, all.corners);
+  EXPECT_EQ(left.columns, all.columns);
   EXPECT_EQ(left.values, all.values);
 }
 

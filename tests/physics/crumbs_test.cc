@@ -427,7 +427,7 @@ TEST(Crumbs, SettleWhereLoadsBalanceTheirWeight) {
       weights[a] = (a & 1 ? xi[0] : 1 - xi[0]) * (a >> 1 & 1 ? xi[1] : 1 - xi[1]) * (a >> 2 & 1 ? xi[2] : 1 - xi[2]);
     }
     Interpolation at_centre;
-    at_centre.add_point(corners, weights);
+    at_centre.add_row(corners, weights);
     const Vec3 place = body.centre + Vec3(0.01, 0, 0.02);
     loads.acting.push_back(
       std::make_unique<dynamics::HandleSpring>(at_centre, stiffness, [=](double) { return place; }));

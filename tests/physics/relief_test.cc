@@ -205,9 +205,8 @@ TEST(Relief, GivesAHandleNoMoreThanItLetsOut) {
       if (model.lumped_mass()[i] > 0.5 * rubber.density * 1e-3 && rest[i][0] > rest[right][0])
         right = i;
     Interpolation point;
-    point.start = {0, 1};
-    point.corners = {right};
-    point.values = {1};
+    point.add_entry(right, 1);
+    point.end_row();
     dynamics::Loads loads;
     loads.acting.push_back(std::make_unique<dynamics::HandleSpring>(
       point, stiffness * had,

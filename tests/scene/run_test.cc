@@ -75,7 +75,7 @@ TEST(Run, AFramesComplexAndSurfaceBelongToItsCorners) {
     EXPECT_EQ(reader.complex("cube", frame.complex).rest_positions.size(), frame.positions.size());
     const output::Surface surface = reader.surface("cube", frame.complex);
     EXPECT_EQ(surface.weights.start.size(), surface.rest_positions.size() + 1);
-    for (const std::uint32_t column : surface.weights.corners)
+    for (const std::uint32_t column : surface.weights.columns)
       EXPECT_LT(column, frame.positions.size());
   }
 }

@@ -83,7 +83,7 @@ inline std::string described(const surface::Surface& s, const std::size_t t, con
     for (const double x : s.rest[v])
       add(vertices[i], x + 0.0); // one zero
     for (auto k = s.weights.start[v]; k < s.weights.start[v + 1]; ++k) {
-      const grid::CornerId corner(s.weights.corners[k]);
+      const grid::CornerId corner(s.weights.columns[k]);
       add(vertices[i], (names ? names->corners[corner] : corner).value);
       add(vertices[i], s.weights.values[k]);
     }

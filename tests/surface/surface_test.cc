@@ -103,7 +103,7 @@ void expect_two_sides(const Cut& cut) {
 void expect_weights(const Cut& cut) {
   const Interpolation& w = cut.surface.weights;
   ASSERT_EQ(w.n_points(), cut.surface.rest.size());
-  ASSERT_EQ(w.start.back(), w.corners.size());
+  ASSERT_EQ(w.start.back(), w.columns.size());
   ASSERT_EQ(w.start.back(), w.values.size());
   Points rest;
   follow(cut.surface, grid::rest_positions(cut.body), rest);
@@ -123,7 +123,7 @@ void expect_weights(const Cut& cut) {
     const auto& corners = cut.body.complex.copies[cut.surface.copies[i]].corners;
     for (const auto v : cut.surface.triangles[i])
       for (auto k = w.start[v]; k < w.start[v + 1]; ++k)
-        ASSERT_NE(std::find(corners.begin(), corners.end(), grid::CornerId(w.corners[k])), corners.end());
+        ASSERT_NE(std::find(corners.begin(), corners.end(), grid::CornerId(w.columns[k])), corners.end());
   }
 }
 
@@ -302,7 +302,7 @@ void expect_same_bits(const Cut& a, const Cut& b, const Points& x, const Points&
   ASSERT_EQ(a.surface.rest, b.surface.rest);
   ASSERT_EQ(a.surface.triangles, b.surface.triangles);
   ASSERT_EQ(a.surface.labels, b.surface.labels);
-  ASSERT_EQ(a.surface.weights.corners, b.surface.weights.corners);
+  ASSERT_EQ(a.surface.weights.columns, b.surface.weights.columns);
   ASSERT_EQ(a.surface.weights.values, b.surface.weights.values);
   ASSERT_EQ(x, y);
 }
