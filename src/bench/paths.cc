@@ -26,6 +26,8 @@ constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 struct Need {
   double flops = unknown, bytes = unknown;
 };
+constexpr Need operator+(const Need& a, const Need& b) { return {a.flops + b.flops, a.bytes + b.bytes}; }
+constexpr Need operator*(const double n, const Need& one) { return {n * one.flops, n * one.bytes}; }
 
 /// A cube of 1 m with n nodes across in n + 1 cells, the outer ones half full, that hangs from its upper side; and what
 /// else there is in the body and in the scene.
@@ -60,6 +62,7 @@ struct Ready {
 struct Measured {
   std::size_t n_items;
   Sample sample;
+  Need need = {};
 };
 
 /// A kind of body, and the paths that are measured on it.
@@ -101,12 +104,37 @@ class Stirred {
   std::size_t n_ = 0;
 };
 
-/// Of full cubes, counted from kernels.h: two transforms of 72 additions, two rotations of seven modes (15 each),
-/// Hooke's law; of rows read, read and written, corners' numbers and a rotation.
-Need need_of_product(const std::size_t n_elements) {
-  constexpr double flops = 2 * 72 + 2 * 7 * 15 + 60, bytes = 3 * 32 + 8 * 4 + 9 * 4;
-  return {flops * double(n_elements), bytes * double(n_elements)};
-}
+/// What an element of a full cube takes, counted from fem/kernels.h: operations of each part of the loops; of memory
+/// the row of one corner, as neighbours share them, the numbers of eight and what is stored by element.
+namespace of_element {
+constexpr double transform = 72, differences = 21, turn_of_modes = 7 * 15, mean_gradient = 9, law = 60;
+constexpr double shape = transform + differences;
+/// Halley's iteration takes three steps with strains of a few per cent.
+constexpr double rotation = mean_gradient + 32 + 36 + 3 * 27 + 12 + 45 + 90 + 18;
+constexpr double spin = 7 * 12 + 12 + 90 + 12;
+constexpr double row = 32, numbers = 8 * 4, stored_rotation = 9 * 4;
+
+constexpr Need product = {2 * transform + 2 * turn_of_modes + law, 3 * row + numbers + stored_rotation};
+constexpr Need linearisation = {shape + rotation, row + numbers + stored_rotation};
+constexpr Need energy = {2 * shape + rotation + turn_of_modes + law + 42, row + numbers};
+constexpr Need force = {energy.flops + spin + turn_of_modes + transform, 3 * row + numbers};
+/// In single precision, of which two count as one: on the finest level three steps of smoothing before and after and a
+/// residual, six products in all, and the same times 2 / 8, 4 / 64, ... below, with twice the steps on each.
+constexpr double n_products_of_cycle = 6 / (1 - 0.25);
+constexpr Need cycle = {0.5 * n_products_of_cycle * product.flops, 0.5 * n_products_of_cycle * product.bytes};
+/// A correction of Newton's method, an iteration of conjugate gradients: its product, cycle, and sums over corners of
+/// vectors of three numbers.
+constexpr Need iteration = product + cycle + Need{30, 10 * 24};
+constexpr Need correction = linearisation + force;
+/// Forces, and by corner what moves: of x, v and forces each read and written, and masses.
+constexpr Need explicit_step = force + Need{15, 6 * 24 + 8};
+/// Three springs along edges and six along diagonals for each cube: 20 operations to tell and to add a force; the
+/// volume at its corners.
+constexpr Need springs = Need{9 * 20 + 8 * 14, 9 * 3 * 8 + numbers} + Need{15, 6 * 24 + 8};
+/// For each corner twelve numbers, and six on the way back, summed over windows along three axes (two additions each),
+/// means over eight of its neighbours both ways, and a rotation of Newton's iteration by region.
+constexpr Need shape_matching = {3 * 2 * 18 + 2 * 8 * 18 + 330, 3 * 2 * 18 * 8 + 2 * 8 * 12 + 6 * 24};
+} // namespace of_element
 
 /// The equation of an implicit step of a second: stiff enough for multigrid whatever the cubes.
 struct StepEquation {
@@ -139,7 +167,7 @@ std::vector<Path> paths_of_elements() {
   return {{"linearisation, elements",
            "elements",
            on_elements([moved](ElasticModel& model, scene::Body& body, std::size_t n) {
-             return Ready{n, [&model, x = moved(body)] { model.linearise(*x); }};
+             return Ready{n, [&model, x = moved(body)] { model.linearise(*x); }, double(n) * of_element::linearisation};
            }),
            {}},
           {"stiffness product, elements",
@@ -148,7 +176,7 @@ std::vector<Path> paths_of_elements() {
              const auto x = moved(body), y = std::make_shared<Points>(x->size());
              model.linearise(*x);
              return Ready{n, [&model, x, y] { model.apply_stiffness(dynamics::flat(*x), dynamics::flat(*y)); },
-                          need_of_product(n)};
+                          double(n) * of_element::product};
            }),
            {}},
           {"forces, elements",
@@ -156,27 +184,28 @@ std::vector<Path> paths_of_elements() {
            on_elements([moved](ElasticModel& model, scene::Body& body, std::size_t n) {
              const auto x = std::make_shared<Stirred>(body, 1);
              const auto f = std::make_shared<Points>();
-             return Ready{n, [&model, x, f] { model.force(x->next(), *f); }};
+             return Ready{n, [&model, x, f] { model.force(x->next(), *f); }, double(n) * of_element::force};
            }),
            {}},
           {"energy, elements",
            "elements",
            on_elements([moved](ElasticModel& model, scene::Body& body, std::size_t n) {
-             return Ready{n, [&model, x = std::make_shared<Stirred>(body, 3)] { model.energy(x->next()); }};
+             return Ready{n, [&model, x = std::make_shared<Stirred>(body, 3)] { model.energy(x->next()); },
+                          double(n) * of_element::energy};
            }),
            {}},
           {"surface follows",
            "vertices",
            [](scene::World& world) {
              scene::Body& body = world.bodies[0];
-             const double bytes =
-               24.0 * double(body.surface.rest.size()) + 36.0 * double(body.surface.weights.values.size());
+             const auto n_weights = double(body.surface.weights.values.size());
+             const double flops = 6 * n_weights, bytes = 24.0 * double(body.surface.rest.size()) + 36 * n_weights;
              return Ready{body.surface.rest.size(),
                           [&body] {
                             scene::follow(body);
                             scene::positions(body);
                           },
-                          {unknown, bytes}};
+                          {flops, bytes}};
            },
            {}},
           {"multigrid takes an equation",
@@ -193,25 +222,33 @@ std::vector<Path> paths_of_elements() {
              const auto r = moved(body), z = std::make_shared<Points>(r->size());
              return Ready{n, [step, of_step = step->preconditioner(), r, z] {
                             of_step->apply(dynamics::flat(*r), dynamics::flat(*z));
-                          }};
+                          },
+                          double(n) * of_element::cycle};
            }),
            {}},
           {"implicit step, elements",
            "elements",
            on_elements([](ElasticModel&, scene::Body& body, std::size_t n) {
-             return Ready{n, [&body] { body.physics->step(body.state, body.loads, 1.0 / 60); }};
+             const auto step = [&body] { return body.physics->step(body.state, body.loads, 1.0 / 60); };
+             step();
+             const dynamics::StepReport report = step(); // as the first ones come to rest they take fewer
+             return Ready{n, step,
+                          double(n) * (report.n_iterations * of_element::iteration +
+                                       std::max(1, report.n_newton) * of_element::correction)};
            }),
            {}}};
 }
 
-/// A step of the body's own integrator.
-Path step_path(const std::string& name, const std::string& item, const std::function<double(int)>& dt) {
+/// A step of the body's own integrator, and what it takes for each cube.
+Path step_path(const std::string& name, const std::string& item, const std::function<double(int)>& dt,
+               const Need& need = {}) {
   return {name,
           item,
           [=](scene::World& world) {
             scene::Body& body = world.bodies[0];
             const int n = static_cast<int>(std::lround(1 / body.solid.grid.h()));
-            return Ready{body.state.x.size(), [&body, dt = dt(n)] { body.physics->step(body.state, body.loads, dt); }};
+            return Ready{body.state.x.size(), [&body, dt = dt(n)] { body.physics->step(body.state, body.loads, dt); },
+                         double(body.solid.complex.n_copies()) * need};
           },
           {}};
 }
@@ -219,20 +256,27 @@ Path step_path(const std::string& name, const std::string& item, const std::func
 /// Composing a body: reading its mesh into the grid, copies, surface, physics.
 Measured composing(const int n, const Options& options) {
   std::size_t n_cells = 0;
-  const Sample sample =
-    timed([&] { n_cells = world_of(cube_scene(n, 1.0 / 60, 1, ""))->bodies[0].solid.grid.n_cells(); },
-          std::min(options.n_samples, 5), options.least);
-  return {n_cells, sample};
+  double bytes = 0; // of what it leaves of the body's shape, which is the least that it writes
+  const Sample sample = timed(
+    [&] {
+      const auto world = world_of(cube_scene(n, 1.0 / 60, 1, ""));
+      const grid::Solid& solid = world->bodies[0].solid;
+      n_cells = solid.grid.n_cells();
+      bytes = double(solid.grid.n_bytes() + solid.cuts.n_bytes() + solid.complex.n_bytes() +
+                     world->bodies[0].surface.n_bytes());
+    },
+    std::min(options.n_samples, 5), options.least);
+  return {n_cells, sample, {unknown, bytes}};
 }
 
-/// A blade on its way through the body: everything that follows a cut, by edges that are cut.
-Measured cutting(const int n, const Options& options) {
+/// A blade on its way through such a body: everything that follows a cut, by edges that are cut.
+Measured cutting(const int n, const Options& options, const std::string& body) {
   constexpr int n_steps = 10;
   std::ostringstream blade;
   blade << "subsection Blade knife\n set Edge [m] = 0, -1, 0; 0, 1, 0\n set Times [s] = 0, " << n_steps / 60.0
         << "\n set Positions [m] = 0.013, 0, 0.6; 0.031, 0, -0.6\nend\nsubsection Observables\n set Names = cut "
            "edges\nend\n";
-  const std::string text = cube_scene(n, 1.0 / 60, n_steps, "", blade.str());
+  const std::string text = cube_scene(n, 1.0 / 60, n_steps, body, blade.str());
   std::vector<double> seconds;
   double n_edges = 0;
   for (int i = 0; i < std::min(options.n_samples, 3); ++i) {
@@ -241,7 +285,7 @@ Measured cutting(const int n, const Options& options) {
     for (int step = 1; step <= n_steps; ++step)
       scene::advance(*world, step, stages);
     n_edges = world->bodies[0].observables[0].value(world->bodies[0]);
-    seconds.push_back(stages["cut"] + stages["topology"] + stages["assemble"]);
+    seconds.push_back(stages["cut"] + stages["topology"] + stages["assemble"] + stages["visibility"]);
   }
   return {static_cast<std::size_t>(n_edges), sample_of(seconds)};
 }
@@ -257,17 +301,32 @@ const std::vector<Group>& groups() {
   };
   static const std::vector<Group> list = {
     {scene(""), all, paths_of_elements()},
-    {explicit_scene(""), all, {step_path("explicit step, elements", "corners", explicit_step)}},
+    {explicit_scene(""),
+     all,
+     {step_path("explicit step, elements", "corners", explicit_step, of_element::explicit_step)}},
     {explicit_scene(" set Backend = mass-spring\n"),
      all,
-     {step_path("explicit step, springs", "corners", explicit_step)}},
+     {step_path("explicit step, springs", "corners", explicit_step, of_element::springs)}},
     {explicit_scene(" set Backend = pba\n"), few, {step_path("explicit step, points", "phyxels", explicit_step)}},
     {scene(" set Backend = lattice\n subsection Lattice\n  set Alpha [1] = 0.5\n end\n"),
      all,
-     {step_path("shape matching step", "corners", [](int) { return 1.0 / 60; })}},
+     {step_path("shape matching step", "corners", [](int) { return 1.0 / 60; }, of_element::shape_matching)}},
+    {scene(" set Backend = mass-spring\n"),
+     all,
+     {step_path("implicit step, springs", "corners", [](int) { return 1.0 / 60; })}},
+    {scene(" set Backend = pba\n"), few, {step_path("implicit step, points", "phyxels", [](int) { return 1.0 / 60; })}},
     {nullptr,
      all,
-     {{"composing a body", "cells", {}, composing}, {"cutting, with all that follows", "edges", {}, cutting}}}};
+     {{"composing a body", "cells", {}, composing},
+      {"cutting, with all that follows",
+       "edges",
+       {},
+       [](const int n, const Options& options) { return cutting(n, options, ""); }}}},
+    {nullptr,
+     few,
+     {{"cutting points, with all that follows", "edges", {}, [](const int n, const Options& options) {
+         return cutting(n, options, " set Backend = pba\n");
+       }}}}};
   return list;
 }
 
@@ -320,7 +379,7 @@ std::vector<output::BenchRow> measure_paths(const Options& options, const Machin
             row_of(path, n, ready.n_items, timed(ready.call, options.n_samples, options.least), ready.need, machine));
         } else {
           const Measured measured = path.by_itself(n, options);
-          rows.push_back(row_of(path, n, measured.n_items, measured.sample, {}, machine));
+          rows.push_back(row_of(path, n, measured.n_items, measured.sample, measured.need, machine));
         }
         say(rows.back());
       }

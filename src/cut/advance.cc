@@ -1,6 +1,7 @@
 #include "cut/advance.h"
 
 #include "base/function_ref.h"
+#include "geometry/convex_hull.h"
 #include "grid/fronts.h"
 #include "grid/parts.h"
 
@@ -9,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace kerf::cut {
 
@@ -50,13 +52,28 @@ struct InPlane {
   InPlane(const Vec3& point, const Vec3& normal, const double h)
     : origin(point), u(normal.unitOrthogonal() / h), v(normal.cross(u)), w(normal / h) {}
   Vec3 operator()(const Vec3& p) const { return {u.dot(p - origin), v.dot(p - origin), w.dot(p - origin)}; }
+  Vec3 point(const Eigen::Vector2d& p) const { return origin + (p[0] * u + p[1] * v) / w.squaredNorm(); }
 
   Vec3 origin, u, v, w;
 };
 
-void draw(const Polygon& piece, const InPlane& in_plane, Raster& raster) {
+/// The convex hull of points, in the plane.
+Polygon hull(const Points& points, const InPlane& in_plane) {
+  std::vector<Eigen::Vector2d> flat;
+  for (const Vec3& p : points)
+    flat.push_back(in_plane(p).head<2>());
+  Polygon hull;
+  for (const Eigen::Vector2d& p : geometry::convex_hull(flat))
+    hull.push_back(in_plane.point(p));
+  return hull;
+}
+
+/// Tells whether anything is drawn that was not.
+bool draw(const Polygon& piece, const InPlane& in_plane, Raster& raster) {
+  bool is_any_new = false;
   for (std::size_t i = 2; i < piece.size(); ++i)
-    raster.draw({in_plane(piece[0]), in_plane(piece[i - 1]), in_plane(piece[i])}, off_plane);
+    is_any_new |= raster.draw({in_plane(piece[0]), in_plane(piece[i - 1]), in_plane(piece[i])}, off_plane);
+  return is_any_new;
 }
 
 /// Where the plane of a front meets the material of its cell.
@@ -68,12 +85,17 @@ Raster section_of(const Solid& solid, const Front& front, const InPlane& in_plan
   return section;
 }
 
-/// A cell's cube at rest, and around it what a front in another cell may reach over by its lag.
-Box reach_of(const Solid& solid, const CellId c) {
-  const double h = solid.grid.h(), lag = grid::most_front_lag * h;
+/// A cell's cube at rest, and so much around it [m].
+Box around(const Solid& solid, const CellId c, const double more) {
   const Vec3 origin = solid.grid.origin(c);
-  return {origin - Vec3::Constant(lag), origin + Vec3::Constant(h + lag)};
+  return {origin - Vec3::Constant(more), origin + Vec3::Constant(solid.grid.h() + more)};
 }
+
+/// A little more than the cube, so that what neighbours have of the cut has no seam.
+Box in_sight_of(const Solid& solid, const CellId c) { return around(solid, c, 0.01 * solid.grid.h()); }
+
+/// With what a front in another cell may reach over by its lag.
+Box reach_of(const Solid& solid, const CellId c) { return around(solid, c, grid::most_front_lag * solid.grid.h()); }
 
 bool is_in(const Box& box, const Patch& quad) {
   const Box around = geometry::box_around(quad);
@@ -173,9 +195,12 @@ void Advance::add(const Solid& solid, const CellId c, const Polygon& piece, cons
   Cell& cell = cells_.emplace(c, Cell{label}).first->second;
   if (cell.label != label)
     return;
-  if (const Front* const front = solid.cuts.front(c))
-    draw(piece, InPlane(front->point, front->normal, solid.grid.h()), cell.swept);
-  else {
+  if (const Front* const front = solid.cuts.front(c)) {
+    const InPlane in_plane(front->point, front->normal, solid.grid.h());
+    const bool is_new = draw(piece, in_plane, cell.swept);
+    if (as_faces_)
+      cell.add_fresh(*front, solid.grid.h(), clipped(piece, in_sight_of(solid, c)), is_new);
+  } else {
     std::vector<Polygon>& pieces = rests ? cell.at_rest : cell.pieces;
     if (pieces.size() == most_pieces)
       pieces.erase(pieces.begin());
@@ -186,12 +211,12 @@ void Advance::add(const Solid& solid, const CellId c, const Polygon& piece, cons
 
 /// By how the blade has moved, or else by all that it has met.
 std::optional<Front> Advance::front_in(const Solid& solid, const CellId c) const {
-  const auto& [label, pieces, at_rest, section, swept] = cells_.at(c);
-  auto front = pieces.empty() ? std::nullopt : front_ahead(solid, c, pieces, label);
-  if (!front && !at_rest.empty()) {
-    std::vector<Polygon> all = pieces;
-    all.insert(all.end(), at_rest.begin(), at_rest.end());
-    front = front_ahead(solid, c, all, label);
+  const Cell& cell = cells_.at(c);
+  auto front = cell.pieces.empty() ? std::nullopt : front_ahead(solid, c, cell.pieces, cell.label);
+  if (!front && !cell.at_rest.empty()) {
+    std::vector<Polygon> all = cell.pieces;
+    all.insert(all.end(), cell.at_rest.begin(), cell.at_rest.end());
+    front = front_ahead(solid, c, all, cell.label);
   }
   return front;
 }
@@ -213,7 +238,8 @@ std::vector<Front> Advance::take(const Solid& solid, const PendingCuts& pending)
     else if (earlier) {
       Front moved = *earlier;
       moved.passed = passed(moved, cell.section, cell.swept);
-      if (moved.passed > earlier->passed)
+      moved.come = cell.take_fresh(moved, solid.grid.h());
+      if (moved.passed > earlier->passed || !moved.come.empty())
         fronts.push_back(moved);
     } else if (const auto front = front_in(solid, c))
       begun.emplace(c, *front);
@@ -226,6 +252,25 @@ std::vector<Front> Advance::take(const Solid& solid, const PendingCuts& pending)
   touched_ = std::move(later);
   std::ranges::sort(fronts, {}, &Front::cell);
   return fronts;
+}
+
+void Advance::Cell::add_fresh(const Front& front, const double h, const Polygon& piece, const bool is_new) {
+  constexpr std::size_t many = 64;
+  const InPlane in_plane(front.point, front.normal, h);
+  if (std::ranges::any_of(piece, [&](const Vec3& p) { return std::abs(in_plane(p)[2]) > off_plane; }))
+    return;
+  fresh.insert(fresh.end(), piece.begin(), piece.end());
+  if (fresh.size() > many)
+    fresh = hull(fresh, in_plane);
+  is_fresh |= is_new;
+}
+
+std::vector<Points> Advance::Cell::take_fresh(const Front& front, const double h) {
+  if (!is_fresh)
+    return {};
+  is_fresh = false;
+  const Polygon around = hull(std::exchange(fresh, {}), InPlane(front.point, front.normal, h));
+  return around.size() < 3 ? std::vector<Points>() : std::vector<Points>{around};
 }
 
 /// Whether it can, and has come so far that it is worth a copy.
@@ -243,7 +288,13 @@ bool Advance::begin(const Solid& solid, Front& front, const FrontsOfCells& begun
   if (front.passed < least_passed || !((section & swept).any() || is_cut_beside(solid, front.cell)) ||
       !fits_in(solid, front, begun))
     return false;
-  cell = {cell.label, {}, {}, section, swept};
+  Cell followed{.label = cell.label, .section = section, .swept = swept};
+  if (as_faces_)
+    for (const auto& pieces : {cell.pieces, cell.at_rest})
+      for (const Polygon& piece : pieces)
+        followed.add_fresh(front, solid.grid.h(), clipped(piece, in_sight_of(solid, front.cell)), true);
+  front.come = followed.take_fresh(front, solid.grid.h());
+  cell = std::move(followed);
   return true;
 }
 

@@ -10,7 +10,8 @@
 /// leaves the plane by a quarter of a cube does not count. As elements are too stiff at a front, what is drawn is taken
 /// larger by the lag of fronts, and so reaches on into the next cells; one of which the lag alone reaches has to have a
 /// cut one beside it. The part of the section of plane and material that it covers is how far the cut has come. Corners
-/// ahead of a front are parted too (is_corner_ahead, course.h).
+/// ahead of a front are parted too (is_corner_ahead, course.h). Where it has come, without that lag, is told as the hull
+/// of what has been swept since it was told last, once that has come to texels that had not been.
 ///
 /// Cells in which cuts wait (pending.h) get no front before they are cut; those beside them are asked again then.
 ///
@@ -29,6 +30,9 @@ namespace kerf::cut {
 
 class Advance {
  public:
+  /// As faces: fronts tell where blades have come (grid::Front::come).
+  explicit Advance(const bool as_faces) : as_faces_(as_faces) {}
+
   /// What a blade sweeps while the corners go from x_before to x [m], to which `boxes` are fitted.
   void sweep(const BladePath& path, const grid::Solid& solid, const Points& x_before, const Points& x,
              const EdgeBoxes& boxes, grid::CutLabel label);
@@ -45,14 +49,21 @@ class Advance {
     std::vector<Polygon> pieces = {}, at_rest = {}; ///< of strips of a blade that moves, and rests, rest frame [m];
                                                     ///< until there is a front
     Raster section = {}, swept = {};                ///< from then on
+    Points fresh = {};     ///< around what has been swept since the front was told last, rest frame [m]
+    bool is_fresh = false; ///< has any of that not been swept before?
 
-    void archive(Archive& a) { a(label, pieces, at_rest, section, swept); }
+    /// A piece near the front's plane.
+    void add_fresh(const grid::Front& front, double h, const Polygon& piece, bool is_new);
+    /// What is fresh, if any of it is new.
+    std::vector<Points> take_fresh(const grid::Front& front, double h);
+    void archive(Archive& a) { a(label, pieces, at_rest, section, swept, fresh, is_fresh); }
   };
 
   void add(const grid::Solid& solid, grid::CellId c, const Polygon& piece, grid::CutLabel label, bool rests);
   std::optional<grid::Front> front_in(const grid::Solid& solid, grid::CellId c) const;
   bool begin(const grid::Solid& solid, grid::Front& front, const FrontsOfCells& begun);
 
+  bool as_faces_;
   std::map<grid::CellId, Cell> cells_;
   std::set<grid::CellId> touched_; // in which blades have swept since fronts were taken
 };

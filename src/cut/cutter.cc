@@ -116,6 +116,7 @@ Cutter::Cutter(const std::size_t n_labels, const Release release, const Fronts f
   : release_(release),
     fronts_(fronts),
     passed_(n_labels),
+    advance_(fronts == Fronts::as_faces),
     counts_{.n_cut_edges = std::vector<std::size_t>(n_labels, 0), .between = std::vector<double>(n_labels, 0)} {}
 
 void Cutter::begin(const Solid& solid, const Points& x) {
@@ -132,7 +133,7 @@ CutChange Cutter::step(Solid& solid, const std::span<const Blade> blades, const 
     if (!boxes_->may_be_in(reach_of_paths(blade, t0, t1)))
       continue;
     strokes.push_back(stroke(solid, blade, t0, t1, x));
-    if (fronts_ == Fronts::inside_cells)
+    if (fronts_ == Fronts::inside_cells || fronts_ == Fronts::as_faces)
       for (const BladePath& path : paths(blade, t0, t1))
         advance_.sweep(path, solid, x_before_, x, *boxes_, blade.label);
   }
@@ -205,8 +206,10 @@ CutChange Cutter::at_once(Solid& solid, const CutSurface& surface, const Points&
   const SweepCuts found = cut_edges(surface, solid, x, &*boxes_);
   counts_.n_double_crossings += found.n_double_crossings;
   const Added added = add(solid, found, x);
-  return part(solid, added, fronts_ != Fronts::at_faces ? find_fronts(surface, solid, x) : std::vector<grid::Front>(),
-              x);
+  std::vector<grid::Front> fronts;
+  if (fronts_ != Fronts::at_faces)
+    fronts = find_fronts(surface, solid, x, fronts_ == Fronts::as_faces);
+  return part(solid, added, fronts, x);
 }
 
 CutChange Cutter::cut(Solid& solid, const SweepCuts& cuts) {

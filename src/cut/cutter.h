@@ -71,7 +71,8 @@ enum class Release { queued, at_once };
 enum class Fronts {
   at_faces,                 ///< with the last cell that they part
   of_surfaces_inside_cells, ///< blades so; what cuts at once wherever it does (grid/fronts.h)
-  inside_cells              ///< all of them wherever they do: for steps that ties do not shorten
+  inside_cells,             ///< all of them wherever they do: for steps that ties do not shorten
+  as_faces                  ///< likewise, and each front tells where its cut has come (grid::Front::come)
 };
 
 class Cutter {

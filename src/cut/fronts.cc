@@ -85,8 +85,8 @@ Points come_in(const CellAtPlane::Section& section, const Outline& shape) {
   return come;
 }
 
-/// How far the shape has come in the cell.
-Front front_in(const CellAtPlane& cell, const Outlines& outlines) {
+/// How far the shape has come in the cell; told by where, too.
+Front front_in(const CellAtPlane& cell, const Outlines& outlines, const bool as_faces) {
   double inside = 0, all = 0;
   for (Polygon piece : cell.material()) {
     all += area(piece);
@@ -96,7 +96,8 @@ Front front_in(const CellAtPlane& cell, const Outlines& outlines) {
   }
   const CellAtPlane::Section section = cell.section();
   Front front = cell.front(section, all > 0 ? inside / all : 0);
-  front.come = come_in(section, outlines.own);
+  if (as_faces)
+    front.come = {come_in(section, outlines.own)};
   return front;
 }
 
@@ -105,15 +106,14 @@ bool is_same_plane(const Front& one, const Front& other, const double h) {
   return one.normal.cross(other.normal).norm() < same && std::abs(one.normal.dot(one.point - other.point)) < same * h;
 }
 
-Front moved_on(Front front, const double passed, const Points& come) {
+Front with_passed(Front front, const double passed) {
   front.passed = passed;
-  front.come = come;
   return front;
 }
 
 } // namespace
 
-std::vector<Front> find_fronts(const CutSurface& surface, const Solid& solid, const Points& x) {
+std::vector<Front> find_fronts(const CutSurface& surface, const Solid& solid, const Points& x, const bool as_faces) {
   const double h = solid.grid.h();
   const auto outlines = std::visit([&](const auto& shape) { return outlines_of(shape, h); }, surface.shape);
   std::vector<Front> fronts, corners;
@@ -131,10 +131,12 @@ std::vector<Front> find_fronts(const CutSurface& surface, const Solid& solid, co
     const CellAtPlane cell(solid, c, {outline.point, outline.normal}, grid::corners_of(copy, x));
     if (!cell.is_met())
       continue;
-    Front front = front_in(cell, *outlines);
+    Front front = front_in(cell, *outlines, as_faces);
     if (earlier) {
-      if (front.passed > earlier->passed && is_same_plane(front, *earlier, h))
-        fronts.push_back(moved_on(*earlier, front.passed, front.come));
+      if (front.passed > earlier->passed && is_same_plane(front, *earlier, h)) {
+        fronts.push_back(with_passed(*earlier, front.passed));
+        fronts.back().come = front.come;
+      }
       continue;
     }
     front.label = surface.label;
@@ -143,7 +145,7 @@ std::vector<Front> find_fronts(const CutSurface& surface, const Solid& solid, co
     if (front.passed >= least_passed)
       fronts.push_back(front);
     else
-      corners.push_back(moved_on(front, least_passed, front.come));
+      corners.push_back(with_passed(front, least_passed));
   }
   FrontsOfCells begun;
   for (const Front& front : fronts)

@@ -14,7 +14,8 @@
 namespace kerf::cut {
 
 /// Ascending; with the corners at `x` [m]. What the surface cuts must be cut. Cells whose fronts it only moves on are
-/// among them.
-std::vector<grid::Front> find_fronts(const CutSurface& surface, const grid::Solid& solid, const Points& x);
+/// among them. As faces: they tell where the surface has come, too.
+std::vector<grid::Front> find_fronts(const CutSurface& surface, const grid::Solid& solid, const Points& x,
+                                     bool as_faces);
 
 } // namespace kerf::cut

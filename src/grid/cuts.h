@@ -86,7 +86,8 @@ struct Front {
   double area = 0;                                   ///< of the material in it, in the cell [m^2]
   double passed = 1;                                 ///< the part of it that the cut has come to, in (0, 1] [1]
   CutLabel label = 1;
-  Points come = {}; ///< of a surface: around where it is in the cell and a little beside it, convex, rest frame [m]
+  std::vector<Points> come = {}; ///< where the cut has come in the cell, and a little beside it, since the front was
+                                 ///< told last: convex polygons, rest frame [m]; where asked for (cut::Fronts::as_faces)
 
   void archive(Archive& a) { a(cell, ahead, point, normal, area, passed, label, come); }
 };

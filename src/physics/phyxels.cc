@@ -44,8 +44,9 @@ std::vector<visibility::Face> faces_of_fronts(const grid::Solid& solid, const st
   std::vector<visibility::Face> faces;
   for (const grid::CellId c : cells)
     if (const grid::Front* const front = solid.cuts.front(c))
-      for (std::size_t i = 2; i < front->come.size(); ++i)
-        faces.push_back({front->come[0], front->come[i - 1], front->come[i]});
+      for (const Points& polygon : front->come)
+        for (std::size_t i = 2; i < polygon.size(); ++i)
+          faces.push_back({polygon[0], polygon[i - 1], polygon[i]});
   return faces;
 }
 
@@ -319,19 +320,19 @@ void Phyxels::follow(const dynamics::State& state) {
 
 void Phyxels::add_row(const std::uint32_t row, const Vec3& point, const double factor,
                       std::vector<std::uint32_t>& phyxels, std::vector<double>& weights) const {
-  const auto begin = map_.start[row], end = map_.start[row + 1];
+  const auto begin = map_.rows.start[row], end = map_.rows.start[row + 1];
   Vec3 middle = Vec3::Zero();
   for (auto k = begin; k < end; ++k)
-    middle += map_.weight[k] * map_.rest[map_.phyxel[k]];
+    middle += map_.rows.values[k] * map_.rest[map_.rows.columns[k]];
   Mat3 A = Mat3::Zero();
   for (auto k = begin; k < end; ++k) {
-    const Vec3 d = map_.rest[map_.phyxel[k]] - middle;
-    A += map_.weight[k] * d * d.transpose();
+    const Vec3 d = map_.rest[map_.rows.columns[k]] - middle;
+    A += map_.rows.values[k] * d * d.transpose();
   }
   const Vec3 slope = inverse_where_known(A) * (point - middle);
   for (auto k = begin; k < end; ++k) {
-    phyxels.push_back(map_.phyxel[k]);
-    weights.push_back(factor * map_.weight[k] * (1 + slope.dot(map_.rest[map_.phyxel[k]] - middle)));
+    phyxels.push_back(map_.rows.columns[k]);
+    weights.push_back(factor * map_.rows.values[k] * (1 + slope.dot(map_.rest[map_.rows.columns[k]] - middle)));
   }
 }
 
@@ -343,12 +344,12 @@ Interpolation Phyxels::carry(const Interpolation& of_corners) const {
     phyxels.clear();
     weights.clear();
     for (auto k = of_corners.start[i]; k < of_corners.start[i + 1]; ++k) {
-      const auto corner = of_corners.corners[k];
+      const auto corner = of_corners.columns[k];
       const auto first = map_.source_start[corner], last = map_.source_start[corner + 1];
       for (auto s = first; s < last; ++s)
         add_row(map_.source[s], map_.corners[corner], of_corners.values[k] / (last - first), phyxels, weights);
     }
-    of_phyxels.add_point(phyxels, weights);
+    of_phyxels.add_row(phyxels, weights);
   }
   return of_phyxels;
 }

@@ -149,11 +149,13 @@ std::string describe_physics(const Section& section, const BodyParameters& param
 }
 
 /// Ties of elements and springs at a front that moves are as stiff as the material that it has parted so far, on corners
-/// that may hold hardly any: explicit steps would have to be several times shorter. Phyxels see of blades what is cut.
+/// that may hold hardly any: explicit steps would have to be several times shorter. Phyxels have sight instead.
 cut::Fronts fronts_of(const BodyParameters& parameters) {
+  if (parameters.backend == "pba")
+    return cut::Fronts::as_faces;
   const bool has_ties = parameters.backend == "fem" || parameters.backend == "mass-spring";
-  const bool follows_blades = parameters.backend == "lattice" || (has_ties && !is_explicit(parameters.integrator));
-  return follows_blades ? cut::Fronts::inside_cells : cut::Fronts::of_surfaces_inside_cells;
+  return has_ties && is_explicit(parameters.integrator) ? cut::Fronts::of_surfaces_inside_cells
+                                                        : cut::Fronts::inside_cells;
 }
 
 /// Which parts of the mesh the grid takes for pieces of their own, too thin to be deformed.

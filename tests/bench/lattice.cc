@@ -6,7 +6,7 @@
 #include "base/parallel.h"
 #include "lattice/shape_matching.h"
 #include "surface/placement.h"
-#include "tests/support/bodies.h"
+#include "tests/support/placed.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -25,16 +25,20 @@ double cpu_time() {
 }
 
 support::Body cut_block(const int n) {
-  support::Body body = support::block({n, n, n}, 0.01);
-  for (const auto& cut : support::plane_cuts(body, {Vec3::UnitX(), 0.01 * (0.5 * n + 0.75)}))
-    if (body.grid.position(body.grid.ends(cut.edge)[0])[2] > 0.005 * n)
-      body.cuts.add(body.grid, cut);
-  surface::place(body, {});
+  support::Body body = support::with_copies(support::with_placed_skin(support::block({n, n, n}, 0.01)));
+  cut::Cutter cutter(1);
+  cutter.begin(body, grid::rest_positions(body));
+  const double half = 0.005 * n;
+  surface::place(body,
+                 cutter.at_once(body, {"cut", cut::Rectangle{Vec3(half + 0.0075, half, 2 * half),
+                                                             Vec3(0, 4 * half, 0), Vec3(0, 0, 2 * half)}, 1},
+                                grid::rest_positions(body)),
+                 {});
   return body;
 }
 
 void measure(const int n, const int half_width, const double region_damping) {
-  const support::Body body = support::with_copies(cut_block(n));
+  const support::Body body = cut_block(n);
   const grid::CellComplex& complex = body.complex;
   constexpr double dt = 1.0 / 60;
   const double start_of_set_up = cpu_time();

@@ -171,8 +171,8 @@ void cook_table() {
 }
 
 void penny_row(const int n, const double half_width) {
-  const PennyResult r = penny({.n_over_radius = n, .half_width = half_width}, hooke(1, 0.3));
-  std::printf("| %d | %g | %zu | %.1f | %.4f | %.3f | %.1f | %.2f |\n", n, half_width, r.n_cells, 100 * r.opening_error,
+  const PennyResult r = penny({.n_over_radius = double(n), .half_width = half_width}, hooke(1, 0.3));
+  std::printf("| %d | %g | %zu | %.1f | %.4f | %.3f | %.1f | %.2f |\n", n, half_width, r.n_cells, percent(r.opening),
               r.volume, n * (1 - std::cbrt(r.volume)), percent(r.release_rate), r.cost.total());
   std::fflush(stdout);
 }

@@ -49,7 +49,7 @@ struct Patient {
   }
 
   Cutter cutter(const grid::CutLabel label, const Release release = Release::queued) const {
-    Cutter cutter(label, release);
+    Cutter cutter(label, release, Fronts::inside_cells);
     cutter.begin(body, x);
     return cutter;
   }

@@ -116,8 +116,7 @@ Stroking bent_blade(const support::Plane& plane, const Vec3& middle, Random& ran
 
 void pass_all(Patient& patient, const std::vector<Blade>& blades, const double speed) {
   const int n_steps = std::max(1, static_cast<int>(3 / (speed * patient.body.grid.h())));
-  Cutter cutter(static_cast<grid::CutLabel>(blades.size()));
-  cutter.begin(patient.body, patient.x);
+  Cutter cutter = patient.cutter(static_cast<grid::CutLabel>(blades.size()));
   for (int k = 0; k <= n_steps || cutter.n_waiting() > 0; ++k)
     patient.follow(cutter.step(patient.body, blades, double(k) / n_steps, double(k + 1) / n_steps, patient.x));
 }
@@ -224,8 +223,7 @@ int n_joined_again(const double tilt, const unsigned n_seeds) {
     std::vector<Blade> blades = straight_blades(planes, middle, random).blades;
     for (Blade& blade : blades)
       blade.key_frames[0].time = uniform(random, 0, 0.3);
-    Cutter cutter(static_cast<grid::CutLabel>(blades.size()));
-    cutter.begin(patient.body, patient.x);
+    Cutter cutter = patient.cutter(static_cast<grid::CutLabel>(blades.size()));
     constexpr int n_steps = 60;
     int before = 1;
     for (int k = 0; k <= n_steps || cutter.n_waiting() > 0; ++k) {

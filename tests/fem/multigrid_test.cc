@@ -65,7 +65,7 @@ Interpolation middles_below(const Body& body) {
     for (int v = 0; v < 4; ++v)
       if (const std::array<std::uint32_t, 2> ends = {copy.corners[v].value, copy.corners[v + 4].value};
           rest[ends[0]][2] < lowest + 1e-9)
-        points.add_point(ends, halves);
+        points.add_row(ends, halves);
   return points;
 }
 
@@ -82,7 +82,7 @@ Interpolation points_anywhere(const Body& body, const int n, Draw& draw) {
       corners[v] = copy.corners[v].value;
       weights[v] = grid::shape(v, xi);
     }
-    points.add_point(corners, weights);
+    points.add_row(corners, weights);
   }
   return points;
 }
@@ -429,10 +429,11 @@ TEST(Multigrid, KnowsTies) {
   EXPECT_LE(counts[1], counts[0] + 3) << counts[0];
 }
 
-/// Bits do not depend on threads, nor on whether a cut was followed or the model built anew.
+/// Bits do not depend on threads, nor on whether a cut was followed or the model built anew. So many cells that a second
+/// thread has work in products and on the finest levels.
 TEST(Multigrid, GivesTheSameBitsByAnyWay) {
   Draw draw(350);
-  Body body = make_block({9, 8, 9}, 0.1, draw, {0.3, 0.7});
+  Body body = make_block({29, 28, 30}, 0.1, draw, {0.3, 0.7});
   Hexahedra followed(body, {.material = rubber(0.3)});
   Points x = body.rest();
   Equation(followed, clamped_below(body, 0.3), x, 36).multigrid();

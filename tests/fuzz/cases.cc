@@ -153,15 +153,17 @@ class Run {
       strokes_.push_back({static_cast<grid::CutLabel>(label)});
   }
 
-  const grid::Solid& solid() const { return subject_.solid; }
-
-  void all_sweeps() {
+  void all_sweeps(const Judge& judge) {
     for (const std::uint32_t number : case_.sweeps) {
       ++outcome_.n_done;
       sweep(number);
       ++tally_.n_sweeps;
+      if (judge)
+        judge(subject_.solid, false);
     }
     drain();
+    if (judge)
+      judge(subject_.solid, true);
     tally_.n_left_whole += subject_.cutter.counts().n_left_whole;
     require_untouched_elsewhere();
     require_same_in_any_order();
@@ -311,15 +313,12 @@ std::string to_string(const Case& one) {
   return text;
 }
 
-Outcome run(const Case& one, const std::vector<Specimen>& specimens, Tally& tally,
-            const std::function<void(const grid::Solid&)>& judge) {
+Outcome run(const Case& one, const std::vector<Specimen>& specimens, Tally& tally, const Judge& judge) {
   Outcome outcome;
   try {
     ++tally.n_cases;
     Run run(one, specimens, tally, outcome);
-    run.all_sweeps();
-    if (judge)
-      judge(run.solid());
+    run.all_sweeps(judge);
   } catch (const std::exception& error) {
     outcome.failure = error.what();
   }

@@ -28,10 +28,11 @@ struct Outcome {
   std::uint64_t digest = 0; ///< of all that came out, bit by bit
 };
 
-/// Draws a specimen and runs the case on it. Whatever is thrown is a failure, by `judge` too, which sees what is left
-/// of the body in the end.
-Outcome run(const Case& one, const std::vector<Specimen>& specimens, Tally& tally,
-            const std::function<void(const grid::Solid&)>& judge = {});
+/// Sees what is left of a body after each sweep.
+using Judge = std::function<void(const grid::Solid&, bool is_last)>;
+
+/// Draws a specimen and runs the case on it. Whatever is thrown is a failure, by `judge` too.
+Outcome run(const Case& one, const std::vector<Specimen>& specimens, Tally& tally, const Judge& judge = {});
 
 /// The shortest prefix that fails, and of it what is needed: sweeps are left out one by one while the case still fails.
 Case shrunk(Case failing, const std::vector<Specimen>& specimens);

@@ -32,6 +32,11 @@ struct GrowingCut {
   grid::CutChange cut(const cut::Shape& shape, Physics& physics, dynamics::State& state) {
     return follow(cutter.at_once(body, {"cut", shape, 1}, rest()), physics, state);
   }
+  /// A blade's step, past corners that rest.
+  grid::CutChange step(const cut::Blade& blade, const double t0, const double t1, Physics& physics,
+                       dynamics::State& state) {
+    return follow(cutter.step(body, std::span(&blade, 1), t0, t1, rest()), physics, state);
+  }
 
  private:
   grid::CutChange follow(const grid::CutChange& change, Physics& physics, dynamics::State& state) {

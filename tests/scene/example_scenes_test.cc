@@ -94,5 +94,17 @@ TEST(ExampleScenes, ComposeAndRunSomeSteps) {
   }
 }
 
+/// To its end.
+TEST(ExampleScenes, ALobeOfTheLiverComesFree) {
+  const output::TemporaryFolder folder;
+  World world = compose(read_scene_text(support::checkout() + "/params/liver.prm", {}));
+  world.images.reset();
+  world.surface_file.reset();
+  run_silently(world, folder / "out");
+  const auto pieces = output::Reader(folder / "out/run.h5").observable("liver pieces");
+  EXPECT_EQ(pieces.front(), 1);
+  EXPECT_EQ(pieces.back(), 2);
+}
+
 } // namespace
 } // namespace kerf::scene::example_scenes_test

@@ -77,11 +77,12 @@ Body box(const Box& box, const double h, const Vec3& offset) {
 Body ball(const double radius, const double h, const Vec3& offset) { return placed(support::ball(radius, h, offset)); }
 
 void cut(Body& body, const support::Plane& plane, const std::function<bool(const Vec3&)>& is_cut) {
+  cut::SweepCuts cuts;
   for (const grid::EdgeCut& one : support::plane_cuts(body, plane)) {
     const auto& [lower, upper] = body.grid.ends(one.edge);
     const Vec3 p = body.grid.position(lower), q = body.grid.position(upper);
     if (is_cut(p + one.t * (q - p)))
-      body.cuts.add(body.grid, one);
+      cuts.cuts.push_back(one);
   }
   for (const grid::SkinCut& one : support::plane_skin_cuts(body, plane)) {
     const grid::CellId c = one.segment.face.valid() ? body.grid.cells(one.segment.face)[0] : one.segment.cell;
@@ -91,10 +92,12 @@ void cut(Body& body, const support::Plane& plane, const std::function<bool(const
         const auto& ends = skeleton.segment[segment].ends;
         const Vec3 p = grid::item_point(body, c, ends[0]), q = grid::item_point(body, c, ends[1]);
         if (is_cut(p + one.t * (q - p)))
-          body.cuts.add(one);
+          cuts.of_skin.push_back(one);
       }
   }
-  place(body);
+  cut::Cutter cutter(1);
+  cutter.begin(body, body.rest());
+  surface::place(body, cutter.cut(body, cuts), {});
 }
 
 void cut_at_once(Body& body, const cut::Shape& shape, const cut::Fronts fronts) {

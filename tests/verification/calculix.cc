@@ -211,4 +211,15 @@ Points run(const Deck& deck, const std::vector<Probe>& probes) {
   return u;
 }
 
+double heavy_cantilever(const int n, const Element element, const double poissons_ratio) {
+  const double h = 0.2 / n;
+  const Deck deck{.element = element,
+                  .n = {5 * n, n, n},
+                  .place = [h](const Vec3& i) { return Vec3(h * i - Vec3(0, 0.1, 0.1)); },
+                  .youngs_modulus = 1e6,
+                  .poissons_ratio = poissons_ratio,
+                  .gravity = Vec3(0, 0, -9.81)};
+  return -run(deck, {{.node = {5 * n, n / 2, n / 2}}})[0][2];
+}
+
 } // namespace kerf::verification::calculix

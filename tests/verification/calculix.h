@@ -1,7 +1,6 @@
 #pragma once
 
-/// The same problems in CalculiX (Dhondt 2004), an independent program: input decks for a block of hexahedra, a run in
-/// a
+/// The same problems in CalculiX (Dhondt 2004), an independent program: input decks for a block of hexahedra, a run in a
 /// temporary folder, displacements read back from the .dat file.
 
 #include "base/vec.h"
@@ -40,5 +39,8 @@ struct Probe {
 
 /// Displacements of the nodes [m]. Throws std::runtime_error, with the end of its output, when CalculiX fails.
 Points run(const Deck& deck, const std::vector<Probe>& probes);
+
+/// The tip of verification::heavy_cantilever on cubes [m].
+double heavy_cantilever(int n_over_height, Element element, double poissons_ratio = 0.3);
 
 } // namespace kerf::verification::calculix

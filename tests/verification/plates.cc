@@ -81,14 +81,17 @@ void compare(const Body& body, const Points& u, const Vec3& centre, PennyResult&
   for (std::size_t c = 0; c < x.size(); ++c)
     x[c] += small * u[c];
   const auto gaps = grid::gaps(body, 1, x);
-  double squares = 0, exact_squares = 0;
+  double products = 0, squares = 0, exact_squares = 0;
   for (const grid::Gap& gap : gaps) {
     const double s2 = (grid::edge_point(body, gap.edge) - centre).squaredNorm();
-    const double exact = 8 * (1 - nu * nu) / std::numbers::pi * std::sqrt(std::max(0.0, 1 - s2));
-    squares += std::pow(gap.way.norm() / small - exact, 2);
+    const double exact = 8 * (1 - nu * nu) / std::numbers::pi * std::sqrt(std::max(0.0, 1 - s2)),
+                 found = gap.way.norm() / small;
+    products += found * exact;
+    squares += found * found;
     exact_squares += exact * exact;
   }
-  result.opening_error = std::sqrt(squares / exact_squares);
+  result.opening = products / exact_squares;
+  result.opening_error = std::sqrt(std::max(0.0, squares / exact_squares - result.opening * result.opening));
   result.volume = grid::opened_volume(gaps) / (small * exact_volume);
   result.n_cells = body.complex.n_copies();
 }

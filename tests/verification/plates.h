@@ -29,13 +29,14 @@ fem::HexahedraOptions cook_material(fem::Strain strain);
 /// along the disc's normal. Sneddon 1946: the faces open by w(s) = 8 (1 - nu^2) sigma sqrt(r^2 - s^2) / (pi E), twice
 /// what one face moves, in a body without end.
 struct Penny {
-  int n_over_radius = 3;
+  double n_over_radius = 3;             ///< cubes
   double half_width = 4;                ///< R / r [1]
   Vec3 offset = Vec3(0.31, 0.43, 0.57); ///< of the centre from a node, in parts of h [1]
   Vec3 normal = Vec3::UnitZ();          ///< of any length
 };
 struct PennyResult {
-  double opening_error = 0; ///< root mean square over the cut edges in the disc, over that of the exact opening [1]
+  double opening = 0;       ///< as a multiple of the exact one, nearest to it at the cut edges in the disc [1]
+  double opening_error = 0; ///< root mean square of what these are off that multiple, over that of the exact one [1]
   double volume = 0;        ///< of the gap, over the exact one, 16 (1 - nu^2) sigma r^3 / (3 E) [1]
   double work = 0;          ///< of the tension, beyond that on a block without a cut, over sigma times that volume [1]
   double release_rate = 0;  ///< of the elements, in tubes of r / 2 and .95 r, over 4 (1 - nu^2) sigma^2 r / (pi E) [1]
