@@ -68,12 +68,12 @@ Polygon hull(const Points& points, const InPlane& in_plane) {
   return hull;
 }
 
-/// Tells whether anything is drawn that was not.
-bool draw(const Polygon& piece, const InPlane& in_plane, Raster& raster) {
-  bool is_any_new = false;
+/// Returns how many texels are drawn that were not.
+int draw(const Polygon& piece, const InPlane& in_plane, Raster& raster) {
+  int n_new = 0;
   for (std::size_t i = 2; i < piece.size(); ++i)
-    is_any_new |= raster.draw({in_plane(piece[0]), in_plane(piece[i - 1]), in_plane(piece[i])}, off_plane);
-  return is_any_new;
+    n_new += raster.draw({in_plane(piece[0]), in_plane(piece[i - 1]), in_plane(piece[i])}, off_plane);
+  return n_new;
 }
 
 /// Where the plane of a front meets the material of its cell.
@@ -197,9 +197,9 @@ void Advance::add(const Solid& solid, const CellId c, const Polygon& piece, cons
     return;
   if (const Front* const front = solid.cuts.front(c)) {
     const InPlane in_plane(front->point, front->normal, solid.grid.h());
-    const bool is_new = draw(piece, in_plane, cell.swept);
+    const int n_new = draw(piece, in_plane, cell.swept);
     if (as_faces_)
-      cell.add_fresh(*front, solid.grid.h(), clipped(piece, in_sight_of(solid, c)), is_new);
+      cell.add_fresh(*front, solid.grid.h(), clipped(piece, in_sight_of(solid, c)), n_new);
   } else {
     std::vector<Polygon>& pieces = rests ? cell.at_rest : cell.pieces;
     if (pieces.size() == most_pieces)
@@ -238,8 +238,7 @@ std::vector<Front> Advance::take(const Solid& solid, const PendingCuts& pending)
     else if (earlier) {
       Front moved = *earlier;
       moved.passed = passed(moved, cell.section, cell.swept);
-      moved.come = cell.take_fresh(moved, solid.grid.h());
-      if (moved.passed > earlier->passed || !moved.come.empty())
+      if (moved.passed > earlier->passed && !as_faces_)
         fronts.push_back(moved);
     } else if (const auto front = front_in(solid, c))
       begun.emplace(c, *front);
@@ -249,12 +248,32 @@ std::vector<Front> Advance::take(const Solid& solid, const PendingCuts& pending)
       fronts.push_back(front);
     else if (has_neighbour(solid, c, waits)) // which may be what it lacks
       later.insert(c);
+  if (as_faces_)
+    tell_where_they_have_come(solid, fronts);
   touched_ = std::move(later);
   std::ranges::sort(fronts, {}, &Front::cell);
   return fronts;
 }
 
-void Advance::Cell::add_fresh(const Front& front, const double h, const Polygon& piece, const bool is_new) {
+/// All of them at once, when one has come on by enough: what sees them is made anew then (physics/phyxels.h).
+void Advance::tell_where_they_have_come(const Solid& solid, std::vector<Front>& fronts) {
+  constexpr double enough = 0.05; // squares of a cube's edge
+  constexpr double texel = Raster::side / Raster::n;
+  if (std::ranges::none_of(touched_, [&](const CellId c) {
+        const auto at = cells_.find(c);
+        return at != cells_.end() && at->second.n_fresh * texel * texel >= enough;
+      }))
+    return;
+  for (auto& [c, cell] : cells_)
+    if (const Front* const earlier = solid.cuts.front(c); earlier && cell.n_fresh > 0) {
+      Front moved = *earlier;
+      moved.passed = std::max(earlier->passed, passed(moved, cell.section, cell.swept));
+      moved.come = cell.take_fresh(moved, solid.grid.h());
+      fronts.push_back(moved);
+    }
+}
+
+void Advance::Cell::add_fresh(const Front& front, const double h, const Polygon& piece, const int n_new) {
   constexpr std::size_t many = 64;
   const InPlane in_plane(front.point, front.normal, h);
   if (std::ranges::any_of(piece, [&](const Vec3& p) { return std::abs(in_plane(p)[2]) > off_plane; }))
@@ -262,13 +281,11 @@ void Advance::Cell::add_fresh(const Front& front, const double h, const Polygon&
   fresh.insert(fresh.end(), piece.begin(), piece.end());
   if (fresh.size() > many)
     fresh = hull(fresh, in_plane);
-  is_fresh |= is_new;
+  n_fresh += n_new;
 }
 
 std::vector<Points> Advance::Cell::take_fresh(const Front& front, const double h) {
-  if (!is_fresh)
-    return {};
-  is_fresh = false;
+  n_fresh = 0;
   const Polygon around = hull(std::exchange(fresh, {}), InPlane(front.point, front.normal, h));
   return around.size() < 3 ? std::vector<Points>() : std::vector<Points>{around};
 }
@@ -292,7 +309,7 @@ bool Advance::begin(const Solid& solid, Front& front, const FrontsOfCells& begun
   if (as_faces_)
     for (const auto& pieces : {cell.pieces, cell.at_rest})
       for (const Polygon& piece : pieces)
-        followed.add_fresh(front, solid.grid.h(), clipped(piece, in_sight_of(solid, front.cell)), true);
+        followed.add_fresh(front, solid.grid.h(), clipped(piece, in_sight_of(solid, front.cell)), 0);
   front.come = followed.take_fresh(front, solid.grid.h());
   cell = std::move(followed);
   return true;

@@ -11,7 +11,7 @@
 /// larger by the lag of fronts, and so reaches on into the next cells; one of which the lag alone reaches has to have a
 /// cut one beside it. The part of the section of plane and material that it covers is how far the cut has come. Corners
 /// ahead of a front are parted too (is_corner_ahead, course.h). Where it has come, without that lag, is told as the hull
-/// of what has been swept since it was told last, once that has come to texels that had not been.
+/// of what has been swept since it was told last, once a front has come on by a twentieth of a cube.
 ///
 /// Cells in which cuts wait (pending.h) get no front before they are cut; those beside them are asked again then.
 ///
@@ -49,19 +49,19 @@ class Advance {
     std::vector<Polygon> pieces = {}, at_rest = {}; ///< of strips of a blade that moves, and rests, rest frame [m];
                                                     ///< until there is a front
     Raster section = {}, swept = {};                ///< from then on
-    Points fresh = {};     ///< around what has been swept since the front was told last, rest frame [m]
-    bool is_fresh = false; ///< has any of that not been swept before?
+    Points fresh = {}; ///< around what has been swept since the front was told last, rest frame [m]
+    int n_fresh = 0;   ///< texels of that which had not been before
 
     /// A piece near the front's plane.
-    void add_fresh(const grid::Front& front, double h, const Polygon& piece, bool is_new);
-    /// What is fresh, if any of it is new.
+    void add_fresh(const grid::Front& front, double h, const Polygon& piece, int n_new);
     std::vector<Points> take_fresh(const grid::Front& front, double h);
-    void archive(Archive& a) { a(label, pieces, at_rest, section, swept, fresh, is_fresh); }
+    void archive(Archive& a) { a(label, pieces, at_rest, section, swept, fresh, n_fresh); }
   };
 
   void add(const grid::Solid& solid, grid::CellId c, const Polygon& piece, grid::CutLabel label, bool rests);
   std::optional<grid::Front> front_in(const grid::Solid& solid, grid::CellId c) const;
   bool begin(const grid::Solid& solid, grid::Front& front, const FrontsOfCells& begun);
+  void tell_where_they_have_come(const grid::Solid& solid, std::vector<grid::Front>& fronts);
 
   bool as_faces_;
   std::map<grid::CellId, Cell> cells_;

@@ -6,11 +6,11 @@
 
 namespace kerf::cut {
 
-bool Raster::draw(const std::array<Vec3, 3>& triangle, const double most) {
+int Raster::draw(const std::array<Vec3, 3>& triangle, const double most) {
   const auto& [a, b, c] = triangle;
   const double twice_area = (b - a)[0] * (c - a)[1] - (b - a)[1] * (c - a)[0];
   if (twice_area == 0)
-    return false;
+    return 0;
   const auto texel = [](const double at) {
     return static_cast<int>(std::clamp((at / side + 0.5) * n - 0.5, -1.0, double(n)));
   };
@@ -22,7 +22,7 @@ bool Raster::draw(const std::array<Vec3, 3>& triangle, const double most) {
   };
   const std::array<Vec3, 3> shares = {share(b, c), share(c, a), share(a, b)};
   const Vec3 lower = a.cwiseMin(b).cwiseMin(c), upper = a.cwiseMax(b).cwiseMax(c);
-  bool is_any_new = false;
+  int n_new = 0;
   const int first = std::max(0, texel(lower[0])), last = std::min(n - 1, texel(upper[0]) + 1);
   const auto middle = [](const int i) { return ((i + 0.5) / n - 0.5) * side; };
   for (int j = std::max(0, texel(lower[1])); j <= std::min(n - 1, texel(upper[1]) + 1); ++j) {
@@ -34,12 +34,12 @@ bool Raster::draw(const std::array<Vec3, 3>& triangle, const double most) {
                    of_c = of_row[2] + shares[2][1] * x;
       const bool is_set = (of_a >= on_an_edge) & (of_b >= on_an_edge) & (of_c >= on_an_edge) &
                           (std::abs(of_a * a[2] + of_b * b[2] + of_c * c[2]) <= most);
-      const std::uint64_t texel_of_row = std::uint64_t(is_set) << i;
-      is_any_new |= (texel_of_row & ~rows_[j]) != 0;
-      rows_[j] |= texel_of_row;
+      const std::uint64_t bit = std::uint64_t(is_set) << i;
+      n_new += (bit & ~rows_[j]) != 0;
+      rows_[j] |= bit;
     }
   }
-  return is_any_new;
+  return n_new;
 }
 
 Raster Raster::grown(const double distance) const {

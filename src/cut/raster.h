@@ -12,8 +12,8 @@ class Raster {
   static constexpr double side = 2.5; ///< in cubes; more than a cube's space diagonal and twice the lag
 
   /// Sets the texels whose middles lie in a triangle, where the third coordinate is at most `most` away from 0; of
-  /// coordinates in cubes, from the middle. Tells whether one of them was not set.
-  bool draw(const std::array<Vec3, 3>& triangle, double most);
+  /// coordinates in cubes, from the middle. Returns how many of them were not set.
+  int draw(const std::array<Vec3, 3>& triangle, double most);
   /// All texels within a distance of set ones.
   Raster grown(double distance) const;
   int count() const;
