@@ -44,23 +44,47 @@ struct RowLoops {
     constexpr int which[4] = {i, j, k, l};
     return __builtin_shufflevector(a, b, (lanes / 4 * 4 + which[lanes % 4] % 4 + (which[lanes % 4] < 4 ? 0 : W))...);
   }
+  /// A row of doubles is as long as two of the 128 bits within which instructions shuffle cheaply: so rows are taken
+  /// apart within these first, and then by whole ones. (Twice as many instructions otherwise, with AVX2.)
+  static constexpr bool crosses_lanes = sizeof(T) == 8;
+
   /// Reads the rows of W corners.
   [[gnu::always_inline]] static void read(const std::uint32_t* const corners, const Row<T>* const p, V (&v)[3]) {
     const V r0 = rows(p, corners), r1 = rows(p, corners + 1), r2 = rows(p, corners + 2), r3 = rows(p, corners + 3);
-    const V xy01 = in_fours<0, 4, 1, 5>(r0, r1), xy23 = in_fours<0, 4, 1, 5>(r2, r3);
-    const V z01 = in_fours<2, 6, 3, 7>(r0, r1), z23 = in_fours<2, 6, 3, 7>(r2, r3);
-    v[0] = in_fours<0, 1, 4, 5>(xy01, xy23);
-    v[1] = in_fours<2, 3, 6, 7>(xy01, xy23);
-    v[2] = in_fours<0, 1, 4, 5>(z01, z23);
+    if constexpr (crosses_lanes) {
+      const V xz01 = in_fours<0, 4, 2, 6>(r0, r1), xz23 = in_fours<0, 4, 2, 6>(r2, r3);
+      const V y01 = in_fours<1, 5, 3, 7>(r0, r1), y23 = in_fours<1, 5, 3, 7>(r2, r3);
+      v[0] = in_fours<0, 1, 4, 5>(xz01, xz23);
+      v[1] = in_fours<0, 1, 4, 5>(y01, y23);
+      v[2] = in_fours<2, 3, 6, 7>(xz01, xz23);
+    } else {
+      const V xy01 = in_fours<0, 4, 1, 5>(r0, r1), xy23 = in_fours<0, 4, 1, 5>(r2, r3);
+      const V z01 = in_fours<2, 6, 3, 7>(r0, r1), z23 = in_fours<2, 6, 3, 7>(r2, r3);
+      v[0] = in_fours<0, 1, 4, 5>(xy01, xy23);
+      v[1] = in_fours<2, 3, 6, 7>(xy01, xy23);
+      v[2] = in_fours<0, 1, 4, 5>(z01, z23);
+    }
   }
   /// Adds to the rows of W corners, one after the other.
   [[gnu::always_inline]] static void add(const V& x, const V& y, const V& z, const std::uint32_t* const corners,
                                          Row<T>* const p, const int stride = 1) {
     const V none = {};
-    const V xy01 = in_fours<0, 4, 1, 5>(x, y), xy23 = in_fours<2, 6, 3, 7>(x, y);
-    const V z01 = in_fours<0, 4, 1, 5>(z, none), z23 = in_fours<2, 6, 3, 7>(z, none);
-    const V of_rows[4] = {in_fours<0, 1, 4, 5>(xy01, z01), in_fours<2, 3, 6, 7>(xy01, z01),
-                          in_fours<0, 1, 4, 5>(xy23, z23), in_fours<2, 3, 6, 7>(xy23, z23)};
+    V of_rows[4];
+    if constexpr (crosses_lanes) {
+      const V xy02 = in_fours<0, 4, 2, 6>(x, y), xy13 = in_fours<1, 5, 3, 7>(x, y);
+      const V z02 = in_fours<0, 4, 2, 6>(z, none), z13 = in_fours<1, 5, 3, 7>(z, none);
+      of_rows[0] = in_fours<0, 1, 4, 5>(xy02, z02);
+      of_rows[1] = in_fours<0, 1, 4, 5>(xy13, z13);
+      of_rows[2] = in_fours<2, 3, 6, 7>(xy02, z02);
+      of_rows[3] = in_fours<2, 3, 6, 7>(xy13, z13);
+    } else {
+      const V xy01 = in_fours<0, 4, 1, 5>(x, y), xy23 = in_fours<2, 6, 3, 7>(x, y);
+      const V z01 = in_fours<0, 4, 1, 5>(z, none), z23 = in_fours<2, 6, 3, 7>(z, none);
+      of_rows[0] = in_fours<0, 1, 4, 5>(xy01, z01);
+      of_rows[1] = in_fours<2, 3, 6, 7>(xy01, z01);
+      of_rows[2] = in_fours<0, 1, 4, 5>(xy23, z23);
+      of_rows[3] = in_fours<2, 3, 6, 7>(xy23, z23);
+    }
 #pragma GCC unroll 4
     for (int g = 0; g < W / 4; ++g)
 #pragma GCC unroll 4
