@@ -10,6 +10,7 @@
 #include "grid/touched.h"
 
 #include <algorithm>
+#include <bit>
 #include <iterator>
 
 namespace kerf::cut {
@@ -28,8 +29,9 @@ std::array<grid::CellId, 2> cells_of(const grid::Grid& grid, const grid::SkinSeg
 /// Of an edge, or a segment of the skin.
 template <class Segment>
 bool is_known(const Solid& solid, const Segment& segment, const grid::CutLabel label) {
-  if (const auto* const first = solid.cuts.find(segment); first && first->label == label)
-    return true;
+  const auto* const first = solid.cuts.find(segment);
+  if (!first || first->label == label)
+    return first != nullptr; // where it is left whole it may be cut yet
   const auto later = solid.cuts.later_cuts(segment);
   return std::ranges::find(later, label, &grid::LaterCut::label) != later.end();
 }
@@ -109,6 +111,44 @@ class Passage {
   };
   std::vector<Edge> edges_;
 };
+
+/// Cuts what was left whole in cells where something is met now: what is beside it then may lie on its side of all cuts,
+/// and it is no shred any more (shreds.h). Adds it to what is cut, and returns how much that is.
+std::size_t take_up_left_ones(Solid& solid, std::vector<EdgeId>& edges, std::vector<grid::SkinSegment>& segments,
+                              const std::vector<EdgeId>& edges_met, const std::vector<grid::SkinSegment>& segments_met) {
+  if (!solid.cuts.has_later_cuts())
+    return 0;
+  std::vector<EdgeId> all_edges = edges;
+  std::vector<grid::SkinSegment> all_segments = segments;
+  all_edges.insert(all_edges.end(), edges_met.begin(), edges_met.end());
+  all_segments.insert(all_segments.end(), segments_met.begin(), segments_met.end());
+  sort_unique(all_edges);
+  sort_unique(all_segments);
+  std::size_t n = 0;
+  for (const grid::CellId c : grid::touched_cells(solid.grid, all_edges, all_segments)) {
+    const grid::CellCuts cuts = grid::cuts_of(solid, c);
+    for (grid::Segments left = cuts.skeleton().segments & ~cuts.blades; left != 0; left &= left - 1) {
+      const int segment = std::countr_zero(left);
+      if (segment < grid::skeleton::first_half) {
+        const EdgeId e = solid.grid.edges(c)[segment];
+        const auto left_whole = solid.cuts.later_cuts(e);
+        if (left_whole.empty() || !solid.cuts.can_be_cut(solid.grid, e))
+          continue;
+        solid.cuts.add(solid.grid, {e, left_whole[0].t, left_whole[0].normal, left_whole[0].label});
+        edges.push_back(e);
+      } else {
+        const grid::SkinSegment s = grid::skin_segment(solid.grid, c, segment);
+        const auto left_whole = solid.cuts.later_cuts(s);
+        if (left_whole.empty() || solid.cuts.is_cut(s))
+          continue;
+        solid.cuts.add({s, left_whole[0].t, left_whole[0].normal, left_whole[0].label});
+        segments.push_back(s);
+      }
+      ++n;
+    }
+  }
+  return n;
+}
 
 } // namespace
 
@@ -262,9 +302,11 @@ Cutter::Added Cutter::add(Solid& solid, const SweepCuts& cuts, const Points& x) 
       passed_[cut.label - 1].remove(cells_of(solid.grid, cut.segment));
     } else
       meet(cut, cut.segment, segments_met);
+  const std::size_t n_taken_up = take_up_left_ones(solid, edges, segments, edges_met, segments_met);
   std::sort(edges.begin(), edges.end());
   std::sort(segments.begin(), segments.end());
   counts_.n_left_whole += leave_shreds(solid, edges, segments);
+  counts_.n_left_whole -= n_taken_up;
   for (const EdgeId e : edges)
     ++counts_.n_cut_edges[solid.cuts.find(e)->label - 1];
   return added;

@@ -194,6 +194,9 @@ template <class Key>
 std::size_t take_back(grid::Cuts& cuts, std::vector<Key>& from, std::vector<Key>& back) {
   sort_unique(back);
   if (!back.empty()) {
+    for (const Key& key : back)
+      if (const auto* const cut = cuts.find(key))
+        cuts.add(key, grid::LaterCut{cut->t, cut->normal, cut->label});
     cuts.take_back(back);
     std::erase_if(from, [&](const Key& key) { return std::ranges::binary_search(back, key); });
   }

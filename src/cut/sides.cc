@@ -31,15 +31,21 @@ class CellCrossings {
  public:
   CellCrossings(const Solid& solid, const CellId c, const grid::CellCuts& cuts) : of_(cuts.skeleton()) {
     const auto edges = solid.grid.edges(c);
-    for (Segments left = cuts.blades & of_.segments; left != 0; left &= left - 1) {
+    for (Segments left = solid.cuts.has_later_cuts() ? of_.segments : cuts.blades & of_.segments; left != 0;
+         left &= left - 1) {
       const int segment = std::countr_zero(left);
       const auto& [a, b] = of_.segment[segment].ends;
-      const Vec3 along = grid::item_point(solid, c, b) - grid::item_point(solid, c, a);
       const auto add_all = [&](const auto& at, const bool is_reversed) {
-        const auto& first = *solid.cuts.find(at);
-        add(segment, along, {first.t, first.normal, first.label}, is_reversed);
-        for (const grid::LaterCut& later : solid.cuts.later_cuts(at))
-          add(segment, along, later, is_reversed);
+        const auto* const first = (cuts.blades >> segment & 1) != 0 ? solid.cuts.find(at) : nullptr;
+        const auto later_ones = solid.cuts.later_cuts(at);
+        if (!first && later_ones.empty())
+          return;
+        const Vec3 along = grid::item_point(solid, c, b) - grid::item_point(solid, c, a);
+        if (first)
+          add(segment, along, {first->t, first->normal, first->label}, is_reversed);
+        for (const grid::LaterCut& later : later_ones)
+          if (!first || later.label != first->label)
+            add(segment, along, later, is_reversed);
       };
       if (segment < skeleton::first_half)
         add_all(edges[segment], a != grid::cube::line_vertices[segment][0]);

@@ -197,6 +197,16 @@ TEST(ThreeBlades, LeaveNoBridgeAtATip) {
   EXPECT_EQ(patient.volumes().size(), 6u);
 }
 
+/// A point of the skin was left whole as a tip (cut/shreds.h) when one blade had passed it, and hung on one piece; with
+/// the others it lies on the side of another, to which it also belongs in the next cell.
+TEST(ThreeBlades, LeaveNoBridgeByATipThatWasLeftWhole) {
+  const auto pear = unit_mesh(support::checkout() + "/params/meshes/pear.off");
+  ASSERT_TRUE(pear);
+  auto [patient, n_planes, stroking, speed] = make_case(*pear, Tool::blades, 20);
+  pass_all(patient, stroking.blades, speed);
+  EXPECT_EQ(patient.volumes().size(), 6u);
+}
+
 /// Pieces of as many nodes as a cube has.
 int n_large(const grid::CellComplex& complex) {
   const std::vector<std::uint32_t> piece = grid::corner_pieces(complex);
