@@ -112,10 +112,11 @@ class Passage {
   std::vector<Edge> edges_;
 };
 
-/// Cuts what was left whole in cells where something is met now: what is beside it then may lie on its side of all cuts,
-/// and it is no shred any more (shreds.h). Adds it to what is cut, and returns how much that is.
+/// Cuts what was left whole in cells where something is met now: what is beside it then may lie on its side of all
+/// cuts, and it is no shred any more (shreds.h). Adds it to what is cut, and returns how much that is.
 std::size_t take_up_left_ones(Solid& solid, std::vector<EdgeId>& edges, std::vector<grid::SkinSegment>& segments,
-                              const std::vector<EdgeId>& edges_met, const std::vector<grid::SkinSegment>& segments_met) {
+                              const std::vector<EdgeId>& edges_met,
+                              const std::vector<grid::SkinSegment>& segments_met) {
   if (!solid.cuts.has_later_cuts())
     return 0;
   std::vector<EdgeId> all_edges = edges;

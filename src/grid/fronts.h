@@ -24,7 +24,7 @@
 /// lets the cut go on by that much (front_lag, cut/fronts.h).
 ///
 /// The lattice has no ties, but counts steps ahead of a front in part (lattice/lines.h); phyxels see what of the plane
-/// a surface has come to (Front::come).
+/// has been cut (Front::come).
 ///
 /// A front is provisional: when its blade has come between the cell's nodes, the cell is parted as that has cut it
 /// (complex.h). Until then copies are not joined again, however the blade goes on, as they may gape.
