@@ -58,6 +58,20 @@ TEST(ModalScene, EachPieceHasItsOwn) {
   EXPECT_GT(frequency(bar, 13), 1);
 }
 
+/// Linear equations take as many iterations whatever the number of cells (twice as many with blocks alone).
+TEST(ModalScene, MultigridSolvesItsEquations) {
+  const auto iterations = [](const std::string& edge) {
+    std::string text = modal_bar(3, material(E, 0.3) + section("Support wall", box("-1, -1, -1", "-0.45, 1, 1")));
+    for (const auto& [from, to] : {std::pair<std::string, std::string>("= 0.05", "= " + edge),
+                                   {"frequencies, pieces", "frequencies, solver iterations"}})
+      text.replace(text.find(from), from.size(), to);
+    return Trial(text).last("solver iterations");
+  };
+  const double coarse = iterations("0.04"), fine = iterations("0.02");
+  RecordProperty("iterations", std::to_string(coarse) + ' ' + std::to_string(fine));
+  EXPECT_LT(fine, 1.3 * coarse);
+}
+
 /// A cut into a clamped bar makes it softer, not lighter: every frequency falls.
 TEST(ModalScene, ACutLowersFrequencies) {
   const std::string wall = section("Support wall", box("-1, -1, -1", "-0.499, 1, 1") + Keys{"Hold at = skin"});
