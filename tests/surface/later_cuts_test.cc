@@ -10,6 +10,7 @@
 
 #include <bit>
 #include <iostream>
+#include <map>
 #include <numbers>
 
 namespace kerf::surface::later_cuts_test {
@@ -41,20 +42,23 @@ grid::Segments cut_under(const Body& body, const CellId c, const grid::CutLabel 
   return result;
 }
 
-/// The distances [h] from the plane of all vertices in the sides and cells that hold a segment cut under the label.
-std::vector<double> heights(const Body& body, const grid::CutLabel label, const support::Plane& plane,
-                            const Where where) {
-  std::vector<double> result;
-  const auto add = [&](const Vec3& p) { result.push_back(std::abs(plane.height(p)) / body.grid.h()); };
+/// The distances [h] from the plane of all vertices in the sides and cells that hold a segment cut under the label; by
+/// cell and side, -1 for the cell's own.
+using Heights = std::map<std::pair<CellId, int>, double>;
+Heights heights(const Body& body, const grid::CutLabel label, const support::Plane& plane, const Where where) {
+  Heights result;
   for (const auto c : ids<CellId>(body.grid.n_cells())) {
     if (where == Where::inside && support::is_skin_cell(body.grid, c))
       continue;
+    const auto add = [&](const int side, const Vec3& p) {
+      result[{c, side}] = std::abs(plane.height(p)) / body.grid.h();
+    };
     const grid::Segments cut = cut_under(body, c, label);
     const auto& grid = body.grid;
     const grid::Skeleton& skeleton = grid::skeleton_of(grid::material_of(grid, c));
     const Vec3* const inner = body.cuts.inner_point(c);
     if (cut != 0)
-      add(inner ? *inner : grid::cell_point(body, c));
+      add(-1, inner ? *inner : grid::cell_point(body, c));
     for (grid::Sides left = skeleton.sides; left != 0; left &= left - 1) {
       const int s = std::countr_zero(left), face = s / 2;
       const auto& [n, items, segments] = skeleton.side[s];
@@ -63,7 +67,7 @@ std::vector<double> heights(const Body& body, const grid::CutLabel label, const 
       const Vec3* const p = s >= grid::skeleton::first_triangle
                               ? body.cuts.inner_point(c, s - grid::skeleton::first_triangle)
                               : body.cuts.inner_point(grid.faces(c)[face], s % 2);
-      add(p ? *p : grid::face_point(body, grid.faces(c)[face]));
+      add(s, p ? *p : grid::face_point(body, grid.faces(c)[face]));
     }
   }
   return result;
@@ -71,14 +75,16 @@ std::vector<double> heights(const Body& body, const grid::CutLabel label, const 
 
 constexpr double flat = 1e-12;
 
-void compare(const std::vector<double>& before, const std::vector<double>& after, Flatness& result) {
-  ASSERT_EQ(after.size(), before.size());
-  for (std::size_t v = 0; v < after.size(); ++v) {
+/// Of those that there were before: what was left whole may be cut when others come (cut/shreds.h).
+void compare(const Heights& before, const Heights& after, Flatness& result) {
+  for (const auto& [place, height] : before) {
+    const auto now = after.find(place);
+    ASSERT_NE(now, after.end());
     ++result.n_vertices;
-    if (before[v] < flat) {
+    if (height < flat) {
       ++result.n_met;
-      result.worst = std::max(result.worst, after[v]);
-      result.n_moved += after[v] > flat;
+      result.worst = std::max(result.worst, now->second);
+      result.n_moved += now->second > flat;
     }
   }
 }
@@ -86,7 +92,7 @@ void compare(const std::vector<double>& before, const std::vector<double>& after
 /// Cuts the body by the planes, and after each one looks at all the earlier ones.
 void cut_one_by_one(Body body, const std::vector<support::Plane>& planes, const Where where, Flatness& result) {
   for (grid::CutLabel k = 0; k < planes.size(); ++k) {
-    std::vector<std::vector<double>> before;
+    std::vector<Heights> before;
     for (grid::CutLabel i = 0; i < k; ++i)
       before.push_back(heights(body, i + 1, planes[i], where));
     support::cut_through(body, support::cuts_of_plane(body, planes[k], k + 1));
@@ -153,7 +159,7 @@ TEST(LaterCuts, OfBladesLeaveEarlierPlanesFlat) {
     cut::Patient patient{cut::box_body(random)};
     const Vec3 middle = 0.5 * (cut::box.lower + cut::box.upper) + 0.05 * support::random_vector(random);
     std::vector<support::Plane> planes = planes_through(random, middle, 2);
-    std::vector<double> before;
+    Heights before;
     for (const grid::CutLabel label : {1, 2}) {
       const cut::Frame frame = cut::across(planes[label - 1].normal, support::uniform(random, 0, 6.3));
       patient.pass(cut::straight(middle, frame.u, frame.v, 2, 2, label), 1 + i % 20,
