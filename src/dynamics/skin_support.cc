@@ -38,7 +38,7 @@ SkinSupport::SkinSupport(const SurfacePatch& patch, const double stiffness, Supp
       continue;
     const auto begin = patch.points.start[i], n = patch.points.start[i + 1] - begin;
     points_.add_row(std::span(patch.points.columns).subspan(begin, n),
-                      std::span(patch.points.values).subspan(begin, n));
+                    std::span(patch.points.values).subspan(begin, n));
     rest_.push_back(patch.rest[i]);
     areas_.push_back(areas[i]);
   }
