@@ -110,14 +110,14 @@ namespace of_element {
 constexpr double transform = 72, differences = 21, turn_of_modes = 7 * 15, mean_gradient = 9, law = 60;
 constexpr double shape = transform + differences;
 /// Halley's iteration takes three steps with strains of a few per cent.
-constexpr double rotation = mean_gradient + 32 + 36 + 3 * 27 + 12 + 45 + 90 + 18;
-constexpr double spin = 7 * 12 + 12 + 90 + 12;
+constexpr double rotation = mean_gradient + 32 + 36 + 3 * 27 + 12 + 30 + 90 + 18;
+constexpr double spin = 4 * 9 + 9 + 54 + 12;
 constexpr double row = 32, numbers = 8 * 4, stored_rotation = 9 * 4;
 
 constexpr Need product = {2 * transform + 2 * turn_of_modes + law, 3 * row + numbers + stored_rotation};
 constexpr Need linearisation = {shape + rotation, row + numbers + stored_rotation};
 constexpr Need energy = {2 * shape + rotation + turn_of_modes + law + 42, row + numbers};
-constexpr Need force = {energy.flops + spin + turn_of_modes + transform, 3 * row + numbers};
+constexpr Need force = {energy.flops - shape + spin + turn_of_modes + transform, 3 * row + numbers};
 /// In single precision, of which two count as one: on the finest level three steps of smoothing before and after and a
 /// residual, six products in all, and the same times 2 / 8, 4 / 64, ... below, with twice the steps on each.
 constexpr double n_products_of_cycle = 6 / (1 - 0.25);

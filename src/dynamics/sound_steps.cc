@@ -153,10 +153,11 @@ struct EnergyChange {
   double inner = 0;  ///< kinetic and elastic energy at the end [J]
 };
 
+/// elastic_0: at the start.
 EnergyChange energy_change(const ForceModel& model, const Pieces& pieces, ElasticEnergies& energies, const Loads& loads,
-                           const State& before, const State& after, const MassSums& sums_1) {
+                           const State& before, const double elastic_0, const State& after, const MassSums& sums_1) {
   const MassSums sums_0 = mass_sums(model, before);
-  const double elastic_0 = energies.at(before.x), elastic_1 = energies.at(after.x),
+  const double elastic_1 = energies.at(after.x),
                kinetic_0 = sums_0.kinetic_energy + kinetic_energy_of_coupling(model, before.v),
                kinetic_1 = sums_1.kinetic_energy + kinetic_energy_of_coupling(model, after.v),
                load_0 = load_energy(loads, before.time, before.x), load_1 = load_energy(loads, after.time, after.x),
@@ -228,12 +229,13 @@ SoundSteps::LentState SoundSteps::lend(const State& like) {
 void SoundSteps::add_checked(const State& state, const Loads& loads, const double dt, Tried& tried) {
   LentState lent = lend(state);
   State& after = *lent;
-  energies_.at(state.x); // while the step asks for forces here too: the model knows them at one place alone
+  // Asked for while the step asks for forces here too: the model knows them at one place alone.
+  const double elastic = energies_.at(state.x);
   const StepReport report = stepper_->step(after, loads, dt);
   keep_carried(loads, state, after);
   const MassSums sums = mass_sums(model_, after);
   require_finite(after, sums);
-  const EnergyChange change = energy_change(model_, pieces_, energies_, loads, state, after, sums);
+  const EnergyChange change = energy_change(model_, pieces_, energies_, loads, state, elastic, after, sums);
   const double shift = options_.kick * change.kick + change.unseen;
   if (!(change.gained <= options_.most_gain * change.dealt + shift) && change.gained > noise_of_energy(model_, after.x))
     throw StepError("the step gained " + in_short(change.gained) + " J that no load and no support gave, " +

@@ -1,6 +1,6 @@
 #pragma once
 
-/// Sparse matrices from the matrices of the elements.
+/// Entries of sparse matrices from the matrices of the elements.
 
 #include "fem/hourglass.h"
 #include "fem/incidence.h"
@@ -9,12 +9,14 @@
 #include <Eigen/SparseCore>
 
 #include <functional>
+#include <vector>
 
 namespace kerf::fem {
 
-/// Sum of the copies' matrices over 3 n unknowns, both triangles, blocks of 3 x 3 full. `element_matrix(copy)` may be
-/// called from several threads; sums are taken in the order of the copies. Corners are counted by `numbers`.
-Eigen::SparseMatrix<double> assemble(const Incidence& incidence, const grid::CornerNumbers& numbers,
-                                     const std::function<Matrix24(std::size_t copy)>& element_matrix);
+/// Adds those of the copies' matrices over 3 n unknowns, in the order of the copies. `element_matrix(copy)` may be
+/// called from several threads. Corners are counted by `numbers`.
+void add_entries(const Incidence& incidence, const grid::CornerNumbers& numbers,
+                 const std::function<Matrix24(std::size_t copy)>& element_matrix,
+                 std::vector<Eigen::Triplet<double>>& entries);
 
 } // namespace kerf::fem

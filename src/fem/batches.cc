@@ -106,7 +106,7 @@ void Batching::keep_chunk(const Before& before, const Chunk& chunk, const std::u
   const auto begin = before.batches.begin() + chunk.first;
   batches_.insert(batches_.end(), begin, begin + chunk.n);
   for (std::uint32_t i = first; i < first + chunk.n; ++i)
-    for (std::size_t lane = n_lanes; lane-- > 0 && batches_[i].copies[lane] == BatchOfCopies::none;)
+    for (std::size_t lane = batches_[i].n_used; lane < n_lanes; ++lane)
       for (auto& corners : batches_[i].corners)
         corners[lane] = row;
   chunks_.push_back({first, chunk.n_full, chunk.n, chunk.n_copies});
@@ -118,14 +118,15 @@ void Batching::add_batches(const std::span<const std::uint32_t> copies, const st
   for (std::size_t begin = 0; begin < copies.size(); begin += n_lanes) {
     BatchOfCopies& batch = batches_.emplace_back();
     batch.partial = BatchOfCopies::none;
+    batch.n_used = static_cast<std::uint32_t>(std::min(n_lanes, copies.size() - begin));
     for (std::size_t lane = 0; lane < n_lanes; ++lane) {
-      const bool is_used = begin + lane < copies.size();
+      const bool is_used = lane < batch.n_used;
       const std::uint32_t copy = is_used ? copies[begin + lane] : BatchOfCopies::none;
       batch.copies[lane] = copy;
       for (std::size_t a = 0; a < 8; ++a)
         batch.corners[a][lane] = is_used ? corners[8 * std::size_t(copy) + a] : row;
     }
-    batch.is_row = begin + n_lanes <= copies.size();
+    batch.is_row = batch.n_used == n_lanes;
     for (std::size_t a = 0; a < 8; a += 2)
       batch.is_row &= std::equal(batch.corners[a] + 1, batch.corners[a] + n_lanes, batch.corners[a + 1]);
   }

@@ -33,6 +33,7 @@ struct BatchOfCopies {
   static constexpr std::uint32_t none = 0xffffffff;
   alignas(64) std::uint32_t corners[8][n_lanes];
   std::uint32_t copies[n_lanes]; ///< `none` in lanes that are not used
+  std::uint32_t n_used;          ///< lanes, the first ones
   std::uint32_t partial;         ///< the place of what its cubes are made of; `none` for full ones
   bool is_row;                   ///< Batch::is_row
 };
@@ -145,7 +146,7 @@ struct BatchedElements {
     const bool is_full = b.partial == BatchOfCopies::none;
     return {b.corners, (*shared.rotations)[i].row, is_full ? nullptr : &partial[b.partial],
             is_full ? nullptr : &(*shared.hourglass)[b.partial], tangents.empty() ? nullptr : tangents[i].row,
-            b.is_row};
+            b.n_used, b.is_row};
   }
 };
 

@@ -5,6 +5,8 @@
 
 #include "fem/element_loops.h"
 
+#include <bit>
+
 namespace kerf::fem {
 
 template <class T, int W>
@@ -63,20 +65,20 @@ struct ForceLoops : ElementLoops<T, W> {
     }
     const V a = s * s - I, scale = T(1) / (s * a - 2 * J), of_F = (s * s + I) * scale, of_C = 2 * s * scale,
             of_S = -2 * scale;
-    V square = V{};
+    V square = V{}, B[9]; // F^T F
 #pragma GCC unroll 3
-    for (int j = 0; j < 3; ++j) {
-      V S[3]; // a column of F^T F
+    for (int j = 0; j < 3; ++j)
 #pragma GCC unroll 3
-      for (int k = 0; k < 3; ++k)
-        S[k] = F[3 * k] * F[3 * j] + F[3 * k + 1] * F[3 * j + 1] + F[3 * k + 2] * F[3 * j + 2];
+      for (int k = 0; k <= j; ++k)
+        B[3 * j + k] = B[3 * k + j] = F[3 * k] * F[3 * j] + F[3 * k + 1] * F[3 * j + 1] + F[3 * k + 2] * F[3 * j + 2];
+#pragma GCC unroll 3
+    for (int j = 0; j < 3; ++j)
 #pragma GCC unroll 3
       for (int i = 0; i < 3; ++i) {
         R[3 * j + i] = of_F * F[3 * j + i] + of_C * C[3 * j + i] +
-                       of_S * (F[i] * S[0] + F[3 + i] * S[1] + F[6 + i] * S[2]);
+                       of_S * (F[i] * B[3 * j] + F[3 + i] * B[3 * j + 1] + F[6 + i] * B[3 * j + 2]);
         square += R[3 * j + i] * R[3 * j + i];
       }
-    }
     square -= 3;
     const auto is_found = (square * square < is_rotation * is_rotation) & (J > 0) &
                           (J * J * 27 > well_conditioned * well_conditioned * I * I * I);
@@ -110,102 +112,92 @@ struct ForceLoops : ElementLoops<T, W> {
 
   // --- Forces ------------------------------------------------------------------------------------------------------
 
-  /// u_m = R^T c_m of the shape without the cube at rest, and f_m = dE/du_m.
-  template <bool is_partial>
-  [[gnu::always_inline]] static void strain(const CubeConstants<T>& cube, const Batch<T>& batch, const int lane,
-                                            const V (&R)[9], const MeanPart mean, const Row<T>* const x, V (&u)[8][3],
-                                            V (&f)[8][3]) {
-    V G[9], P[9];
-    read_shape(batch, lane, x, u);
-#pragma GCC unroll 7
-    for (int m = 1; m < 8; ++m)
-      turn_back(R, u[m]);
-#pragma GCC unroll 3
-    for (int k = 0; k < 3; ++k)
-      u[linear_modes[k]][k] -= 4 * cube.h;
-    Loops::template hourglass<is_partial>(cube, batch, lane, u, f);
-    if (mean == MeanPart::hooke) {
-      Loops::template mean_gradient<is_partial>(cube, batch, lane, u, G);
-      Loops::template hooke<is_partial>(cube, batch, lane, G, P);
-    } else {
-#pragma GCC unroll 9
-      for (int i = 0; i < 9; ++i)
-        P[i] = V{};
-    }
-    Loops::template put_stress<is_partial>(cube, batch, lane, P, f);
-#pragma GCC unroll 3
-    for (int i = 0; i < 3; ++i)
-      f[0][i] = V{};
-  }
   /// a x b.
   [[gnu::always_inline]] static void cross(const V (&a)[3], const V (&b)[3], V (&c)[3]) {
 #pragma GCC unroll 3
     for (int i = 0; i < 3; ++i)
       c[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
   }
-  /// z with A z = t, A = tr(S) I - S and S = R^T F; zero where A has collapsed (turned.h).
-  [[gnu::always_inline]] static void spin(const V (&R)[9], const V (&F)[9], const V (&t)[3], V (&z)[3]) {
-    constexpr T collapsed = T(1e-6);
-    V A[9], C[9];
+  /// What a shape has to say in its turned frame.
+  struct Strained {
+    V u[8][3]; ///< R^T c_m - 4 h, of modes
+    V f[8][3]; ///< dE/du_m
+    V t[3];    ///< torque of the hourglass modes; the mean stress has none, as it commutes with the stretch
+    V G[9];    ///< R^T F - 1
+  };
+  /// Of a shape in s.u.
+  template <bool is_partial, MeanPart mean>
+  [[gnu::always_inline]] static void strain(const CubeConstants<T>& cube, const Batch<T>& batch, const int lane,
+                                            const V (&R)[9], Strained& s) {
+    V P[9], w[3];
+#pragma GCC unroll 7
+    for (int m = 1; m < 8; ++m)
+      turn_back(R, s.u[m]);
 #pragma GCC unroll 3
-    for (int j = 0; j < 3; ++j)
+    for (int k = 0; k < 3; ++k)
+      s.u[linear_modes[k]][k] -= 4 * cube.h;
+    Loops::template hourglass<is_partial>(cube, batch, lane, s.u, s.f);
+    cross(s.u[hourglass_modes[0]], s.f[hourglass_modes[0]], s.t);
+#pragma GCC unroll 3
+    for (int k = 1; k < 4; ++k) {
+      cross(s.u[hourglass_modes[k]], s.f[hourglass_modes[k]], w);
 #pragma GCC unroll 3
       for (int i = 0; i < 3; ++i)
-        A[3 * j + i] = -(R[3 * i] * F[3 * j] + R[3 * i + 1] * F[3 * j + 1] + R[3 * i + 2] * F[3 * j + 2]);
-    const V trace = -(A[0] + A[4] + A[8]);
+        s.t[i] += w[i];
+    }
+    Loops::template mean_gradient<is_partial>(cube, batch, lane, s.u, s.G);
+    if constexpr (mean == MeanPart::hooke) {
+      Loops::template hooke<is_partial>(cube, batch, lane, s.G, P);
+    } else {
+#pragma GCC unroll 9
+      for (int i = 0; i < 9; ++i)
+        P[i] = V{};
+    }
+    Loops::template put_stress<is_partial>(cube, batch, lane, P, s.f);
 #pragma GCC unroll 3
     for (int i = 0; i < 3; ++i)
-      A[4 * i] += trace;
-    const V det = cofactors(A, C), inverse = T(1) / det;
+      s.f[0][i] = V{};
+  }
+  /// z with A z = t, A = tr(S) I - S and S = 1 + G, which is symmetric; zero where A has collapsed (turned.h).
+  [[gnu::always_inline]] static void spin(const V (&G)[9], const V (&t)[3], V (&z)[3]) {
+    constexpr T collapsed = T(1e-6);
+    const V trace = G[0] + G[4] + G[8] + T(2);
+    const V xx = trace - G[0], yy = trace - G[4], zz = trace - G[8]; // of A
+    const V xy = T(-0.5) * (G[3] + G[1]), yz = T(-0.5) * (G[7] + G[5]), zx = T(-0.5) * (G[2] + G[6]);
+    const V of_xx = yy * zz - yz * yz, of_yy = zz * xx - zx * zx, of_zz = xx * yy - xy * xy; // cofactors
+    const V of_xy = yz * zx - xy * zz, of_yz = zx * xy - yz * xx, of_zx = xy * yz - zx * yy;
+    const V det = xx * of_xx + xy * of_xy + zx * of_zx, inverse = T(1) / det;
     const auto is_sound = det > collapsed;
+    const V value[3] = {of_xx * t[0] + of_xy * t[1] + of_zx * t[2], of_xy * t[0] + of_yy * t[1] + of_yz * t[2],
+                        of_zx * t[0] + of_yz * t[1] + of_zz * t[2]};
 #pragma GCC unroll 3
-    for (int i = 0; i < 3; ++i) { // A^-1 = C^T / det
-      const V value = (C[3 * i] * t[0] + C[3 * i + 1] * t[1] + C[3 * i + 2] * t[2]) * inverse;
-      z[i] = is_sound ? value : V{};
-    }
+    for (int i = 0; i < 3; ++i)
+      z[i] = is_sound ? value[i] * inverse : V{};
   }
   /// E = u.f / 2.
-  [[gnu::always_inline]] static V half_product(const V (&u)[8][3], const V (&f)[8][3]) {
+  [[gnu::always_inline]] static V half_product(const Strained& s) {
     V sum = V{};
 #pragma GCC unroll 7
     for (int m = 1; m < 8; ++m)
 #pragma GCC unroll 3
       for (int i = 0; i < 3; ++i)
-        sum += u[m][i] * f[m][i];
+        sum += s.u[m][i] * s.f[m][i];
     return T(0.5) * sum;
   }
+  /// forces -= dE/dx, with dR/dx times `spins`.
   template <bool is_partial>
-  [[gnu::always_inline]] static void force_of(const CubeConstants<T>& cube, const Batch<T>& batch, const int lane,
-                                              const Turns& turns, const MeanPart mean, const T (*const stress)[n_lanes],
-                                              const T spins, const Row<T>* const x, Row<T>* const forces,
-                                              T* const energies) {
-    V R[9], F[9], P[9], u[8][3], f[8][3], t[3] = {V{}, V{}, V{}}, z[3], w[3];
-    load_nine(turns.R, lane, R);
-    strain<is_partial>(cube, batch, lane, R, mean, x, u, f);
-    if (energies)
-      store(energies + lane, half_product(u, f));
-#pragma GCC unroll 7
-    for (int m = 1; m < 8; ++m) {
-      cross(u[m], f[m], w);
-#pragma GCC unroll 3
-      for (int i = 0; i < 3; ++i)
-        t[i] += w[i];
-    }
-#pragma GCC unroll 3
-    for (int k = 0; k < 3; ++k) { // the cube at rest, 4 h e_k, of the shape
-      const int next = (k + 1) % 3, after = (k + 2) % 3;
-      t[next] -= 4 * cube.h * f[linear_modes[k]][after];
-      t[after] += 4 * cube.h * f[linear_modes[k]][next];
-    }
-    load_nine(turns.F, lane, F);
-    spin(R, F, t, z);
+  [[gnu::always_inline]] static void add_force(const CubeConstants<T>& cube, const Batch<T>& batch, const int lane,
+                                               const V (&R)[9], const T (*const stress)[n_lanes], const T spins,
+                                               Strained& s, Row<T>* const forces) {
+    V z[3], w[3], minus[9];
+    spin(s.G, s.t, z);
     for (V& component : z)
       component *= spins;
 #pragma GCC unroll 3
     for (int k = 0; k < 3; ++k) { // z x e_k / (4 h)
       const int next = (k + 1) % 3, after = (k + 2) % 3;
-      f[linear_modes[k]][next] -= T(0.25) / cube.h * z[after];
-      f[linear_modes[k]][after] += T(0.25) / cube.h * z[next];
+      s.f[linear_modes[k]][next] -= T(0.25) / cube.h * z[after];
+      s.f[linear_modes[k]][after] += T(0.25) / cube.h * z[next];
     }
     if constexpr (is_partial)
 #pragma GCC unroll 4
@@ -215,53 +207,113 @@ struct ForceLoops : ElementLoops<T, W> {
         cross(z, b, w);
 #pragma GCC unroll 3
         for (int i = 0; i < 3; ++i)
-          f[hourglass_modes[k]][i] -= w[i];
+          s.f[hourglass_modes[k]][i] -= w[i];
       }
+#pragma GCC unroll 9
+    for (int i = 0; i < 9; ++i)
+      minus[i] = -R[i];
 #pragma GCC unroll 7
     for (int m = 1; m < 8; ++m)
-      turn(R, f[m]);
+      turn(minus, s.f[m]);
     if (stress) {
+      V P[9];
       load_nine(stress, lane, P);
 #pragma GCC unroll 3
       for (int j = 0; j < 3; ++j)
 #pragma GCC unroll 3
         for (int i = 0; i < 3; ++i) {
-          f[linear_modes[j]][i] += T(0.25) / cube.h * P[3 * j + i];
+          s.f[linear_modes[j]][i] -= T(0.25) / cube.h * P[3 * j + i];
           if constexpr (is_partial)
 #pragma GCC unroll 4
             for (int k = 0; k < 4; ++k)
-              f[hourglass_modes[k]][i] += load(batch.partial->gradient[3 * k + j] + lane) * P[3 * j + i];
+              s.f[hourglass_modes[k]][i] -= load(batch.partial->gradient[3 * k + j] + lane) * P[3 * j + i];
         }
     }
-#pragma GCC unroll 7
-    for (int m = 1; m < 8; ++m)
-#pragma GCC unroll 3
-      for (int i = 0; i < 3; ++i)
-        f[m][i] = -f[m][i];
-    add_modes(f, batch, lane, forces);
+    add_modes(s.f, batch, lane, forces);
+  }
+  template <bool is_partial, MeanPart mean>
+  [[gnu::always_inline]] static void force_of(const CubeConstants<T>& cube, const Batch<T>& batch, const int lane,
+                                              const Turns& turns, const T (*const stress)[n_lanes], const T spins,
+                                              const Row<T>* const x, Row<T>* const forces, T* const energies) {
+    V R[9];
+    Strained s;
+    load_nine(turns.R, lane, R);
+    read_shape(batch, lane, x, s.u);
+    strain<is_partial, mean>(cube, batch, lane, R, s);
+    if (energies)
+      store(energies + lane, half_product(s));
+    add_force<is_partial>(cube, batch, lane, R, stress, spins, s, forces);
+  }
+  /// R of those lanes that nearest_rotation() leaves open.
+  [[gnu::noinline]] static void find_rotations(const FindRotation find, unsigned unknown, const V (&F)[9], V (&R)[9]) {
+    for (; unknown != 0; unknown &= unknown - 1) {
+      const int l = std::countr_zero(unknown);
+      T of_lane[9], found[9];
+      for (int i = 0; i < 9; ++i)
+        of_lane[i] = F[i][l];
+      find(of_lane, found);
+      for (int i = 0; i < 9; ++i)
+        R[i][l] = found[i];
+    }
+  }
+  template <bool is_partial>
+  [[gnu::always_inline]] static void turned_force_of(const CubeConstants<T>& cube, const Batch<T>& batch,
+                                                     const int lane, const FindRotation find, const Row<T>* const x,
+                                                     Row<T>* const forces, T* const energies) {
+    V R[9], F[9];
+    Strained s;
+    read_shape(batch, lane, x, s.u);
+    Loops::template mean_gradient<is_partial>(cube, batch, lane, s.u, F);
+    const unsigned used = (1U << batch.n_used) - 1;
+    if (const unsigned unknown = nearest_rotation(F, R) & used >> lane; unknown != 0)
+      find_rotations(find, unknown, F, R);
+    strain<is_partial, MeanPart::hooke>(cube, batch, lane, R, s);
+    store(energies + lane, half_product(s));
+    add_force<is_partial>(cube, batch, lane, R, nullptr, T(1), s, forces);
+  }
+  [[gnu::always_inline]] static void turned_force(const CubeConstants<T>& cube, const Batch<T>& batch,
+                                                  const FindRotation find, const Row<T>* const x, Row<T>* const forces,
+                                                  T* const energies) {
+    for (int lane = 0; lane < int(n_lanes); lane += W)
+      if (batch.partial)
+        turned_force_of<true>(cube, batch, lane, find, x, forces, energies);
+      else
+        turned_force_of<false>(cube, batch, lane, find, x, forces, energies);
   }
   [[gnu::always_inline]] static void force(const CubeConstants<T>& cube, const Batch<T>& batch, const Turns& turns,
                                            const MeanPart mean, const T (*const stress)[n_lanes], const T spins,
                                            const Row<T>* const x, Row<T>* const forces, T* const energies) {
     for (int lane = 0; lane < int(n_lanes); lane += W)
-      if (batch.partial)
-        force_of<true>(cube, batch, lane, turns, mean, stress, spins, x, forces, energies);
+      if (batch.partial && mean == MeanPart::hooke)
+        force_of<true, MeanPart::hooke>(cube, batch, lane, turns, stress, spins, x, forces, energies);
+      else if (batch.partial)
+        force_of<true, MeanPart::none>(cube, batch, lane, turns, stress, spins, x, forces, energies);
+      else if (mean == MeanPart::hooke)
+        force_of<false, MeanPart::hooke>(cube, batch, lane, turns, stress, spins, x, forces, energies);
       else
-        force_of<false>(cube, batch, lane, turns, mean, stress, spins, x, forces, energies);
+        force_of<false, MeanPart::none>(cube, batch, lane, turns, stress, spins, x, forces, energies);
   }
-  template <bool is_partial>
+  template <bool is_partial, MeanPart mean>
   [[gnu::always_inline]] static V energy_of(const CubeConstants<T>& cube, const Batch<T>& batch, const int lane,
-                                            const Turns& turns, const MeanPart mean, const Row<T>* const x) {
-    V R[9], u[8][3], f[8][3];
+                                            const Turns& turns, const Row<T>* const x) {
+    V R[9];
+    Strained s;
     load_nine(turns.R, lane, R);
-    strain<is_partial>(cube, batch, lane, R, mean, x, u, f);
-    return half_product(u, f);
+    read_shape(batch, lane, x, s.u);
+    strain<is_partial, mean>(cube, batch, lane, R, s);
+    return half_product(s);
   }
   [[gnu::always_inline]] static void energy(const CubeConstants<T>& cube, const Batch<T>& batch, const Turns& turns,
                                             const MeanPart mean, const Row<T>* const x, T* const energies) {
     for (int lane = 0; lane < int(n_lanes); lane += W)
-      store(energies + lane, batch.partial ? energy_of<true>(cube, batch, lane, turns, mean, x)
-                                           : energy_of<false>(cube, batch, lane, turns, mean, x));
+      if (batch.partial && mean == MeanPart::hooke)
+        store(energies + lane, energy_of<true, MeanPart::hooke>(cube, batch, lane, turns, x));
+      else if (batch.partial)
+        store(energies + lane, energy_of<true, MeanPart::none>(cube, batch, lane, turns, x));
+      else if (mean == MeanPart::hooke)
+        store(energies + lane, energy_of<false, MeanPart::hooke>(cube, batch, lane, turns, x));
+      else
+        store(energies + lane, energy_of<false, MeanPart::none>(cube, batch, lane, turns, x));
   }
 };
 

@@ -4,7 +4,6 @@
 #include "base/loan.h"
 #include "base/parallel.h"
 #include "dynamics/state.h"
-#include "fem/assembly.h"
 #include "grid/carriers.h"
 #include "material/polar.h"
 
@@ -18,8 +17,6 @@ namespace {
 constexpr std::size_t many_corners_of_copies = 4096; // corners from which on a second thread pays
 constexpr double no_bound = std::numeric_limits<double>::infinity();
 
-using material::Tangent;
-
 Frame frame_of(const material::AnyLaw& law) {
   return std::holds_alternative<material::SmallStrain>(law) ? Frame::fixed : Frame::turning;
 }
@@ -28,20 +25,16 @@ ElementTableOptions table_options(const HexahedraOptions& options) {
   return {options.material, options.boundary, {options.strain}};
 }
 
-/// The 3 x 3 block A : (. b_c^T) b_a of a law's tangent.
-Mat3 tangent_block(const Eigen::Ref<const Tangent>& A, const Vec3& b_a, const Vec3& b_c) {
-  Mat3 sum = Mat3::Zero();
-  for (int j = 0; j < 3; ++j)
-    for (int l = 0; l < 3; ++l)
-      sum += b_a[j] * b_c[l] * A.block<3, 3>(3 * j, 3 * l);
-  return sum;
-}
-
 Mat3 gradient_of(const Turns& turns, const std::size_t lane) {
   Mat3 F;
   for (int i = 0; i < 9; ++i)
     F.data()[i] = turns.F[i][lane];
   return F;
+}
+
+void find_rotation(const double* const F, double* const R) {
+  Eigen::Map<Mat3> found(R);
+  found = material::rotation_of(Eigen::Map<const Mat3>(F));
 }
 
 /// Room for two rows a corner, one vector after the other, of any values.
@@ -214,23 +207,6 @@ double Hexahedra::volume() const {
   return sum;
 }
 
-std::array<Vec3, 8> Hexahedra::corners_of(const std::size_t copy, const Points& x) const {
-  const std::uint32_t* const c = corner_numbers(copy);
-  return {x[c[0]], x[c[1]], x[c[2]], x[c[3]], x[c[4]], x[c[5]], x[c[6]], x[c[7]]};
-}
-
-Mat3 Hexahedra::deformation_gradient(const std::size_t copy, const Points& x) const {
-  const std::uint32_t* const c = incidence_.corners(copy);
-  Mat3 F = Mat3::Zero();
-  for (int a = 1; a < 8; ++a)
-    F += (x[c[a]] - x[c[0]]) * elements_[copy].gradient(a).transpose();
-  return F;
-}
-
-Turned Hexahedra::turned_element(const std::size_t copy, const Points& x) const {
-  return turned(elements_[copy], h_, corners_of(copy, x), frame_);
-}
-
 void Hexahedra::put_rows(const std::span<const double> values, Row<double>* const rows, Row<double>* const sums) const {
   const std::size_t n = numbers_.size();
   parallel_for(
@@ -245,18 +221,19 @@ void Hexahedra::put_rows(const std::span<const double> values, Row<double>* cons
 
 template <class Function>
 void Hexahedra::for_each_lane(const std::size_t batch, const Function& f) const {
-  for (std::size_t lane = 0; lane < n_lanes; ++lane)
-    if (const std::uint32_t copy = batching_->batches()[batch].copies[lane]; copy != BatchOfCopies::none)
-      f(lane, copy);
+  const BatchOfCopies& of = batching_->batches()[batch];
+  for (std::size_t lane = 0; lane < of.n_used; ++lane)
+    f(lane, of.copies[lane]);
 }
 
 Turns Hexahedra::turns(const std::size_t batch, const Row<double>* const x) const {
-  Turns all{};
+  Turns all;
   const auto put = [&](const std::size_t lane, const Mat3& R) {
     for (int i = 0; i < 9; ++i)
       all.R[i][lane] = R.data()[i];
   };
   if (frame_ == Frame::fixed) {
+    all = {};
     for (std::size_t lane = 0; lane < n_lanes; ++lane)
       put(lane, Mat3::Identity());
     return all;
@@ -284,11 +261,12 @@ double Hexahedra::energy_of(const Turns& turns, const double* const of_lanes, co
                                                                     law_);
 }
 
-void Hexahedra::add_energies(const std::size_t batch, const Turns& turns, const double* const of_lanes,
-                             double& sum) const {
+double Hexahedra::energy_of_batch(const std::size_t batch, const Turns& turns, const double* const of_lanes) const {
+  double sum = 0;
   for_each_lane(batch, [&](const std::size_t lane, const std::uint32_t copy) {
     sum += energy_of(turns, of_lanes, lane, copy);
   });
+  return sum;
 }
 
 Loan<double> Hexahedra::energies(const Points& x, const dynamics::Pieces& pieces) const {
@@ -323,7 +301,7 @@ double Hexahedra::energy(const Points& x) const {
     const Turns turns = this->turns(i, rows);
     alignas(64) double of_lanes[n_lanes];
     force_kernels().energy(batched_.cube, batched_.batch(*batching_, i), turns, mean_part(), rows, of_lanes);
-    add_energies(i, turns, of_lanes, energies[i]);
+    energies[i] = energy_of_batch(i, turns, of_lanes);
   });
   return sum_energies(x, energies);
 }
@@ -349,28 +327,42 @@ void Hexahedra::force(const Points& x, Points& forces) const {
   known_.put(at, forces, energy);
 }
 
+/// Adds the forces of a batch, and returns its energy, which for laws other than Hooke's is asked for or zero.
+double Hexahedra::add_forces(const std::size_t batch, const WithEnergy with_energy, const Row<double>* const x,
+                             Row<double>* const forces) const {
+  const Batch<double> of_batch = batched_.batch(*batching_, batch);
+  alignas(64) double of_lanes[n_lanes];
+  if (is_hookean() && frame_ == Frame::turning) {
+    force_kernels().turned_force(batched_.cube, of_batch, find_rotation, x, forces, of_lanes);
+    return std::accumulate(of_lanes, of_lanes + of_batch.n_used, 0.0);
+  }
+  const Turns turns = this->turns(batch, x);
+  const double spins = frame_ == Frame::turning ? 1 : 0;
+  alignas(64) double stress[9][n_lanes];
+  if (!is_hookean()) {
+    std::fill_n(stress[0], 9 * n_lanes, 0.0);
+    for_each_lane(batch, [&](const std::size_t lane, const std::uint32_t copy) {
+      const Mat3 P = elements_[copy].volume *
+                     std::visit([&](const auto& law) { return Mat3(law.stress(gradient_of(turns, lane))); }, law_);
+      for (int k = 0; k < 9; ++k)
+        stress[k][lane] = P.data()[k];
+    });
+  }
+  const bool is_asked = with_energy == WithEnergy::always || is_hookean();
+  force_kernels().force(batched_.cube, of_batch, turns, mean_part(), is_hookean() ? nullptr : stress, spins, x, forces,
+                        is_asked ? of_lanes : nullptr);
+  return is_asked ? energy_of_batch(batch, turns, of_lanes) : 0;
+}
+
 std::optional<double> Hexahedra::force(const Points& x, Points& forces, const WithEnergy with_energy) const {
   const TwoRows lent(batching_->n_rows());
   Row<double>*const rows = lent.first, *const sums = lent.second;
   put_rows(dynamics::flat(x), rows, sums);
-  const double spins = frame_ == Frame::turning ? 1 : 0;
   Loan<double> energies(with_energy == WithEnergy::always || is_hookean() ? batching_->batches().size() : 0);
   batching_->for_each_in_order([&](const std::size_t i) {
-    const Turns turns = this->turns(i, rows);
-    alignas(64) double stress[9][n_lanes] = {};
-    if (!is_hookean())
-      for_each_lane(i, [&](const std::size_t lane, const std::uint32_t copy) {
-        const Mat3 P = elements_[copy].volume *
-                       std::visit([&](const auto& law) { return Mat3(law.stress(gradient_of(turns, lane))); }, law_);
-        for (int k = 0; k < 9; ++k)
-          stress[k][lane] = P.data()[k];
-      });
-    alignas(64) double of_lanes[n_lanes];
-    force_kernels().force(batched_.cube, batched_.batch(*batching_, i), turns, mean_part(),
-                          is_hookean() ? nullptr : stress, spins, rows, sums,
-                          energies.empty() ? nullptr : of_lanes);
+    const double energy = add_forces(i, with_energy, rows, sums);
     if (!energies.empty())
-      add_energies(i, turns, of_lanes, energies[i]);
+      energies[i] = energy;
   });
   forces.resize(numbers_.size());
   write(sums, dynamics::flat(forces));
@@ -393,9 +385,10 @@ void Hexahedra::linearise(const Points& x) {
     if (is_hookean())
       return;
     for_each_lane(i, [&](const std::size_t lane, const std::uint32_t copy) {
-      const Tangent A =
+      const material::Tangent A =
         elements_[copy].volume *
-        std::visit([&](const auto& law) { return Tangent(law.positive_tangent(gradient_of(turns, lane))); }, law_);
+        std::visit(
+          [&](const auto& law) { return material::Tangent(law.positive_tangent(gradient_of(turns, lane))); }, law_);
       for (int p = 0; p < 9; ++p)
         for (int q = 0; q <= p; ++q)
           batched_.tangents[i].row[pair_index(p, q)][lane] = A(p, q);
@@ -466,34 +459,6 @@ dynamics::Preconditioner* Hexahedra::preconditioner(const dynamics::LinearEquati
     return nullptr;
   multigrid_->prepare(equation);
   return multigrid_.get();
-}
-
-Matrix24 Hexahedra::element_matrix(const std::size_t copy, const Points& x, const dynamics::Tangent kind) const {
-  const Element& element = elements_[copy];
-  const Turned state = turned_element(copy, x);
-  const bool is_exact = kind == dynamics::Tangent::exact;
-  Matrix24 K = stiffness(element, material_, is_hookean() ? Part::whole : Part::hourglass);
-  const Mat3 as_kept = state.R.cast<float>().cast<double>(); // as products have it
-  K = is_exact ? hessian(element, K, state, frame_) : turned_stiffness(K, as_kept);
-  if (is_hookean())
-    return K;
-  const Tangent A = std::visit(
-    [&](const auto& law) { return Tangent(is_exact ? law.tangent(state.F) : law.positive_tangent(state.F)); }, law_);
-  for (int a = 0; a < 8; ++a)
-    for (int c = 0; c < 8; ++c)
-      K.block<3, 3>(3 * a, 3 * c) += element.volume * tangent_block(A, element.gradient(a), element.gradient(c));
-  return K;
-}
-
-Eigen::SparseMatrix<double> Hexahedra::stiffness_matrix(const Points& x, const dynamics::Tangent kind) const {
-  std::vector<Eigen::Triplet<double>> penalty;
-  ghost_penalty_.add_entries(penalty);
-  ties_.add_entries(penalty);
-  const auto n = static_cast<Eigen::Index>(3 * numbers_.size());
-  Eigen::SparseMatrix<double> K(n, n);
-  K.setFromTriplets(penalty.begin(), penalty.end());
-  K += assemble(incidence_, numbers_, [&](const std::size_t copy) { return element_matrix(copy, x, kind); });
-  return K;
 }
 
 } // namespace kerf::fem

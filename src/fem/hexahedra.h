@@ -145,7 +145,8 @@ class Hexahedra : public dynamics::ElasticModel, public dynamics::StiffnessMatri
   /// With the energy, where it costs nothing (laws other than Hooke's take time for it) or is asked for.
   std::optional<double> force(const Points& x, Points& forces, WithEnergy with_energy) const;
   double energy_of(const Turns& turns, const double* of_lanes, std::size_t lane, std::uint32_t copy) const;
-  void add_energies(std::size_t batch, const Turns& turns, const double* of_lanes, double& sum) const;
+  double energy_of_batch(std::size_t batch, const Turns& turns, const double* of_lanes) const;
+  double add_forces(std::size_t batch, WithEnergy with_energy, const Row<double>* x, Row<double>* forces) const;
   double sum_energies(const Points& x, const std::vector<double>& of_batches) const;
   MeanPart mean_part() const { return is_hookean() ? MeanPart::hooke : MeanPart::none; }
 

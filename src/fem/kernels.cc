@@ -35,6 +35,12 @@ namespace {
                                                   double* const energies) {
   ForceLoops<double, 8>::force(cube, batch, turns, mean, P, spins, x, forces, energies);
 }
+[[gnu::target("arch=x86-64-v4")]] void turned_force_wide(const CubeConstants<double>& cube,
+                                                          const Batch<double>& batch, const FindRotation find,
+                                                          const Row<double>* const x, Row<double>* const forces,
+                                                          double* const energies) {
+  ForceLoops<double, 8>::turned_force(cube, batch, find, x, forces, energies);
+}
 [[gnu::target("arch=x86-64-v4")]] void energy_wide(const CubeConstants<double>& cube, const Batch<double>& batch,
                                                    const Turns& turns, const MeanPart mean, const Row<double>* const x,
                                                    double* const energies) {
@@ -70,6 +76,12 @@ namespace {
                                                     double* const energies) {
   ForceLoops<double, 4>::force(cube, batch, turns, mean, P, spins, x, forces, energies);
 }
+[[gnu::target("arch=x86-64-v3")]] void turned_force_middle(const CubeConstants<double>& cube,
+                                                          const Batch<double>& batch, const FindRotation find,
+                                                          const Row<double>* const x, Row<double>* const forces,
+                                                          double* const energies) {
+  ForceLoops<double, 4>::turned_force(cube, batch, find, x, forces, energies);
+}
 [[gnu::target("arch=x86-64-v3")]] void energy_middle(const CubeConstants<double>& cube, const Batch<double>& batch,
                                                      const Turns& turns, const MeanPart mean,
                                                      const Row<double>* const x, double* const energies) {
@@ -101,6 +113,10 @@ void force_narrow(const CubeConstants<double>& cube, const Batch<double>& batch,
                   Row<double>* const forces, double* const energies) {
   ForceLoops<double, 4>::force(cube, batch, turns, mean, P, spins, x, forces, energies);
 }
+void turned_force_narrow(const CubeConstants<double>& cube, const Batch<double>& batch, const FindRotation find,
+                         const Row<double>* const x, Row<double>* const forces, double* const energies) {
+  ForceLoops<double, 4>::turned_force(cube, batch, find, x, forces, energies);
+}
 void energy_narrow(const CubeConstants<double>& cube, const Batch<double>& batch, const Turns& turns,
                    const MeanPart mean, const Row<double>* const x, double* const energies) {
   ForceLoops<double, 4>::energy(cube, batch, turns, mean, x, energies);
@@ -125,9 +141,9 @@ template const ElementKernels<double>& element_kernels<double>(InstructionSet);
 template const ElementKernels<float>& element_kernels<float>(InstructionSet);
 
 const ForceKernels& force_kernels(const InstructionSet set) {
-  static constexpr ForceKernels kernels[3] = {{turn_narrow, force_narrow, energy_narrow},
-                                              {turn_middle, force_middle, energy_middle},
-                                              {turn_wide, force_wide, energy_wide}};
+  static constexpr ForceKernels kernels[3] = {{turn_narrow, force_narrow, turned_force_narrow, energy_narrow},
+                                              {turn_middle, force_middle, turned_force_middle, energy_middle},
+                                              {turn_wide, force_wide, turned_force_wide, energy_wide}};
   return kernels[static_cast<int>(set)];
 }
 

@@ -61,6 +61,7 @@ struct Batch {
   const PartialCubes<T>* partial;          ///< null: full cubes
   const HourglassOfCubes* hourglass;       ///< of partial ones
   const T (*tangent)[n_lanes];             ///< 45 rows, pairs of the law's tangent times the volume; null: Hooke's
+  std::uint32_t n_used;                    ///< lanes, the first ones
   bool is_row; ///< each lane's cube stands on the one before it along x: they share the corners between them
 };
 
@@ -85,6 +86,9 @@ InstructionSet instruction_set();
 template <class T>
 const ElementKernels<T>& element_kernels(InstructionSet set = instruction_set());
 
+/// R of the polar decomposition of any F, 3 x 3 column by column.
+using FindRotation = void (*)(const double* F, double* R);
+
 /// What of Hooke's law an energy holds beside the hourglass modes.
 enum class MeanPart { hooke, none };
 
@@ -96,6 +100,10 @@ struct ForceKernels {
   /// times the volume, beside (null: none). `energies`: as energy() has them, to the last bit; null: none.
   void (*force)(const CubeConstants<double>& cube, const Batch<double>& batch, const Turns& turns, MeanPart mean,
                 const double (*P)[n_lanes], double spins, const Row<double>* x, Row<double>* forces, double* energies);
+  /// Both at once, for Hooke's law in frames that turn: the same to the last bit, with R by `find` where turn() has
+  /// none.
+  void (*turned_force)(const CubeConstants<double>& cube, const Batch<double>& batch, FindRotation find,
+                       const Row<double>* x, Row<double>* forces, double* energies);
   /// E of each lane [J].
   void (*energy)(const CubeConstants<double>& cube, const Batch<double>& batch, const Turns& turns, MeanPart mean,
                  const Row<double>* x, double* energies);

@@ -138,43 +138,49 @@ struct Cubes {
 /// Copies side by side, a lane each.
 struct Lanes {
   static constexpr std::size_t n = 8;
-  using Values = Eigen::Array<double, n, 1>;
 
   std::array<std::size_t, n> copies;
   std::size_t n_used = 0;
-  Values corners[8][3]; ///< [m]
+  double corners[8][3][n];  ///< [m]
+  double ratio[n];          ///< det F in the middle of each [1]
+  double squared_length[n]; ///< of its longest edge [m^2]
 
   void add(const std::size_t c, const grid::Copy& copy, const Points& x) {
     for (std::size_t v = 0; v < 8; ++v)
       for (int i = 0; i < 3; ++i)
-        corners[v][i][static_cast<Eigen::Index>(n_used)] = x[copy.corners[v].value][i];
+        corners[v][i][n_used] = x[copy.corners[v].value][i];
     copies[n_used++] = c;
   }
 };
 
-/// det F in the middle of each copy, and the square of its longest edge [m^2].
-void measure(const Lanes& lanes, const double h, Lanes::Values& ratio, Lanes::Values& squared_length) {
-  Lanes::Values F[3][3];
-  squared_length.setZero();
-  for (int axis = 0; axis < 3; ++axis) {
-    for (Lanes::Values& entry : F[axis])
-      entry.setZero();
-    for (int v = 0; v < 8; ++v) {
-      if ((v >> axis & 1) != 0)
-        continue;
-      Lanes::Values square = Lanes::Values::Zero();
-      for (int i = 0; i < 3; ++i) {
-        const Lanes::Values along = lanes.corners[v | 1 << axis][i] - lanes.corners[v][i];
-        F[axis][i] += along;
-        square += along * along;
+/// What follows from the corners.
+__attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default"))) void measure(Lanes& lanes,
+                                                                                            const double h) {
+  const double scale = 1 / (64 * h * h * h); // each column of F is a mean of four edges
+  for (std::size_t l = 0; l < Lanes::n; ++l) {
+    double F[3][3], longest = 0;
+#pragma GCC unroll 3
+    for (int axis = 0; axis < 3; ++axis) {
+      F[axis][0] = F[axis][1] = F[axis][2] = 0;
+#pragma GCC unroll 8
+      for (int v = 0; v < 8; ++v) {
+        if ((v >> axis & 1) != 0)
+          continue;
+        const int w = v | 1 << axis;
+        const double x = lanes.corners[w][0][l] - lanes.corners[v][0][l],
+                     y = lanes.corners[w][1][l] - lanes.corners[v][1][l],
+                     z = lanes.corners[w][2][l] - lanes.corners[v][2][l], square = x * x + y * y + z * z;
+        F[axis][0] += x;
+        F[axis][1] += y;
+        F[axis][2] += z;
+        longest = square > longest ? square : longest;
       }
-      squared_length = squared_length.max(square);
     }
+    lanes.squared_length[l] = longest;
+    lanes.ratio[l] = scale * (F[0][0] * (F[1][1] * F[2][2] - F[1][2] * F[2][1]) +
+                              F[0][1] * (F[1][2] * F[2][0] - F[1][0] * F[2][2]) +
+                              F[0][2] * (F[1][0] * F[2][1] - F[1][1] * F[2][0]));
   }
-  const double four = 4 * h;
-  ratio = (F[0][0] * (F[1][1] * F[2][2] - F[1][2] * F[2][1]) + F[0][1] * (F[1][2] * F[2][0] - F[1][0] * F[2][2]) +
-           F[0][2] * (F[1][0] * F[2][1] - F[1][1] * F[2][0])) /
-          (four * four * four);
 }
 
 /// Of all copies that are not rigid. Calls put(copy, rest, now), from several threads at once, with the material of
@@ -184,13 +190,11 @@ Cubes cubes(const Body& body, const Put& put) {
   const Points& x = corners(body);
   const double h = body.solid.grid.h();
   const auto take = [&](Lanes& lanes, Cubes& all) {
-    Lanes::Values ratio, squared_length;
-    measure(lanes, h, ratio, squared_length);
+    measure(lanes, h);
     for (std::size_t lane = 0; lane < lanes.n_used; ++lane) {
       const std::size_t c = lanes.copies[lane], n = n_nodes(copy_of(body, c));
-      const auto l = static_cast<Eigen::Index>(lane);
-      const double rest = double(n) / 8, now = rest * ratio[l];
-      all += {n, ratio[l] < 0 ? n : 0, c, squared_length[l], {rest, now}};
+      const double rest = double(n) / 8, now = rest * lanes.ratio[lane];
+      all += {n, lanes.ratio[lane] < 0 ? n : 0, c, lanes.squared_length[lane], {rest, now}};
       put(c, rest, now);
     }
     lanes.n_used = 0;

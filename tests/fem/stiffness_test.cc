@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <limits>
 #include <numeric>
 
@@ -289,6 +290,47 @@ TEST(Stiffness, EnergiesBesideForcesAreThoseAloneBitByBit) {
         EXPECT_NE(alone[0], 0);
       }
     }
+}
+
+void find_rotation(const double* const F, double* const R) {
+  Eigen::Map<Mat3> found(R);
+  found = material::rotation_of(Eigen::Map<const Mat3>(F));
+}
+
+/// Rotations and forces in one call are those in two, also of cubes whose rotation is told by the caller.
+TEST(Stiffness, ForcesWithRotationsAreThoseInTwoCalls) {
+  for (const InstructionSet set : instruction_sets()) {
+    const AnyElements<double> all(false); // half of its cubes are inside out
+    const ForceKernels& kernels = force_kernels(set);
+    std::vector<Row<double>> at_once(all.p.size()), in_two(all.p.size());
+    unsigned n_told = 0;
+    for (std::size_t i = 0; i < all.batching.batches().size(); ++i) {
+      const auto batch = all.batched.batch(all.batching, i);
+      Turns turns{};
+      for (unsigned unknown = kernels.turn(all.batched.cube, batch, all.p.data(), turns) & ((1U << batch.n_used) - 1);
+           unknown != 0; unknown &= unknown - 1, ++n_told) {
+        const int lane = std::countr_zero(unknown);
+        double F[9], R[9];
+        for (int k = 0; k < 9; ++k)
+          F[k] = turns.F[k][lane];
+        find_rotation(F, R);
+        for (int k = 0; k < 9; ++k)
+          turns.R[k][lane] = R[k];
+      }
+      alignas(64) std::array<double, n_lanes> energies, energies_in_two;
+      kernels.turned_force(all.batched.cube, batch, find_rotation, all.p.data(), at_once.data(), energies.data());
+      kernels.force(all.batched.cube, batch, turns, MeanPart::hooke, nullptr, 1, all.p.data(), in_two.data(),
+                    energies_in_two.data());
+      for (std::size_t lane = 0; lane < batch.n_used; ++lane)
+        EXPECT_EQ(energies[lane], energies_in_two[lane]) << static_cast<int>(set);
+    }
+    EXPECT_GT(n_told, 0u);
+    for (std::size_t corner = 0; corner < AnyElements<double>::n_corners; ++corner) {
+      EXPECT_EQ(at_once[corner].x, in_two[corner].x) << static_cast<int>(set);
+      EXPECT_EQ(at_once[corner].y, in_two[corner].y) << static_cast<int>(set);
+      EXPECT_EQ(at_once[corner].z, in_two[corner].z) << static_cast<int>(set);
+    }
+  }
 }
 
 /// Sixteen cubes apart from each other, each deformed by a matrix of its own.

@@ -1,6 +1,5 @@
 #include "tests/verification/beams.h"
 
-#include "fem/assembly.h"
 #include "fem/energy_release.h"
 
 #include <Eigen/SparseCholesky>
