@@ -4,7 +4,8 @@
 ///   KERF_FUZZ_CASE=seed:sweep,sweep,... build/release/tests/test_fuzz --gtest_filter=Fuzz.Repeat
 ///
 /// The long run also cuts every solid mesh of the folder that KERF_FUZZ_MESHES names, and says which it skipped. It
-/// does 100,000 sweeps, or as many as KERF_FUZZ_SWEEPS says.
+/// does 100,000 sweeps, or as many as KERF_FUZZ_SWEEPS says, from case KERF_FUZZ_FIRST on, so that several processes
+/// share them.
 
 #include "base/parallel.h"
 #include "tests/fuzz/cases.h"
@@ -87,7 +88,7 @@ void print(const Tally& tally, const double seconds) {
             << ", of volumes by tetrahedra and triangles " << tally.worst_disagreement
             << " of the body; of a corner's mass " << tally.worst_mass << " h^3; of the material in one cell "
             << tally.worst_cell << " h^3; least mass of a copy at a corner " << tally.least_mass << " h^3, of a copy "
-            << tally.least_fill << " h^3, of a piece " << tally.least_piece << " h^3; " << seconds << " s\n";
+            << tally.least_fill << " h^3, of a piece " << tally.least_piece << " h^3; " << seconds << " s" << std::endl;
 }
 
 /// Cases from `first_seed` on until that many sweeps are done; every hundredth is large, and run with 1 and 2 threads.
@@ -135,8 +136,9 @@ TEST(Fuzz, Short) { fuzz(0, 500); }
 
 TEST(Fuzz, Long) {
   tell_specimens(all_specimens_of(first_long_seed));
-  const char* n_sweeps = std::getenv("KERF_FUZZ_SWEEPS");
-  fuzz(first_long_seed, n_sweeps ? std::stoul(n_sweeps) : 100000);
+  const char *const n_sweeps = std::getenv("KERF_FUZZ_SWEEPS"), *const first = std::getenv("KERF_FUZZ_FIRST");
+  fuzz(first_long_seed + (first ? static_cast<std::uint32_t>(std::stoul(first)) : 0),
+       n_sweeps ? std::stoul(n_sweeps) : 100000);
 }
 
 /// Sweeps on one curved body at three resolutions. The skin stays where it is, and a vertex on the rim of a cut moves
