@@ -108,7 +108,8 @@ void require_on_plane(const Subject& subject, const cut::Plane& plane, const std
 }
 
 /// Where nothing had been cut before, and no shaving stays where a folded body lets the plane pass twice
-/// (cut/shreds.h), a plane leaves no nodes joined across it: not by edges, nor by the skin.
+/// (cut/shreds.h), a plane leaves no nodes joined across it: not by edges, nor by the skin. Nodes that it meets to
+/// round-off may be on either side.
 void require_parted(const Subject& subject, const cut::Plane& plane) {
   const Items& items = subject.specimen.items;
   constexpr std::int8_t unknown = 0, above = 1, below = 2, both = 3;
@@ -117,7 +118,9 @@ void require_parted(const Subject& subject, const cut::Plane& plane) {
     for (int v = 0; v < grid::cube::n_vertices; ++v)
       if (const Item item = items.name[c][v]; item != Items::none) {
         const auto corner = subject.solid.complex.real_corner[subject.grid().nodes(c)[v]];
-        side[item] = height(plane, subject.x[corner.value]) >= 0 ? above : below;
+        const Vec3& at = subject.x[corner.value];
+        const double off = height(plane, at), round_off = 1e-13 * (at.norm() + plane.point.norm());
+        side[item] = std::abs(off) < round_off ? unknown : off > 0 ? above : below;
       }
   const ItemLinks links = fuzz::links(subject.solid, items);
   for (bool has_spread = true; has_spread;) {
