@@ -43,8 +43,9 @@ std::uint64_t of_words(const Vec3* const points, const std::size_t n) {
 
 } // namespace
 
-std::uint64_t fingerprint(const Points& points) {
-  const std::size_t n = points.size();
+std::uint64_t fingerprint(const Points& points) { return fingerprint(points, points.size()); }
+
+std::uint64_t fingerprint(const Points& points, const std::size_t n) {
   Loan<std::uint64_t> parts((n + block - 1) / block);
   parallel_for(
     parts.size(),

@@ -39,43 +39,48 @@ Batching::Batching(const CopiesInOrder& copies) {
   update(copies, {});
 }
 
-std::vector<std::uint32_t> Batching::update(const CopiesInOrder& copies, const std::span<const std::uint8_t> is_same,
-                                            const CornersOfSame corners) {
+ChangeOfBatches Batching::update(const CopiesInOrder& copies, const std::span<const std::uint8_t> is_same,
+                                 const CornersOfSame corners) {
   const Before before{std::exchange(batches_, {}), std::exchange(chunks_, {})};
   batches_.reserve(copies.order.size() / n_lanes + 2 * copies.chunk_ends.size());
   std::vector<std::uint8_t> is_taken(n_places_, 0);
-  std::vector<std::uint32_t> renewed;
+  ChangeOfBatches change;
   const auto all_same = [&](const std::span<const std::uint32_t> some) {
     return !is_same.empty() && std::ranges::all_of(some, [&](const std::uint32_t copy) {
       return copy == BatchOfCopies::none || is_same[copy] != 0;
     });
-  };
-  const auto stays = [&](const BatchOfCopies& batch, const BatchOfCopies& was) {
-    return std::ranges::equal(batch.copies, was.copies) && all_same(batch.copies);
   };
   std::uint32_t begin = 0;
   for (std::size_t k = 0; k < copies.chunk_ends.size(); begin = copies.chunk_ends[k++]) {
     const auto of_chunk = copies.order.subspan(begin, copies.chunk_ends[k] - begin);
     const auto row = static_cast<std::uint32_t>(copies.n_corners + k);
     const Chunk was = k < before.chunks.size() ? before.chunks[k] : Chunk{};
-    if (corners == CornersOfSame::kept && was.n_copies == of_chunk.size() && all_same(of_chunk))
+    const bool is_kept = was.n_copies == of_chunk.size() && all_same(of_chunk);
+    if (corners == CornersOfSame::kept && is_kept)
       keep_chunk(before, was, row);
     else
       add_chunk(copies, of_chunk, row);
     const Chunk& now = chunks_.back();
-    for (std::uint32_t i = now.n_full; i < now.n; ++i) {
+    for (std::uint32_t i = 0; i < now.n; ++i) {
       BatchOfCopies& batch = batches_[now.first + i];
-      const std::uint32_t at = was.first + was.n_full + (i - now.n_full);
-      if (at < was.first + was.n && stays(batch, before.batches[at])) {
+      const bool is_full = i < now.n_full;
+      const std::uint32_t at = was.first + (is_full ? i : was.n_full + (i - now.n_full)),
+                          end = was.first + (is_full ? was.n_full : was.n);
+      const bool stays = at < end && (is_kept || (std::ranges::equal(batch.copies, before.batches[at].copies) &&
+                                                  all_same(batch.copies)));
+      change.was.push_back(stays && corners == CornersOfSame::kept ? at : ChangeOfBatches::none);
+      if (is_full)
+        continue;
+      if (stays) {
         batch.partial = before.batches[at].partial;
         is_taken[batch.partial] = 1;
       } else {
-        renewed.push_back(now.first + i);
+        change.renewed.push_back(now.first + i);
       }
     }
   }
   std::size_t place = 0;
-  for (const std::uint32_t i : renewed) {
+  for (const std::uint32_t i : change.renewed) {
     while (place < n_places_ && is_taken[place] != 0)
       ++place;
     batches_[i].partial = static_cast<std::uint32_t>(place++);
@@ -83,7 +88,7 @@ std::vector<std::uint32_t> Batching::update(const CopiesInOrder& copies, const s
   n_places_ = std::max(n_places_, place);
   n_rows_ = copies.n_corners + chunks_.size();
   sort_by_colour();
-  return renewed;
+  return change;
 }
 
 void Batching::add_chunk(const CopiesInOrder& copies, const std::span<const std::uint32_t> of_chunk,

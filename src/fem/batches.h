@@ -56,6 +56,14 @@ constexpr std::uint32_t no_vertex = 0xffffffff;
 /// Do copies that are the same have the corners of the same numbers?
 enum class CornersOfSame { kept, renumbered };
 
+/// What an update has done.
+struct ChangeOfBatches {
+  static constexpr std::uint32_t none = 0xffffffff;
+  std::vector<std::uint32_t> renewed; ///< batches of partial cubes of which one is not what it was, or was elsewhere
+  std::vector<std::uint32_t> was;     ///< of each batch the one that had just its copies, which are the same, and their
+                                      ///< corners; `none` where there was none
+};
+
 class Batching {
  public:
   static constexpr std::size_t chunk_size = 512; ///< cells
@@ -67,9 +75,9 @@ class Batching {
   Batching() = default;
 
   /// Takes over copies after a cut; is_same: of each, whether it is in the cell that it was in, with the material that
-  /// it had. Returns the batches of partial cubes of which one is not what it was, or was elsewhere.
-  std::vector<std::uint32_t> update(const CopiesInOrder& copies, std::span<const std::uint8_t> is_same,
-                                    CornersOfSame corners = CornersOfSame::kept);
+  /// it had.
+  ChangeOfBatches update(const CopiesInOrder& copies, std::span<const std::uint8_t> is_same,
+                         CornersOfSame corners = CornersOfSame::kept);
 
   std::span<const BatchOfCopies> batches() const { return batches_; }
   /// Places for what partial cubes are made of, some of them empty.
@@ -160,7 +168,7 @@ struct PartialElements {
 template <class T>
 BatchedElements<T> batched(const Batching& batching, double h, const material::Elastic& material, const Element& full,
                            const PartialElements& partial, const SharedParts& shared = {});
-/// After a cut: `renewed` is what Batching::update() has returned. Rotations are lost.
+/// After a cut: `renewed` is what Batching::update() says. Rotations are lost.
 template <class T>
 void follow(const Batching& batching, std::span<const std::uint32_t> renewed, const PartialElements& partial,
             BatchedElements<T>& elements);

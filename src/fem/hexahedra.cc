@@ -90,7 +90,6 @@ void Hexahedra::update(const grid::Solid& solid, const std::span<const grid::Cop
 
 void Hexahedra::follow(const grid::Solid& solid, const std::span<const grid::CopyId> changed,
                        const std::span<const std::uint32_t> corners) {
-  known_.forget();
   if (multigrid_) {
     former_levels_ = multigrid_->give_way();
     multigrid_ = nullptr;
@@ -102,8 +101,12 @@ void Hexahedra::follow(const grid::Solid& solid, const std::span<const grid::Cop
   }
   const bool were_all = numbers_.are_all();
   numbers_ = grid::CornerNumbers(solid, counted_);
-  batch(solid, changed,
-        were_all && numbers_.are_all() ? CornersOfSame::kept : CornersOfSame::renumbered);
+  const auto numbers_of_same = were_all && numbers_.are_all() ? CornersOfSame::kept : CornersOfSame::renumbered;
+  ChangeOfBatches change = batch(solid, changed, numbers_of_same);
+  if (numbers_of_same == CornersOfSame::kept)
+    known_.follow(std::move(change), *batching_, incidence_, corners);
+  else
+    known_.forget();
   sum_mass(corners);
   ghost_penalty_.update( // to which a crumb's copies are as good as full
     solid, changed, [this](const std::size_t copy) { return incidence_.is_used(copy) ? fill(copy) : 1; }, mass_);
@@ -144,8 +147,8 @@ Batching batching_of(const grid::Grid& grid) {
 
 } // namespace
 
-void Hexahedra::batch(const grid::Solid& solid, const std::span<const grid::CopyId> changed,
-                      const CornersOfSame corners) {
+ChangeOfBatches Hexahedra::batch(const grid::Solid& solid, const std::span<const grid::CopyId> changed,
+                                 const CornersOfSame corners) {
   places_.resize(n_elements());
   kinds_.resize(n_elements());
   std::vector<std::uint8_t> is_same(n_elements(), 1);
@@ -176,15 +179,16 @@ void Hexahedra::batch(const grid::Solid& solid, const std::span<const grid::Copy
   const bool is_new = batching_ == nullptr;
   if (is_new)
     batching_ = std::make_shared<Batching>(batching_of(solid.grid));
-  const std::vector<std::uint32_t> renewed =
+  ChangeOfBatches change =
     batching_->update({order, chunk_ends, kinds_, corner_numbers(0), numbers_.size()}, is_same, corners);
   if (is_new) {
     batched_ = batched<double>(*batching_, h_, material_, elements_.full(), partial_elements(no_bound));
-    return;
+    return change;
   }
-  fem::follow(*batching_, renewed, partial_elements(no_bound), batched_);
+  fem::follow(*batching_, change.renewed, partial_elements(no_bound), batched_);
   if (!former_levels_.coarse.empty())
-    fem::follow(*batching_, renewed, partial_elements(elements_.full().bound), former_levels_.finest);
+    fem::follow(*batching_, change.renewed, partial_elements(elements_.full().bound), former_levels_.finest);
+  return change;
 }
 
 PartialElements Hexahedra::partial_elements(const double bound) const {
@@ -314,17 +318,26 @@ double Hexahedra::energy_ahead(const Points& x) const {
     return energy;
   }
   Loan<Vec3> forces = Loan<Vec3>::with_room(x.size());
-  const double energy = *force(x, forces, WithEnergy::always);
-  known_.exchange(at, forces, energy);
+  Loan<double> energies = Loan<double>::with_room(batching_->batches().size());
+  find_forces(x, WithEnergy::always, forces, energies);
+  const double energy = sum_energies(x, energies);
+  known_.exchange(at, forces, energies, energy);
   return energy;
 }
 
 void Hexahedra::force(const Points& x, Points& forces) const {
-  const std::uint64_t at = fingerprint(x);
-  if (known_.forces(at, forces))
-    return;
-  const auto energy = force(x, forces, WithEnergy::where_cheap);
-  known_.put(at, forces, energy);
+  if (const std::uint64_t at = fingerprint(x); !known_.forces(at, forces)) {
+    Loan<double> energies = Loan<double>::with_room(batching_->batches().size());
+    find_forces(x, WithEnergy::where_cheap, forces, energies);
+    known_.put(at, forces, energies,
+               gives_energies(WithEnergy::where_cheap) ? std::optional(sum_energies(x, energies)) : std::nullopt);
+  }
+  add_forces_between(x, forces);
+}
+
+void Hexahedra::add_forces_between(const Points& x, Points& forces) const {
+  ghost_penalty_.add_force(x, forces);
+  ties_.add_force(x, forces);
 }
 
 /// Adds the forces of a batch, and returns its energy, which for laws other than Hooke's is asked for or zero.
@@ -354,11 +367,14 @@ double Hexahedra::add_forces(const std::size_t batch, const WithEnergy with_ener
   return is_asked ? energy_of_batch(batch, turns, of_lanes) : 0;
 }
 
-std::optional<double> Hexahedra::force(const Points& x, Points& forces, const WithEnergy with_energy) const {
+void Hexahedra::find_forces(const Points& x, const WithEnergy with_energy, Points& forces,
+                            std::vector<double>& energies) const {
+  if (update_forces(x, with_energy, forces, energies))
+    return;
   const TwoRows lent(batching_->n_rows());
   Row<double>*const rows = lent.first, *const sums = lent.second;
   put_rows(dynamics::flat(x), rows, sums);
-  Loan<double> energies(with_energy == WithEnergy::always || is_hookean() ? batching_->batches().size() : 0);
+  energies.assign(gives_energies(with_energy) ? batching_->batches().size() : 0, 0.0);
   batching_->for_each_in_order([&](const std::size_t i) {
     const double energy = add_forces(i, with_energy, rows, sums);
     if (!energies.empty())
@@ -366,11 +382,37 @@ std::optional<double> Hexahedra::force(const Points& x, Points& forces, const Wi
   });
   forces.resize(numbers_.size());
   write(sums, dynamics::flat(forces));
-  ghost_penalty_.add_force(x, forces);
-  ties_.add_force(x, forces);
-  if (energies.empty() && !batching_->batches().empty())
-    return std::nullopt;
-  return sum_energies(x, energies);
+}
+
+bool Hexahedra::update_forces(const Points& x, const WithEnergy with_energy, Points& forces,
+                              std::vector<double>& energies) const {
+  std::optional<ForcesBeforeCut> before = known_.before_cut(x);
+  if (!before || (gives_energies(with_energy) && before->of_elements.energies.empty()))
+    return false;
+  const std::span<const BatchOfCopies> batches = batching_->batches();
+  energies.assign(gives_energies(with_energy) ? batches.size() : 0, 0.0);
+  const TwoRows lent(batching_->n_rows());
+  Row<double>*const rows = lent.first, *const sums = lent.second;
+  for (const std::uint32_t corner : before->changed)
+    sums[corner] = {};
+  for (std::size_t i = 0; i < batches.size(); ++i)
+    if (before->is_asked[i] != 0)
+      for (const auto& corners : batches[i].corners)
+        for (const std::uint32_t corner : corners) {
+          rows[corner] = corner < x.size() ? Row<double>{x[corner].x(), x[corner].y(), x[corner].z()} : Row<double>{};
+          sums[corner] = {};
+        }
+  batching_->for_each_in_order([&](const std::size_t i) {
+    const bool is_asked = before->is_asked[i] != 0;
+    const double energy = is_asked ? add_forces(i, with_energy, rows, sums) : 0;
+    if (!energies.empty())
+      energies[i] = is_asked ? energy : before->of_elements.energies[before->change.was[i]];
+  });
+  forces.swap(before->of_elements.forces);
+  forces.resize(x.size());
+  for (const std::uint32_t corner : before->changed)
+    forces[corner] = {sums[corner].x, sums[corner].y, sums[corner].z};
+  return true;
 }
 
 void Hexahedra::linearise(const Points& x) {

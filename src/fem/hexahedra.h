@@ -127,7 +127,7 @@ class Hexahedra : public dynamics::ElasticModel, public dynamics::StiffnessMatri
   }
   /// Part of its cube that a copy's material is [1].
   double fill(const std::size_t copy) const { return elements_[copy].volume / (h_ * h_ * h_); }
-  void batch(const grid::Solid& solid, std::span<const grid::CopyId> changed, CornersOfSame corners);
+  ChangeOfBatches batch(const grid::Solid& solid, std::span<const grid::CopyId> changed, CornersOfSame corners);
   PartialElements partial_elements(double bound) const;
   void make_multigrid();
   std::array<Vec3, 8> corners_of(std::size_t copy, const Points& x) const; // x by number
@@ -142,8 +142,13 @@ class Hexahedra : public dynamics::ElasticModel, public dynamics::StiffnessMatri
   template <class Function>
   void for_each_lane(std::size_t batch, const Function& f) const;
   enum class WithEnergy { always, where_cheap };
-  /// With the energy, where it costs nothing (laws other than Hooke's take time for it) or is asked for.
-  std::optional<double> force(const Points& x, Points& forces, WithEnergy with_energy) const;
+  /// Whether energies come with forces: laws other than Hooke's take time for them.
+  bool gives_energies(const WithEnergy with_energy) const { return with_energy == WithEnergy::always || is_hookean(); }
+  /// Of elements alone; `energies` of batches, none where they are not given.
+  void find_forces(const Points& x, WithEnergy with_energy, Points& forces, std::vector<double>& energies) const;
+  /// The same from what is known since before a cut. False: nothing is.
+  bool update_forces(const Points& x, WithEnergy with_energy, Points& forces, std::vector<double>& energies) const;
+  void add_forces_between(const Points& x, Points& forces) const; // of copies: penalties and ties
   double energy_of(const Turns& turns, const double* of_lanes, std::size_t lane, std::uint32_t copy) const;
   double energy_of_batch(std::size_t batch, const Turns& turns, const double* of_lanes) const;
   double add_forces(std::size_t batch, WithEnergy with_energy, const Row<double>* x, Row<double>* forces) const;

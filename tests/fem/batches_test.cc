@@ -69,7 +69,7 @@ TEST(Batches, OfOtherChunksStayWhereTheyAre) {
   row.kinds[102] = Kind::full;
   std::vector<std::uint8_t> is_same(row.kinds.size(), 1);
   is_same[102] = is_same[300] = 0;
-  std::vector<std::uint32_t> renewed = batching.update(row.copies(), is_same);
+  std::vector<std::uint32_t> renewed = batching.update(row.copies(), is_same).renewed;
   for (const std::uint32_t i : renewed)
     for (const std::uint32_t copy : batching.batches()[i].copies)
       EXPECT_TRUE(copy == BatchOfCopies::none || (copy >= 100 && copy < 200) || copy == 300) << copy;
@@ -83,7 +83,7 @@ TEST(Batches, OfOtherChunksStayWhereTheyAre) {
   is_same[0] = 0;
   row.elements[0].volume = 2000;
   fem::follow(batching, renewed, row.partial(), batched);
-  renewed = batching.update(row.copies(), is_same);
+  renewed = batching.update(row.copies(), is_same).renewed;
   ASSERT_EQ(renewed.size(), 1u);
   EXPECT_EQ(batching.batches()[renewed[0]].copies[0], 0u);
   fem::follow(batching, renewed, row.partial(), batched);
