@@ -36,38 +36,35 @@ Batching::Batching(const CopiesInOrder& copies) {
     for (std::size_t a = 0; a < 8; ++a)
       corners.push_back(copies.kind[copy] != Kind::unused ? copies.corners[8 * std::size_t(copy) + a] : no_vertex);
   colour_of_chunk_ = colours_of_chunks(copies.chunk_ends, corners, copies.n_corners);
-  update(copies, {});
+  update(copies, {}, {});
 }
 
 ChangeOfBatches Batching::update(const CopiesInOrder& copies, const std::span<const std::uint8_t> is_same,
-                                 const CornersOfSame corners) {
+                                 const std::span<const std::uint8_t> is_met, const CornersOfSame corners) {
   const Before before{std::exchange(batches_, {}), std::exchange(chunks_, {})};
-  batches_.reserve(copies.order.size() / n_lanes + 2 * copies.chunk_ends.size());
+  batches_.reserve(before.batches.size() + copies.order.size() / n_lanes + 2 * copies.chunk_ends.size());
   std::vector<std::uint8_t> is_taken(n_places_, 0);
   ChangeOfBatches change;
-  const auto all_same = [&](const std::span<const std::uint32_t> some) {
-    return !is_same.empty() && std::ranges::all_of(some, [&](const std::uint32_t copy) {
-      return copy == BatchOfCopies::none || is_same[copy] != 0;
-    });
-  };
   std::uint32_t begin = 0;
   for (std::size_t k = 0; k < copies.chunk_ends.size(); begin = copies.chunk_ends[k++]) {
-    const auto of_chunk = copies.order.subspan(begin, copies.chunk_ends[k] - begin);
-    const auto row = static_cast<std::uint32_t>(copies.n_corners + k);
     const Chunk was = k < before.chunks.size() ? before.chunks[k] : Chunk{};
-    const bool is_kept = was.n_copies == of_chunk.size() && all_same(of_chunk);
-    if (corners == CornersOfSame::kept && is_kept)
+    const auto row = static_cast<std::uint32_t>(copies.n_corners + k);
+    const bool is_kept = k < is_met.size() && is_met[k] == 0;
+    if (is_kept)
       keep_chunk(before, was, row);
     else
-      add_chunk(copies, of_chunk, row);
+      add_chunk(copies, copies.order.subspan(begin, copies.chunk_ends[k] - begin), row);
     const Chunk& now = chunks_.back();
     for (std::uint32_t i = 0; i < now.n; ++i) {
       BatchOfCopies& batch = batches_[now.first + i];
       const bool is_full = i < now.n_full;
-      const std::uint32_t at = was.first + (is_full ? i : was.n_full + (i - now.n_full)),
-                          end = was.first + (is_full ? was.n_full : was.n);
-      const bool stays = at < end && (is_kept || (std::ranges::equal(batch.copies, before.batches[at].copies) &&
-                                                  all_same(batch.copies)));
+      const std::uint32_t first = was.first + (is_full ? 0 : was.n_full), end = was.first + (is_full ? was.n_full : was.n);
+      std::uint32_t at = is_kept ? was.first + i : first;
+      while (at < end && !is_kept && before.batches[at].copies[0] != batch.copies[0])
+        ++at;
+      const bool stays = is_kept || (at < end && std::ranges::equal(batch.copies, before.batches[at].copies) &&
+                                     std::all_of(batch.copies, batch.copies + batch.n_used,
+                                                 [&](const std::uint32_t copy) { return is_same[copy] != 0; }));
       change.was.push_back(stays && corners == CornersOfSame::kept ? at : ChangeOfBatches::none);
       if (is_full)
         continue;
@@ -101,8 +98,7 @@ void Batching::add_chunk(const CopiesInOrder& copies, const std::span<const std:
   add_batches(full, copies.corners, row);
   const auto first_partial = static_cast<std::uint32_t>(batches_.size());
   add_batches(partial, copies.corners, row);
-  chunks_.push_back({first, first_partial - first, static_cast<std::uint32_t>(batches_.size()) - first,
-                     static_cast<std::uint32_t>(of_chunk.size())});
+  chunks_.push_back({first, first_partial - first, static_cast<std::uint32_t>(batches_.size()) - first});
 }
 
 /// But for the row of lanes that are not used.
@@ -114,12 +110,43 @@ void Batching::keep_chunk(const Before& before, const Chunk& chunk, const std::u
     for (std::size_t lane = batches_[i].n_used; lane < n_lanes; ++lane)
       for (auto& corners : batches_[i].corners)
         corners[lane] = row;
-  chunks_.push_back({first, chunk.n_full, chunk.n, chunk.n_copies});
+  chunks_.push_back({first, chunk.n_full, chunk.n});
 }
 
+namespace {
+
+/// Whether each cube but the first shares the corners of a face with the one before it along x.
+bool are_row(const std::span<const std::uint32_t> copies, const std::uint32_t* const corners) {
+  const auto corner = [&](const std::size_t i, const std::size_t a) { return corners[8 * std::size_t(copies[i]) + a]; };
+  for (std::size_t i = 1; i < copies.size(); ++i)
+    for (std::size_t a = 0; a < 8; a += 2)
+      if (corner(i, a) != corner(i - 1, a + 1))
+        return false;
+  return true;
+}
+
+/// To the front what are whole batches of cubes side by side; else in the order in which they come.
+void put_rows_first(std::vector<std::uint32_t>& copies, const std::uint32_t* const corners) {
+  std::vector<std::uint32_t> others;
+  std::size_t n_in_rows = 0;
+  for (std::size_t i = 0; i < copies.size();)
+    if (i + n_lanes <= copies.size() && are_row(std::span(copies).subspan(i, n_lanes), corners)) {
+      std::copy_n(copies.begin() + static_cast<std::ptrdiff_t>(i), n_lanes,
+                  copies.begin() + static_cast<std::ptrdiff_t>(n_in_rows));
+      n_in_rows += n_lanes;
+      i += n_lanes;
+    } else {
+      others.push_back(copies[i++]);
+    }
+  std::ranges::copy(others, copies.begin() + static_cast<std::ptrdiff_t>(n_in_rows));
+}
+
+} // namespace
+
 /// As if of full cubes.
-void Batching::add_batches(const std::span<const std::uint32_t> copies, const std::uint32_t* const corners,
+void Batching::add_batches(std::vector<std::uint32_t>& copies, const std::uint32_t* const corners,
                            const std::uint32_t row) {
+  put_rows_first(copies, corners);
   for (std::size_t begin = 0; begin < copies.size(); begin += n_lanes) {
     BatchOfCopies& batch = batches_.emplace_back();
     batch.partial = BatchOfCopies::none;
@@ -131,9 +158,7 @@ void Batching::add_batches(const std::span<const std::uint32_t> copies, const st
       for (std::size_t a = 0; a < 8; ++a)
         batch.corners[a][lane] = is_used ? corners[8 * std::size_t(copy) + a] : row;
     }
-    batch.is_row = batch.n_used == n_lanes;
-    for (std::size_t a = 0; a < 8; a += 2)
-      batch.is_row &= std::equal(batch.corners[a] + 1, batch.corners[a] + n_lanes, batch.corners[a + 1]);
+    batch.is_row = batch.n_used == n_lanes && are_row({batch.copies, n_lanes}, corners);
   }
 }
 

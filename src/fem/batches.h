@@ -2,10 +2,10 @@
 
 /// Elements in batches for the kernels: which copies go through them together, and what they are made of.
 ///
-/// Copies go in the order of their cells, so that what lies side by side is read together, in chunks, the copies of
-/// some hundred cells each: first a chunk's full cubes, then its partial ones, each in batches of 16. Chunks that share
-/// a corner have different colours. One colour after the other, and a chunk's batches in their order, is the order of
-/// all sums: the same for any number of threads, as it depends on the copies and their corners alone.
+/// Copies go in chunks, those of some hundred cells that lie in a block each: first a chunk's full cubes, then its
+/// partial ones, each in batches of 16, of which the first are rows of cubes along x. Chunks that share a corner have
+/// different colours. One colour after the other, and a chunk's batches in their order, is the order of all sums: the
+/// same for any number of threads, as it depends on the copies and their corners alone.
 ///
 /// A cut changes the batches of the chunks that it meets, and all others stay as they are, with what their partial
 /// cubes are made of. Chunks of cells are coloured by the grid's nodes, which no cut changes.
@@ -40,7 +40,7 @@ struct BatchOfCopies {
 
 /// All copies, side by side what is near.
 struct CopiesInOrder {
-  std::span<const std::uint32_t> order;
+  std::span<const std::uint32_t> order; ///< those of chunks that a cut has not met need not be there
   std::span<const std::uint32_t> chunk_ends; ///< in `order`, ascending
   std::span<const Kind> kind;                ///< of each copy
   const std::uint32_t* corners;              ///< 8 a copy
@@ -75,9 +75,10 @@ class Batching {
   Batching() = default;
 
   /// Takes over copies after a cut; is_same: of each, whether it is in the cell that it was in, with the material that
-  /// it had.
+  /// it had. `is_met`: 0 for each chunk that has just the copies that it had, all of them the same, with corners of the
+  /// same numbers.
   ChangeOfBatches update(const CopiesInOrder& copies, std::span<const std::uint8_t> is_same,
-                         CornersOfSame corners = CornersOfSame::kept);
+                         std::span<const std::uint8_t> is_met, CornersOfSame corners = CornersOfSame::kept);
 
   std::span<const BatchOfCopies> batches() const { return batches_; }
   /// Places for what partial cubes are made of, some of them empty.
@@ -107,14 +108,13 @@ class Batching {
   static constexpr std::size_t worth_ = 256, worth_chunks_ = 4; // batches, chunks from which on a second thread pays
   struct Chunk {
     std::uint32_t first, n_full, n; // batches: full ones come first
-    std::uint32_t n_copies;
   };
   struct Before {
     std::vector<BatchOfCopies> batches;
     std::vector<Chunk> chunks;
   };
 
-  void add_batches(std::span<const std::uint32_t> copies, const std::uint32_t* corners, std::uint32_t row);
+  void add_batches(std::vector<std::uint32_t>& copies, const std::uint32_t* corners, std::uint32_t row);
   void add_chunk(const CopiesInOrder& copies, std::span<const std::uint32_t> of_chunk, std::uint32_t row);
   void keep_chunk(const Before& before, const Chunk& chunk, std::uint32_t row);
   void sort_by_colour();

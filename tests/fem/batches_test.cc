@@ -69,7 +69,8 @@ TEST(Batches, OfOtherChunksStayWhereTheyAre) {
   row.kinds[102] = Kind::full;
   std::vector<std::uint8_t> is_same(row.kinds.size(), 1);
   is_same[102] = is_same[300] = 0;
-  std::vector<std::uint32_t> renewed = batching.update(row.copies(), is_same).renewed;
+  std::vector<std::uint8_t> is_met = {0, 1, 0};
+  std::vector<std::uint32_t> renewed = batching.update(row.copies(), is_same, is_met).renewed;
   for (const std::uint32_t i : renewed)
     for (const std::uint32_t copy : batching.batches()[i].copies)
       EXPECT_TRUE(copy == BatchOfCopies::none || (copy >= 100 && copy < 200) || copy == 300) << copy;
@@ -83,7 +84,8 @@ TEST(Batches, OfOtherChunksStayWhereTheyAre) {
   is_same[0] = 0;
   row.elements[0].volume = 2000;
   fem::follow(batching, renewed, row.partial(), batched);
-  renewed = batching.update(row.copies(), is_same).renewed;
+  is_met = {1, 0, 0};
+  renewed = batching.update(row.copies(), is_same, is_met).renewed;
   ASSERT_EQ(renewed.size(), 1u);
   EXPECT_EQ(batching.batches()[renewed[0]].copies[0], 0u);
   fem::follow(batching, renewed, row.partial(), batched);
@@ -119,13 +121,13 @@ TEST(Batches, AreThoseThatAreMadeAnew) {
   row.kinds[102] = Kind::full;
   std::vector<std::uint8_t> is_same(row.kinds.size(), 1);
   is_same[102] = is_same[300] = 0;
-  batching.update(row.copies(), is_same);
+  batching.update(row.copies(), is_same, std::vector<std::uint8_t>{0, 1, 0});
   expect_as_anew();
   is_same.assign(row.kinds.size(), 1);
   for (std::uint32_t& corner : row.corners)
     ++corner;
   ++row.n_corners;
-  batching.update(row.copies(), is_same, CornersOfSame::renumbered);
+  batching.update(row.copies(), is_same, {}, CornersOfSame::renumbered);
   expect_as_anew();
 }
 
