@@ -100,6 +100,45 @@ TEST(Update, RemembersNothingButTheSame) {
   }
 }
 
+/// Forces that are known are brought up to date where a cut is, and are those of a model that is built anew; also when
+/// the cut comes before they are asked for again, or the body has moved since.
+TEST(Update, OfKnownForcesIsFindingThemAnew) {
+  for (const std::string& law : {all_laws[1], all_laws[3]}) {
+    Draw draw(97);
+    Body body = make_block({40, 14, 9}, 0.1, draw, {0.3, 0.7});
+    const HexahedraOptions options{.material = with_law(rubber, law)};
+    Hexahedra model = make_model(body, options);
+    Points x = disturbed(body, draw), f, f_anew;
+    const std::size_t n_corners = x.size();
+    model.energy_ahead(x);
+    for (int step = 0; step < 12; ++step) {
+      const Vec3 centre(0.5 + 0.3 * step, 0.1 + 0.08 * step, 0.3 + 0.05 * step);
+      std::vector<grid::EdgeId> edges;
+      for (const auto e : inner_edges(body))
+        if ((body.grid.position(body.grid.ends(e)[0]) - centre).norm() < 0.25 && draw(0, 1) < 0.4) {
+          body.cuts.add(body.grid, {e, draw(0.1, 0.9), draw.vector().normalized(), 1});
+          edges.push_back(e);
+        }
+      surface::place(body, {});
+      const grid::CutChange change = grid::update_complex(body, edges);
+      model.update(body, change.reshaped);
+      grid::inherit(change, x);
+      if (step % 4 == 1)
+        continue;
+      if (step % 4 == 3)
+        x[0] += 0.01 * draw.vector();
+      const Hexahedra anew = make_model(body, options);
+      const double energy = step % 2 == 0 ? model.energy_ahead(x) : anew.energy(x);
+      model.force(x, f);
+      anew.force(x, f_anew);
+      EXPECT_EQ(energy, anew.energy(x)) << law << ", step " << step;
+      EXPECT_EQ(model.energy(x), anew.energy(x)) << law << ", step " << step;
+      ASSERT_EQ(f, f_anew) << law << ", step " << step;
+    }
+    EXPECT_GT(x.size(), n_corners + 50) << law;
+  }
+}
+
 /// What was full and is partial now gets an element of its own, and the table does not grow when one is remade.
 /// Whatever corners the copies get, in whatever order they come, and crumb or not: who holds a corner is listed in the
 /// same order.
