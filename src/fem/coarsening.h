@@ -7,6 +7,7 @@
 /// Everything here is said by the fine copies and their corners alone; numbers go by first occurrence.
 
 #include "base/vec.h"
+#include "fem/incidence.h"
 
 #include <array>
 #include <cstdint>
@@ -89,6 +90,7 @@ class Coarsening {
 
  private:
   friend Coarsening coarsened(const CellsView& fine);
+  friend class AfterCut;
   using Table = std::array<VertexWeights, 64>; // by place: 8 octant + vertex of the fine cube
   static const Table& weights();
   std::uint8_t place_of(const std::uint32_t user) const {
@@ -101,5 +103,14 @@ class Coarsening {
   std::vector<std::uint8_t> place_;          // of each of these
 };
 Coarsening coarsened(const CellsView& fine);
+
+/// What cuts have done to fine copies, which have kept their numbers, as their corners have.
+struct CutCells {
+  std::vector<std::uint32_t> copies;  ///< that are new, or have other corners than before, or are used no more; ascending
+  std::vector<std::uint32_t> corners; ///< that have other users than before, in any order
+  const Incidence& incidence;         ///< now
+};
+/// The same as anew, bit by bit, from what there was before cuts. What is not near the cuts is copied.
+Coarsening coarsened(const CellsView& fine, const Coarsening& before, const CutCells& cut);
 
 } // namespace kerf::fem

@@ -92,15 +92,18 @@ void Hexahedra::follow(const grid::Solid& solid, const std::span<const grid::Cop
                        const std::span<const std::uint32_t> corners) {
   if (multigrid_) {
     former_levels_ = multigrid_->give_way();
+    former_levels_.corners_are_those_of_body = true;
     multigrid_ = nullptr;
   }
+  const bool were_all = numbers_.are_all();
+  numbers_ = grid::CornerNumbers(solid, counted_);
   if (!former_levels_.coarse.empty()) {
     former_levels_.same_copy.resize(solid.complex.n_copies(), CellsOfLevel::unused);
     for (const grid::CopyId c : changed)
       former_levels_.same_copy[c.value] = CellsOfLevel::unused;
+    former_levels_.corners.insert(former_levels_.corners.end(), corners.begin(), corners.end());
+    former_levels_.corners_are_those_of_body &= were_all && numbers_.are_all();
   }
-  const bool were_all = numbers_.are_all();
-  numbers_ = grid::CornerNumbers(solid, counted_);
   const auto numbers_of_same = were_all && numbers_.are_all() ? CornersOfSame::kept : CornersOfSame::renumbered;
   ChangeOfBatches change = batch(solid, changed, numbers_of_same);
   if (numbers_of_same == CornersOfSame::kept)
@@ -509,7 +512,8 @@ void Hexahedra::make_multigrid() {
                                                                partial_elements(bound), batched_.shared)
                                               : std::move(former_levels_.finest),
                 ghost_penalty_.faces(),
-                ties_.all()},
+                ties_.all(),
+                incidence_},
     former_levels_);
   former_levels_ = {};
 }

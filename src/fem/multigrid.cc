@@ -192,6 +192,20 @@ Multigrid::~Multigrid() = default;
 
 std::size_t Multigrid::n_levels() const { return levels_.size(); }
 
+namespace {
+
+Coarsening coarsened_finest(const FinestLevel& finest, const FormerLevels& former) {
+  if (former.coarse.empty() || !former.corners_are_those_of_body)
+    return coarsened(finest.cells);
+  std::vector<std::uint32_t> copies;
+  for (std::uint32_t c = 0; c < former.same_copy.size(); ++c)
+    if (former.same_copy[c] == CellsOfLevel::unused)
+      copies.push_back(c);
+  return coarsened(finest.cells, former.coarse[0].coarsening, {copies, former.corners, finest.incidence});
+}
+
+} // namespace
+
 Multigrid::Multigrid(FinestLevel finest, const FormerLevels& former) {
   constexpr double stands_still = 0.7; // corners over those of the level before
   levels_.emplace_back();
@@ -207,7 +221,7 @@ Multigrid::Multigrid(FinestLevel finest, const FormerLevels& former) {
     Level& fine = levels_.back();
     const std::size_t n = levels_.size();
     const CellsView cells = n == 1 ? finest.cells : CellsView(cells_of(n - 1));
-    Coarsening coarsening = coarsened(cells);
+    Coarsening coarsening = n == 1 ? coarsened_finest(finest, former) : coarsened(cells);
     if (double(coarsening.coarse.n_corners) > stands_still * double(fine.n_corners))
       break;
     const LevelElements& of_fine = fine.made_of;
@@ -217,8 +231,8 @@ Multigrid::Multigrid(FinestLevel finest, const FormerLevels& former) {
         : FineElements{[&](const std::uint32_t c) -> const Element& { return of_fine[c]; }, of_fine.kind, of_fine.full};
     Level coarse;
     if (former.coarse.size() >= n) {
-      const auto& [parent, elements] = former.coarse[n - 1];
-      const CoarseBefore known{n == 1 ? former.same_copy : of_fine.same_as, parent, elements};
+      const auto& [before, elements] = former.coarse[n - 1];
+      const CoarseBefore known{n == 1 ? former.same_copy : of_fine.same_as, before.parent, elements};
       coarse.made_of = coarse_elements(coarsening, children, h, finest.material, &known);
     } else {
       coarse.made_of = coarse_elements(coarsening, children, h, finest.material, nullptr);
@@ -269,7 +283,7 @@ FormerLevels Multigrid::give_way() {
   former.same_copy.resize(levels_[0].to_coarse.parent.size());
   std::iota(former.same_copy.begin(), former.same_copy.end(), 0);
   for (std::size_t l = 1; l < levels_.size(); ++l)
-    former.coarse.push_back({std::move(levels_[l - 1].to_coarse.parent), std::move(levels_[l].made_of)});
+    former.coarse.push_back({std::move(levels_[l - 1].to_coarse), std::move(levels_[l].made_of)});
   return former;
 }
 

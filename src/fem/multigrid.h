@@ -30,6 +30,7 @@
 #include "fem/coarsening.h"
 #include "fem/cycle.h"
 #include "fem/ghost_penalty.h"
+#include "fem/incidence.h"
 #include "fem/level_elements.h"
 #include "fem/ties.h"
 
@@ -49,18 +50,21 @@ struct FinestLevel {
   BatchedElements<float> elements; ///< partial ones count by their bounds over that of `full`
   std::span<const GhostFace> faces;
   std::span<const Tie> ties;
+  const Incidence& incidence; ///< of the same copies, with corners of the body
 };
 
 /// What is kept of a hierarchy when a cut makes another one.
 struct FormerLevels {
   struct OfLevel {
-    std::vector<std::uint32_t> parent; ///< of the copies of the level below
+    Coarsening coarsening; ///< of the level below
     LevelElements elements;
   };
   BatchedElements<float> finest;
   std::vector<OfLevel> coarse;
   std::vector<std::uint32_t>
     same_copy; ///< of each finest copy its own number; CellsOfLevel::unused: it has changed since
+  std::vector<std::uint32_t> corners;     ///< of the finest level, that have other users since
+  bool corners_are_those_of_body = false; ///< now and then, with the same numbers
 };
 
 class Multigrid : public dynamics::Preconditioner {

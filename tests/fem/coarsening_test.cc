@@ -11,9 +11,10 @@ namespace {
 CellsOfLevel cells_of(const Body& body) {
   CellsOfLevel cells;
   for (const grid::Copy& copy : body.complex.copies) {
+    const bool is_used = !body.crumbs.holds(grid::CopyId(cells.place.size()));
     cells.place.push_back(body.grid.index(body.grid.nodes(copy.cell)[0]));
     for (const grid::CornerId corner : copy.corners)
-      cells.corners.push_back(corner.value);
+      cells.corners.push_back(is_used ? corner.value : CellsOfLevel::unused);
   }
   cells.n_corners = body.complex.n_corners();
   return cells;
@@ -106,6 +107,70 @@ TEST(Coarsening, EveryCornerIsAskedOfOneCopy) {
   std::ranges::sort(by_copy);
   std::ranges::sort(by_corner);
   EXPECT_EQ(by_copy, by_corner);
+}
+
+/// Wherever copies part and join again, come and go, in one change or several: what is found from what there was before
+/// is what is found anew.
+TEST(Coarsening, AfterChangesIsThatOfCellsAnew) {
+  Draw draw(98);
+  Body body = make_block({23, 14, 10}, 0.1, draw, {0.4, 0.6});
+  const grid::CellComplex whole = body.complex;
+  std::vector<grid::EdgeId> edges;
+  for (const auto e : inner_edges(body))
+    if (draw(0, 1) < (body.grid.index(body.grid.ends(e)[0])[0] % 5 == 2 ? 0.9 : 0.1)) {
+      body.cuts.add(body.grid, {e, 0.5, draw.vector().normalized(), 1});
+      edges.push_back(e);
+    }
+  grid::update_complex(body, edges);
+  const grid::CellComplex cut = body.complex;
+  const std::size_t n = cut.n_copies();
+  ASSERT_GT(n, whole.n_copies() + 100);
+  for (std::size_t c = 0; c < n; ++c) {
+    if (c < whole.n_copies())
+      body.complex.copies[grid::CopyId(c)].corners = whole.copies[grid::CopyId(c)].corners;
+    body.crumbs.set(grid::CopyId(c), c < whole.n_copies() ? 0 : 1);
+  }
+  Incidence incidence(body);
+  Coarsening before = coarsened(cells_of(body));
+  std::vector<std::uint32_t> changed_since, corners_since;
+  std::size_t n_changed = 0;
+  for (int step = 0; step < 60; ++step) {
+    const auto centre = grid::CopyId(static_cast<std::size_t>(draw(0, double(n))));
+    const Vec3 at = body.grid.origin(cut.copies[centre].cell);
+    const double radius = draw(0.05, 0.5);
+    std::vector<grid::CopyId> changed;
+    for (const auto c : ids<grid::CopyId>(n))
+      if ((body.grid.origin(cut.copies[c].cell) - at).norm() < radius) {
+        changed.push_back(c);
+        changed_since.push_back(c.value);
+        if (c.value < whole.n_copies())
+          body.complex.copies[c].corners = draw(0, 1) < 0.5 ? whole.copies[c].corners : cut.copies[c].corners;
+        body.crumbs.set(c, draw(0, 1) < (c.value < whole.n_copies() ? 0.1 : 0.5) ? 1 : 0);
+      }
+    const auto corners = incidence.update(body, changed);
+    corners_since.insert(corners_since.end(), corners.begin(), corners.end());
+    if (step % 3 == 1)
+      continue;
+    const CellsOfLevel cells = cells_of(body);
+    std::ranges::sort(changed_since);
+    changed_since.erase(std::unique(changed_since.begin(), changed_since.end()), changed_since.end());
+    const Coarsening anew = coarsened(cells),
+                     now = coarsened(cells, before, {changed_since, corners_since, incidence});
+    ASSERT_EQ(now.parent, anew.parent) << step;
+    ASSERT_EQ(now.octant, anew.octant) << step;
+    ASSERT_EQ(now.children.all, anew.children.all) << step;
+    ASSERT_EQ(now.children.begin, anew.children.begin) << step;
+    ASSERT_EQ(now.coarse.place, anew.coarse.place) << step;
+    ASSERT_EQ(now.coarse.corners, anew.coarse.corners) << step;
+    ASSERT_EQ(now.coarse.n_corners, anew.coarse.n_corners) << step;
+    ASSERT_EQ(weights_of(now, cells), weights_of(anew, cells)) << step;
+    ASSERT_EQ(weights_by_copy(now), weights_by_copy(anew)) << step;
+    n_changed += anew.parent != before.parent ? 1 : 0;
+    before = now;
+    changed_since.clear();
+    corners_since.clear();
+  }
+  EXPECT_GT(n_changed, 20u);
 }
 
 } // namespace
