@@ -8,12 +8,6 @@
 
 namespace kerf::fem {
 
-namespace {
-
-constexpr std::uint32_t none = CellsOfLevel::unused;
-
-} // namespace
-
 /// Coarse copies that hold what cuts have changed are dissolved, and found again among the fine copies that they had;
 /// so are coarse corners of these, and of what is glued to them.
 class AfterCut {
@@ -30,6 +24,8 @@ class AfterCut {
   }
 
  private:
+  static constexpr std::uint32_t none = CellsOfLevel::unused;
+
   bool is_upper(const std::uint32_t copy, const int axis) const { return (fine_.place[copy][axis] & 1) != 0; }
   const std::uint32_t* corners(const std::uint32_t copy) const { return fine_.corners.data() + 8 * std::size_t(copy); }
   bool are_glued(const std::uint32_t below, const std::uint32_t above, const int axis) const {
