@@ -58,7 +58,8 @@ ChangeOfBatches Batching::update(const CopiesInOrder& copies, const std::span<co
     for (std::uint32_t i = 0; i < now.n; ++i) {
       BatchOfCopies& batch = batches_[now.first + i];
       const bool is_full = i < now.n_full;
-      const std::uint32_t first = was.first + (is_full ? 0 : was.n_full), end = was.first + (is_full ? was.n_full : was.n);
+      const std::uint32_t first = was.first + (is_full ? 0 : was.n_full),
+                          end = was.first + (is_full ? was.n_full : was.n);
       std::uint32_t at = is_kept ? was.first + i : first;
       while (at < end && !is_kept && before.batches[at].copies[0] != batch.copies[0])
         ++at;

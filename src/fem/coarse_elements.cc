@@ -7,7 +7,6 @@ namespace kerf::fem {
 
 namespace {
 
-using MatrixOfModes = Eigen::Matrix<double, n_hourglass, n_hourglass>;
 using GradientsOfModes = std::array<Vec3, 4>; // of the hourglass modes
 
 /// How much of a child's mode n a coarse mode m is, by octant, m, n.

@@ -106,7 +106,7 @@ Coarsening coarsened(const CellsView& fine);
 
 /// What cuts have done to fine copies, which have kept their numbers, as their corners have.
 struct CutCells {
-  std::vector<std::uint32_t> copies;  ///< that are new, or have other corners than before, or are used no more; ascending
+  std::vector<std::uint32_t> copies;  ///< that are new, or have other corners, or are used no more; ascending
   std::vector<std::uint32_t> corners; ///< that have other users than before, in any order
   const Incidence& incidence;         ///< now
 };

@@ -43,21 +43,31 @@ void fill_mass(Element& element, const Moments& moments, const double mass_of_cu
     element.mass[a] = mass_of_cube * std::max(0.0, integral_of_shape(moments, a));
 }
 
-/// Sign of a mode at a vertex.
-int sign(const int mode, const int vertex) { return std::popcount(unsigned(mode & ~vertex)) % 2 == 0 ? 1 : -1; }
-
-/// From the 24 displacements to the 12 hourglass unknowns.
-using ToHourglass = Eigen::Matrix<double, n_hourglass, 24>;
-const ToHourglass& to_hourglass() {
-  static const ToHourglass S = [] {
-    ToHourglass all = ToHourglass::Zero();
-    for (int k = 0; k < 4; ++k)
-      for (int a = 0; a < 8; ++a)
-        for (int i = 0; i < 3; ++i)
-          all(3 * k + i, 3 * a + i) = sign(hourglass_modes[k], a);
-    return all;
-  }();
-  return S;
+/// Powers of a symmetric matrix on a vector: returns the growth of the last of n.
+__attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default"))) double growth(const double (&K)[24][24],
+                                                                                             const int n) {
+  double v[24], w[24];
+  for (int i = 0; i < 24; ++i)
+    v[i] = std::cos(1 + 2.4 * i); // of no symmetry
+  double norm = 0;
+  for (int k = 0; k <= n; ++k) { // the first length is that of the start
+    double squares[4] = {};
+    for (int i = 0; i < 24; ++i)
+      squares[i % 4] += v[i] * v[i];
+    norm = std::sqrt((squares[0] + squares[1]) + (squares[2] + squares[3]));
+    if (k == n)
+      break;
+    const double scale = 1 / norm;
+    for (double& wi : w)
+      wi = 0;
+    for (int j = 0; j < 24; ++j) {
+      const double vj = scale * v[j];
+      for (int i = 0; i < 24; ++i)
+        w[i] += vj * K[j][i];
+    }
+    std::copy(w, w + 24, v);
+  }
+  return norm;
 }
 
 } // namespace
@@ -79,12 +89,10 @@ Element make_element(const Moments& moments, const double h, const material::Ela
   }
   element.slope = 1 / (4 * h);
   // The mean gradient is that of the material as it is: so affine motions meet exact forces.
-  const Matrix24 K = h * hourglass_stiffness(centred(positive), material, options.strain);
-  const ToHourglass& S = to_hourglass(); // S S^T = 8
-  const Eigen::Matrix<double, n_hourglass, n_hourglass> of_modes = S * K * S.transpose() / 64;
+  const MatrixOfModes K = h * hourglass_stiffness(centred(positive), material, options.strain);
   for (int p = 0; p < n_hourglass; ++p)
     for (int q = 0; q <= p; ++q)
-      element.hourglass[pair_index(p, q)] = static_cast<float>(0.5 * (of_modes(p, q) + of_modes(q, p)));
+      element.hourglass[pair_index(p, q)] = static_cast<float>(0.5 * (K(p, q) + K(q, p)));
   element.bound = jacobi_bound(element, material);
   return element;
 }
@@ -99,11 +107,11 @@ Vec3 Element::gradient(const int a) const {
 }
 
 Matrix24 stiffness(const Element& element, const material::Elastic& material, const Part part) {
-  Eigen::Matrix<double, n_hourglass, n_hourglass> of_modes;
+  MatrixOfModes of_modes;
   for (int p = 0; p < n_hourglass; ++p)
     for (int q = 0; q <= p; ++q)
       of_modes(p, q) = of_modes(q, p) = element.hourglass[pair_index(p, q)];
-  Matrix24 K = to_hourglass().transpose() * of_modes * to_hourglass();
+  Matrix24 K = by_nodes(of_modes);
   if (part == Part::whole) {
     std::array<Vec3, 8> gradients;
     for (int a = 0; a < 8; ++a)
@@ -116,24 +124,23 @@ Matrix24 stiffness(const Element& element, const material::Elastic& material, co
 double jacobi_bound(const Element& element, const material::Elastic& material) {
   constexpr int n_iterations = 16;
   constexpr double most = 8, unseen = 1.05; // by so few iterations
-  Matrix24 K = stiffness(element, material);
+  const Matrix24 K = stiffness(element, material);
+  std::array<Mat3, 8> inverse; // of the factors of the diagonal blocks
   for (int a = 0; a < 8; ++a) {
     Mat3 D = K.block<3, 3>(3 * a, 3 * a);
     D += 1e-9 * (D.trace() + 1e-300) * Mat3::Identity();
     const Eigen::LLT<Mat3> factor(D);
-    K.middleRows<3>(3 * a) = factor.matrixL().solve(K.middleRows<3>(3 * a)).eval();
-    K.middleCols<3>(3 * a) = factor.matrixL().solve(K.middleCols<3>(3 * a).transpose()).transpose().eval();
+    inverse[a] = factor.matrixL().solve(Mat3::Identity());
   }
-  Vector24 v;
-  for (int i = 0; i < 24; ++i)
-    v[i] = std::cos(1 + 2.4 * i); // of no symmetry
-  double bound = 0;
-  for (int n = 0; n < n_iterations; ++n) {
-    v.normalize();
-    const Vector24 w = K * v;
-    bound = w.norm();
-    v = w;
-  }
+  double scaled[24][24];
+  for (int a = 0; a < 8; ++a)
+    for (int b = 0; b < 8; ++b) {
+      const Mat3 block = inverse[a] * K.block<3, 3>(3 * a, 3 * b) * inverse[b].transpose();
+      for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j)
+          scaled[3 * a + i][3 * b + j] = block(i, j);
+    }
+  const double bound = growth(scaled, n_iterations);
   return std::isfinite(bound) ? std::min(most, unseen * bound) : most;
 }
 

@@ -140,7 +140,11 @@ class Hexahedra : public dynamics::ElasticModel, public dynamics::StiffnessMatri
   Turns turns(std::size_t batch, const Row<double>* x) const;
   /// Calls f(lane, copy) for each lane of a batch that is used.
   template <class Function>
-  void for_each_lane(std::size_t batch, const Function& f) const;
+  void for_each_lane(const std::size_t batch, const Function& f) const {
+    const BatchOfCopies& of = batching_->batches()[batch];
+    for (std::size_t lane = 0; lane < of.n_used; ++lane)
+      f(lane, of.copies[lane]);
+  }
   enum class WithEnergy { always, where_cheap };
   /// Whether energies come with forces: laws other than Hooke's take time for them.
   bool gives_energies(const WithEnergy with_energy) const { return with_energy == WithEnergy::always || is_hookean(); }

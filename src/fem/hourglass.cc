@@ -4,6 +4,7 @@
 #include <Eigen/QR>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace kerf::fem {
@@ -90,29 +91,41 @@ Mat3 stiffness_block(const Mat3& g, const material::Elastic& material) {
   return material.lambda() * g + material.mu() * (g.transpose() + g.trace() * Mat3::Identity());
 }
 
-Matrix24 trilinear_stiffness(const Centred& moments, const material::Elastic& material) {
-  const auto gradient = gradients(moments.centroid);
-  Matrix24 K;
-  for (int b = 0; b < 8; ++b) {
-    const Gradient weighted = moments.gram * gradient[b];
-    for (int a = 0; a <= b; ++a) {
-      const Mat3 block = stiffness_block(gradient[a].transpose() * weighted, material);
-      K.block<3, 3>(3 * a, 3 * b) = block;
-      K.block<3, 3>(3 * b, 3 * a) = block.transpose();
+/// Of hourglass modes of amplitude 1, less their means.
+std::array<Gradient, 4> gradients_of_modes(const Centred& moments) {
+  const auto of_vertices = gradients(moments.centroid);
+  std::array<Gradient, 4> all;
+  for (int k = 0; k < 4; ++k) {
+    all[k].setZero();
+    for (int a = 0; a < 8; ++a)
+      all[k] += 0.125 * sign(hourglass_modes[k], a) * of_vertices[a];
+  }
+  return all;
+}
+
+MatrixOfModes trilinear_stiffness(const Centred& moments, const material::Elastic& material) {
+  const auto gradient = gradients_of_modes(moments);
+  MatrixOfModes K;
+  for (int l = 0; l < 4; ++l) {
+    const Gradient weighted = moments.gram * gradient[l];
+    for (int k = 0; k <= l; ++k) {
+      const Mat3 block = stiffness_block(gradient[k].transpose() * weighted, material);
+      K.block<3, 3>(3 * k, 3 * l) = block;
+      K.block<3, 3>(3 * l, 3 * k) = block.transpose();
     }
   }
   return K;
 }
 
-/// Strains of the 24 nodal displacements.
-Strains<24> displacement_strains(const Vec3& centroid) {
-  const auto gradient = gradients(centroid);
-  Strains<24> H = Strains<24>::Zero();
-  for (int a = 0; a < 8; ++a)
+/// Strains of the hourglass modes.
+Strains<n_hourglass> strains_of_modes(const Centred& moments) {
+  const auto gradient = gradients_of_modes(moments);
+  Strains<n_hourglass> H = Strains<n_hourglass>::Zero();
+  for (int k = 0; k < 4; ++k)
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j)
         for (int q = 0; q < 6; ++q)
-          H(6 * q + strain_index(i, j), 3 * a + i) += gradient[a](q, j);
+          H(6 * q + strain_index(i, j), 3 * k + i) += gradient[k](q, j);
   return H;
 }
 
@@ -142,20 +155,20 @@ Strains<n> weighted(const Matrix6& L, const Matrix6& root, const Strains<n>& S) 
 
 /// Least squares for the modes: |Y u + Z a|^2 is least over a, and what is left of Y u is the element's strain.
 struct OwnModes {
-  Strains<24> Y;
+  Strains<n_hourglass> Y;
   Eigen::Matrix<double, 12, 1> scale; ///< of the columns of Z to those of unit length
   Eigen::ColPivHouseholderQR<Strains<12>> qr;
 
   OwnModes(const Centred& moments, const material::Elastic& material);
   /// What of Y is orthogonal to the columns of Z, in the coordinates of an orthonormal basis; the first rows are zero.
-  Strains<24> remainder() const;
+  Strains<n_hourglass> remainder() const;
 };
 
 /// Columns of hardly any length are round-off, and left out; so are those that the others span.
 OwnModes::OwnModes(const Centred& moments, const material::Elastic& material) {
   constexpr double vanishing = 1e-6, dependent = 1e-8;
   const Matrix6 L = factor_of(moments.gram), root = root_of_elasticity(material);
-  Y = weighted(L, root, displacement_strains(moments.centroid));
+  Y = weighted(L, root, strains_of_modes(moments));
   Strains<12> Z = weighted(L, root, enhanced_strains());
   const double longest = Z.colwise().norm().maxCoeff();
   for (int i = 0; i < 12; ++i) {
@@ -167,13 +180,13 @@ OwnModes::OwnModes(const Centred& moments, const material::Elastic& material) {
   qr.compute(Z);
 }
 
-Strains<24> OwnModes::remainder() const {
-  Strains<24> turned = qr.householderQ().adjoint() * Y;
+Strains<n_hourglass> OwnModes::remainder() const {
+  Strains<n_hourglass> turned = qr.householderQ().adjoint() * Y;
   turned.topRows(qr.rank()).setZero();
   return turned;
 }
 
-Matrix24 enhanced_stiffness(const Centred& moments, const material::Elastic& material) {
+MatrixOfModes enhanced_stiffness(const Centred& moments, const material::Elastic& material) {
   const auto Y = OwnModes(moments, material).remainder();
   return Y.transpose() * Y;
 }
@@ -231,7 +244,25 @@ std::array<Vec3, 8> mean_gradients(const Centred& moments) {
   return gradient;
 }
 
-Matrix24 hourglass_stiffness(const Centred& moments, const material::Elastic& material, const Strain strain) {
+int sign(const int mode, const int vertex) { return std::popcount(unsigned(mode & ~vertex)) % 2 == 0 ? 1 : -1; }
+
+Matrix24 by_nodes(const MatrixOfModes& by_modes) {
+  Matrix24 K;
+  for (int a = 0; a < 8; ++a) {
+    Eigen::Matrix<double, 3, n_hourglass> of_a = Eigen::Matrix<double, 3, n_hourglass>::Zero();
+    for (int k = 0; k < 4; ++k)
+      of_a += sign(hourglass_modes[k], a) * by_modes.middleRows<3>(3 * k);
+    for (int b = 0; b < 8; ++b) {
+      Mat3 block = Mat3::Zero();
+      for (int l = 0; l < 4; ++l)
+        block += sign(hourglass_modes[l], b) * of_a.middleCols<3>(3 * l);
+      K.block<3, 3>(3 * a, 3 * b) = block;
+    }
+  }
+  return K;
+}
+
+MatrixOfModes hourglass_stiffness(const Centred& moments, const material::Elastic& material, const Strain strain) {
   return strain == Strain::enhanced ? enhanced_stiffness(moments, material) : trilinear_stiffness(moments, material);
 }
 
@@ -239,8 +270,11 @@ Gradients hourglass_gradients(const Centred& moments, const material::Elastic& m
   Gradients H = displacement_gradients(moments.centroid);
   if (strain == Strain::enhanced) {
     const OwnModes own(moments, material);
-    const Eigen::Matrix<double, 12, 24> a = own.qr.solve(own.Y);
-    H -= enhanced_gradients() * own.scale.asDiagonal() * a;
+    const Eigen::Matrix<double, 12, n_hourglass> of_modes = own.scale.asDiagonal() * own.qr.solve(own.Y);
+    const Eigen::Matrix<double, 54, n_hourglass> gradients_by_modes = enhanced_gradients() * of_modes;
+    for (int a = 0; a < 8; ++a)
+      for (int k = 0; k < 4; ++k)
+        H.middleCols<3>(3 * a) -= sign(hourglass_modes[k], a) * gradients_by_modes.middleCols<3>(3 * k);
   }
   return H;
 }

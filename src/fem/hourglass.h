@@ -17,6 +17,7 @@
 /// Condensing minimises |A H u + A M a|^2 over a, with A^T A = G x D: by a rank-revealing QR factorisation of A M, so
 /// slivers and flat material, where modes coincide or vanish, need no special care, and K is positive semi-definite.
 
+#include "fem/kernels.h"
 #include "fem/moments.h"
 #include "material/elastic.h"
 
@@ -42,8 +43,15 @@ Centred centred(const Moments& moments);
 /// Means of grad N_a over the material, for a cube of edge 1 m [1/m].
 std::array<Vec3, 8> mean_gradients(const Centred& moments);
 
-/// Stiffness for a cube of edge 1 m, Hooke's law [N/m]. Vanishes on affine displacements.
-Matrix24 hourglass_stiffness(const Centred& moments, const material::Elastic& material, Strain strain);
+/// Sign of a mode (kernels.h) at a vertex: a mode's amplitude is the sum of what its vertices have, times these.
+int sign(int mode, int vertex);
+/// By amplitudes of the hourglass modes: 3 k + i for the k-th of them and direction i.
+using MatrixOfModes = Eigen::Matrix<double, n_hourglass, n_hourglass>;
+/// The same by displacements of the nodes. Vanishes on affine ones.
+Matrix24 by_nodes(const MatrixOfModes& by_modes);
+
+/// Stiffness for a cube of edge 1 m, Hooke's law [N/m].
+MatrixOfModes hourglass_stiffness(const Centred& moments, const material::Elastic& material, Strain strain);
 
 /// Displacement gradients less their mean, one for each of the six monomials (less its own mean), 9 rows each, column
 /// by column, of the 24 nodal displacements of a cube of edge 1 m: with the modes of the element's own, as they settle

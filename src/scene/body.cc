@@ -5,6 +5,8 @@
 #include "grid/locate.h"
 #include "scene/held.h"
 
+#include <algorithm>
+#include <iterator>
 #include <utility>
 
 namespace kerf::scene {
@@ -26,6 +28,24 @@ std::vector<std::uint32_t> held_before(const dynamics::Support& support, const g
   return held;
 }
 
+/// Of corners that a support held before a cut, or that come from such ones, those that it holds now. Only those at
+/// nodes of copies that the cut has reshaped are asked.
+std::vector<std::uint32_t> still_held(const Body& body, const Region& region, const dynamics::Support& before,
+                                      const grid::CutChange& change) {
+  const grid::CellComplex& complex = body.solid.complex;
+  Table<grid::NodeId, std::uint8_t> is_met(body.solid.grid.n_nodes(), 0);
+  for (const grid::CopyId c : change.reshaped)
+    for (const grid::CornerId corner : complex.copies[c].corners)
+      is_met[complex.node[corner]] = 1;
+  std::vector<std::uint32_t> held, asked;
+  for (const auto i : held_before(before, change))
+    (is_met[complex.node[grid::CornerId(i)]] != 0 ? asked : held).push_back(i);
+  const auto middle = static_cast<std::ptrdiff_t>(held.size());
+  std::ranges::copy(particles_in(body, region, std::move(asked)), std::back_inserter(held));
+  std::inplace_merge(held.begin(), held.begin() + middle, held.end());
+  return held;
+}
+
 /// A cut gives supports nothing that they did not hold: it shapes material anew, by less than a cube, and a piece that
 /// moved on long ago may have some in a region then.
 void find_supports(Body& body, const grid::CutChange* const change) {
@@ -35,7 +55,7 @@ void find_supports(Body& body, const grid::CutChange* const change) {
     const SupportRegion& region = body.regions[r];
     dynamics::Support support{{}, {}, region.displacement, region.rotation, region.held};
     support.corners = change && body.physics->particles_are_corners()
-                        ? particles_in(body, region.region, held_before(before[r], *change))
+                        ? still_held(body, region.region, before[r], *change)
                         : particles_in(body, region.region);
     for (const auto i : support.corners)
       support.rest.push_back(rest[i]);

@@ -15,7 +15,8 @@ const material::Elastic gel{.density = 1000, .youngs_modulus = 1e4, .poissons_ra
 
 /// Before an element keeps it in single precision.
 Matrix24 stiffness(const Moments& moments, const material::Elastic& material, const ElementOptions& options) {
-  const Matrix24 K = hourglass_stiffness(centred(without_negative_squares(moments)), material, options.strain) +
+  const Centred positive = centred(without_negative_squares(moments));
+  const Matrix24 K = by_nodes(hourglass_stiffness(positive, material, options.strain)) +
                      mean_stiffness(moments[0], mean_gradients(centred(moments)), material);
   return 0.5 * (K + K.transpose());
 }
@@ -86,7 +87,7 @@ TEST(Enhanced, GradientsHaveTheEnergyOfTheStiffness) {
       for (int p = 0; p < 6; ++p)
         for (int q = 0; q < 6; ++q)
           energy += about.gram(p, q) * strain_of(p).dot(D * strain_of(q));
-      const double expected = u.dot(hourglass_stiffness(about, rubber, strain) * u);
+      const double expected = u.dot(by_nodes(hourglass_stiffness(about, rubber, strain)) * u);
       EXPECT_NEAR(energy, expected, 1e-9 * expected);
     }
 }
@@ -159,8 +160,8 @@ TEST(Enhanced, LeavesAffineMotionAloneInEveryConfiguration) {
     for (const grid::Copy& copy : body.complex.copies)
       if (copy.cell == cell)
         for (const Strain strain : {Strain::trilinear, Strain::enhanced}) {
-          const Matrix24 K = hourglass_stiffness(
-            centred(without_negative_squares(material_moments(body, copy))), rubber, strain);
+          const Matrix24 K = by_nodes(
+            hourglass_stiffness(centred(without_negative_squares(material_moments(body, copy))), rubber, strain));
           ASSERT_TRUE(K.allFinite()) << configuration;
           worst = std::max(worst, (K * affine).norm() / rubber.youngs_modulus);
         }
