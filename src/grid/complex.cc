@@ -2,7 +2,6 @@
 
 #include "base/parallel.h"
 #include "base/sort_unique.h"
-#include "base/shared_union_find.h"
 #include "grid/corner_classes.h"
 #include "grid/cube.h"
 #include "grid/fronts.h"
@@ -393,47 +392,6 @@ CutChange update_complex(Solid& solid, std::vector<EdgeId> new_edges, std::vecto
   sort_unique(cells);
   solid.complex.tied = tied_copies(solid, solid.complex, cells);
   return change;
-}
-
-Pieces pieces(const CellComplex& complex) {
-  constexpr std::size_t worth = 4096; // copies from which on a second thread pays
-  SharedUnionFind corners(complex.n_corners());
-  const auto first = [](const Copy& copy) { return copy.corners[0].value; };
-  parallel_for(
-    complex.n_copies(),
-    [&](const std::size_t c) {
-      const Copy& copy = complex.copies[CopyId(c)];
-      std::uint32_t root = first(copy);
-      for (const CornerId corner : copy.corners) // that others have too where they are glued, and only there
-        root = corners.unite(root, corner.value);
-    },
-    worth);
-  for (const auto& [c, d] : complex.tied)
-    corners.unite(first(complex.copies[c]), first(complex.copies[d]));
-  Pieces result;
-  Table<CornerId, std::uint32_t> number(complex.n_corners(), none);
-  result.piece.reserve(complex.n_copies());
-  for (const Copy& copy : complex.copies) {
-    std::uint32_t& piece = number[CornerId(corners.root(first(copy)))];
-    if (piece == none)
-      piece = result.n_pieces++;
-    result.piece.push_back(piece);
-  }
-  return result;
-}
-
-std::vector<std::uint32_t> corner_pieces(const CellComplex& complex) {
-  return corner_pieces(complex, pieces(complex));
-}
-
-std::vector<std::uint32_t> corner_pieces(const CellComplex& complex, const Pieces& all) {
-  std::vector<std::uint32_t> result(complex.n_corners());
-  if (all.n_pieces == 1)
-    return result;
-  for (const auto c : ids<CopyId>(complex.n_copies()))
-    for (const CornerId corner : complex.copies[c].corners)
-      result[corner.value] = all.piece[c];
-  return result;
 }
 
 Points rest_positions(const Solid& solid) {

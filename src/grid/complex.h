@@ -127,13 +127,15 @@ void inherit(const CutChange& change, std::vector<T>& of_corners) {
     of_corners.push_back(T(of_corners[parent.value]));
 }
 
-/// The connected components of the copies; tied ones are connected. Found from scratch whenever asked for, linear in
-/// the copies.
+/// The connected components of the copies; tied ones are connected.
 struct Pieces {
   Table<CopyId, std::uint32_t> piece; ///< of each copy, numbered from 0 in the order of their first copies
   std::uint32_t n_pieces = 0;
 };
 Pieces pieces(const CellComplex& complex);
+/// Brings those of before a cut up to date. True: at the cost of what is around it; else, where something may have come
+/// free or hangs together now, from scratch.
+bool update_pieces(const Solid& solid, const CutChange& change, Pieces& pieces);
 
 /// The piece of each corner.
 std::vector<std::uint32_t> corner_pieces(const CellComplex& complex);

@@ -74,8 +74,8 @@ void follow_cut(Body& body, grid::CutChange change, Timings& timings) {
     body.placed.n_placed += placed.n_placed;
     body.placed.n_clamped += placed.n_clamped;
     surface::update_surface(body.solid, change, body.surface, body.surface_index);
+    grid::update_pieces(body.solid, change, body.pieces);
     grid::update_crumbs(body.solid, change, body.physics->particles_are_corners() ? nullptr : &body.physics->rest());
-    body.pieces = grid::pieces(body.solid.complex);
     ++body.n_recuts;
   }
   const ScopedTimer timer(timings, "assemble");

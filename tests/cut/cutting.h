@@ -22,6 +22,7 @@ inline Body block() { return support::with_copies(support::with_placed_skin(supp
 struct Cutting {
   explicit Cutting(Body whole, const Fronts fronts) : body(std::move(whole)), cutter(9, Release::queued, fronts) {
     cutter.begin(body, grid::rest_positions(body));
+    pieces = grid::pieces(body.complex);
     surface = surface::build_surface(body, index);
   }
   void cut(const Shape& shape) { follow(cutter.at_once(body, {"cut", shape, 1}, grid::rest_positions(body))); }
@@ -32,12 +33,17 @@ struct Cutting {
   void follow(const grid::CutChange& change) {
     surface::place(body, change, {});
     surface::update_surface(body, change, surface, index);
+    grid::update_pieces(body, change, pieces);
+    const grid::Pieces anew = grid::pieces(body.complex);
+    EXPECT_EQ(pieces.n_pieces, anew.n_pieces);
+    EXPECT_TRUE(std::ranges::equal(pieces.piece, anew.piece));
   }
 
   Body body;
   Cutter cutter;
   surface::SurfaceIndex index;
   surface::Surface surface;
+  grid::Pieces pieces;
 };
 
 inline bool is_closed(const surface::Surface& s) {
