@@ -8,6 +8,7 @@
 
 #include "base/vec.h"
 #include "fem/incidence.h"
+#include "grid/corner_numbers.h"
 
 #include <array>
 #include <cstdint>
@@ -108,7 +109,12 @@ Coarsening coarsened(const CellsView& fine);
 struct CutCells {
   std::vector<std::uint32_t> copies;  ///< that are new, or have other corners, or are used no more; ascending
   std::vector<std::uint32_t> corners; ///< that have other users than before, in any order
-  const Incidence& incidence;         ///< now
+  const Incidence& incidence;         ///< now, of the body's corners
+  const grid::CornerNumbers& numbers; ///< of these corners, as the copies have them
+
+  std::span<const std::uint32_t> users(const std::uint32_t corner) const {
+    return incidence.users(numbers.corner(corner));
+  }
 };
 /// The same as anew, bit by bit, from what there was before cuts. What is not near the cuts is copied.
 Coarsening coarsened(const CellsView& fine, const Coarsening& before, const CutCells& cut);

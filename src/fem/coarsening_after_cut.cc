@@ -36,7 +36,7 @@ class AfterCut {
   template <class Function>
   void for_each_glued(const std::uint32_t copy, const int axis, const bool above, const Function& f) const {
     const std::uint32_t mine = above ? 1U << axis : 0, its = above ? 0 : 1U << axis;
-    for (const std::uint32_t user : cut_.incidence.users(corners(copy)[mine]))
+    for (const std::uint32_t user : cut_.users(corners(copy)[mine]))
       if (const std::uint32_t other = user / 8; user % 8 == its)
         if (above ? are_glued(copy, other, axis) : are_glued(other, copy, axis))
           f(other);
@@ -203,7 +203,7 @@ void AfterCut::ask() {
   now_.user_.resize(fine_.n_corners, none);
   std::vector<std::uint8_t> has_others(was_.size(), 0);
   for (const std::uint32_t corner : cut_.corners) {
-    const auto users = cut_.incidence.users(corner);
+    const auto users = cut_.users(corner);
     now_.user_[corner] = users.empty() ? none : users.front();
     for (const std::uint32_t user : users)
       has_others[now_.parent[user / 8]] = 1;

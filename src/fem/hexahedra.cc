@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 namespace kerf::fem {
 
@@ -58,22 +59,24 @@ void Hexahedra::follow(const grid::Solid& solid, const std::span<const grid::Cop
                        const std::span<const std::uint32_t> corners) {
   if (multigrid_) {
     former_levels_ = multigrid_->give_way();
-    former_levels_.corners_are_those_of_body = true;
     multigrid_ = nullptr;
   }
-  const bool were_all = numbers_.are_all();
-  numbers_ = grid::CornerNumbers(solid, counted_);
+  const grid::CornerNumbers before = std::exchange(numbers_, grid::CornerNumbers(solid, counted_));
+  const auto numbers_of_same = numbers_.extend(before) ? CornersOfSame::kept : CornersOfSame::renumbered;
+  std::vector<std::uint32_t> touched; // by number
+  for (const std::uint32_t corner : corners)
+    if (numbers_.counts(corner))
+      touched.push_back(numbers_[corner]);
   if (!former_levels_.coarse.empty()) {
     former_levels_.same_copy.resize(solid.complex.n_copies(), CellsOfLevel::unused);
     for (const grid::CopyId c : changed)
       former_levels_.same_copy[c.value] = CellsOfLevel::unused;
-    former_levels_.corners.insert(former_levels_.corners.end(), corners.begin(), corners.end());
-    former_levels_.corners_are_those_of_body &= were_all && numbers_.are_all();
+    former_levels_.corners.insert(former_levels_.corners.end(), touched.begin(), touched.end());
+    former_levels_.numbers_are_kept &= numbers_of_same == CornersOfSame::kept;
   }
-  const auto numbers_of_same = were_all && numbers_.are_all() ? CornersOfSame::kept : CornersOfSame::renumbered;
   ChangeOfBatches change = batch(solid, changed, numbers_of_same);
   if (numbers_of_same == CornersOfSame::kept)
-    known_.follow(std::move(change), *batching_, incidence_, corners);
+    known_.follow(std::move(change), *batching_, incidence_, numbers_, touched);
   else
     known_.forget();
   sum_mass(corners);
@@ -266,7 +269,8 @@ void Hexahedra::make_multigrid() {
                                               : std::move(former_levels_.finest),
                 ghost_penalty_.faces(),
                 ties_.all(),
-                incidence_},
+                incidence_,
+                numbers_},
     former_levels_);
   former_levels_ = {};
 }

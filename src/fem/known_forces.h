@@ -7,6 +7,7 @@
 #include "base/vec.h"
 #include "fem/batches.h"
 #include "fem/incidence.h"
+#include "grid/corner_numbers.h"
 
 #include <cstdint>
 #include <mutex>
@@ -79,9 +80,10 @@ class KnownForces {
     where_ = std::nullopt;
     before_ = std::nullopt;
   }
-  /// Takes over a cut, after which no corner has another number. `touched`: what Incidence::update() says.
+  /// Takes over a cut, after which corners have the numbers that they had. `touched`: of corners, by number, that have
+  /// other users, or users that are not what they were.
   void follow(ChangeOfBatches change, const Batching& batching, const Incidence& incidence,
-              std::span<const std::uint32_t> touched);
+              const grid::CornerNumbers& numbers, std::span<const std::uint32_t> touched);
   /// What is known of these positions since before a cut, which is given once.
   std::optional<ForcesBeforeCut> before_cut(const Points& x) const;
 

@@ -195,13 +195,13 @@ std::size_t Multigrid::n_levels() const { return levels_.size(); }
 namespace {
 
 Coarsening coarsened_finest(const FinestLevel& finest, const FormerLevels& former) {
-  if (former.coarse.empty() || !former.corners_are_those_of_body)
+  if (former.coarse.empty() || !former.numbers_are_kept)
     return coarsened(finest.cells);
   std::vector<std::uint32_t> copies;
   for (std::uint32_t c = 0; c < former.same_copy.size(); ++c)
     if (former.same_copy[c] == CellsOfLevel::unused)
       copies.push_back(c);
-  return coarsened(finest.cells, former.coarse[0].coarsening, {copies, former.corners, finest.incidence});
+  return coarsened(finest.cells, former.coarse[0].coarsening, {copies, former.corners, finest.incidence, finest.numbers});
 }
 
 } // namespace

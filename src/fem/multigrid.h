@@ -50,7 +50,8 @@ struct FinestLevel {
   BatchedElements<float> elements; ///< partial ones count by their bounds over that of `full`
   std::span<const GhostFace> faces;
   std::span<const Tie> ties;
-  const Incidence& incidence; ///< of the same copies, with corners of the body
+  const Incidence& incidence;         ///< of the same copies, and the body's corners
+  const grid::CornerNumbers& numbers; ///< of these, which the copies have
 };
 
 /// What is kept of a hierarchy when a cut makes another one.
@@ -63,8 +64,8 @@ struct FormerLevels {
   std::vector<OfLevel> coarse;
   std::vector<std::uint32_t>
     same_copy; ///< of each finest copy its own number; CellsOfLevel::unused: it has changed since
-  std::vector<std::uint32_t> corners;     ///< of the finest level, that have other users since
-  bool corners_are_those_of_body = false; ///< now and then, with the same numbers
+  std::vector<std::uint32_t> corners; ///< of the finest level, that have other users since
+  bool numbers_are_kept = true;       ///< corners have the numbers that they had
 };
 
 class Multigrid : public dynamics::Preconditioner {

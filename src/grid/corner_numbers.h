@@ -6,6 +6,7 @@
 
 #include "grid/solid.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -45,6 +46,12 @@ class CornerNumbers {
   }
 
   bool are_all() const { return number_.empty(); }
+  /// Whether each corner that had a number before has it still, so that new numbers come after those.
+  bool extend(const CornerNumbers& before) const {
+    return are_all() ? before.are_all() && before.n_ <= n_
+                     : before.corners_.size() <= corners_.size() && !before.are_all() &&
+                         std::equal(before.corners_.begin(), before.corners_.end(), corners_.begin());
+  }
   std::size_t size() const { return n_; }
   /// Of a corner; `none` where it is not counted.
   std::uint32_t operator[](const std::uint32_t corner) const { return are_all() ? corner : number_[corner]; }

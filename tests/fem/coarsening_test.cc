@@ -132,6 +132,7 @@ TEST(Coarsening, AfterChangesIsThatOfCellsAnew) {
   }
   Incidence incidence(body);
   Coarsening before = coarsened(cells_of(body));
+  const grid::CornerNumbers all_corners;
   std::vector<std::uint32_t> changed_since, corners_since;
   std::size_t n_changed = 0;
   for (int step = 0; step < 60; ++step) {
@@ -155,7 +156,7 @@ TEST(Coarsening, AfterChangesIsThatOfCellsAnew) {
     std::ranges::sort(changed_since);
     changed_since.erase(std::unique(changed_since.begin(), changed_since.end()), changed_since.end());
     const Coarsening anew = coarsened(cells),
-                     now = coarsened(cells, before, {changed_since, corners_since, incidence});
+                     now = coarsened(cells, before, {changed_since, corners_since, incidence, all_corners});
     ASSERT_EQ(now.parent, anew.parent) << step;
     ASSERT_EQ(now.octant, anew.octant) << step;
     ASSERT_EQ(now.children.all, anew.children.all) << step;

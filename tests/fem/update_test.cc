@@ -101,32 +101,40 @@ TEST(Update, RemembersNothingButTheSame) {
 }
 
 /// Forces that are known are brought up to date where a cut is, and are those of a model that is built anew; also when
-/// the cut comes before they are asked for again, or the body has moved since.
+/// the cut comes before they are asked for again, or the body has moved since, or crumbs are not counted.
 TEST(Update, OfKnownForcesIsFindingThemAnew) {
-  for (const std::string& law : {all_laws[1], all_laws[3]}) {
+  for (const auto& [law, counted] :
+       {std::pair(all_laws[1], grid::Counted::all), std::pair(all_laws[3], grid::Counted::all),
+        std::pair(all_laws[1], grid::Counted::deforming)}) {
     Draw draw(97);
     Body body = make_block({40, 14, 9}, 0.1, draw, {0.3, 0.7});
-    const HexahedraOptions options{.material = with_law(rubber, law)};
+    const HexahedraOptions options{.material = with_law(rubber, law), .counted = counted};
     Hexahedra model = make_model(body, options);
-    Points x = disturbed(body, draw), f, f_anew;
+    Points all = disturbed(body, draw), x = all, f, f_anew;
     const std::size_t n_corners = x.size();
+    std::size_t n_beside_crumbs = 0;
     model.energy_ahead(x);
-    for (int step = 0; step < 12; ++step) {
-      const Vec3 centre(0.5 + 0.3 * step, 0.1 + 0.08 * step, 0.3 + 0.05 * step);
+    for (int step = 0; step < 24; ++step) {
+      const Vec3 centre(0.5 + 0.15 * step, 0.1 + 0.04 * step, 0.3 + 0.025 * step);
       std::vector<grid::EdgeId> edges;
       for (const auto e : inner_edges(body))
-        if ((body.grid.position(body.grid.ends(e)[0]) - centre).norm() < 0.25 && draw(0, 1) < 0.4) {
+        if ((body.grid.position(body.grid.ends(e)[0]) - centre).norm() < 0.2 && draw(0, 1) < 0.3) {
           body.cuts.add(body.grid, {e, draw(0.1, 0.9), draw.vector().normalized(), 1});
           edges.push_back(e);
         }
       surface::place(body, {});
-      const grid::CutChange change = grid::update_complex(body, edges);
+      grid::CutChange change = grid::update_complex(body, edges);
+      if (counted == grid::Counted::deforming)
+        grid::update_crumbs(body, change, nullptr);
+      const grid::CornerNumbers before = model.numbers();
       model.update(body, change.reshaped);
-      grid::inherit(change, x);
+      n_beside_crumbs += !before.are_all() && model.numbers().extend(before) ? 1 : 0;
+      grid::inherit(change, all);
       if (step % 4 == 1)
         continue;
       if (step % 4 == 3)
-        x[0] += 0.01 * draw.vector();
+        all[0] += 0.01 * draw.vector();
+      model.numbers().gather(all, x);
       const Hexahedra anew = make_model(body, options);
       const double energy = step % 2 == 0 ? model.energy_ahead(x) : anew.energy(x);
       model.force(x, f);
@@ -135,7 +143,10 @@ TEST(Update, OfKnownForcesIsFindingThemAnew) {
       EXPECT_EQ(model.energy(x), anew.energy(x)) << law << ", step " << step;
       ASSERT_EQ(f, f_anew) << law << ", step " << step;
     }
-    EXPECT_GT(x.size(), n_corners + 50) << law;
+    EXPECT_GT(all.size(), n_corners + 50) << law;
+    if (counted == grid::Counted::deforming) {
+      EXPECT_GT(n_beside_crumbs, 3u);
+    }
   }
 }
 
