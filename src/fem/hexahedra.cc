@@ -105,38 +105,13 @@ void Hexahedra::count() {
 
 namespace {
 
-/// Blocks of as many cells as a chunk has: a cut meets few of them, and a batch fits along x.
-constexpr std::array<int, 3> block = {16, 8, 4};
-
-/// Cells block by block, in each block as they come.
-std::vector<grid::CellId> in_blocks(const grid::Grid& grid) {
-  std::vector<std::pair<Index3, grid::CellId>> cells; // of each its block's place along z, y, x
-  cells.reserve(grid.n_cells());
-  for (const auto cell : ids<grid::CellId>(grid.n_cells())) {
-    const Index3 at = grid.index(grid.nodes(cell)[0]);
-    const auto along = [&](const int axis) {
-      return at[axis] - (at[axis] % block[axis] + block[axis]) % block[axis];
-    };
-    cells.push_back({{along(2), along(1), along(0)}, cell});
-  }
-  std::ranges::sort(cells);
-  std::vector<grid::CellId> ordered;
-  ordered.reserve(cells.size());
-  for (const auto& [at, cell] : cells)
-    ordered.push_back(cell);
-  return ordered;
-}
-
-/// Cells go in chunks of so many.
-Batching batching_of(const grid::Grid& grid, const std::span<const grid::CellId> cells) {
-  std::vector<std::uint32_t> nodes, chunk_ends;
-  nodes.reserve(8 * cells.size());
-  for (const grid::CellId cell : cells)
+Batching batching_of(const grid::Grid& grid, const CellsInChunks& chunks) {
+  std::vector<std::uint32_t> nodes;
+  nodes.reserve(8 * chunks.cells.size());
+  for (const grid::CellId cell : chunks.cells)
     for (const grid::NodeId node : grid.nodes(cell))
       nodes.push_back(node.value);
-  for (std::size_t end = 0; end < cells.size();)
-    chunk_ends.push_back(static_cast<std::uint32_t>(end = std::min(end + Batching::chunk_size, cells.size())));
-  return Batching(colours_of_chunks(chunk_ends, nodes, grid.n_nodes()));
+  return Batching(colours_of_chunks(chunks.ends, nodes, grid.n_nodes()));
 }
 
 } // namespace
@@ -155,22 +130,17 @@ ChangeOfBatches Hexahedra::batch(const grid::Solid& solid, const std::span<const
   }
   const bool is_new = batching_ == nullptr;
   if (is_new) {
-    cells_in_blocks_ = in_blocks(solid.grid);
-    chunk_of_cell_.resize(cells_in_blocks_.size());
-    for (std::size_t i = 0; i < cells_in_blocks_.size(); ++i)
-      chunk_of_cell_[cells_in_blocks_[i].value] = static_cast<std::uint32_t>(i / Batching::chunk_size);
-    batching_ = std::make_shared<Batching>(batching_of(solid.grid, cells_in_blocks_));
+    chunks_ = in_chunks(solid.grid);
+    batching_ = std::make_shared<Batching>(batching_of(solid.grid, chunks_));
   }
-  const std::size_t n_cells = cells_in_blocks_.size(),
-                    n_chunks = (n_cells + Batching::chunk_size - 1) / Batching::chunk_size;
+  const std::size_t n_chunks = chunks_.ends.size();
   std::vector<std::uint8_t> is_met(n_chunks, corners == CornersOfSame::renumbered ? 1 : 0);
   for (const grid::CopyId c : changed)
-    is_met[chunk_of_cell_[solid.complex.copies[c].cell.value]] = 1;
+    is_met[chunks_.chunk_of[solid.complex.copies[c].cell.value]] = 1;
   std::vector<std::uint32_t> order, chunk_ends; // of chunks that are met
   for (std::size_t k = 0; k < n_chunks; ++k) {
-    const std::size_t begin = k * Batching::chunk_size, end = std::min(begin + Batching::chunk_size, n_cells);
-    for (std::size_t i = begin; i < end && is_met[k] != 0; ++i)
-      for (const grid::CopyId c : solid.complex.copies_of(cells_in_blocks_[i]))
+    for (std::size_t i = k == 0 ? 0 : chunks_.ends[k - 1]; i < chunks_.ends[k] && is_met[k] != 0; ++i)
+      for (const grid::CopyId c : solid.complex.copies_of(chunks_.cells[i]))
         order.push_back(c.value);
     chunk_ends.push_back(static_cast<std::uint32_t>(order.size()));
   }

@@ -27,6 +27,7 @@
 #include "dynamics/model.h"
 #include "dynamics/piece_gains.h"
 #include "fem/batches.h"
+#include "fem/blocks.h"
 #include "fem/consistent_mass.h"
 #include "fem/element_table.h"
 #include "fem/gathered_mass.h"
@@ -172,8 +173,7 @@ class Hexahedra : public dynamics::ElasticModel, public dynamics::StiffnessMatri
   std::vector<std::uint32_t> numbers_of_copies_; // 8 a copy; none where all corners have their own
   std::vector<Index3> places_;                   // of the copies' cells
   std::vector<Kind> kinds_;                      // of the copies
-  std::vector<grid::CellId> cells_in_blocks_;    // in chunks of Batching::chunk_size
-  std::vector<std::uint32_t> chunk_of_cell_;
+  CellsInChunks chunks_;
   std::shared_ptr<Batching> batching_; // null until it is made
   BatchedElements<double> batched_; // rotations and tangents at the linearisation point
   GhostPenalty ghost_penalty_;
