@@ -102,7 +102,11 @@ class GhostPenalty {
   void add_entries(std::vector<Eigen::Triplet<double>>& entries) const;
 
  private:
-  double need(double fill) const { return fill < options_.well_filled ? 1 - fill / options_.well_filled : 0; }
+  /// Nothing for a copy that is well filled but for round-off, as one at an edge in the middle of its cube.
+  double need(const double fill) const {
+    constexpr double round_off = 1e-9;
+    return fill < (1 - round_off) * options_.well_filled ? 1 - fill / options_.well_filled : 0;
+  }
   /// Penalties between a copy and those of the cell above it along an axis.
   void add_faces_above(const grid::Solid& solid, grid::CopyId lower, int axis,
                        const std::function<double(std::size_t copy)>& fill, std::vector<GhostFace>& faces) const;
