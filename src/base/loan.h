@@ -14,6 +14,9 @@
 
 namespace kerf {
 
+/// What to make room for where n values are some more than there were: cuts add few at a time, and the next finds room.
+constexpr std::size_t with_slack(const std::size_t n) { return n + n / 16; }
+
 /// For vectors that are written before they are read.
 struct AnyValues {};
 
@@ -85,9 +88,9 @@ class Loan {
     Vector values = std::move(*best);
     *best = std::move(all.back());
     all.pop_back();
-    if (values.capacity() < n) {
+    if (const std::size_t had = values.capacity(); had < n) {
       values = {}; // not both at a time
-      values.reserve(n);
+      values.reserve(had > n / 2 ? with_slack(n) : n);
     }
     return values;
   }

@@ -14,6 +14,7 @@
 /// are joined again, and corners with them. Those whose names are not needed any more *lapse*: they stand in the
 /// tables, but a lapsed copy holds nothing and belongs to no cell's copies, and no copy has a lapsed corner.
 
+#include "base/loan.h"
 #include "grid/parts.h"
 
 #include <algorithm>
@@ -123,6 +124,8 @@ CutChange update_complex(Solid& solid, std::vector<EdgeId> new_edges, std::vecto
 /// Appends for each new corner what its parent has.
 template <class T>
 void inherit(const CutChange& change, std::vector<T>& of_corners) {
+  if (const std::size_t n = of_corners.size() + change.parents.size(); n > of_corners.capacity())
+    of_corners.reserve(with_slack(n));
   for (const CornerId parent : change.parents)
     of_corners.push_back(T(of_corners[parent.value]));
 }
