@@ -2,13 +2,17 @@
 
 #include "cut/target.h"
 #include "grid/cube.h"
+#include "grid/fronts.h"
 #include "tests/fuzz/invariants.h"
 #include "tests/fuzz/states.h"
+#include "tests/fuzz/strokes.h"
 #include "tests/fuzz/sweeps.h"
 #include "tests/support/placed.h"
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
+#include <map>
 #include <numeric>
 #include <sstream>
 
@@ -21,6 +25,7 @@ namespace {
 enum class Release { one, drained, at_once };
 
 constexpr std::array<const char*, 3> release_names = {"one release a sweep", "released until nothing waits", "at once"};
+constexpr std::array<const char*, 4> front_names = {"no fronts", "fronts of surfaces", "fronts", "fronts as faces"};
 
 /// Number 0 draws the case itself, number k + 1 its sweep k.
 Random generator(const std::uint32_t seed, const std::uint32_t number) {
@@ -141,16 +146,18 @@ class Run {
     : case_(one),
       random_(generator(one.seed, 0)),
       subject_(make_subject(specimens[draw(random_, static_cast<int>(specimens.size()))], tally)),
-      release_(static_cast<Release>(draw(random_, 3))),
+      release_(one.has_fronts() ? Release::one : static_cast<Release>(draw(random_, 3))),
+      fronts_(one.has_fronts() ? static_cast<cut::Fronts>(1 + draw(random_, 3)) : cut::Fronts::at_faces),
       tally_(tally),
       outcome_(outcome) {
-    tell(subject_.specimen.name + ", " + put_into_state(subject_, random_) + ", " +
-         release_names[static_cast<std::size_t>(release_)]);
+    is_gentle_ = one.has_fronts() && draw(random_, 3) > 0;
+    tell(subject_.specimen.name + ", " + (is_gentle_ ? "at rest" : put_into_state(subject_, random_)) + ", " +
+         release_names[static_cast<std::size_t>(release_)] + ", " + front_names[static_cast<std::size_t>(fronts_)]);
     std::uint32_t n_labels = 0;
     for (const std::uint32_t number : one.sweeps)
-      n_labels = std::max(n_labels, number + 1);
+      n_labels = std::max(n_labels, one.has_fronts() ? 2 * number + 2 : number + 1);
     subject_.cutter =
-      cut::Cutter(n_labels, release_ == Release::at_once ? cut::Release::at_once : cut::Release::queued);
+      cut::Cutter(n_labels, release_ == Release::at_once ? cut::Release::at_once : cut::Release::queued, fronts_);
     subject_.cutter.begin(subject_.solid, subject_.x);
     for (std::uint32_t label = 1; label <= n_labels; ++label)
       strokes_.push_back({static_cast<grid::CutLabel>(label)});
@@ -159,7 +166,10 @@ class Run {
   void all_sweeps(const Judge& judge) {
     for (const std::uint32_t number : case_.sweeps) {
       ++outcome_.n_done;
-      sweep(number);
+      if (case_.has_fronts())
+        sweep_with_fronts(number);
+      else
+        sweep(number);
       ++tally_.n_sweeps;
       if (judge)
         judge(subject_.solid, false);
@@ -168,8 +178,11 @@ class Run {
     if (judge)
       judge(subject_.solid, true);
     tally_.n_left_whole += subject_.cutter.counts().n_left_whole;
+    if (case_.has_fronts()) // else each sweep says
+      tally_.n_double_crossings += subject_.cutter.counts().n_double_crossings;
     require_untouched_elsewhere();
-    require_same_in_any_order();
+    if (!case_.has_fronts())
+      require_same_in_any_order();
     outcome_.digest = digest(subject_, outcome_.digest);
   }
 
@@ -208,6 +221,67 @@ class Run {
     }
     subject_.cutter.stand(subject_.x);
     outcome_.digest = digest(subject_, outcome_.digest);
+  }
+
+  /// Blades in steps between which the body may move, or a surface at once.
+  void sweep_with_fronts(const std::uint32_t number) {
+    Random random = generator(case_.seed, number + 1);
+    const auto label = static_cast<grid::CutLabel>(2 * number + 1);
+    const std::string prefix = "sweep " + std::to_string(number) + ": ";
+    if (draw(random, 3) == 0) {
+      const std::string motion = moved(random);
+      const NamedSweep surface = random_surface(subject_, random);
+      tell(prefix + motion + ", " + surface.name);
+      cut_at_once(std::get<cut::CutSurface>(surface.sweep), label);
+      require_sound_fronts();
+      return;
+    }
+    const Strokes strokes = random_strokes(subject_, label, random);
+    const bool moves = draw(random, 2) == 0;
+    tell(prefix + strokes.name + (moves ? " through a moving body" : ""));
+    for (std::size_t k = 1; k < strokes.times.size(); ++k) {
+      if (moves)
+        tell("  " + moved(random));
+      const auto made = [&](Subject& s) {
+        return s.cutter.step(s.solid, strokes.blades, strokes.times[k - 1], strokes.times[k], s.x);
+      };
+      cut(subject_, made, tally_);
+      ++tally_.n_steps;
+      tally_.n_most_waiting = std::max(tally_.n_most_waiting, subject_.cutter.n_waiting());
+      require_sound_fronts();
+    }
+    const std::span<const cut::Blade> none;
+    for (int n = 0; n < 100 && subject_.cutter.n_waiting() > 0; ++n)
+      cut(
+        subject_, [&](Subject& s) { return s.cutter.step(s.solid, none, 0, 0, s.x); }, tally_);
+    if (subject_.cutter.n_waiting() > 0)
+      throw Violation("cuts wait although all blades have gone");
+    require_sound_fronts();
+  }
+
+  std::string moved(Random& random) { return is_gentle_ ? move_gently(subject_, random) : move(subject_, random); }
+
+  /// A front has come some part of the way, goes on only, and ties corners of one node.
+  void require_sound_fronts() {
+    std::map<grid::CellId, grid::Front> now;
+    for (const grid::Front& front : subject_.solid.cuts.fronts()) {
+      const auto before = fronts_before_.find(front.cell);
+      tally_.n_fronts += before == fronts_before_.end();
+      const bool goes_on = before == fronts_before_.end() || before->second.label != front.label ||
+                           front.passed >= before->second.passed;
+      if (!(front.passed > 0 && front.passed <= 1) || !(front.area >= 0) || front.ahead == 0 || !goes_on ||
+          !(std::abs(front.normal.norm() - 1) < 1e-9) || !front.point.allFinite())
+        throw Violation("the front in cell " + std::to_string(front.cell.value) + " is none");
+      now.emplace(front.cell, front);
+    }
+    fronts_before_ = std::move(now);
+    const grid::CellComplex& complex = subject_.solid.complex;
+    const auto ties = grid::ties(subject_.solid);
+    for (const grid::Tie& tie : ties)
+      if (tie.a == tie.b || complex.node[tie.a] != complex.node[tie.b] || !(tie.length >= 0) ||
+          !std::isfinite(tie.length))
+        throw Violation("a tie is none");
+    tally_.n_most_ties = std::max(tally_.n_most_ties, ties.size());
   }
 
   static const cut::Plane* plane_of(const Sweep& sweep) {
@@ -281,6 +355,9 @@ class Run {
   Random random_;
   Subject subject_;
   Release release_;
+  cut::Fronts fronts_;
+  bool is_gentle_ = false; // the body moves as solids do
+  std::map<grid::CellId, grid::Front> fronts_before_;
   Tally& tally_;
   Outcome& outcome_;
   std::optional<NamedSweep> last_;

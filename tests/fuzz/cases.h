@@ -12,6 +12,10 @@ namespace kerf::fuzz {
 struct Case {
   std::uint32_t seed = 0;
   std::vector<std::uint32_t> sweeps; ///< which of the seed's sweeps are done, in this order
+
+  /// Cuts may end inside cells (cut::Fronts), and blades come in steps (strokes.h).
+  bool has_fronts() const { return seed >= first_seed_with_fronts; }
+  static constexpr std::uint32_t first_seed_with_fronts = 1u << 31;
 };
 
 /// The case with all the sweeps of its seed, 1 to 12.

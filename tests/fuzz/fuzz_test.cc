@@ -4,8 +4,8 @@
 ///   KERF_FUZZ_CASE=seed:sweep,sweep,... build/release/tests/test_fuzz --gtest_filter=Fuzz.Repeat
 ///
 /// The long run also cuts every solid mesh of the folder that KERF_FUZZ_MESHES names, and says which it skipped. It
-/// does 100,000 sweeps, or as many as KERF_FUZZ_SWEEPS says, from case KERF_FUZZ_FIRST on, so that several processes
-/// share them.
+/// does 100,000 sweeps (20,000 with fronts), or as many as KERF_FUZZ_SWEEPS says, from case KERF_FUZZ_FIRST on, so that
+/// several processes share them.
 
 #include "base/parallel.h"
 #include "tests/fuzz/cases.h"
@@ -20,8 +20,8 @@
 namespace kerf::fuzz::fuzz_test {
 namespace {
 
-/// Cases on large specimens have seeds from here, and those of the long run from there, so that a seed alone tells
-/// which case it is.
+/// Cases on large specimens have seeds from here, and those of the long run from there (and those with fronts,
+/// Case::first_seed_with_fronts), so that a seed alone tells which case it is.
 constexpr std::uint32_t first_large_seed = 1u << 30, first_long_seed = 1000000;
 
 const char* mesh_folder() { return std::getenv("KERF_FUZZ_MESHES"); }
@@ -45,7 +45,7 @@ const Specimens& all_specimens_of(const std::uint32_t seed) {
 
 const std::vector<Specimen>& specimens_of(const std::uint32_t seed) {
   const Specimens& all = all_specimens_of(seed);
-  return seed < first_large_seed ? all.small : all.large;
+  return seed % Case::first_seed_with_fronts < first_large_seed ? all.small : all.large;
 }
 
 std::string told(const Case& one) {
@@ -88,7 +88,11 @@ void print(const Tally& tally, const double seconds) {
             << ", of volumes by tetrahedra and triangles " << tally.worst_disagreement
             << " of the body; of a corner's mass " << tally.worst_mass << " h^3; of the material in one cell "
             << tally.worst_cell << " h^3; least mass of a copy at a corner " << tally.least_mass << " h^3, of a copy "
-            << tally.least_fill << " h^3, of a piece " << tally.least_piece << " h^3; " << seconds << " s" << std::endl;
+            << tally.least_fill << " h^3, of a piece " << tally.least_piece << " h^3; ";
+  if (tally.n_steps > 0)
+    std::cout << tally.n_steps << " steps of blades, " << tally.n_fronts << " fronts begun, at most "
+              << tally.n_most_ties << " ties at a time; ";
+  std::cout << seconds << " s" << std::endl;
 }
 
 /// Cases from `first_seed` on until that many sweeps are done; every hundredth is large, and run with 1 and 2 threads.
@@ -113,6 +117,11 @@ void fuzz(const std::uint32_t first_seed, const std::size_t n_sweeps) {
     }
   }
   print(tally, seconds());
+  if (first_seed >= Case::first_seed_with_fronts) {
+    EXPECT_GT(tally.n_steps, n_sweeps);
+    EXPECT_GT(tally.n_fronts, n_sweeps);
+    EXPECT_GT(tally.n_most_ties, 0u);
+  }
   EXPECT_GT(tally.n_cut_edges, n_sweeps);
   EXPECT_GT(tally.n_below_skin, n_sweeps);
   EXPECT_GT(tally.n_of_skin, n_sweeps);
@@ -133,13 +142,17 @@ void tell_specimens(const Specimens& specimens) {
 }
 
 TEST(Fuzz, Short) { fuzz(0, 500); }
+TEST(Fuzz, ShortWithFronts) { fuzz(Case::first_seed_with_fronts, 120); }
 
-TEST(Fuzz, Long) {
+void fuzz_long(const std::uint32_t first_seed, const std::size_t n_sweeps) {
   tell_specimens(all_specimens_of(first_long_seed));
-  const char *const n_sweeps = std::getenv("KERF_FUZZ_SWEEPS"), *const first = std::getenv("KERF_FUZZ_FIRST");
-  fuzz(first_long_seed + (first ? static_cast<std::uint32_t>(std::stoul(first)) : 0),
-       n_sweeps ? std::stoul(n_sweeps) : 100000);
+  const char *const asked = std::getenv("KERF_FUZZ_SWEEPS"), *const first = std::getenv("KERF_FUZZ_FIRST");
+  fuzz(first_seed + first_long_seed + (first ? static_cast<std::uint32_t>(std::stoul(first)) : 0),
+       asked ? std::stoul(asked) : n_sweeps);
 }
+
+TEST(Fuzz, Long) { fuzz_long(0, 100000); }
+TEST(Fuzz, LongWithFronts) { fuzz_long(Case::first_seed_with_fronts, 20000); }
 
 /// Sweeps on one curved body at three resolutions. The skin stays where it is, and a vertex on the rim of a cut moves
 /// along the cut until its cell has its volume back. So not only the body as a whole, but each cell of the skin keeps

@@ -96,17 +96,37 @@ bool is_cut(const grid::Solid& solid, const ItemSegment& segment) {
                                                                         : solid.cuts.is_cut_twice(segment.edge);
 }
 
-bool is_cut_at_skin(const grid::Solid& solid, const Items& items, const CellId cell) {
-  const auto nodes = solid.grid.nodes(cell);
-  return std::ranges::any_of(nodes, [&](const auto n) { return !solid.grid.is_material(n); }) &&
-         std::ranges::any_of(items.of_cell[cell], [&](const auto s) { return is_cut(solid, items.all[s]); });
+bool is_ahead(const grid::Solid& solid, const CellId cell, const ItemSegment& segment) {
+  const grid::Front* const front = solid.cuts.front(cell);
+  for (grid::Segments left = front ? front->ahead : 0; left != 0; left &= left - 1) {
+    const int s = std::countr_zero(left);
+    if (s < skeleton::first_half ? solid.grid.edges(cell)[s] == segment.edge
+                                 : !segment.edge.valid() && grid::skin_segment(solid.grid, cell, s) == segment.of_skin)
+      return true;
+  }
+  return false;
 }
 
 namespace {
 
-/// That lie on the same sides of all cuts.
+bool parts_copies(const grid::Solid& solid, const CellId cell, const ItemSegment& segment) {
+  return is_cut(solid, segment) || is_ahead(solid, cell, segment);
+}
+
+} // namespace
+
+bool is_cut_at_skin(const grid::Solid& solid, const Items& items, const CellId cell) {
+  const auto nodes = solid.grid.nodes(cell);
+  return std::ranges::any_of(nodes, [&](const auto n) { return !solid.grid.is_material(n); }) &&
+         std::ranges::any_of(items.of_cell[cell],
+                             [&](const auto s) { return parts_copies(solid, cell, items.all[s]); });
+}
+
+namespace {
+
+/// That lie on the same sides of all cuts; where a front parts the copies that is not asked.
 void add_joined(const grid::Solid& solid, const Items& items, const CellId cell, ItemLinks& links) {
-  if (const auto* const groups = solid.cuts.joined(cell))
+  if (const auto* const groups = solid.cuts.front(cell) ? nullptr : solid.cuts.joined(cell))
     for (const grid::Joined& group : *groups)
       for (int i = 0; i < grid::skeleton::n_items; ++i)
         if (group.items >> i & 1)
@@ -154,7 +174,7 @@ ItemLinks links(const grid::Solid& solid, const Items& items) {
 ItemLinks links(const grid::Solid& solid, const Items& items, const CellId cell) {
   ItemLinks result;
   for (const auto s : items.of_cell[cell])
-    if (!is_cut(solid, items.all[s]))
+    if (!parts_copies(solid, cell, items.all[s]))
       result.push_back(items.all[s].ends);
   add_joined(solid, items, cell, result);
   return result;

@@ -35,10 +35,13 @@ Items items_of(const grid::Grid& grid);
 
 /// By a blade.
 bool is_cut(const grid::Solid& solid, const ItemSegment& segment);
+/// In a cell whose copies a front parts (grid/fronts.h): does it lie ahead of the cut?
+bool is_ahead(const grid::Solid& solid, grid::CellId cell, const ItemSegment& segment);
 /// Do copies of the cell tell of points of the skin?
 bool is_cut_at_skin(const grid::Solid& solid, const Items& items, grid::CellId cell);
-/// Of all segments of a body, of one cell, that are not cut.
+/// Of all segments of a body that are not cut.
 ItemLinks links(const grid::Solid& solid, const Items& items);
+/// What holds a cell's copies together: segments neither cut nor ahead of a front.
 ItemLinks links(const grid::Solid& solid, const Items& items, grid::CellId cell);
 /// Of what hangs together across the cell's upper face along an axis: parts to which the same interval of a segment
 /// there belongs. An item of the cell, and one of the cell above.

@@ -86,8 +86,8 @@ std::string collapsed(Subject& subject, Random& random) {
   return n_axes == 1 ? "collapsed to a plane" : n_axes == 2 ? "collapsed to a line" : "collapsed to a point";
 }
 
-std::string jitter(Subject& subject, Random& random) {
-  const double size = subject.grid().h() * std::pow(10, uniform(random, -3, -0.5));
+std::string jitter(Subject& subject, Random& random, const double most) {
+  const double size = subject.grid().h() * std::pow(10, uniform(random, -3, most));
   map_corners(subject, [&](const Vec3& x, const Vec3&) -> Vec3 { return x + size * support::random_vector(random); });
   return "jittered";
 }
@@ -146,13 +146,24 @@ std::string put_into_state(Subject& subject, Random& random) {
 std::string move(Subject& subject, Random& random) {
   switch (draw(random, 8)) {
     case 0:
-      return jitter(subject, random);
+      return jitter(subject, random, -0.5);
     case 1:
       return drifted(subject, random);
     case 2:
       return pulled_apart(subject, random);
     case 3:
       return put_into_state(subject, random);
+    default:
+      return "still";
+  }
+}
+
+std::string move_gently(Subject& subject, Random& random) {
+  switch (draw(random, 4)) {
+    case 0:
+      return jitter(subject, random, -2);
+    case 1:
+      return drifted(subject, random);
     default:
       return "still";
   }

@@ -84,6 +84,7 @@ void follow_cut(Subject& subject, const grid::Solid& before, const grid::CutChan
   surface::update_surface(solid, change, subject.surface, subject.index);
   require_as_built(subject);
   grid::inherit(change, subject.x);
+  grid::update_pieces(solid, change, subject.pieces);
 
   for (const CellId c : change.cells)
     subject.volumes[c] = require_sound_volumes(solid, c, tally);
@@ -95,6 +96,12 @@ void follow_cut(Subject& subject, const grid::Solid& before, const grid::CutChan
   tally.n_placed += placed.n_placed;
   tally.n_clamped += placed.n_clamped;
   tally.n_most_pieces = std::max<std::size_t>(tally.n_most_pieces, grid::n_pieces(solid.complex));
+}
+
+void require_pieces_as_found(const Subject& subject) {
+  const grid::Pieces found = grid::pieces(subject.solid.complex);
+  if (found.n_pieces != subject.pieces.n_pieces || !std::ranges::equal(found.piece, subject.pieces.piece))
+    throw Violation("the updated pieces are not those that are found");
 }
 
 class Fnv {
@@ -129,10 +136,12 @@ Subject make_subject(const Specimen& specimen, Tally& tally) {
                   .boxes = std::move(boxes),
                   .cutter = cut::Cutter(0),
                   .x = {},
+                  .pieces = {},
                   .volumes = {},
                   .first_volumes = {}};
   subject.surface = surface::build_surface(subject.solid, subject.index);
   subject.x = grid::rest_positions(subject.solid);
+  subject.pieces = grid::pieces(subject.solid.complex);
   subject.volume = surface::enclosed_volume(subject.surface.rest, subject.surface.triangles);
   for (const CellId c : ids<CellId>(subject.grid().n_cells())) {
     subject.volumes.push_back(require_sound_volumes(subject.solid, c, tally));
@@ -147,6 +156,7 @@ void cut(Subject& subject, const std::function<grid::CutChange(Subject&)>& make,
   const grid::CutChange change = make(subject);
   if (change.any())
     follow_cut(subject, before, change, tally);
+  require_pieces_as_found(subject);
 }
 
 void cut(Subject& subject, const grid::histories::Step& step, Tally& tally) {
@@ -172,6 +182,11 @@ std::uint64_t digest(const Subject& subject, const std::uint64_t start) {
     sum.add(cut.t);
     sum.add(Points{cut.normal});
     sum.add(cut.label);
+  }
+  for (const grid::Front& front : subject.solid.cuts.fronts()) {
+    sum.add(front.cell.value);
+    sum.add(front.ahead);
+    sum.add(Points{front.point, front.normal, Vec3(front.area, front.passed, front.label)});
   }
   for (const auto& copy : subject.solid.complex.copies) {
     sum.add(copy.nodes);

@@ -38,6 +38,9 @@ struct Tally {
   double least_mass = 1;         ///< of a copy at one of its corners, in h^3 [1]
   double least_fill = 1;         ///< of a copy [1]
   double least_piece = 1;        ///< volume, in h^3 [1]
+  std::size_t n_steps = 0;       ///< of blades that leave fronts
+  std::size_t n_fronts = 0;      ///< that were begun
+  std::size_t n_most_ties = 0;   ///< at a time
 };
 
 /// Parts of h^3 in a cell [1].
@@ -57,6 +60,7 @@ struct Subject {
   cut::EdgeBoxes boxes;                      ///< made before any cut
   cut::Cutter cutter;                        ///< knows where the corners were when the blades were met last
   Points x;                                  ///< corners now [m]
+  grid::Pieces pieces;
   Table<grid::CellId, CellVolumes> volumes;  ///< now
   Table<grid::CellId, double> first_volumes; ///< before any cut [h^3]
   double volume = 0;                         ///< at rest, before any cut [m^3]

@@ -366,6 +366,8 @@ NamedSweep random_sweep(const Subject& subject, const std::optional<NamedSweep>&
   }
 }
 
+NamedSweep random_surface(const Subject& subject, Random& random) { return Draw(subject, random).surface(); }
+
 namespace {
 
 cut::SweepCuts meet(const Subject& subject, const Sweep& sweep, const grid::CutLabel label,

@@ -26,6 +26,9 @@ struct NamedSweep {
 /// Draws a sweep for the body as it stands; `last` is what was swept before it.
 NamedSweep random_sweep(const Subject& subject, const std::optional<NamedSweep>& last, Random& random);
 
+/// One that is known at once.
+NamedSweep random_surface(const Subject& subject, Random& random);
+
 /// The edges that it cuts, as the cutter asks for them: found among the boxes of the body's edges. Throws Violation
 /// when a look at every edge finds others, or finds them elsewhere.
 cut::SweepCuts meet(Subject& subject, const Sweep& sweep, grid::CutLabel label);
