@@ -70,7 +70,7 @@ void take(Body& body, const Cut& cut) {
 
 /// A body that moves is cut after its step, so that it and the blades go their ways in the same time; in statics
 /// before, so that it is in balance with what it is cut to.
-void advance(Body& body, World& world, const int step, Timings& seconds) {
+void advance(Body& body, World& world, const int step, Watch& watch, Timings& seconds) {
   const double dt = world.time_step, t0 = (step - 1) * dt, t1 = step * dt;
   const bool is_cut_before = body.physics->motion() == dynamics::MotionKind::quasi_static;
   if (body.cutter)
@@ -91,7 +91,7 @@ void advance(Body& body, World& world, const int step, Timings& seconds) {
       body.accounts->before_step(body.state);
     const Loan<Vec3> before(body.state.x);
     body.report = body.physics->step(body.state, body.loads, dt);
-    require_sound_motion(body, before, dt);
+    watch.way += require_sound_motion(body, before, dt);
     body.n_divided += body.report.n_rejected > 0 ? 1 : 0;
     if (body.accounts)
       body.accounts->after_step(*body.physics, body.loads, body.report.begins_anew, body.state);
@@ -118,9 +118,10 @@ void advance(World& world, const int step, Timings& seconds) {
   world.watches.resize(world.bodies.size());
   for (std::size_t b = 0; b < world.bodies.size(); ++b) {
     Body& body = world.bodies[b];
-    on(world, body, step, t1, [&] { advance(body, world, step, seconds); });
+    Watch& watch = world.watches[b];
+    on(world, body, step, t1, [&] { advance(body, world, step, watch, seconds); });
     const ScopedTimer timer(seconds, "solve");
-    on(world, body, step, t1, [&] { require_sound_volume(body, world.watches[b]); });
+    on(world, body, step, t1, [&] { require_sound_volume(body, watch, step >= world.n_steps); });
   }
   for (Body& body : world.bodies)
     if (body.interior)

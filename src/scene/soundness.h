@@ -1,6 +1,7 @@
 #pragma once
 
-/// Whether a body may still be what it says: asked after each step, of every backend and integrator.
+/// Whether a body may still be what it says: asked after each step, of every backend and integrator; of volumes as soon
+/// as something can have moved by an eighth of a cube since they were asked for, and at the end.
 ///
 /// Four things no elastic body does. A particle without a finite place. A particle that crosses more than a cube in a
 /// step against the mean motion while all kinetic and elastic energy of the body could not move an eighth of a full
@@ -16,14 +17,16 @@ namespace kerf::scene {
 
 struct Watch {
   bool is_sound = true; ///< what was found last
+  double way = 0;       ///< of any corner against the mean motion since then, at most [m]
 
-  void archive(Archive& a) { a(is_sound); }
+  void archive(Archive& a) { a(is_sound, way); }
 };
 
 /// After a step of dt [s] from `before` [m], before the corners follow. Velocities may ring where nothing damps them,
 /// and statics go far without any: the less of a velocity and of the way over dt counts, where that is more than a cube
 /// and more than a corner of so distorted copies may snap. Throws NumericalError that names the particle and its place.
-void require_sound_motion(const Body& body, const Points& before, double dt);
+/// Returns how far a particle has come against the mean motion, at most [m].
+double require_sound_motion(const Body& body, const Points& before, double dt);
 /// The copy whose cube is drawn out most.
 struct Stretch {
   std::size_t copy = 0;
@@ -37,9 +40,9 @@ struct UnsoundVolume {
   std::string what, remedy; ///< empty where they are sound
 };
 UnsoundVolume unsound_volume(const Body& body);
-/// After the corners followed. Pieces of fewer than eight nodes are left out. Throws NumericalError that names the
-/// piece, its worst copy and its place.
-void require_sound_volume(const Body& body, Watch& watch);
+/// After the corners followed; where these are not the particles, and in the `last` step, whatever the way was. Pieces
+/// of fewer than eight nodes are left out. Throws NumericalError that names the piece, its worst copy and its place.
+void require_sound_volume(const Body& body, Watch& watch, bool is_last);
 
 /// "particle 12, which rests at (0.1, 0.2, 0.3) m".
 std::string particle_at(const Body& body, std::size_t particle);

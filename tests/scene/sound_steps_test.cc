@@ -185,7 +185,7 @@ TEST(SoundScene, ACopyDrawnOutEndsTheRun) {
       follow(body);
       EXPECT_NEAR(largest_stretch(body).factor, factor, 1e-6 * factor) << backend;
       Watch watch;
-      require_sound_volume(body, watch);
+      require_sound_volume(body, watch, true);
     };
     EXPECT_NO_THROW(draw_out(20)) << backend;
     try {
@@ -195,6 +195,35 @@ TEST(SoundScene, ACopyDrawnOutEndsTheRun) {
       EXPECT_NE(std::string(error.what()).find("is drawn out to 40 times"), std::string::npos) << error.what();
       EXPECT_NE(std::string(error.what()).find("rests around ("), std::string::npos) << error.what();
     }
+  }
+}
+
+/// Volumes are asked for once corners have come an eighth of a cube; where phyxels lead them, in each step.
+TEST(SoundScene, VolumesAreAskedForOnceTheyCanHaveChanged) {
+  for (const std::string backend : {"fem", "pba"}) {
+    World world =
+      world_of(steps(1e-3, 1) + section("Body b", cube_keys() + Keys{"Backend = " + backend}, material(1e4, 0.3)));
+    Body& body = world.bodies[0];
+    Points& x = body.state.x;
+    const double h = body.solid.grid.h();
+    const Points before = x;
+    const Vec3 way(0, 0.06 * h, 0);
+    x[3] += way;
+    EXPECT_NEAR(require_sound_motion(body, before, 1e-3), way.norm(), 1e-12);
+    for (Vec3& p : x)
+      p[0] *= 100;
+    follow(body);
+    Watch watch{true, 2 * way.norm()};
+    if (backend == "fem") {
+      EXPECT_NO_THROW(require_sound_volume(body, watch, false));
+    }
+    EXPECT_THROW(require_sound_volume(body, watch, true), NumericalError) << backend;
+    watch = {true, 3 * way.norm()};
+    EXPECT_THROW(require_sound_volume(body, watch, false), NumericalError) << backend;
+    x = before;
+    follow(body);
+    require_sound_volume(body, watch, true);
+    EXPECT_EQ(watch.way, 0);
   }
 }
 
