@@ -179,11 +179,16 @@ CubeConstants<T> constants(const double h, const material::Elastic& material, co
   return cube;
 }
 
+double weight_in_diagonal(const Element& element, const PartialElements& partial) {
+  const double whole = std::max(1.0, element.bound / partial.bound);
+  return partial.in_diagonal == InDiagonal::all ? whole : whole - 1;
+}
+
 template <class T>
-void put(const Element& element, const double bound, const std::size_t lane, PartialCubes<T>& cubes,
+void put(const Element& element, const double weight, const std::size_t lane, PartialCubes<T>& cubes,
          HourglassOfCubes& hourglass) {
   cubes.volume[lane] = T(element.volume);
-  cubes.weight[lane] = T(std::max(1.0, element.bound / bound));
+  cubes.weight[lane] = T(weight);
   for (int i = 0; i < n_hourglass; ++i)
     cubes.gradient[i][lane] = T(element.mode_gradient[i / 3][i % 3]);
   for (int i = 0; i < n_hourglass_pairs; ++i)
@@ -224,8 +229,10 @@ void follow(const Batching& batching, const std::span<const std::uint32_t> renew
       cubes = {};
       hourglass = {};
       for (std::size_t lane = 0; lane < n_lanes; ++lane)
-        if (batch.copies[lane] != BatchOfCopies::none)
-          put(partial.of(batch.copies[lane]), partial.bound, lane, cubes, hourglass);
+        if (batch.copies[lane] != BatchOfCopies::none) {
+          const Element& element = partial.of(batch.copies[lane]);
+          put(element, weight_in_diagonal(element, partial), lane, cubes, hourglass);
+        }
     },
     16);
 }
@@ -241,6 +248,16 @@ void add_diagonal(const Batching& batching, const BatchedElements<T>& elements, 
   const auto diagonal = element_kernels<T>().diagonal;
   batching.for_each_in_order(
     [&](const std::size_t i) { diagonal(elements.cube, elements.batch(batching, i), blocks); });
+}
+
+void add_excess_diagonal(const Batching& batching, const BatchedElements<float>& elements, Row<float>* const blocks) {
+  const auto diagonal = element_kernels<float>().diagonal;
+  batching.for_each_in_order([&](const std::size_t i) {
+    const Batch<float> batch = elements.batch(batching, i);
+    if (batch.partial && std::any_of(batch.partial->weight, batch.partial->weight + batch.n_used,
+                                     [](const float weight) { return weight > 0; }))
+      diagonal(elements.cube, batch, blocks);
+  });
 }
 
 template BatchedElements<double> batched(const Batching&, double, const material::Elastic&, const Element&,

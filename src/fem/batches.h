@@ -158,11 +158,15 @@ struct BatchedElements {
   }
 };
 
+/// Once each element, and what it counts beyond that; or that alone.
+enum class InDiagonal { all, excess };
+
 /// Of partial copies.
 struct PartialElements {
   std::function<const Element&(std::uint32_t copy)> of;
-  /// `diagonal` counts elements whose own bound (jacobi_bound) is more than this by as much more [1].
+  /// The diagonal counts elements whose own bound (jacobi_bound) is more than this by as much more [1].
   double bound = std::numeric_limits<double>::infinity();
+  InDiagonal in_diagonal = InDiagonal::all;
 };
 /// All rotations are the identity, unless other elements have them already.
 template <class T>
@@ -179,5 +183,7 @@ void add_product(const Batching& batching, const BatchedElements<T>& elements, c
 /// Adds diagonal blocks, two rows a corner (kernels.h).
 template <class T>
 void add_diagonal(const Batching& batching, const BatchedElements<T>& elements, Row<T>* blocks);
+/// Of elements of which the diagonal has the excess alone.
+void add_excess_diagonal(const Batching& batching, const BatchedElements<float>& elements, Row<float>* blocks);
 
 } // namespace kerf::fem

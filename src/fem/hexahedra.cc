@@ -14,8 +14,6 @@ namespace kerf::fem {
 
 namespace {
 
-constexpr double no_bound = std::numeric_limits<double>::infinity();
-
 Frame frame_of(const material::AnyLaw& law) {
   return std::holds_alternative<material::SmallStrain>(law) ? Frame::fixed : Frame::turning;
 }
@@ -60,6 +58,8 @@ void Hexahedra::follow(const grid::Solid& solid, const std::span<const grid::Cop
   if (multigrid_) {
     former_levels_ = multigrid_->give_way();
     multigrid_ = nullptr;
+    diagonal_ = std::move(former_levels_.diagonal);
+    of_diagonal_ = OfDiagonal::unwanted;
   }
   const grid::CornerNumbers before = std::exchange(numbers_, grid::CornerNumbers(solid, counted_));
   const auto numbers_of_same = numbers_.extend(before) ? CornersOfSame::kept : CornersOfSame::renumbered;
@@ -155,17 +155,23 @@ ChangeOfBatches Hexahedra::batch(const grid::Solid& solid, const std::span<const
   ChangeOfBatches change =
     batching_->update({order, chunk_ends, kinds_, corner_numbers(0), numbers_.size()}, is_same, is_met, corners);
   if (is_new) {
-    batched_ = batched<double>(*batching_, h_, material_, elements_.full(), partial_elements(no_bound));
+    batched_ = batched<double>(*batching_, h_, material_, elements_.full(), partial_elements());
     return change;
   }
-  fem::follow(*batching_, change.renewed, partial_elements(no_bound), batched_);
+  fem::follow(*batching_, change.renewed, partial_elements(), batched_);
   if (!former_levels_.coarse.empty())
-    fem::follow(*batching_, change.renewed, partial_elements(elements_.full().bound), former_levels_.finest);
+    fem::follow(*batching_, change.renewed, weighed_partial_elements(), former_levels_.finest);
   return change;
 }
 
-PartialElements Hexahedra::partial_elements(const double bound) const {
-  return {[this](const std::uint32_t copy) -> const Element& { return elements_[copy]; }, bound};
+PartialElements Hexahedra::partial_elements() const {
+  return {[this](const std::uint32_t copy) -> const Element& { return elements_[copy]; }};
+}
+PartialElements Hexahedra::weighed_partial_elements() const {
+  PartialElements partial = partial_elements();
+  partial.bound = elements_.full().bound;
+  partial.in_diagonal = is_hookean() ? InDiagonal::excess : InDiagonal::all;
+  return partial;
 }
 
 void Hexahedra::sum_mass(const std::span<const std::uint32_t> corners) {
@@ -209,10 +215,10 @@ void Hexahedra::stiffness_diagonal(const PutBlock put) const {
   Loan<double> penalty = ghost_penalty_.diagonal(numbers_.size());
   ties_.add_diagonal(penalty);
   const TwoRows lent(batching_->n_rows());
-  Row<double>* const sums = lent.first; // two a corner
-  parallel_for(
-    2 * batching_->n_rows(), [&](const std::size_t i) { sums[i] = {}; }, many_corners_of_copies);
-  add_diagonal(*batching_, batched_, sums);
+  Row<double>* const sums = lent.first;
+  find_diagonal(sums);
+  if (of_diagonal_ == OfDiagonal::wanted)
+    keep_diagonal(sums);
   parallel_for(
     numbers_.size(),
     [&](const std::size_t i) {
@@ -224,8 +230,24 @@ void Hexahedra::stiffness_diagonal(const PutBlock put) const {
     many_corners_of_copies);
 }
 
+void Hexahedra::find_diagonal(Row<double>* const blocks) const {
+  parallel_for(
+    2 * batching_->n_rows(), [&](const std::size_t i) { blocks[i] = {}; }, many_corners_of_copies);
+  add_diagonal(*batching_, batched_, blocks);
+}
+
+void Hexahedra::keep_diagonal(const Row<double>* const blocks) const {
+  diagonal_.resize(2 * batching_->n_rows());
+  parallel_for(
+    diagonal_.size(),
+    [&](const std::size_t i) {
+      diagonal_[i] = {float(blocks[i].x), float(blocks[i].y), float(blocks[i].z)};
+    },
+    many_corners_of_copies);
+  of_diagonal_ = OfDiagonal::there;
+}
+
 void Hexahedra::make_multigrid() {
-  const double bound = elements_.full().bound;
   multigrid_ = std::make_unique<Multigrid>(
     FinestLevel{{places_, {corner_numbers(0), 8 * n_elements()}, numbers_.size()},
                 h_,
@@ -235,7 +257,7 @@ void Hexahedra::make_multigrid() {
                 [this](const std::uint32_t copy) -> const Element& { return elements_[copy]; },
                 batching_,
                 former_levels_.coarse.empty() ? batched<float>(*batching_, h_, material_, elements_.full(),
-                                                               partial_elements(bound), batched_.shared)
+                                                               weighed_partial_elements(), batched_.shared)
                                               : std::move(former_levels_.finest),
                 ghost_penalty_.faces(),
                 ties_.all(),
@@ -259,7 +281,17 @@ dynamics::Preconditioner* Hexahedra::preconditioner(const dynamics::LinearEquati
     make_multigrid();
   if (multigrid_->n_levels() == 1)
     return nullptr;
-  multigrid_->prepare(equation);
+  if (!is_hookean()) {
+    multigrid_->prepare(equation);
+    return multigrid_.get();
+  }
+  if (of_diagonal_ != OfDiagonal::there) {
+    const TwoRows lent(batching_->n_rows());
+    find_diagonal(lent.first);
+    keep_diagonal(lent.first);
+  }
+  multigrid_->prepare(equation, std::move(diagonal_));
+  of_diagonal_ = OfDiagonal::unwanted;
   return multigrid_.get();
 }
 

@@ -129,8 +129,13 @@ class Hexahedra : public dynamics::ElasticModel, public dynamics::StiffnessMatri
   /// Part of its cube that a copy's material is [1].
   double fill(const std::size_t copy) const { return elements_[copy].volume / (h_ * h_ * h_); }
   ChangeOfBatches batch(const grid::Solid& solid, std::span<const grid::CopyId> changed, CornersOfSame corners);
-  PartialElements partial_elements(double bound) const;
+  PartialElements partial_elements() const;
+  /// As the finest level has them.
+  PartialElements weighed_partial_elements() const;
   void make_multigrid();
+  /// Of elements alone, two rows a corner.
+  void find_diagonal(Row<double>* blocks) const;
+  void keep_diagonal(const Row<double>* blocks) const;
   std::array<Vec3, 8> corners_of(std::size_t copy, const Points& x) const; // x by number
   Turned turned_element(std::size_t copy, const Points& x) const;
   Matrix24 element_matrix(std::size_t copy, const Points& x, dynamics::Tangent kind) const;
@@ -184,6 +189,11 @@ class Hexahedra : public dynamics::ElasticModel, public dynamics::StiffnessMatri
   std::unique_ptr<ConsistentMass> consistent_mass_; // none where mass is lumped
   std::unique_ptr<Multigrid> multigrid_;            // none until it is asked for
   FormerLevels former_levels_;                      // when it was asked for last, if a cut came since
+  /// That multigrid shares with those who ask for stiffness_diagonal() after linearise(), in its memory; of Hooke's law,
+  /// which is multigrid's, alone.
+  mutable std::vector<Row<float>> diagonal_;
+  enum class OfDiagonal { unwanted, wanted, there };
+  mutable OfDiagonal of_diagonal_ = OfDiagonal::unwanted;
   mutable KnownForces known_;
 };
 

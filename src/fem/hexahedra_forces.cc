@@ -213,6 +213,10 @@ bool Hexahedra::update_forces(const Points& x, const WithEnergy with_energy, Poi
 }
 
 void Hexahedra::linearise(const Points& x) {
+  if (is_hookean() && multigrid_ && diagonal_.empty())
+    diagonal_ = multigrid_->lend_diagonal();
+  of_diagonal_ = is_hookean() && (multigrid_ || !former_levels_.coarse.empty()) ? OfDiagonal::wanted
+                                                                                : OfDiagonal::unwanted;
   const TwoRows lent(batching_->n_rows());
   Row<double>* const rows = lent.first;
   put_rows(dynamics::flat(x), rows);

@@ -134,11 +134,21 @@ void Level::for_each_corner(const Function& f) const {
 }
 
 void Level::make_diagonal() {
+  diagonal = std::move(inverse);
+  diagonal.assign(2 * n_rows(), {});
+  add_diagonal(*batching, elements, diagonal.data());
+  add_penalties_to_diagonal();
+}
+
+void Level::make_diagonal(std::vector<FloatRow> of_elements) {
+  diagonal = std::move(of_elements);
+  add_excess_diagonal(*batching, elements, diagonal.data());
+  add_penalties_to_diagonal();
+}
+
+void Level::add_penalties_to_diagonal() {
   const auto weight = [&](const double alone) { return std::max(1.0, alone / bound); };
   const double of_line = weight(3), of_tie = weight(2); // eigenvalues of one alone
-  diagonal = std::move(inverse);
-  diagonal.assign(2 * batching->n_rows(), {});
-  add_diagonal(*batching, elements, diagonal.data());
   const auto add = [&](const std::uint32_t corner, const double value) {
     FloatRow& row = diagonal[2 * std::size_t(corner)];
     const auto k = float(value);

@@ -74,8 +74,10 @@ struct Level {
 
   /// When cells, batches and lines are there.
   void resize();
-  /// From rotations, masses and springs.
+  /// From rotations.
   void make_diagonal();
+  /// From rotations, where what elements count once in it is known: two rows for each of n_rows().
+  void make_diagonal(std::vector<Row<float>> of_elements);
   /// Of all blocks; `inverse_where_held` gives those of corners that are held, among their free directions.
   void invert_diagonal(const std::function<Mat3(std::uint32_t corner, const Mat3& block)>& inverse_where_held);
 
@@ -99,6 +101,7 @@ struct Level {
   }
   template <class Function>
   void for_each_corner(const Function& f) const;
+  void add_penalties_to_diagonal();
   Mat3 inverse_block(std::size_t corner) const;
   void put_inverse_block(std::size_t corner, const Mat3& block);
   void add_of_clusters(float after, Row<float>* x);

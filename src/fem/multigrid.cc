@@ -280,6 +280,7 @@ void Multigrid::put_batches(const double h, const material::Elastic& material, c
 FormerLevels Multigrid::give_way() {
   FormerLevels former;
   former.finest = std::move(levels_[0].elements);
+  former.diagonal = lend_diagonal();
   former.same_copy.resize(levels_[0].to_coarse.parent.size());
   std::iota(former.same_copy.begin(), former.same_copy.end(), 0);
   for (std::size_t l = 1; l < levels_.size(); ++l)
@@ -287,11 +288,16 @@ FormerLevels Multigrid::give_way() {
   return former;
 }
 
-void Multigrid::prepare(const dynamics::LinearEquation& equation) {
+std::vector<Row<float>> Multigrid::lend_diagonal() { return std::move(levels_[0].inverse); }
+
+void Multigrid::prepare(const dynamics::LinearEquation& equation, std::vector<Row<float>> diagonal) {
   stiffness_factor_ = equation.stiffness_factor;
   put_rotations();
   for (Level& level : levels_)
-    level.make_diagonal();
+    if (&level == &levels_[0] && !diagonal.empty())
+      level.make_diagonal(std::move(diagonal));
+    else
+      level.make_diagonal();
   put_masses(equation);
   hold(equation);
   coarsest_->factorise(levels_.back(), levels_.size() > 1 ? cells_of(levels_.size() - 1) : CellsOfLevel());

@@ -61,6 +61,7 @@ struct FormerLevels {
     LevelElements elements;
   };
   BatchedElements<float> finest;
+  std::vector<Row<float>> diagonal; ///< memory (Multigrid::lend_diagonal)
   std::vector<OfLevel> coarse;
   std::vector<std::uint32_t>
     same_copy; ///< of each finest copy its own number; CellsOfLevel::unused: it has changed since
@@ -80,8 +81,11 @@ class Multigrid : public dynamics::Preconditioner {
   /// For one that takes its place; it is of no use any more.
   FormerLevels give_way();
 
-  /// Takes over an equation, with the finest elements' rotations as they are now.
-  void prepare(const dynamics::LinearEquation& equation);
+  /// Takes over an equation, with the finest elements' rotations as they are now. Where these have an excess alone in
+  /// the diagonal (batches.h), with what they count once: two rows for each that kernels use.
+  void prepare(const dynamics::LinearEquation& equation, std::vector<Row<float>> diagonal = {});
+  /// Gives the memory of such a diagonal back, for that of the next equation; until it is prepared it is of no use.
+  std::vector<Row<float>> lend_diagonal();
 
   void apply(std::span<const double> r, std::span<double> z) override;
 

@@ -124,9 +124,13 @@ bool is_cut_at_skin(const grid::Solid& solid, const Items& items, const CellId c
 
 namespace {
 
-/// That lie on the same sides of all cuts; where a front parts the copies that is not asked.
+/// What lies on the same sides of all cuts. Where a front parts the copies that is not asked.
+const std::vector<grid::Joined>* joined(const grid::Solid& solid, const CellId cell) {
+  return solid.cuts.front(cell) ? nullptr : solid.cuts.joined(cell);
+}
+
 void add_joined(const grid::Solid& solid, const Items& items, const CellId cell, ItemLinks& links) {
-  if (const auto* const groups = solid.cuts.front(cell) ? nullptr : solid.cuts.joined(cell))
+  if (const auto* const groups = joined(solid, cell))
     for (const grid::Joined& group : *groups)
       for (int i = 0; i < grid::skeleton::n_items; ++i)
         if (group.items >> i & 1)
@@ -139,8 +143,8 @@ ItemLinks links_above(const grid::Solid& solid, const Items& items, const CellId
   ItemLinks links;
   const int face = 2 * axis + 1;
   const CellId above = solid.grid.neighbour(cell, face);
-  const auto* const groups = solid.cuts.joined(cell);
-  const auto* const others = above.valid() ? solid.cuts.joined(above) : nullptr;
+  const auto* const groups = joined(solid, cell);
+  const auto* const others = above.valid() ? joined(solid, above) : nullptr;
   if (!groups || !others)
     return links;
   for (const grid::Joined& one : *groups)
