@@ -126,7 +126,7 @@ std::vector<Front> find_fronts(const CutSurface& surface, const Solid& solid, co
     if ((x[copy.corners[0].value] - outline.point).norm() > outline.reach + 2 * size)
       continue;
     const Front* const earlier = solid.cuts.front(c);
-    if (copy.next.valid() && !earlier)
+    if (!earlier && (copy.next.valid() || solid.cuts.joined(c)))
       continue;
     const CellAtPlane cell(solid, c, {outline.point, outline.normal}, grid::corners_of(copy, x));
     if (!cell.is_met())

@@ -2,9 +2,10 @@
 
 /// Where surfaces end inside cells (grid/fronts.h): the cells that a disc or a rectangle passes in part, and how far.
 ///
-/// Of each cell that the shape's plane meets, and that has one copy, what of the material lies in the plane is clipped
-/// with the shape; the part that is left of it is how far the cut has come. The shape is taken larger by the lag of
-/// fronts, as elements are too stiff there. Corners ahead of it are parted too (is_corner_ahead, course.h).
+/// Of each cell that the shape's plane meets, and that has one copy, though not of what cuts would part (Cuts::joined),
+/// what of the material lies in the plane is clipped with the shape; the part that is left of it is how far the cut has
+/// come. The shape is taken larger by the lag of fronts, as elements are too stiff there. Corners ahead of it are parted
+/// too (is_corner_ahead, course.h).
 ///
 /// Limits: only shapes that are flat and have an end; a mesh ends with the last cell that it parts. Moving blades:
 /// advance.h.

@@ -99,7 +99,8 @@ class SlotsOfNodes {
 };
 
 /// Numbers the corners by node, and enters them in the copies around nodes that have slots.
-void number_corners(const Grid& grid, const SlotsOfNodes& slots, CellComplex& complex) {
+void number_corners(const Solid& solid, const SlotsOfNodes& slots, CellComplex& complex) {
+  const Grid& grid = solid.grid;
   complex.node.reserve(with_room(grid.n_nodes()));
   complex.real_corner.resize(grid.n_nodes());
   for (const NodeId node : ids<NodeId>(grid.n_nodes())) {
@@ -107,7 +108,7 @@ void number_corners(const Grid& grid, const SlotsOfNodes& slots, CellComplex& co
       complex.real_corner[node] = complex.node.push_back(node);
       continue;
     }
-    const CornerClasses classes(complex, slots.cells_around(grid, node));
+    const CornerClasses classes(solid, complex, slots.cells_around(solid.grid, node));
     const std::size_t first = complex.n_corners();
     complex.node.resize(first + classes.n_classes(), node);
     for (const auto& slot : classes.slots()) {
@@ -120,9 +121,10 @@ void number_corners(const Grid& grid, const SlotsOfNodes& slots, CellComplex& co
   }
 }
 
-void make_corners(const Grid& grid, const std::vector<CutCell>& cut_cells, CellComplex& complex) {
+void make_corners(const Solid& solid, const std::vector<CutCell>& cut_cells, CellComplex& complex) {
   constexpr std::size_t worth = 4096;
-  number_corners(grid, SlotsOfNodes(grid, cut_cells), complex);
+  const Grid& grid = solid.grid;
+  number_corners(solid, SlotsOfNodes(grid, cut_cells), complex);
   parallel_for(
     complex.n_copies(),
     [&](const std::size_t c) {
@@ -161,7 +163,7 @@ class Update {
       for (; slot != slots_.end() && slot->node == node; ++slot)
         cells.add(slot->cell, slot->vertex);
       cells.complete(solid_.grid);
-      rename(node, CornerClasses(solid_.complex, cells));
+      rename(node, CornerClasses(solid_, solid_.complex, cells));
     }
     lapse();
     sort_unique(change_.copies);
@@ -374,7 +376,7 @@ CellComplex build_complex(const Solid& solid) {
   CellComplex complex;
   const auto cut_cells = find_cut_cells(solid);
   make_copies(solid.grid, cut_cells, complex);
-  make_corners(solid.grid, cut_cells, complex);
+  make_corners(solid, cut_cells, complex);
   std::vector<CellId> with_fronts;
   for (const Front& front : solid.cuts.fronts())
     with_fronts.push_back(front.cell);

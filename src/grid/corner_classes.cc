@@ -1,6 +1,7 @@
 #include "grid/corner_classes.h"
 
 #include "grid/cube.h"
+#include "grid/solid.h"
 
 #include <algorithm>
 
@@ -18,7 +19,7 @@ void CellsAround::complete(const Grid& grid) {
   }
 }
 
-CornerClasses::CornerClasses(const CellComplex& complex, const CellsAround& cells) {
+CornerClasses::CornerClasses(const Solid& solid, const CellComplex& complex, const CellsAround& cells) {
   for (int v = 0; v < 8; ++v) {
     first_slot_[v] = static_cast<std::uint16_t>(n_slots_);
     for (CopyId c = cells.at(v).valid() ? complex.first_copy[cells.at(v)] : CopyId(); c.valid();
@@ -28,12 +29,34 @@ CornerClasses::CornerClasses(const CellComplex& complex, const CellsAround& cell
     }
   }
   first_slot_[8] = static_cast<std::uint16_t>(n_slots_);
+  if (!solid.cuts.fronts().empty())
+    tell_skin(solid, cells);
   n_classes_ = static_cast<int>(n_slots_);
   for (int v = 0; v < 8; ++v)
     for (int axis = 0; axis < 3; ++axis)
       if ((v >> axis & 1) && n_classes_ > 1)
         join_across(v, axis);
   number();
+}
+
+/// A front parts its own cell, not the one ahead of it: a point of the skin in the face between them may be with one node
+/// there and with another one here. So copies that tell of nodes alone are told of such points.
+void CornerClasses::tell_skin(const Solid& solid, const CellsAround& cells) {
+  const auto has_front = [&](const int v) { return cells.at(v).valid() && solid.cuts.front(cells.at(v)) != nullptr; };
+  bool is_at_front = false;
+  for (int v = 0; v < 8; ++v)
+    is_at_front |= has_front(v);
+  for (int v = 0; v < 8 && is_at_front; ++v) {
+    const auto parts = std::span(parts_).subspan(first_slot_[v], first_slot_[v + 1] - first_slot_[v]);
+    if (parts.empty() || std::ranges::any_of(parts, [](const Part& part) { return part.skin != 0; }))
+      continue;
+    const CellCuts cuts = cuts_of(solid, cells.at(v));
+    if (!cuts.has_skin())
+      continue;
+    const Parts whole = whole_parts_of(cuts);
+    for (Part& part : parts)
+      part = *std::ranges::find_if(whole, [&](const Part& other) { return (other.nodes & part.nodes) != 0; });
+  }
 }
 
 /// The cell in which the node is the upper vertex along the axis lies below the other one.

@@ -30,18 +30,20 @@ class CornerClasses {
     std::uint16_t class_number; ///< from 0, in the order of the classes' first slots
   };
 
-  CornerClasses(const CellComplex& complex, const CellsAround& cells);
+  /// Of a complex of the solid's cells, which need not be the solid's as yet.
+  CornerClasses(const Solid& solid, const CellComplex& complex, const CellsAround& cells);
 
   int n_classes() const { return n_classes_; }
   /// By vertex, then along the cell's copies.
   std::span<const Slot> slots() const { return {slots_.data(), n_slots_}; }
 
  private:
+  void tell_skin(const Solid& solid, const CellsAround& cells);
   void join_across(int upper_vertex, int axis);
   void number();
 
   std::array<Slot, max_slots> slots_;
-  std::array<Part, max_slots> parts_;       // of the slots' copies
+  std::array<Part, max_slots> parts_;       // of the slots' copies; beside a front with points of the skin
   std::array<std::uint16_t, 9> first_slot_; // by vertex
   std::size_t n_slots_ = 0;
   int n_classes_ = 0;
