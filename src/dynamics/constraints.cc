@@ -43,12 +43,12 @@ std::span<const Constraints::Hold> those_that_count(const Loads& loads,
 
 /// Of a positive block alone, entry by entry.
 std::optional<Mat3> inverse_factor(const Mat3& block) {
-  const double d0 = block(0, 0), l10 = block(1, 0) / d0, l20 = block(2, 0) / d0, // L D L^T
-    d1 = block(1, 1) - l10 * block(1, 0), below = block(2, 1) - l20 * block(1, 0), l21 = below / d1,
+  const double d0 = block(0, 0), r0 = 1 / d0, l10 = r0 * block(1, 0), l20 = r0 * block(2, 0), // L D L^T, r = 1 / D
+    d1 = block(1, 1) - l10 * block(1, 0), r1 = 1 / d1, below = block(2, 1) - l20 * block(1, 0), l21 = r1 * below,
                d2 = block(2, 2) - l20 * block(2, 0) - l21 * below;
   if (!(d0 > 0 && d1 > 0 && d2 > 0))
     return std::nullopt;
-  const double s0 = 1 / std::sqrt(d0), s1 = 1 / std::sqrt(d1), s2 = 1 / std::sqrt(d2);
+  const double s0 = std::sqrt(r0), s1 = std::sqrt(r1), s2 = 1 / std::sqrt(d2);
   Mat3 inverse;
   inverse << s0, 0, 0, -s1 * l10, s1, 0, s2 * (l21 * l10 - l20), -s2 * l21, s2;
   return inverse;

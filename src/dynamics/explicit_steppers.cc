@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/loan.h"
+#include "base/parallel.h"
 #include "dynamics/constraints.h"
 #include "dynamics/forces.h"
 #include "dynamics/points.h"
@@ -68,11 +69,15 @@ StepReport ExplicitEuler::step(State& state, const Loads& loads, const double dt
   const Constraints constraints(loads, state.x.size());
   const auto mass = model_.lumped_mass();
   total_force(model_, loads, {state.time, state.x, state.v}, MassDamping::included, force_);
-  Loan<Vec3> x(state.x), v(state.v);
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    x[i] += dt * state.v[i];
-    v[i] += per_mass(dt, mass[i]) * force_[i];
-  }
+  const std::size_t n = state.x.size();
+  Loan<Vec3> x(n, AnyValues()), v(n, AnyValues());
+  parallel_for(
+    n,
+    [&](const std::size_t i) {
+      x[i] = state.x[i] + dt * state.v[i];
+      v[i] = state.v[i] + per_mass(dt, mass[i]) * force_[i];
+    },
+    many_corners);
   obey(constraints, state.time + dt, dt, x, v);
   take_over(state, x, v, dt, "explicit Euler");
   return {.stable_step = limit_.last()};
@@ -84,17 +89,24 @@ StepReport MidpointRungeKutta::step(State& state, const Loads& loads, const doub
   const auto mass = model_.lumped_mass();
   const double half = 0.5 * dt;
   total_force(model_, loads, {state.time, state.x, state.v}, MassDamping::included, force_);
-  Loan<Vec3> x(state.x), v(state.v);
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    x[i] += half * state.v[i];
-    v[i] += per_mass(half, mass[i]) * force_[i];
-  }
+  const std::size_t n = state.x.size();
+  Loan<Vec3> x(n, AnyValues()), v(n, AnyValues());
+  parallel_for(
+    n,
+    [&](const std::size_t i) {
+      x[i] = state.x[i] + half * state.v[i];
+      v[i] = state.v[i] + per_mass(half, mass[i]) * force_[i];
+    },
+    many_corners);
   obey(constraints, state.time + half, dt, x, v);
   total_force(model_, loads, {state.time + half, x, v}, MassDamping::included, force_);
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    x[i] = state.x[i] + dt * v[i];
-    v[i] = state.v[i] + per_mass(dt, mass[i]) * force_[i];
-  }
+  parallel_for(
+    n,
+    [&](const std::size_t i) {
+      x[i] = state.x[i] + dt * v[i];
+      v[i] = state.v[i] + per_mass(dt, mass[i]) * force_[i];
+    },
+    many_corners);
   obey(constraints, state.time + dt, dt, x, v);
   take_over(state, x, v, dt, "midpoint Runge-Kutta");
   return {.stable_step = limit_.last()};
@@ -106,17 +118,22 @@ StepReport VelocityVerlet::step(State& state, const Loads& loads, const double d
   const auto mass = model_.lumped_mass();
   const double half = 0.5 * dt, alpha = loads.mass_damping;
   total_force(model_, loads, {state.time, state.x, state.v}, MassDamping::left_out, force_);
-  Loan<Vec3> x(state.x), v(state.v), predicted(x.size());
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    const Vec3 a = per_mass(force_[i], mass[i]) - alpha * state.v[i];
-    v[i] += half * a;
-    x[i] += dt * v[i];
-    predicted[i] = v[i] + half * a;
-  }
+  const std::size_t n = state.x.size();
+  Loan<Vec3> x(n, AnyValues()), v(n, AnyValues()), predicted(n, AnyValues());
+  parallel_for(
+    n,
+    [&](const std::size_t i) {
+      const Vec3 a = per_mass(force_[i], mass[i]) - alpha * state.v[i];
+      v[i] = state.v[i] + half * a;
+      x[i] = state.x[i] + dt * v[i];
+      predicted[i] = v[i] + half * a;
+    },
+    many_corners);
   obey(constraints, state.time + dt, dt, x, predicted);
   total_force(model_, loads, {state.time + dt, x, predicted}, MassDamping::left_out, force_);
-  for (std::size_t i = 0; i < x.size(); ++i)
-    v[i] = (v[i] + per_mass(half, mass[i]) * force_[i]) / (1 + half * alpha);
+  parallel_for(
+    n, [&](const std::size_t i) { v[i] = (v[i] + per_mass(half, mass[i]) * force_[i]) / (1 + half * alpha); },
+    many_corners);
   obey(constraints, state.time + dt, dt, x, v);
   take_over(state, x, v, dt, "velocity Verlet");
   return {.stable_step = limit_.last()};
