@@ -1,9 +1,11 @@
 #include "dynamics/stable_step.h"
 
 #include "base/error.h"
+#include "base/parallel.h"
 #include "dynamics/conjugate_gradients.h"
 #include "dynamics/constraints.h"
 #include "dynamics/forces.h"
+#include "dynamics/points.h"
 
 #include <Eigen/Eigenvalues>
 
@@ -49,14 +51,16 @@ double lanczos(const Symmetric& S, Points q) {
   if (length == 0)
     return 0;
   for (int k = 0; k < most; ++k) {
-    for (std::size_t i = 0; i < q.size(); ++i)
-      q[i] /= length;
+    const double inverse = 1 / length;
+    parallel_for(
+      q.size(), [&](const std::size_t i) { q[i] *= inverse; }, many_corners);
     S(q, y);
     if (k > 0)
       beside.push_back(length);
     diagonal.push_back(dot(flat(q), flat(y)));
-    for (std::size_t i = 0; i < q.size(); ++i)
-      y[i] -= diagonal.back() * q[i] + (k > 0 ? length : 0) * before[i];
+    parallel_for(
+      q.size(), [&](const std::size_t i) { y[i] -= diagonal.back() * q[i] + (k > 0 ? length : 0) * before[i]; },
+      many_corners);
     std::swap(before, q);
     std::swap(q, y);
     length = norm(q);
@@ -75,12 +79,15 @@ double lanczos(const Symmetric& S, Points q) {
 double largest_of(const ForceModel& model, const Constraints& constraints, const Symmetric& A) {
   const auto mass = model.lumped_mass();
   Points p(mass.size());
+  std::vector<double> scale(mass.size());
+  for (std::size_t i = 0; i < p.size(); ++i)
+    scale[i] = per_mass(1.0, std::sqrt(mass[i]));
   const Symmetric S = [&](const Points& q, Points& y) {
-    for (std::size_t i = 0; i < p.size(); ++i)
-      p[i] = per_mass(q[i], std::sqrt(mass[i]));
+    parallel_for(
+      p.size(), [&](const std::size_t i) { p[i] = scale[i] * q[i]; }, many_corners);
     A(p, y);
-    for (std::size_t i = 0; i < p.size(); ++i)
-      y[i] = per_mass(y[i], std::sqrt(mass[i]));
+    parallel_for(
+      p.size(), [&](const std::size_t i) { y[i] *= scale[i]; }, many_corners);
     constraints.project(y);
   };
   return std::max(0.0, lanczos(S, random_directions(mass.size(), constraints)));
