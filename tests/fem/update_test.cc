@@ -150,7 +150,6 @@ TEST(Update, OfKnownForcesIsFindingThemAnew) {
   }
 }
 
-/// What was full and is partial now gets an element of its own, and the table does not grow when one is remade.
 /// Whatever corners the copies get, in whatever order they come, and crumb or not: who holds a corner is listed in the
 /// same order.
 TEST(Update, IncidenceIsThatOfTheComplexAfterAnyChange) {
@@ -193,6 +192,7 @@ TEST(Update, ChangesFewElements) {
   EXPECT_EQ(change.reshaped.size(), 4u);
 }
 
+/// Elements of their own are those of partial copies, and are no more when all are remade.
 TEST(Update, CountsElementsOfTheirOwn) {
   Draw draw(91);
   Body body = make_block({4, 4, 4}, 0.2, draw, {0.5, 0.5});
