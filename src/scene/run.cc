@@ -119,9 +119,11 @@ void advance(World& world, const int step, Timings& seconds) {
   for (std::size_t b = 0; b < world.bodies.size(); ++b) {
     Body& body = world.bodies[b];
     Watch& watch = world.watches[b];
+    const int n_recuts = body.n_recuts;
     on(world, body, step, t1, [&] { advance(body, world, step, watch, seconds); });
+    const bool is_cut = body.n_recuts != n_recuts; // which moves corners, and makes other pieces
     const ScopedTimer timer(seconds, "solve");
-    on(world, body, step, t1, [&] { require_sound_volume(body, watch, step >= world.n_steps); });
+    on(world, body, step, t1, [&] { require_sound_volume(body, watch, is_cut || step >= world.n_steps); });
   }
   for (Body& body : world.bodies)
     if (body.interior)
