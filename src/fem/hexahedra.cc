@@ -58,9 +58,10 @@ void Hexahedra::follow(const grid::Solid& solid, const std::span<const grid::Cop
   if (multigrid_) {
     former_levels_ = multigrid_->give_way();
     multigrid_ = nullptr;
-    diagonal_ = std::move(former_levels_.diagonal);
-    of_diagonal_ = OfDiagonal::unwanted;
+    if (is_hookean())
+      diagonal_ = std::move(former_levels_.diagonal);
   }
+  of_diagonal_ = OfDiagonal::unwanted;
   const grid::CornerNumbers before = std::exchange(numbers_, grid::CornerNumbers(solid, counted_));
   const auto numbers_of_same = numbers_.extend(before) ? CornersOfSame::kept : CornersOfSame::renumbered;
   std::vector<std::uint32_t> touched; // by number

@@ -88,7 +88,7 @@ class Hexahedra : public dynamics::ElasticModel, public dynamics::StiffnessMatri
   void force(const Points& x, Points& forces) const override;
   void linearise(const Points& x) override;
   void apply_stiffness(std::span<const double> p, std::span<double> y) const override;
-  /// By one at a time.
+  /// By one thread at a time: it keeps what multigrid takes of it.
   void stiffness_diagonal(PutBlock put) const override;
   /// Multigrid, where that pays.
   dynamics::Preconditioner* preconditioner(const dynamics::LinearEquation& equation) override;

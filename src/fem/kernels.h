@@ -36,7 +36,7 @@ constexpr int pair_index(const int i, const int j) { return i * (i + 1) / 2 + j;
 template <class T>
 struct alignas(64) PartialCubes {
   T volume[n_lanes];
-  T weight[n_lanes];                ///< of its diagonal blocks in `diagonal` [1]
+  T weight[n_lanes];                ///< of its diagonal blocks in `diagonal`; may be an excess alone, or none [1]
   T gradient[n_hourglass][n_lanes]; ///< b_m, at 3 k + j [1/m]
 };
 

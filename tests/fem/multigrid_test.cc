@@ -217,43 +217,6 @@ TEST(Multigrid, IsSymmetricAndPositiveForAnyCut) {
   RecordProperty("least_of_block_jacobi", std::to_string(least));
 }
 
-/// Whether somebody has asked for the diagonal of the stiffness or nobody has, before a cut and after: multigrid does
-/// the same, bit by bit.
-TEST(Multigrid, SharesADiagonalThatIsThere) {
-  for (const std::string& law : all_laws) {
-    Draw draw(310);
-    Body body = make_block({9, 9, 9}, 0.1, draw, {0.01, 0.99});
-    const HexahedraOptions options{.material = with_law(rubber(0.3), law)};
-    Hexahedra model(body, options);
-    for (int step = 0; step < 3; ++step) {
-      const Points x = disturbed(body, 0.01, draw), r = body.rest();
-      const dynamics::Loads loads = clamped_below(body, 0.15);
-      const Constraints constraints(loads, x.size());
-      const auto applied = [&](Hexahedra& to, const int n_asked) {
-        to.linearise(x);
-        for (int k = 0; k < n_asked; ++k)
-          EXPECT_GT(dynamics::stiffness_blocks(to)[0].trace(), 0);
-        dynamics::Preconditioner* const own = to.preconditioner({1, 1, to.lumped_mass(), 1e9, {}, constraints});
-        Points z(r.size());
-        own->apply(flat(r), flat(z));
-        return z;
-      };
-      Hexahedra anew(body, options);
-      const Points alone = applied(anew, 0);
-      for (const int n_asked : {1, 0, 2, 1})
-        EXPECT_EQ(applied(model, n_asked), alone) << law << ", step " << step;
-      std::vector<grid::EdgeId> edges;
-      for (const auto e : inner_edges(body))
-        if (!body.cuts.is_cut(e) && draw(0, 1) < 0.03) {
-          body.cuts.add(body.grid, {e, draw(0.1, 0.9), draw.vector().normalized(), 1});
-          edges.push_back(e);
-        }
-      surface::place(body, {});
-      model.update(body, grid::update_complex(body, edges).reshaped);
-    }
-  }
-}
-
 /// Cubes of up to 30,000 elements, in statics, and with the inertia of a step in which sound crosses the body.
 TEST(Multigrid, TakesAsManyIterationsForLargeBodies) {
   for (const double mass_factor : {0.0, 10.0})

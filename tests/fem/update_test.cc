@@ -70,6 +70,41 @@ TEST(Update, IsBuildingAnewBitByBit) {
     }
 }
 
+/// Whether somebody has asked for the diagonal of the stiffness or nobody has, before a cut, after one and after two:
+/// multigrid does the same as that of a new model, bit by bit.
+TEST(Update, SharesADiagonalThatIsThere) {
+  for (const std::string& law : all_laws) {
+    Draw draw(310);
+    Body body = make_block({9, 9, 9}, 0.1, draw, {0.01, 0.99});
+    const HexahedraOptions options{.material = with_law(rubber, law)};
+    Hexahedra model = make_model(body, options);
+    for (int step = 0; step < 4; ++step) {
+      const Points x = disturbed(body, draw), r = body.rest();
+      const dynamics::Loads loads;
+      const dynamics::Constraints constraints(loads, x.size());
+      const auto applied = [&](Hexahedra& to, const int n_asked) {
+        to.linearise(x);
+        for (int k = 0; k < n_asked; ++k)
+          EXPECT_GT(dynamics::stiffness_blocks(to)[0].trace(), 0);
+        dynamics::Preconditioner* const own = to.preconditioner({1, 1, to.lumped_mass(), 1e9, {}, constraints});
+        Points z(r.size());
+        own->apply(dynamics::flat(r), dynamics::flat(z));
+        return z;
+      };
+      Hexahedra anew = make_model(body, options);
+      const Points alone = applied(anew, 0);
+      for (const int n_asked : {1, 0, 2, 1})
+        EXPECT_EQ(applied(model, n_asked), alone) << law << ", step " << step;
+      model.update(body, cut_some(body, 0.03, draw));
+      if (step == 1) { // asked for between two cuts, by nobody who has a use for multigrid
+        model.linearise(disturbed(body, draw));
+        EXPECT_GT(dynamics::stiffness_blocks(model)[0].trace(), 0);
+        model.update(body, cut_some(body, 0.03, draw));
+      }
+    }
+  }
+}
+
 /// What a model remembers of the positions that it met last is what it would say anew, in any order, and nothing is
 /// remembered across a cut.
 TEST(Update, RemembersNothingButTheSame) {

@@ -17,7 +17,7 @@ std::string move(Subject& subject, Random& random);
 /// 0 .. n - 1.
 inline int draw(Random& random, const int n) { return std::uniform_int_distribution<int>(0, n - 1)(random); }
 
-/// The same as solids do: nothing, a rigid motion, a jitter of up to a hundredth of a cube.
+/// The same, as a solid moves in a step: nothing, a rigid motion, a jitter of up to a hundredth of a cube.
 std::string move_gently(Subject& subject, Random& random);
 
 /// Lower and upper end of all corners, and a margin of h [m].

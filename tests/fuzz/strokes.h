@@ -14,7 +14,7 @@ struct Strokes {
 };
 
 /// Blades for the body as it stands, with labels from `first` on: straight or bent, that go straight, turn, come back
-/// or rest; a step is a fiftieth of a cube long, or several cubes.
+/// or rest, in steps of any length.
 Strokes random_strokes(const Subject& subject, grid::CutLabel first, Random& random);
 
 } // namespace kerf::fuzz
