@@ -112,12 +112,25 @@ class Passage {
   std::vector<Edge> edges_;
 };
 
-/// Cuts what was left whole in cells where something is met now: what is beside it then may lie on its side of all
-/// cuts, and it is no shred any more (shreds.h). Adds it to what is cut, and returns how much that is.
+/// Is a stored cell of these within two cells of one of `cells`?
+template <class Cells>
+bool is_near_any(const grid::Grid& grid, const Cells& these, const std::vector<grid::CellId>& cells) {
+  const auto index = [&](const grid::CellId c) { return grid.index(grid.nodes(c)[0]); };
+  const auto are_near = [&](const grid::CellId a, const grid::CellId b) {
+    const Index3 i = index(a), k = index(b);
+    return std::abs(i[0] - k[0]) <= 2 && std::abs(i[1] - k[1]) <= 2 && std::abs(i[2] - k[2]) <= 2;
+  };
+  return std::ranges::any_of(these, [&](const grid::CellId c) {
+    return c.valid() && std::ranges::any_of(cells, [&](const grid::CellId other) { return are_near(c, other); });
+  });
+}
+
+/// Cuts what was left whole where something is met now: what lies around may be on its side of all cuts then, in a cell
+/// of it or beside one, and it is no shred any more (shreds.h). Adds it to what is cut, and returns how much that is.
 std::size_t take_up_left_ones(Solid& solid, std::vector<EdgeId>& edges, std::vector<grid::SkinSegment>& segments,
                               const std::vector<EdgeId>& edges_met,
                               const std::vector<grid::SkinSegment>& segments_met) {
-  if (!solid.cuts.has_later_cuts())
+  if (solid.cuts.edges_left_whole().empty() && solid.cuts.segments_left_whole().empty())
     return 0;
   std::vector<EdgeId> all_edges = edges;
   std::vector<grid::SkinSegment> all_segments = segments;
@@ -125,29 +138,23 @@ std::size_t take_up_left_ones(Solid& solid, std::vector<EdgeId>& edges, std::vec
   all_segments.insert(all_segments.end(), segments_met.begin(), segments_met.end());
   sort_unique(all_edges);
   sort_unique(all_segments);
+  const auto touched = grid::touched_cells(solid.grid, all_edges, all_segments);
   std::size_t n = 0;
-  for (const grid::CellId c : grid::touched_cells(solid.grid, all_edges, all_segments)) {
-    const grid::CellCuts cuts = grid::cuts_of(solid, c);
-    for (grid::Segments left = cuts.skeleton().segments & ~cuts.blades; left != 0; left &= left - 1) {
-      const int segment = std::countr_zero(left);
-      if (segment < grid::skeleton::first_half) {
-        const EdgeId e = solid.grid.edges(c)[segment];
-        const auto left_whole = solid.cuts.later_cuts(e);
-        if (left_whole.empty() || !solid.cuts.can_be_cut(solid.grid, e))
-          continue;
-        solid.cuts.add(solid.grid, {e, left_whole[0].t, left_whole[0].normal, left_whole[0].label});
-        edges.push_back(e);
-      } else {
-        const grid::SkinSegment s = grid::skin_segment(solid.grid, c, segment);
-        const auto left_whole = solid.cuts.later_cuts(s);
-        if (left_whole.empty() || solid.cuts.is_cut(s))
-          continue;
-        solid.cuts.add({s, left_whole[0].t, left_whole[0].normal, left_whole[0].label});
-        segments.push_back(s);
-      }
+  for (const EdgeId e : std::vector<EdgeId>(solid.cuts.edges_left_whole().begin(), solid.cuts.edges_left_whole().end()))
+    if (is_near_any(solid.grid, solid.grid.cells(e), touched)) {
+      const grid::LaterCut& met = solid.cuts.later_cuts(e)[0];
+      solid.cuts.add(solid.grid, {e, met.t, met.normal, met.label});
+      edges.push_back(e);
       ++n;
     }
-  }
+  const auto& left = solid.cuts.segments_left_whole();
+  for (const grid::SkinSegment& s : std::vector<grid::SkinSegment>(left.begin(), left.end()))
+    if (is_near_any(solid.grid, cells_of(solid.grid, s), touched)) {
+      const grid::LaterCut& met = solid.cuts.later_cuts(s)[0];
+      solid.cuts.add({s, met.t, met.normal, met.label});
+      segments.push_back(s);
+      ++n;
+    }
   return n;
 }
 

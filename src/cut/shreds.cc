@@ -194,21 +194,37 @@ template <class Key>
 std::size_t take_back(grid::Cuts& cuts, std::vector<Key>& from, std::vector<Key>& back) {
   sort_unique(back);
   if (!back.empty()) {
-    for (const Key& key : back)
-      if (const auto* const cut = cuts.find(key))
-        cuts.add(key, grid::LaterCut{cut->t, cut->normal, cut->label});
-    cuts.take_back(back);
+    cuts.leave_whole(back);
     std::erase_if(from, [&](const Key& key) { return std::ranges::binary_search(back, key); });
   }
   return back.size();
+}
+
+/// Does something else in the cells beside this one hold intervals of it?
+bool is_held_across_faces(const grid::Solid& solid, const Shred& shred, const CellId c, const grid::Intervals intervals) {
+  const grid::Part mine{0, 0, intervals};
+  for (int face = 0; face < cube::n_faces && intervals != 0; ++face) {
+    const CellId next = solid.grid.neighbour(c, face);
+    if (!next.valid())
+      continue;
+    const auto known = shred.items.find(next);
+    for (const grid::Joined& group : on_same_sides(solid, next)) {
+      const grid::Part its{0, 0, group.intervals};
+      if ((known == shred.items.end() || (group.items & ~known->second) != 0) &&
+          (face % 2 == 1 ? grid::are_glued(mine, its, face / 2) : grid::are_glued(its, mine, face / 2)))
+        return true;
+    }
+  }
+  return false;
 }
 
 /// Does it lie on the same side of all cuts as something beside it? Then it hangs on that.
 bool is_on_same_sides(const grid::Solid& solid, const Shred& shred) {
   return std::ranges::any_of(shred.items, [&](const auto& of_cell) {
     const auto& [c, items] = of_cell;
-    return std::ranges::any_of(on_same_sides(solid, c), [&, known = items](const grid::Joined& group) {
-      return (group.items & known) != 0 && (group.items & ~known) != 0;
+    return std::ranges::any_of(on_same_sides(solid, c), [&, cell = c, known = items](const grid::Joined& group) {
+      return (group.items & known) != 0 &&
+             ((group.items & ~known) != 0 || is_held_across_faces(solid, shred, cell, group.intervals));
     });
   });
 }

@@ -36,6 +36,7 @@ void Cuts::add(const Grid& grid, EdgeCut cut) {
   }
   index = static_cast<std::uint32_t>(cuts_.size());
   cuts_.push_back(cut);
+  edges_left_whole_.erase(cut.edge);
 }
 
 void Cuts::add_to(std::vector<LaterCut>& all, const LaterCut& later) {
@@ -89,9 +90,16 @@ void Cuts::add(SkinCut cut) {
   cut.t = std::clamp(cut.t, min_edge_parameter, 1 - min_edge_parameter);
   index = static_cast<std::uint32_t>(skin_cuts_.size());
   skin_cuts_.push_back(cut);
+  segments_left_whole_.erase(cut.segment);
 }
 
-void Cuts::take_back(const std::span<const EdgeId> edges) {
+void Cuts::leave_whole(const std::span<const EdgeId> edges) {
+  for (const EdgeId e : edges)
+    if (is_new(e)) {
+      const EdgeCut& cut = *find(e);
+      add(e, LaterCut{cut.t, cut.normal, cut.label});
+      edges_left_whole_.insert(e);
+    }
   std::size_t n = n_settled_;
   for (std::size_t i = n; i < cuts_.size(); ++i) {
     const EdgeId e = cuts_[i].edge;
@@ -110,7 +118,13 @@ void Cuts::take_back(const std::span<const EdgeId> edges) {
   cuts_.resize(n);
 }
 
-void Cuts::take_back(const std::span<const SkinSegment> segments) {
+void Cuts::leave_whole(const std::span<const SkinSegment> segments) {
+  for (const SkinSegment& segment : segments)
+    if (is_new(segment)) {
+      const SkinCut& cut = *find(segment);
+      add(segment, LaterCut{cut.t, cut.normal, cut.label});
+      segments_left_whole_.insert(segment);
+    }
   std::size_t n = n_settled_of_skin_;
   for (std::size_t i = n; i < skin_cuts_.size(); ++i) {
     const bool is_taken = std::ranges::binary_search(segments, skin_cuts_[i].segment);

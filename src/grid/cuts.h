@@ -13,6 +13,7 @@
 #include "grid/sparse_index.h"
 
 #include <map>
+#include <set>
 #include <span>
 #include <vector>
 
@@ -136,9 +137,12 @@ class Cuts {
   std::span<const SkinCut> skin_cuts() const { return skin_cuts_; }
   /// Cuts a segment of the skin that is not cut yet; t is clamped.
   void add(SkinCut cut);
-  /// Takes back blades' cuts that are not settled yet; ascending.
-  void take_back(std::span<const EdgeId> edges);
-  void take_back(std::span<const SkinSegment> segments);
+  /// Takes back blades' cuts that are not settled yet (ascending). They were met, as of later cuts, and can be cut
+  /// again.
+  void leave_whole(std::span<const EdgeId> edges);
+  void leave_whole(std::span<const SkinSegment> segments);
+  const std::set<EdgeId>& edges_left_whole() const { return edges_left_whole_; }
+  const std::set<SkinSegment>& segments_left_whole() const { return segments_left_whole_; }
 
   /// Each label once.
   void add(EdgeId e, const LaterCut& later) { add_to(later_of_edges_[e], later); }
@@ -201,7 +205,7 @@ class Cuts {
   void archive(Archive& a) {
     a(edge_cut_, outer_cut_, face_point_, cell_point_, skin_of_face_, skin_of_cell_, faces_, cells_);
     a(cuts_, skin_cuts_, n_cut_twice_, n_settled_, n_settled_of_skin_, points_);
-    a(front_of_cell_, fronts_, later_of_edges_, later_of_skin_, joined_);
+    a(front_of_cell_, fronts_, later_of_edges_, later_of_skin_, joined_, edges_left_whole_, segments_left_whole_);
   }
 
  private:
@@ -243,6 +247,8 @@ class Cuts {
   std::map<EdgeId, std::vector<LaterCut>> later_of_edges_;
   std::map<SkinSegment, std::vector<LaterCut>> later_of_skin_;
   std::map<CellId, std::vector<Joined>> joined_;
+  std::set<EdgeId> edges_left_whole_;
+  std::set<SkinSegment> segments_left_whole_;
   std::vector<EdgeCut> cuts_;
   std::vector<SkinCut> skin_cuts_;
   std::size_t n_cut_twice_ = 0, n_settled_ = 0, n_settled_of_skin_ = 0;

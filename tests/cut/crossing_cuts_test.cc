@@ -252,6 +252,31 @@ TEST_P(SmallAngle, LeavesFourPiecesAndFewSplinters) {
   }
 }
 
+/// Tips of the skin that stay on the body (cut/shreds.h) may lie in the wedge between two cuts. What is met later, also
+/// two cells further on, tells that they belong to it: then they hold it to nothing else.
+TEST(AtSkin, TipsInAWedgeDoNotHoldItToWhatIsBeside) {
+  Random random(140);
+  std::size_t n_left_whole = 0;
+  for (int i = 0; i < 60; ++i) {
+    const Body body = i % 2 ? box_body(random)
+                            : support::embedded(geometry::sphere_mesh(0.4, Vec3::Zero(), 3), h, random_offset(random));
+    const Vec3 middle = i % 2 ? Vec3(0.5 * (box.lower + box.upper)) : Vec3::Zero();
+    const Vec3 through = middle + 0.05 * support::random_vector(random), first = random_direction(random),
+               second = first + 0.09 * across(first, uniform(random, 0, 6.3)).u;
+    const std::vector<support::Plane> planes = {{first, first.dot(through)}, {second, second.dot(through)}};
+    Patient patient{body};
+    for (const Vec3& normal : {first, second}) {
+      const Frame frame = across(normal.normalized(), uniform(random, 0, 6.3));
+      const grid::CutLabel label = normal == first ? 1 : 2;
+      patient.pass(straight(through, frame.u, frame.v, 2, 2, label), 60, Release::queued);
+    }
+    EXPECT_GE(patient.volumes().size(), 4u) << i;
+    EXPECT_EQ(n_bridges(patient, planes), 0) << i;
+    n_left_whole += patient.n_left_whole;
+  }
+  EXPECT_GT(n_left_whole, 0u);
+}
+
 /// Copies on two sides of a face that have no node or point of the skin in common there, and yet its four corners.
 std::size_t n_glued_by_intervals(const Body& body) {
   std::size_t n = 0;

@@ -172,7 +172,7 @@ TEST(Complex, RefusesExactlyTheCutsThatJoin) {
     const Body before = support::with_copies(histories::applied(plan, blank));
     Body after = before;
     const SkinSegment taken = plan.of_skin[random() % plan.of_skin.size()].segment;
-    after.cuts.take_back(std::array{taken});
+    after.cuts.leave_whole(std::array{taken});
     const Plan more = histories::random_plan(random, after, 0, random() % 2 ? 0.2 : 0, 0);
     histories::apply(more, after);
     if (has_joined(before, after)) {

@@ -221,7 +221,7 @@ CutChange join_interval(Body& body, const CopyId c, const int face) {
 /// definition names. Who follows hears of each copy that was in a crumb, or is now.
 TEST(Crumbs, BecomeMaterialAgainWhereTheyAreJoined) {
   std::size_t n_ended = 0, n_of_two = 0, n_stay = 0;
-  for (unsigned seed = 1; seed <= 3; ++seed) {
+  for (unsigned seed = 1; seed <= 6; ++seed) {
     support::Random random(200 + seed);
     Body body = support::with_copies(support::with_placed_skin(
       seed % 2 == 0 ? support::block({5, 4, 4}, 0.1) : support::ball(0.3, 0.1, support::random_offset(random))));

@@ -207,7 +207,7 @@ TEST(Cuts, OfTheSkinAreTakenBackUntilTheyAreSettled) {
     for (const SkinSegment& segment : histories::skin_segments(body.grid))
       if (random() % 3 == 0)
         taken.insert(segment);
-    body.cuts.take_back(std::vector<SkinSegment>(taken.begin(), taken.end()));
+    body.cuts.leave_whole(std::vector<SkinSegment>(taken.begin(), taken.end()));
     for (std::size_t k = order.size(); k-- > n_settled;)
       if (taken.contains(order[k])) {
         expected.erase(order[k]);
