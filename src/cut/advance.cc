@@ -231,7 +231,8 @@ std::vector<Front> Advance::take(const Solid& solid, const PendingCuts& pending)
   for (const CellId c : touched_) {
     Cell& cell = cells_.at(c);
     const Front* const earlier = solid.cuts.front(c);
-    if (earlier ? !is_ahead(solid, *earlier) : grid::whole_parts_of(grid::cuts_of(solid, c)).n > 1)
+    if (earlier ? !is_ahead(solid, *earlier)
+                : solid.cuts.joined(c) || grid::whole_parts_of(grid::cuts_of(solid, c)).n > 1)
       cells_.erase(c);
     else if (waits(c))
       later.insert(c);

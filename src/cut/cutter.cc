@@ -1,5 +1,6 @@
 #include "cut/cutter.h"
 
+#include "base/loan.h"
 #include "base/sort_unique.h"
 #include "cut/course.h"
 #include "cut/fronts.h"
@@ -169,7 +170,7 @@ Cutter::Cutter(const std::size_t n_labels, const Release release, const Fronts f
 
 void Cutter::begin(const Solid& solid, const Points& x) {
   boxes_.emplace(solid);
-  x_before_.reserve(x.size() + x.size() / 8); // some room for new corners
+  x_before_.reserve(with_slack(x.size()));
   stand(x);
 }
 

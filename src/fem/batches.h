@@ -158,7 +158,8 @@ struct BatchedElements {
   }
 };
 
-/// Once each element, and what it counts beyond that; or that alone.
+/// What add_diagonal() adds of an element: its diagonal, times its own bound over PartialElements::bound where that is
+/// more than 1; or only what is beyond the diagonal, for those who have that already.
 enum class InDiagonal { all, excess };
 
 /// Of partial copies.
@@ -183,7 +184,7 @@ void add_product(const Batching& batching, const BatchedElements<T>& elements, c
 /// Adds diagonal blocks, two rows a corner (kernels.h).
 template <class T>
 void add_diagonal(const Batching& batching, const BatchedElements<T>& elements, Row<T>* blocks);
-/// Of elements of which the diagonal has the excess alone.
+/// Of elements that were batched with InDiagonal::excess.
 void add_excess_diagonal(const Batching& batching, const BatchedElements<float>& elements, Row<float>* blocks);
 
 } // namespace kerf::fem

@@ -20,7 +20,7 @@
 ///
 /// Every copy's element is its own, and sums over copies are taken in an order that the complex alone says: any number
 /// of threads, and any way of getting to a complex, gives the same bits. Functions that are const may be called from
-/// several threads at once.
+/// several threads at once, but for stiffness_diagonal().
 ///
 /// Limits: strain beside the mean one is taken as small, so thin parts one cell across are good for moderate strain.
 

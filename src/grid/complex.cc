@@ -1,5 +1,6 @@
 #include "grid/complex.h"
 
+#include "base/loan.h"
 #include "base/parallel.h"
 #include "base/sort_unique.h"
 #include "grid/corner_classes.h"
@@ -18,9 +19,6 @@ namespace kerf::grid {
 namespace {
 
 constexpr std::uint32_t none = Id<void>::no_value;
-
-/// Room for some cuts, so that the first ones do not move the whole table.
-std::size_t with_room(const std::size_t n) { return n + n / 8; }
 
 struct CutCell {
   CellId cell;
@@ -43,7 +41,7 @@ void make_copies(const Grid& grid, const std::vector<CutCell>& cut_cells, CellCo
   std::size_t n_copies = grid.n_cells();
   for (const CutCell& cut : cut_cells)
     n_copies += cut.parts.n - 1;
-  complex.copies.reserve(with_room(n_copies));
+  complex.copies.reserve(with_slack(n_copies));
   complex.first_copy.reserve(grid.n_cells());
   auto cut = cut_cells.begin();
   for (const CellId c : ids<CellId>(grid.n_cells())) {
@@ -101,7 +99,7 @@ class SlotsOfNodes {
 /// Numbers the corners by node, and enters them in the copies around nodes that have slots.
 void number_corners(const Solid& solid, const SlotsOfNodes& slots, CellComplex& complex) {
   const Grid& grid = solid.grid;
-  complex.node.reserve(with_room(grid.n_nodes()));
+  complex.node.reserve(with_slack(grid.n_nodes()));
   complex.real_corner.resize(grid.n_nodes());
   for (const NodeId node : ids<NodeId>(grid.n_nodes())) {
     if (!slots.has(node)) {
@@ -398,7 +396,7 @@ CutChange update_complex(Solid& solid, std::vector<EdgeId> new_edges, std::vecto
 
 Points rest_positions(const Solid& solid) {
   Points x;
-  x.reserve(with_room(solid.complex.n_corners()));
+  x.reserve(with_slack(solid.complex.n_corners()));
   for (const NodeId n : solid.complex.node)
     x.push_back(solid.grid.position(n));
   return x;

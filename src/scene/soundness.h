@@ -13,11 +13,14 @@
 
 #include "scene/body.h"
 
+#include <limits>
+
 namespace kerf::scene {
 
 struct Watch {
   bool is_sound = true; ///< what was found last
-  double way = 0;       ///< of any corner against the mean motion since then, at most [m]
+  double way = std::numeric_limits<double>::infinity(); ///< of any corner against the mean motion since then, at most
+                                                        ///< [m]; infinite where volumes were never asked for
 
   void archive(Archive& a) { a(is_sound, way); }
 };

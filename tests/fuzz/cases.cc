@@ -21,7 +21,7 @@ namespace kerf::fuzz {
 namespace {
 
 /// How what a sweep cuts is released: at most two edges of a cell at once as in scenes, one release a sweep;
-/// the same, but until nothing waits; or all of it at once.
+/// the same, but until nothing waits; or all of it at once. With fronts the first, as scenes do.
 enum class Release { one, drained, at_once };
 
 constexpr std::array<const char*, 3> release_names = {"one release a sweep", "released until nothing waits", "at once"};
