@@ -274,6 +274,7 @@ class Skin {
     result_.solid.cuts.reserve(cuts_.size() + cuts_.size() / 8); // some room for blades
     for (const grid::EdgeCut& cut : cuts_)
       result_.solid.cuts.add(result_.solid.grid, cut);
+    result_.n_components = is_lost_.size();
     result_.n_lost_components = std::count(is_lost_.begin(), is_lost_.end(), 1);
   }
 

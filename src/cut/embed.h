@@ -24,6 +24,7 @@ struct Embedding {
   std::size_t n_thin_walls = 0; ///< edges with both ends empty that the mesh crosses 2, 4, ... times: left uncut
   std::size_t n_thin_gaps = 0;  ///< edges with both ends material that it crosses so: left uncut
   std::size_t n_triple_crossings = 0; ///< edges crossed 3, 5, ... times: cut nearest to their material end only
+  std::size_t n_components = 0;       ///< connected shells of the mesh
   std::size_t n_lost_components = 0;  ///< connected shells of the mesh that cut no edge
 };
 

@@ -100,7 +100,8 @@ struct TractionParameters {
     patch.describe(p);
     p.text("Traction [N/m^2]", traction,
            "Force per rest area, world frame: three functions of x, y, z (rest position, m) and t (s), separated by "
-           "semicolons.");
+           "semicolons. They are asked for at the surface's vertices, and linear between: where they jump, the jump is "
+           "as wide as a triangle.");
   }
 };
 
@@ -111,7 +112,9 @@ struct PressureParameters {
   void describe(Parameters& p) {
     patch.describe(p);
     p.text("Pressure [Pa]", pressure,
-           "Against the current outward normal, per current area: a function of x, y, z (rest position, m) and t (s).");
+           "Against the current outward normal, per current area: a function of x, y, z (rest position, m) and t (s). It "
+           "is asked for at the surface's vertices, and linear between: where it jumps, the jump is as wide as a "
+           "triangle.");
   }
 };
 

@@ -171,6 +171,35 @@ std::string describe_crumbs(const Body& body) {
   return text + (crumbs.size() > most ? " and elsewhere" : "") + "; a smaller cube edge may join them";
 }
 
+/// Which parts of an uncut mesh the grid has for pieces of their own, though elastic ones; empty where there are no more
+/// than the mesh has shells.
+std::string describe_pieces(const Body& body, const std::size_t n_shells) {
+  constexpr std::size_t most = 5;
+  struct Piece {
+    std::size_t n_cells = 0;
+    Vec3 sum = Vec3::Zero(); // of their centres [m]
+  };
+  std::vector<Piece> pieces(body.pieces.n_pieces);
+  for (const auto c : ids<grid::CopyId>(body.solid.complex.n_copies()))
+    if (!body.solid.crumbs.holds(c)) {
+      Piece& piece = pieces[body.pieces.piece[c]];
+      ++piece.n_cells;
+      piece.sum += grid::centre(body.solid.grid, body.solid.complex.copies[c].cell);
+    }
+  std::erase_if(pieces, [](const Piece& piece) { return piece.n_cells == 0; });
+  if (pieces.size() <= n_shells)
+    return "";
+  std::ranges::sort(pieces, std::greater<>(), &Piece::n_cells);
+  std::string text = line("warning: body ", body.name, ": ", pieces.size(), " pieces on this grid, of a mesh of ",
+                          n_shells, n_shells == 1 ? " shell" : " shells", "; beside the largest:");
+  for (std::size_t i = 1; i < std::min(most + 1, pieces.size()); ++i) {
+    const Vec3 p = pieces[i].sum / double(pieces[i].n_cells);
+    text += line(i == 1 ? " " : ", ", pieces[i].n_cells, " cubes around (", p[0], ", ", p[1], ", ", p[2], ") m");
+  }
+  return text + (pieces.size() > most + 1 ? " and others" : "") +
+         ". A smaller cube edge, or another Lattice offset, may join them";
+}
+
 /// In statics, what the scene says of motion.
 std::string describe_statics(const Body& body) {
   if (body.physics->motion() != dynamics::MotionKind::quasi_static)
@@ -254,6 +283,8 @@ Body compose_body(const Section& section, const GravityParameters* gravity, cons
     world.composition.push_back(warning);
   if (body.physics->crumbs().any())
     world.composition.push_back(describe_crumbs(body));
+  if (const std::string said = describe_pieces(body, embedding.n_components); !said.empty())
+    world.composition.push_back(said);
   return body;
 }
 

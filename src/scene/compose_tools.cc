@@ -101,6 +101,16 @@ double way_until(const double time, const Body& body, const World& world) {
   return 0.5 * (box.upper - box.lower).norm() + fastest * time + carried;
 }
 
+/// Of a blade that stands where it is first all the time; empty otherwise.
+std::string warn_of_times(const cut::Blade& blade, const World& world) {
+  const auto [first, last] = times_of_motion(blade);
+  const double end = world.n_steps * world.time_step;
+  return first == last || first < end
+           ? ""
+           : line("warning: blade ", blade.name, ": its Times [s] begin at ", first, " s, when the run has ended at ",
+                  end, " s: it never moves. Let it come earlier, or the run end later");
+}
+
 bool comes_near(const cut::Blade& blade, const Body& body, const World& world) {
   const auto [first, last] = times_of_motion(blade);
   Points path = cut::world_points(blade, first);
@@ -148,6 +158,8 @@ void compose_blade(const Section& section, World& world) {
   }
   if (blade.spine.isZero(0))
     blade.spine = usual_spine(blade);
+  if (const std::string warning = warn_of_times(blade, world); !warning.empty())
+    world.composition.push_back(warning);
   world.blades.push_back(std::move(blade));
   world.composition.push_back("blade " + section.name());
 }

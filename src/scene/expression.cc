@@ -9,21 +9,35 @@
 #include <cmath>
 #include <iostream>
 #include <memory>
+#include <sstream>
 #include <vector>
 
 namespace kerf::scene {
 
 namespace {
 
-/// deal.II prints what the parser says to std::cerr before it throws; users get our own message instead.
-class SilentErrors {
+/// deal.II prints what the parser says to std::cerr before it throws; users get it within our own message.
+class WordsOfParser {
  public:
-  SilentErrors() : buffer_(std::cerr.rdbuf(nullptr)) {}
-  ~SilentErrors() { std::cerr.rdbuf(buffer_); }
-  SilentErrors(const SilentErrors&) = delete;
-  SilentErrors& operator=(const SilentErrors&) = delete;
+  WordsOfParser() : buffer_(std::cerr.rdbuf(said_.rdbuf())) {}
+  ~WordsOfParser() { std::cerr.rdbuf(buffer_); }
+  WordsOfParser(const WordsOfParser&) = delete;
+  WordsOfParser& operator=(const WordsOfParser&) = delete;
+
+  /// ": " and what is wrong; empty where it has not said.
+  std::string what() const {
+    const std::string said = said_.str(), before = "Message:  <";
+    const auto begin = said.find(before), end = said.find('>', begin);
+    if (begin == std::string::npos || end == std::string::npos)
+      return "";
+    std::string words = said.substr(begin + before.size(), end - begin - before.size());
+    while (!words.empty() && words.back() == '.')
+      words.pop_back();
+    return ": " + words;
+  }
 
  private:
+  std::ostringstream said_;
   std::streambuf* buffer_;
 };
 
@@ -67,12 +81,12 @@ class Expressions {
       place_(section
                .complaint(key, "",
                           variables == "t"
-                            ? "Choose an expression that is finite at all times of the run. " + example(n)
+                            ? "Choose an expression that is finite at all times of the run. " + example()
                             : "Choose an expression that is finite in the whole body")
                .complaint()),
       parser_(std::make_shared<dealii::FunctionParser<3>>(n)) {
     const std::string of = (n == 1 ? "one expression of " : "three expressions of ") + variables;
-    const std::string remedy = example(n);
+    const std::string remedy = example();
     const std::string separated = n == 1 ? "" : ", separated by semicolons";
     if (std::count(text.begin(), text.end(), ';') != n - 1)
       throw section.complaint(key, "must be " + of + separated, remedy);
@@ -81,8 +95,8 @@ class Expressions {
                               "Write decimals with a point, as 0.5, and semicolons between expressions");
     if (assigns(text))
       throw section.complaint(key, "must be " + of + ", which assigns nothing: '=' compares as '=='", remedy);
+    const WordsOfParser words;
     try {
-      const SilentErrors silent;
       parser_->initialize("x,y,z,t", text, {{"pi", std::acos(-1.0)}}, true);
       if (!has_place_)
         require_no_others<1>("t", text);
@@ -91,7 +105,7 @@ class Expressions {
       for (int i = 0; i < n; ++i) // in a body, the origin may be outside
         has_place_ ? parser_->value(dealii::Point<3>(), static_cast<unsigned>(i)) : (*this)(i, Vec3::Zero(), 0);
     } catch (const dealii::ExceptionBase&) {
-      throw section.complaint(key, "must be " + of + " that can be evaluated", remedy);
+      throw section.complaint(key, "must be " + of + " that can be evaluated" + words.what(), remedy);
     }
   }
 
@@ -109,8 +123,9 @@ class Expressions {
   }
 
  private:
-  static std::string example(const int n) {
-    return n == 1 ? "For example: 100*sin(2*pi*t)" : "For example: 0; 0; 0.01*sin(2*pi*t)";
+  std::string example() const {
+    const std::string one = has_time_ ? "sin(2*pi*t)" : "sin(2*pi*x)";
+    return n_ == 1 ? "For example: 100*" + one : "For example: 0; 0; 0.01*" + one;
   }
   /// The parser knows x, y, z and t; not every expression may. Throws its exceptions.
   template <int n_variables>

@@ -137,7 +137,10 @@ std::vector<std::string> describe_supports(const Body& body) {
              "cubes longer. Write 'set Hold at = skin', or move a layer of nodes to the skin with Lattice "
              "offset"));
   }
-  if (std::all_of(held.begin(), held.end(), [](const auto h) { return h != 0; }))
+  const Loan<std::uint8_t> in_all_directions = dynamics::held_corners(body.loads, held.size());
+  const auto is_there = [](const auto h) { return h != 0; };
+  if (std::all_of(held.begin(), held.end(), is_there) &&
+      std::all_of(in_all_directions.begin(), in_all_directions.end(), is_there))
     warnings.push_back(line("warning: body ", body.name, ": its supports hold all of its ", held.size(),
                             body.physics->particles_are_corners() ? " corners" : " phyxels",
                             ", so nothing of it moves but as they do. Use smaller regions, smaller cubes, or more "

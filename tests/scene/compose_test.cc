@@ -7,12 +7,14 @@
 #include "dynamics/sound_steps.h"
 #include "dynamics/symplectic_euler.h"
 #include "physics/on_corners.h"
+#include "tests/output/samples.h"
 #include "tests/scene/worlds.h"
 #include "tests/support/checkout.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <fstream>
 
 namespace kerf::scene::compose_test {
 namespace {
@@ -125,6 +127,53 @@ TEST(Compose, SupportsHoldTheirNodesAndMoveThem) {
   for (const Vec3& X : loads.supports[0].rest)
     EXPECT_GT(X[2], 0.06);
   EXPECT_LT((loads.supports[0].displacement(0.5) - Vec3(0.5, 1, 1)).norm(), 1e-15);
+}
+
+/// Two boxes with edges of .3 m, a distance of .2 m apart along x, and a bar with edges of `width` [m] between them.
+std::string dumbbell(const double width) {
+  std::ostringstream text;
+  constexpr int n_rings = 6;
+  text << "OFF\n" << 4 * n_rings << ' ' << 8 * (n_rings - 1) + 4 << " 0\n";
+  for (const auto& [x, edge] : {std::pair(0.0, 0.3), {0.3, 0.3}, {0.3, width}, {0.5, width}, {0.5, 0.3}, {0.8, 0.3}})
+    for (const auto& [y, z] : {std::pair(-1, -1), {1, -1}, {1, 1}, {-1, 1}})
+      text << x << ' ' << 0.5 * edge * y << ' ' << 0.5 * edge * z << '\n';
+  for (int first = 0; first < 4 * (n_rings - 1); first += 4)
+    for (int k = 0; k < 4; ++k) {
+      const int a = first + k, b = first + (k + 1) % 4;
+      text << "3 " << a << ' ' << b << ' ' << b + 4 << "\n3 " << a << ' ' << b + 4 << ' ' << a + 4 << '\n';
+    }
+  const int last = 4 * (n_rings - 1);
+  text << "3 0 2 1\n3 0 3 2\n3 " << last << ' ' << last + 1 << ' ' << last + 2 << "\n3 " << last << ' ' << last + 2
+       << ' ' << last + 3 << '\n';
+  return text.str();
+}
+
+TEST(Compose, WarnsOfPiecesThatTheMeshDoesNotHave) {
+  const output::TemporaryFolder folder;
+  const std::string file = (folder / "dumbbell.off").string();
+  for (const auto& [width, is_parted] : {std::pair(0.12, false), {0.01, true}}) {
+    std::ofstream(file) << dumbbell(width);
+    const World world = world_of(cube_scene(), {"Body cube/Mesh=" + file, "Body cube/Cube edge [m]=0.04"});
+    EXPECT_EQ(world.bodies.at(0).pieces.n_pieces, is_parted ? 2u : 1u);
+    EXPECT_EQ(says(world, "warning: body cube: 2 pieces on this grid, of a mesh of 1 shell"), is_parted);
+  }
+}
+
+TEST(Compose, WarnsOfSupportsThatHoldAll) {
+  const std::string all = "Body cube/Support all/Lower [m]=-1,-1,-1", upper = "Body cube/Support all/Upper [m]=1,1,1",
+                    words = "warning: body cube: its supports hold all";
+  EXPECT_TRUE(says(world_of(cube_scene(), {all, upper}), words));
+  EXPECT_FALSE(says(world_of(cube_scene(), {all, upper, "Body cube/Support all/Hold=y"}), words));
+}
+
+TEST(Compose, WarnsOfBladesThatComeTooLate) {
+  const auto warns = [](const std::string& times) {
+    return says(world_of(cube_scene() + section("Blade knife", {"Edge [m] = -0.05, -1, 0; -0.05, 1, 0", times,
+                                                                "Positions [m] = 0, 0, 0; 0.1, 0, 0"})),
+                "warning: blade knife");
+  };
+  EXPECT_TRUE(warns("Times [s] = 500, 501"));
+  EXPECT_FALSE(warns("Times [s] = 0, 501"));
 }
 
 TEST(Compose, EveryObservableHasUnitAndSourceAndIsFinite) {
