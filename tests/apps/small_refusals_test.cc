@@ -118,7 +118,9 @@ TEST_F(SmallRefusals, ExpressionsTakeNoLooseCommasAndNoTimeAtTheStart) {
   };
   for (const std::string text : {"0,5*x; 0; 0", "x,y; 0; 0", "(0,1)*x; 0; 0"})
     expect_error(displaced(text), 1, {"Displacement [m]", "a comma separates arguments of a function only", "0.5"});
-  expect_error(displaced("t; 0; 0"), 1, {"Displacement [m]", "three expressions of x, y, z that can be evaluated: ", "\"t\"", "sin(2*pi*x)"});
+  expect_error(
+    displaced("t; 0; 0"), 1,
+    {"Displacement [m]", "three expressions of x, y, z that can be evaluated: ", "\"t\"", "sin(2*pi*x)"});
   EXPECT_EQ(displaced("max(0.001, 0.01*x); 0; 0").exit_code, 0);
 }
 
