@@ -201,7 +201,8 @@ std::size_t take_back(grid::Cuts& cuts, std::vector<Key>& from, std::vector<Key>
 }
 
 /// Does something else in the cells beside this one hold intervals of it?
-bool is_held_across_faces(const grid::Solid& solid, const Shred& shred, const CellId c, const grid::Intervals intervals) {
+bool is_held_across_faces(const grid::Solid& solid, const Shred& shred, const CellId c,
+                          const grid::Intervals intervals) {
   const grid::Part mine{0, 0, intervals};
   for (int face = 0; face < cube::n_faces && intervals != 0; ++face) {
     const CellId next = solid.grid.neighbour(c, face);

@@ -30,8 +30,8 @@ struct FloorParameters {
     p.vector("Point [m]", point, "On the floor.");
     p.vector("Normal [1]", normal, "Points away from the floor to where bodies are; of any length.");
     p.number("Stiffness [N/m^3]", stiffness, positive, "Pressure of the floor per depth of penetration.");
-    p.number("Friction [1]", friction, non_negative, "Coulomb's coefficient; 0 for none. Friction needs 'Newton iterations [1] = 3' or more with implicit "
-             "integrators.");
+    p.number("Friction [1]", friction, non_negative,
+             "Coulomb's coefficient; 0 for none. It needs 'Newton iterations [1] = 3' or more of implicit integrators.");
     p.number("Creep velocity [m/s]", creep, positive, "Friction is full from here on; sticking bodies creep slower.");
   }
 };

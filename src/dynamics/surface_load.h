@@ -112,8 +112,8 @@ struct PressureParameters {
   void describe(Parameters& p) {
     patch.describe(p);
     p.text("Pressure [Pa]", pressure,
-           "Against the current outward normal, per current area: a function of x, y, z (rest position, m) and t (s). It "
-           "is asked for at the surface's vertices, and linear between: where it jumps, the jump is as wide as a "
+           "Against the current outward normal, per current area: a function of x, y, z (rest position, m) and t (s). "
+           "It is asked for at the surface's vertices, and linear between: where it jumps, the jump is as wide as a "
            "triangle.");
   }
 };

@@ -171,8 +171,8 @@ std::string describe_crumbs(const Body& body) {
   return text + (crumbs.size() > most ? " and elsewhere" : "") + "; a smaller cube edge may join them";
 }
 
-/// Which parts of an uncut mesh the grid has for pieces of their own, though elastic ones; empty where there are no more
-/// than the mesh has shells.
+/// Which parts of an uncut mesh the grid has for pieces of their own, though elastic ones; empty where there are no
+/// more than the mesh has shells.
 std::string describe_pieces(const Body& body, const std::size_t n_shells) {
   constexpr std::size_t most = 5;
   struct Piece {
