@@ -11,7 +11,6 @@
 #include "grid/touched.h"
 
 #include <algorithm>
-#include <bit>
 #include <iterator>
 
 namespace kerf::cut {
@@ -113,23 +112,71 @@ class Passage {
   std::vector<Edge> edges_;
 };
 
-/// Is a stored cell of these within two cells of one of `cells`?
+/// Where something is met, in blocks of cells.
+class Meetings {
+ public:
+  Meetings(const grid::Grid& grid, const std::vector<grid::CellId>& cells) : grid_(grid) {
+    for (const grid::CellId c : cells)
+      blocks_.insert(block(index(c), 0));
+  }
+
+  bool any() const { return !blocks_.empty(); }
+  /// Is one within two cells of a cell that is stored? Some that are up to five away count too.
+  bool are_near(const grid::CellId c) const {
+    if (!c.valid())
+      return false;
+    for (int corner = 0; corner < 8; ++corner) { // of a cube of five cells, which spans two blocks at most
+      const Index3 lower = block(index(c), -2), upper = block(index(c), 2);
+      if (blocks_.contains(
+            {corner & 1 ? upper[0] : lower[0], corner & 2 ? upper[1] : lower[1], corner & 4 ? upper[2] : lower[2]}))
+        return true;
+    }
+    return false;
+  }
+
+ private:
+  Index3 index(const grid::CellId c) const { return grid_.index(grid_.nodes(c)[0]); }
+  static Index3 block(Index3 i, const int shift) {
+    constexpr int edge = 4;
+    for (int& k : i)
+      k = (k + shift + edge) / edge;
+    return i;
+  }
+
+  const grid::Grid& grid_;
+  std::set<Index3> blocks_;
+};
+
+/// What was left whole near meetings, and all of it in cells with that: what hangs by some is left with all or none.
 template <class Cells>
-bool is_near_any(const grid::Grid& grid, const Cells& these, const std::vector<grid::CellId>& cells) {
-  const auto index = [&](const grid::CellId c) { return grid.index(grid.nodes(c)[0]); };
-  const auto are_near = [&](const grid::CellId a, const grid::CellId b) {
-    const Index3 i = index(a), k = index(b);
-    return std::abs(i[0] - k[0]) <= 2 && std::abs(i[1] - k[1]) <= 2 && std::abs(i[2] - k[2]) <= 2;
+void find_left_ones(const Solid& solid, const Meetings& meetings, const Cells& cells_around, std::set<EdgeId>& edges,
+                    std::set<grid::SkinSegment>& segments) {
+  std::set<grid::CellId> known;
+  const auto take_all = [&](const auto& left, auto& taken) {
+    std::size_t n = 0;
+    for (const auto& one : left) {
+      const auto cells = cells_around(one);
+      if (taken.contains(one) || std::ranges::none_of(cells, [&](const grid::CellId c) {
+            return meetings.are_near(c) || known.contains(c);
+          }))
+        continue;
+      taken.insert(one);
+      for (const grid::CellId c : cells)
+        if (c.valid())
+          known.insert(c);
+      ++n;
+    }
+    return n;
   };
-  return std::ranges::any_of(these, [&](const grid::CellId c) {
-    return c.valid() && std::ranges::any_of(cells, [&](const grid::CellId other) { return are_near(c, other); });
-  });
+  while (take_all(solid.cuts.edges_left_whole(), edges) + take_all(solid.cuts.segments_left_whole(), segments) > 0) {
+  }
 }
 
-/// Cuts what was left whole where something is met now: what lies around may be on its side of all cuts then, in a cell
-/// of it or beside one, and it is no shred any more (shreds.h). Adds it to what is cut, and returns how much that is.
-std::size_t take_up_left_ones(Solid& solid, std::vector<EdgeId>& edges, std::vector<grid::SkinSegment>& segments,
-                              const std::vector<EdgeId>& edges_met,
+/// Cuts what was left whole near to where something is met now: there it tells on which sides of all cuts things lie,
+/// in a cell and, by intervals, across the faces of that; and a shred of a cell beside may be none any more (shreds.h).
+/// Edges of which another cut waits stay until that is released. Adds it to what is cut, and returns how much that is.
+std::size_t take_up_left_ones(Solid& solid, const PendingCuts& pending, std::vector<EdgeId>& edges,
+                              std::vector<grid::SkinSegment>& segments, const std::vector<EdgeId>& edges_met,
                               const std::vector<grid::SkinSegment>& segments_met) {
   if (solid.cuts.edges_left_whole().empty() && solid.cuts.segments_left_whole().empty())
     return 0;
@@ -139,24 +186,29 @@ std::size_t take_up_left_ones(Solid& solid, std::vector<EdgeId>& edges, std::vec
   all_segments.insert(all_segments.end(), segments_met.begin(), segments_met.end());
   sort_unique(all_edges);
   sort_unique(all_segments);
-  const auto touched = grid::touched_cells(solid.grid, all_edges, all_segments);
-  std::size_t n = 0;
-  for (const EdgeId e : std::vector<EdgeId>(solid.cuts.edges_left_whole().begin(), solid.cuts.edges_left_whole().end()))
-    if (is_near_any(solid.grid, solid.grid.cells(e), touched)) {
-      const grid::LaterCut& met = solid.cuts.later_cuts(e)[0];
-      solid.cuts.add(solid.grid, {e, met.t, met.normal, met.label});
-      edges.push_back(e);
-      ++n;
-    }
-  const auto& left = solid.cuts.segments_left_whole();
-  for (const grid::SkinSegment& s : std::vector<grid::SkinSegment>(left.begin(), left.end()))
-    if (is_near_any(solid.grid, cells_of(solid.grid, s), touched)) {
-      const grid::LaterCut& met = solid.cuts.later_cuts(s)[0];
-      solid.cuts.add({s, met.t, met.normal, met.label});
-      segments.push_back(s);
-      ++n;
-    }
-  return n;
+  const Meetings meetings(solid.grid, grid::touched_cells(solid.grid, all_edges, all_segments));
+  if (!meetings.any())
+    return 0;
+  struct CellsAround {
+    const grid::Grid& grid;
+    std::array<grid::CellId, 4> operator()(const EdgeId e) const { return grid.cells(e); }
+    std::array<grid::CellId, 2> operator()(const grid::SkinSegment& segment) const { return cells_of(grid, segment); }
+  };
+  std::set<EdgeId> left_edges;
+  std::set<grid::SkinSegment> left_segments;
+  find_left_ones(solid, meetings, CellsAround{solid.grid}, left_edges, left_segments);
+  std::erase_if(left_edges, [&](const EdgeId e) { return pending.waits(e); });
+  for (const EdgeId e : left_edges) {
+    const grid::LaterCut& met = solid.cuts.later_cuts(e)[0];
+    solid.cuts.add(solid.grid, {e, met.t, met.normal, met.label});
+    edges.push_back(e);
+  }
+  for (const grid::SkinSegment& segment : left_segments) {
+    const grid::LaterCut& met = solid.cuts.later_cuts(segment)[0];
+    solid.cuts.add({segment, met.t, met.normal, met.label});
+    segments.push_back(segment);
+  }
+  return left_edges.size() + left_segments.size();
 }
 
 } // namespace
@@ -311,7 +363,7 @@ Cutter::Added Cutter::add(Solid& solid, const SweepCuts& cuts, const Points& x) 
       passed_[cut.label - 1].remove(cells_of(solid.grid, cut.segment));
     } else
       meet(cut, cut.segment, segments_met);
-  const std::size_t n_taken_up = take_up_left_ones(solid, edges, segments, edges_met, segments_met);
+  const std::size_t n_taken_up = take_up_left_ones(solid, pending_, edges, segments, edges_met, segments_met);
   std::sort(edges.begin(), edges.end());
   std::sort(segments.begin(), segments.end());
   counts_.n_left_whole += leave_shreds(solid, edges, segments);

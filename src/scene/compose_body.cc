@@ -17,6 +17,7 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
+#include <functional>
 #include <cmath>
 #include <numbers>
 #include <sys/resource.h>
@@ -172,7 +173,7 @@ std::string describe_crumbs(const Body& body) {
 }
 
 /// Which parts of an uncut mesh the grid has for pieces of their own, though elastic ones; empty where there are no
-/// more than the mesh has shells.
+/// more than the mesh has shells, voids and what becomes a crumb among these.
 std::string describe_pieces(const Body& body, const std::size_t n_shells) {
   constexpr std::size_t most = 5;
   struct Piece {
@@ -283,7 +284,8 @@ Body compose_body(const Section& section, const GravityParameters* gravity, cons
     world.composition.push_back(warning);
   if (body.physics->crumbs().any())
     world.composition.push_back(describe_crumbs(body));
-  if (const std::string said = describe_pieces(body, embedding.n_components); !said.empty())
+  if (const std::string said = describe_pieces(body, embedding.n_components - embedding.n_lost_components);
+      !said.empty())
     world.composition.push_back(said);
   return body;
 }

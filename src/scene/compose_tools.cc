@@ -101,14 +101,14 @@ double way_until(const double time, const Body& body, const World& world) {
   return 0.5 * (box.upper - box.lower).norm() + fastest * time + carried;
 }
 
-/// Of a blade that stands where it is first all the time; empty otherwise.
-std::string warn_of_times(const cut::Blade& blade, const World& world) {
+/// Of what stands where it is first all the time.
+void warn_of_times(const std::string& what, const cut::Blade& blade, World& world) {
   const auto [first, last] = times_of_motion(blade);
   const double end = world.n_steps * world.time_step;
-  return first == last || first < end
-           ? ""
-           : line("warning: blade ", blade.name, ": its Times [s] begin at ", first, " s, when the run has ended at ",
-                  end, " s: it never moves. Let it come earlier, or the run end later");
+  if (first < last && first >= end)
+    world.composition.push_back(line("warning: ", what, ": its first key frame is at ", first,
+                                     " s, when the run has ended at ", end,
+                                     " s, so nothing of it moves. Let it come earlier, or the run end later"));
 }
 
 bool comes_near(const cut::Blade& blade, const Body& body, const World& world) {
@@ -158,10 +158,9 @@ void compose_blade(const Section& section, World& world) {
   }
   if (blade.spine.isZero(0))
     blade.spine = usual_spine(blade);
-  if (const std::string warning = warn_of_times(blade, world); !warning.empty())
-    world.composition.push_back(warning);
-  world.blades.push_back(std::move(blade));
   world.composition.push_back("blade " + section.name());
+  warn_of_times("blade " + section.name(), blade, world);
+  world.blades.push_back(std::move(blade));
 }
 
 void compose_scissors(const Section& section, World& world) {
@@ -181,6 +180,7 @@ void compose_scissors(const Section& section, World& world) {
   for (cut::Blade& blade : make_blades(section, scissors, static_cast<grid::CutLabel>(world.blades.size() + 1)))
     world.blades.push_back(std::move(blade));
   world.composition.push_back("scissors " + section.name() + ": two blades on a pivot");
+  warn_of_times("scissors " + section.name(), world.blades.back(), world);
 }
 
 void compose_forceps(const Section& section, World& world) {

@@ -27,7 +27,7 @@ class WordsOfParser {
   /// ": " and what is wrong; empty where it has not said.
   std::string what() const {
     const std::string said = said_.str(), before = "Message:  <";
-    const auto begin = said.find(before), end = said.find('>', begin);
+    const auto begin = said.find(before), end = said.find(">\n", begin);
     if (begin == std::string::npos || end == std::string::npos)
       return "";
     std::string words = said.substr(begin + before.size(), end - begin - before.size());

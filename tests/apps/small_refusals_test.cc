@@ -121,6 +121,7 @@ TEST_F(SmallRefusals, ExpressionsTakeNoLooseCommasAndNoTimeAtTheStart) {
   expect_error(
     displaced("t; 0; 0"), 1,
     {"Displacement [m]", "three expressions of x, y, z that can be evaluated: ", "\"t\"", "sin(2*pi*x)"});
+  expect_error(displaced("x > > 1; 0; 0"), 1, {"Displacement [m]", "operator \">\""});
   EXPECT_EQ(displaced("max(0.001, 0.01*x); 0; 0").exit_code, 0);
 }
 

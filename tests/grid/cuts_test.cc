@@ -208,6 +208,13 @@ TEST(Cuts, OfTheSkinAreTakenBackUntilTheyAreSettled) {
       if (random() % 3 == 0)
         taken.insert(segment);
     body.cuts.leave_whole(std::vector<SkinSegment>(taken.begin(), taken.end()));
+    std::set<SkinSegment> left;
+    for (std::size_t k = n_settled; k < order.size(); ++k)
+      if (taken.contains(order[k]))
+        left.insert(order[k]);
+    EXPECT_EQ(body.cuts.segments_left_whole(), left);
+    for (const SkinSegment& segment : left)
+      EXPECT_EQ(body.cuts.later_cuts(segment).size(), 1u);
     for (std::size_t k = order.size(); k-- > n_settled;)
       if (taken.contains(order[k])) {
         expected.erase(order[k]);
@@ -230,6 +237,7 @@ TEST(Cuts, OfTheSkinAreTakenBackUntilTheyAreSettled) {
         ASSERT_TRUE(body.cuts.is_new(segment));
       }
     }
+    EXPECT_TRUE(body.cuts.segments_left_whole().empty());
   }
 }
 

@@ -170,7 +170,7 @@ TEST(Compose, WarnsOfBladesThatComeTooLate) {
   const auto warns = [](const std::string& times) {
     return says(world_of(cube_scene() + section("Blade knife", {"Edge [m] = -0.05, -1, 0; -0.05, 1, 0", times,
                                                                 "Positions [m] = 0, 0, 0; 0.1, 0, 0"})),
-                "warning: blade knife");
+                "warning: blade knife: its first key frame is at 500 s");
   };
   EXPECT_TRUE(warns("Times [s] = 500, 501"));
   EXPECT_FALSE(warns("Times [s] = 0, 501"));
