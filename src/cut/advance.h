@@ -37,8 +37,8 @@ class Advance {
   void sweep(const BladePath& path, const grid::Solid& solid, const Points& x_before, const Points& x,
              const EdgeBoxes& boxes, grid::CutLabel label);
 
-  /// The fronts that have begun or moved on since it was asked last, ascending; where nothing is left to part, cells
-  /// are forgotten. To be asked when what the blades have met is cut.
+  /// The fronts that have begun or moved on since it was asked last, ascending; where nothing is left to part, or
+  /// several cuts join what they part (Cuts::joined), cells are forgotten. To be asked when what the blades have met is cut.
   std::vector<grid::Front> take(const grid::Solid& solid, const PendingCuts& pending);
 
   void archive(Archive& a) { a(cells_, touched_); }

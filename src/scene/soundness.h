@@ -1,7 +1,8 @@
 #pragma once
 
-/// Whether a body may still be what it says: asked after each step, of every backend and integrator; of volumes as soon
-/// as something can have moved by an eighth of a cube since they were asked for, and at the end.
+/// Whether a body may still be what it says: asked after each step, of every backend and integrator; of volumes in the
+/// first step, after each cut, as soon as something can have moved by an eighth of a cube since they were asked for, and
+/// at the end.
 ///
 /// Four things no elastic body does. A particle without a finite place. A particle that crosses more than a cube in a
 /// step against the mean motion while all kinetic and elastic energy of the body could not move an eighth of a full
