@@ -38,7 +38,8 @@ class Advance {
              const EdgeBoxes& boxes, grid::CutLabel label);
 
   /// The fronts that have begun or moved on since it was asked last, ascending; where nothing is left to part, or
-  /// several cuts join what they part (Cuts::joined), cells are forgotten. To be asked when what the blades have met is cut.
+  /// several cuts join what they part (Cuts::joined), cells are forgotten. To be asked when what the blades have met
+  /// is cut.
   std::vector<grid::Front> take(const grid::Solid& solid, const PendingCuts& pending);
 
   void archive(Archive& a) { a(cells_, touched_); }

@@ -60,8 +60,8 @@ struct SkinCut {
   void archive(Archive& a) { a(segment, t, normal, label); }
 };
 
-/// Who meets a segment that another one has cut, or that waits, or that was left whole: it parts nothing there, but tells
-/// on which side of it the ends lie.
+/// Who meets a segment that another one has cut, or that waits, or was left whole: it parts nothing there, but tells on
+/// which side of it the ends lie.
 struct LaterCut {
   double t = 0.5;              ///< as in EdgeCut or SkinCut [1]
   Vec3 normal = Vec3::UnitX(); ///< as in EdgeCut
