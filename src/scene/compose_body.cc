@@ -17,8 +17,8 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
-#include <functional>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <sys/resource.h>
 #include <unistd.h>
