@@ -62,10 +62,12 @@ void print_body(const scene::Body& body, const scene::Watch& watch) {
 
 void print_cut(const scene::World& world, const grid::CutLabel label, const std::string& what,
                const std::string& remedy) {
-  std::size_t n = 0, n_passed = 0, n_of_skin = 0, n_left_whole = 0; // the last of all cuts
+  std::size_t n = 0, n_passed = 0, n_of_skin = 0, n_left_whole = 0;
   double between = 0;
   for (const scene::Body& body : world.bodies) {
-    n_left_whole += body.cutter->counts().n_left_whole;
+    const auto of_label = [&](const auto& left) { return left.second.label == label; };
+    n_left_whole += static_cast<std::size_t>(std::ranges::count_if(body.solid.cuts.edges_left_whole(), of_label) +
+                                             std::ranges::count_if(body.solid.cuts.segments_left_whole(), of_label));
     n += body.cutter->counts().n_cut_edges[label - 1];
     between += body.cutter->counts().between[label - 1];
     n_passed += body.cutter->n_passed_cells(label);
@@ -76,7 +78,7 @@ void print_cut(const scene::World& world, const grid::CutLabel label, const std:
                           : n_of_skin > 0
                             ? ": it cut " + std::to_string(n_of_skin) + " parts of the skin between them"
                           : n_passed > 0 ? ": it passed between them. Use a smaller cube edge, or cut deeper"
-                          : n_left_whole > 0 ? ": none, or what it met was left whole. " + remedy
+                          : n_left_whole > 0 ? ": what it met was left whole. " + remedy
                                          : ": it never met a body. " + remedy;
   std::printf("%s: cut %zu grid edges%s\n", what.c_str(), n, why.c_str());
   if (between >= 1)
@@ -95,7 +97,7 @@ void print_cutting(const scene::World& world) {
     if (body.cutter) {
       n_double += body.cutter->counts().n_double_crossings;
       n_waiting += body.cutter->n_waiting();
-      n_left_whole += body.cutter->counts().n_left_whole;
+      n_left_whole += body.solid.cuts.n_left_whole();
       n_passed += body.cutter->n_passed_cells();
       n_crumbs += body.physics->crumbs().size();
     }

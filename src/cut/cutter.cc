@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <map>
 
 namespace kerf::cut {
 
@@ -149,18 +150,18 @@ class Meetings {
 
 /// What was left whole near meetings, and all of it in cells with that: what hangs by some is left with all or none.
 template <class Cells>
-void find_left_ones(const Solid& solid, const Meetings& meetings, const Cells& cells_around, std::set<EdgeId>& edges,
-                    std::set<grid::SkinSegment>& segments) {
+void find_left_ones(const Solid& solid, const Meetings& meetings, const Cells& cells_around,
+                    std::map<EdgeId, grid::LaterCut>& edges, std::map<grid::SkinSegment, grid::LaterCut>& segments) {
   std::set<grid::CellId> known;
   const auto take_all = [&](const auto& left, auto& taken) {
     std::size_t n = 0;
-    for (const auto& one : left) {
+    for (const auto& [one, cut] : left) {
       const auto cells = cells_around(one);
       if (taken.contains(one) || std::ranges::none_of(cells, [&](const grid::CellId c) {
             return meetings.are_near(c) || known.contains(c);
           }))
         continue;
-      taken.insert(one);
+      taken.emplace(one, cut);
       for (const grid::CellId c : cells)
         if (c.valid())
           known.insert(c);
@@ -174,12 +175,12 @@ void find_left_ones(const Solid& solid, const Meetings& meetings, const Cells& c
 
 /// Cuts what was left whole near to where something is met now: there it tells on which sides of all cuts things lie,
 /// in a cell and, by intervals, across the faces of that; and a shred of a cell beside may be none any more (shreds.h).
-/// Edges of which another cut waits stay until that is released. Adds it to what is cut, and returns how much that is.
-std::size_t take_up_left_ones(Solid& solid, const PendingCuts& pending, std::vector<EdgeId>& edges,
-                              std::vector<grid::SkinSegment>& segments, const std::vector<EdgeId>& edges_met,
-                              const std::vector<grid::SkinSegment>& segments_met) {
-  if (solid.cuts.edges_left_whole().empty() && solid.cuts.segments_left_whole().empty())
-    return 0;
+/// Edges of which another cut waits stay until that is released. Adds it to what is cut.
+void take_up_left_ones(Solid& solid, const PendingCuts& pending, std::vector<EdgeId>& edges,
+                       std::vector<grid::SkinSegment>& segments, const std::vector<EdgeId>& edges_met,
+                       const std::vector<grid::SkinSegment>& segments_met) {
+  if (solid.cuts.n_left_whole() == 0)
+    return;
   std::vector<EdgeId> all_edges = edges;
   std::vector<grid::SkinSegment> all_segments = segments;
   all_edges.insert(all_edges.end(), edges_met.begin(), edges_met.end());
@@ -188,27 +189,24 @@ std::size_t take_up_left_ones(Solid& solid, const PendingCuts& pending, std::vec
   sort_unique(all_segments);
   const Meetings meetings(solid.grid, grid::touched_cells(solid.grid, all_edges, all_segments));
   if (!meetings.any())
-    return 0;
+    return;
   struct CellsAround {
     const grid::Grid& grid;
     std::array<grid::CellId, 4> operator()(const EdgeId e) const { return grid.cells(e); }
     std::array<grid::CellId, 2> operator()(const grid::SkinSegment& segment) const { return cells_of(grid, segment); }
   };
-  std::set<EdgeId> left_edges;
-  std::set<grid::SkinSegment> left_segments;
+  std::map<EdgeId, grid::LaterCut> left_edges;
+  std::map<grid::SkinSegment, grid::LaterCut> left_segments;
   find_left_ones(solid, meetings, CellsAround{solid.grid}, left_edges, left_segments);
-  std::erase_if(left_edges, [&](const EdgeId e) { return pending.waits(e); });
-  for (const EdgeId e : left_edges) {
-    const grid::LaterCut& met = solid.cuts.later_cuts(e)[0];
-    solid.cuts.add(solid.grid, {e, met.t, met.normal, met.label});
-    edges.push_back(e);
-  }
-  for (const grid::SkinSegment& segment : left_segments) {
-    const grid::LaterCut& met = solid.cuts.later_cuts(segment)[0];
+  for (const auto& [e, met] : left_edges)
+    if (!pending.waits(e)) {
+      solid.cuts.add(solid.grid, {e, met.t, met.normal, met.label});
+      edges.push_back(e);
+    }
+  for (const auto& [segment, met] : left_segments) {
     solid.cuts.add({segment, met.t, met.normal, met.label});
     segments.push_back(segment);
   }
-  return left_edges.size() + left_segments.size();
 }
 
 } // namespace
@@ -234,7 +232,7 @@ CutChange Cutter::step(Solid& solid, const std::span<const Blade> blades, const 
     if (!boxes_->may_be_in(reach_of_paths(blade, t0, t1)))
       continue;
     strokes.push_back(stroke(solid, blade, t0, t1, x));
-    if (fronts_ == Fronts::inside_cells || fronts_ == Fronts::as_faces)
+    if (fronts_ != Fronts::at_faces)
       for (const BladePath& path : paths(blade, t0, t1))
         advance_.sweep(path, solid, x_before_, x, *boxes_, blade.label);
   }
@@ -363,11 +361,10 @@ Cutter::Added Cutter::add(Solid& solid, const SweepCuts& cuts, const Points& x) 
       passed_[cut.label - 1].remove(cells_of(solid.grid, cut.segment));
     } else
       meet(cut, cut.segment, segments_met);
-  const std::size_t n_taken_up = take_up_left_ones(solid, pending_, edges, segments, edges_met, segments_met);
+  take_up_left_ones(solid, pending_, edges, segments, edges_met, segments_met);
   std::sort(edges.begin(), edges.end());
   std::sort(segments.begin(), segments.end());
-  counts_.n_left_whole += leave_shreds(solid, edges, segments);
-  counts_.n_left_whole -= n_taken_up;
+  leave_shreds(solid, edges, segments);
   for (const EdgeId e : edges)
     ++counts_.n_cut_edges[solid.cuts.find(e)->label - 1];
   return added;

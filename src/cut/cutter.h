@@ -55,12 +55,11 @@ struct CutCounts {
   std::vector<std::size_t> n_cut_edges; ///< by label, from 1
   std::size_t n_double_crossings = 0; ///< edges and segments of the skin that one cut crossed an even number of times:
                                       ///< left uncut
-  std::size_t n_left_whole = 0;       ///< edges and segments of the skin that were left whole (shreds.h)
   std::vector<double> between;        ///< by label, from 1: an estimate of the material that lies between a cut and
                                       ///< those of other labels before it on the same edges, which a neighbour has of
                                       ///< what it belongs to, as an edge is cut once [cells]
 
-  void archive(Archive& a) { a(n_cut_edges, n_double_crossings, n_left_whole, between); }
+  void archive(Archive& a) { a(n_cut_edges, n_double_crossings, between); }
 };
 
 /// What blades meet in a step: two edges of a cell at most are cut in it, the rest waits (pending.h); or all are. The
@@ -69,10 +68,9 @@ enum class Release { queued, at_once };
 
 /// Where cuts may end (fronts.h, advance.h).
 enum class Fronts {
-  at_faces,                 ///< with the last cell that they part
-  of_surfaces_inside_cells, ///< blades so; what cuts at once wherever it does (grid/fronts.h)
-  inside_cells,             ///< all of them wherever they do: for steps that ties do not shorten
-  as_faces                  ///< likewise, and each front tells where its cut has come (grid::Front::come)
+  at_faces,     ///< with the last cell that they part
+  inside_cells, ///< wherever they do (grid/fronts.h)
+  as_faces      ///< likewise, and each front tells where its cut has come (grid::Front::come)
 };
 
 class Cutter {

@@ -250,14 +250,11 @@ TakenBack cuts_to_leave(const grid::Solid& solid, const NewCuts& new_cuts) {
 
 } // namespace
 
-std::size_t leave_shreds(grid::Solid& solid, std::vector<EdgeId>& edges, std::vector<SkinSegment>& segments) {
-  std::size_t n = 0;
+void leave_shreds(grid::Solid& solid, std::vector<EdgeId>& edges, std::vector<SkinSegment>& segments) {
   for (;;) { // what stays may be a shred still, with one beside it
     TakenBack back = cuts_to_leave(solid, {edges, segments});
-    const std::size_t n_now = take_back(solid.cuts, edges, back.edges) + take_back(solid.cuts, segments, back.segments);
-    if (n_now == 0)
-      return n;
-    n += n_now;
+    if (take_back(solid.cuts, edges, back.edges) + take_back(solid.cuts, segments, back.segments) == 0)
+      return;
   }
 }
 

@@ -22,9 +22,8 @@ namespace kerf::cut {
 
 /// Takes back new cuts that part tips and shavings from the body; that they were met is remembered, as of later cuts
 /// (grid/cuts.h), since it tells on which side of them what is around lies. `edges` and `segments`, ascending, are what
-/// `solid.cuts` holds and `solid.complex` does not; what is taken back leaves them. Returns how many.
-std::size_t leave_shreds(grid::Solid& solid, std::vector<grid::EdgeId>& edges,
-                         std::vector<grid::SkinSegment>& segments);
+/// `solid.cuts` holds and `solid.complex` does not; what is taken back leaves them.
+void leave_shreds(grid::Solid& solid, std::vector<grid::EdgeId>& edges, std::vector<grid::SkinSegment>& segments);
 
 /// The cuts of a cell, as they are or as they would be.
 using CutsOfCell = std::function<grid::CellCuts(grid::CellId)>;

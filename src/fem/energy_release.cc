@@ -149,8 +149,7 @@ double released(const Piece& piece, const Mat3& F_0, const Mat3& P, const double
 /// What ties take as the front gets longer [J/m].
 double taken_by_ties(const grid::Solid& solid, const Hexahedra& model, const Points& x, const CrackFront& front,
                      const Tubes& tubes) {
-  Ties ties;
-  ties.update(solid, model.material());
+  const Ties ties = model.ties(solid);
   double sum = 0;
   for (const auto& [a, b, k] : ties.all()) {
     const Growth at = growth_at(front, solid.grid.position(solid.complex.node[grid::CornerId(a)]));

@@ -86,11 +86,18 @@ void Hexahedra::follow(const grid::Solid& solid, const std::span<const grid::Cop
   if (inertia_ == Inertia::gathered)
     gathered_ = grid::is_cut(solid.cuts) ? gathered_mass(solid, mass_, material_.density * h_ * h_ * h_)
                                          : GatheredMass{ghost_penalty_.extended_mass(), {}};
-  ties_.update(solid, material_);
+  ties_ = ties(solid);
   if (consistent_mass_)
     consistent_mass_->update(solid, changed, mass_, mass_by_corner());
   if (!numbers_.are_all())
     count();
+}
+
+Ties Hexahedra::ties(const grid::Solid& solid) const {
+  Ties ties;
+  const std::span<const double> mass = mass_by_corner();
+  ties.update(solid, material_, inertia_ == Inertia::extended ? mass : std::span<const double>());
+  return ties;
 }
 
 void Hexahedra::count() {

@@ -108,6 +108,8 @@ class Hexahedra : public dynamics::ElasticModel, public dynamics::StiffnessMatri
   const ElementTable& elements() const { return elements_; }
   const Incidence& incidence() const { return incidence_; }
   Inertia inertia() const { return inertia_; }
+  /// By corner; soft where inertia is for explicit steps.
+  Ties ties(const grid::Solid& solid) const;
   const GhostPenalty& ghost_penalty() const { return ghost_penalty_; }
   /// Mean deformation gradient of a copy [1]; x by corner.
   Mat3 deformation_gradient(std::size_t copy, const Points& x) const;

@@ -1,5 +1,7 @@
 #include "fem/ties.h"
 
+#include <cmath>
+
 namespace kerf::fem {
 
 namespace {
@@ -13,10 +15,14 @@ Eigen::Map<Vec3> at(const std::span<double> values, const std::uint32_t corner) 
 
 } // namespace
 
-void Ties::update(const grid::Solid& solid, const material::Elastic& material) {
+void Ties::update(const grid::Solid& solid, const material::Elastic& material, const std::span<const double> mass) {
   const double nu = material.poissons_ratio, modulus = material.youngs_modulus / (1 - nu * nu);
+  std::vector<grid::Tie> ties = grid::ties(solid);
+  if (!mass.empty())
+    grid::soften(ties, modulus, 2 * std::pow(material.pressure_wave_speed() / solid.grid.h(), 2),
+                 [&](const grid::CornerId c) { return mass[c.value]; });
   ties_.clear();
-  for (const grid::Tie& tie : grid::ties(solid))
+  for (const grid::Tie& tie : ties)
     ties_.push_back({tie.a.value, tie.b.value, modulus * tie.length});
 }
 

@@ -20,8 +20,8 @@ struct Tie {
 
 class Ties {
  public:
-  /// Takes over all of them.
-  void update(const grid::Solid& solid, const material::Elastic& material);
+  /// Takes over all of them. Soft ones, as explicit steps need, where masses of corners are given [kg].
+  void update(const grid::Solid& solid, const material::Elastic& material, std::span<const double> mass = {});
   /// Counts corners by these numbers from now on. No tie is at a corner that has none: crumbs have no ties.
   void count_by(const grid::CornerNumbers& numbers);
 

@@ -97,8 +97,9 @@ void Cuts::leave_whole(const std::span<const EdgeId> edges) {
   for (const EdgeId e : edges)
     if (is_new(e)) {
       const EdgeCut& cut = *find(e);
-      add(e, LaterCut{cut.t, cut.normal, cut.label});
-      edges_left_whole_.insert(e);
+      const LaterCut met = {cut.t, cut.normal, cut.label};
+      add(e, met);
+      edges_left_whole_.insert_or_assign(e, met);
     }
   std::size_t n = n_settled_;
   for (std::size_t i = n; i < cuts_.size(); ++i) {
@@ -122,8 +123,9 @@ void Cuts::leave_whole(const std::span<const SkinSegment> segments) {
   for (const SkinSegment& segment : segments)
     if (is_new(segment)) {
       const SkinCut& cut = *find(segment);
-      add(segment, LaterCut{cut.t, cut.normal, cut.label});
-      segments_left_whole_.insert(segment);
+      const LaterCut met = {cut.t, cut.normal, cut.label};
+      add(segment, met);
+      segments_left_whole_.insert_or_assign(segment, met);
     }
   std::size_t n = n_settled_of_skin_;
   for (std::size_t i = n; i < skin_cuts_.size(); ++i) {

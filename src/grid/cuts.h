@@ -13,7 +13,6 @@
 #include "grid/sparse_index.h"
 
 #include <map>
-#include <set>
 #include <span>
 #include <vector>
 
@@ -142,8 +141,9 @@ class Cuts {
   /// again.
   void leave_whole(std::span<const EdgeId> edges);
   void leave_whole(std::span<const SkinSegment> segments);
-  const std::set<EdgeId>& edges_left_whole() const { return edges_left_whole_; }
-  const std::set<SkinSegment>& segments_left_whole() const { return segments_left_whole_; }
+  const std::map<EdgeId, LaterCut>& edges_left_whole() const { return edges_left_whole_; }
+  const std::map<SkinSegment, LaterCut>& segments_left_whole() const { return segments_left_whole_; }
+  std::size_t n_left_whole() const { return edges_left_whole_.size() + segments_left_whole_.size(); }
 
   /// Each label once.
   void add(EdgeId e, const LaterCut& later) { add_to(later_of_edges_[e], later); }
@@ -248,8 +248,8 @@ class Cuts {
   std::map<EdgeId, std::vector<LaterCut>> later_of_edges_;
   std::map<SkinSegment, std::vector<LaterCut>> later_of_skin_;
   std::map<CellId, std::vector<Joined>> joined_;
-  std::set<EdgeId> edges_left_whole_;
-  std::set<SkinSegment> segments_left_whole_;
+  std::map<EdgeId, LaterCut> edges_left_whole_;
+  std::map<SkinSegment, LaterCut> segments_left_whole_;
   std::vector<EdgeCut> cuts_;
   std::vector<SkinCut> skin_cuts_;
   std::size_t n_cut_twice_ = 0, n_settled_ = 0, n_settled_of_skin_ = 0;

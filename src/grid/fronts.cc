@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace kerf::grid {
 
@@ -107,6 +108,20 @@ std::vector<Tie> ties(const Solid& solid) {
       ties.push_back({copies[c].corners[apart[i]], copies[d].corners[apart[i]], length[i]});
   }
   return ties;
+}
+
+void soften(std::vector<Tie>& ties, const double modulus, const double square_frequency,
+            const FunctionRef<double(CornerId)> mass) {
+  std::map<CornerId, double> parts; // of ties at a corner that are left
+  for (const Tie& tie : ties)
+    for (const CornerId c : {tie.a, tie.b})
+      parts[c] += tie.length;
+  for (auto& [c, part] : parts) {
+    const double most = mass(c) * square_frequency / modulus;
+    part = part > most ? most / part : 1;
+  }
+  for (Tie& tie : ties)
+    tie.length *= std::min(parts.at(tie.a), parts.at(tie.b));
 }
 
 } // namespace kerf::grid

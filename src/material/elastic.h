@@ -4,6 +4,7 @@
 
 #include "base/parameters.h"
 
+#include <cmath>
 #include <string>
 
 namespace kerf::material {
@@ -17,6 +18,8 @@ struct Elastic {
   /// Lame's parameters [Pa]: lambda = E nu / ((1 + nu) (1 - 2 nu)), mu = E / (2 (1 + nu)).
   double lambda() const { return youngs_modulus * poissons_ratio / ((1 + poissons_ratio) * (1 - 2 * poissons_ratio)); }
   double mu() const { return youngs_modulus / (2 * (1 + poissons_ratio)); }
+
+  double pressure_wave_speed() const { return std::sqrt((lambda() + 2 * mu()) / density); } ///< [m/s]
 
   void describe(Parameters& p) {
     p.number("Density [kg/m^3]", density, positive, "Mass per rest volume.");

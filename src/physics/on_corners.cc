@@ -56,8 +56,7 @@ void damp_riders(const fem::Hexahedra& model, const lattice::Riders& riders, con
                  const dynamics::Loads& loads, const double dt, dynamics::State& state) {
   if (riders.n_riders() == 0)
     return;
-  const auto& material = model.material();
-  const double across = std::sqrt((material.lambda() + 2 * material.mu()) / material.density) / model.h(),
+  const double across = model.material().pressure_wave_speed() / model.h(),
                alpha = std::min(1.0, across * dt * across * dt);
   Loan<Vec3> before = Loan<Vec3>::with_room(state.v.size());
   for (const dynamics::Support& support : loads.supports)

@@ -10,7 +10,6 @@
 #include "scene/compose_loads.h"
 #include "scene/compose_physics.h"
 #include "scene/crack_report.h"
-#include "scene/grammar_physics.h"
 #include "scene/initial_state.h"
 #include "scene/support_report.h"
 
@@ -149,15 +148,6 @@ std::string describe_physics(const Section& section, const BodyParameters& param
               mass, parameters.integrator);
 }
 
-/// Ties of elements and springs at a front that moves are as stiff as the material that it has parted so far, on corners
-/// that may hold hardly any: explicit steps would have to be several times shorter. Phyxels have sight instead.
-cut::Fronts fronts_of(const BodyParameters& parameters) {
-  if (parameters.backend == "pba")
-    return cut::Fronts::as_faces;
-  const bool has_ties = parameters.backend == "fem" || parameters.backend == "mass-spring";
-  return has_ties && is_explicit(parameters.integrator) ? cut::Fronts::of_surfaces_inside_cells
-                                                        : cut::Fronts::inside_cells;
-}
 
 /// Which parts of the mesh the grid takes for pieces of their own, too thin to be deformed.
 std::string describe_crumbs(const Body& body) {
@@ -248,8 +238,10 @@ Body compose_body(const Section& section, const GravityParameters* gravity, cons
   if (parameters.integrator == "modal")
     body.n_modes = read_if_written<dynamics::ModalParameters>(section, "Modal").n_modes;
   body.fronts = compose_crack_fronts(section, parameters.cube_edge, parameters.backend);
-  if (const std::size_t n_cuts = world.blades.size() + world.cut_surfaces.size(); n_cuts > 0)
-    body.cutter = std::make_unique<cut::Cutter>(n_cuts, cut::Release::queued, fronts_of(parameters));
+  if (const std::size_t n_cuts = world.blades.size() + world.cut_surfaces.size(); n_cuts > 0) {
+    const auto fronts = parameters.backend == "pba" ? cut::Fronts::as_faces : cut::Fronts::inside_cells;
+    body.cutter = std::make_unique<cut::Cutter>(n_cuts, cut::Release::queued, fronts);
+  }
   start(body, mesh, physics_maker(section, parameters, world.time_step), world.setup_seconds);
   if (const Section* initial = section.find("Initial state")) {
     body.initial = compose_initial_state(*initial);

@@ -52,13 +52,13 @@ PhysicsMaker make_elements(const Section& section, const BodyParameters& paramet
 PhysicsMaker make_springs(const Section& section, const BodyParameters& parameters) {
   const auto material = read_if_written<material::Elastic>(section, "Material");
   const Integrator integrator = compose_integrator(section, parameters.integrator);
+  const spring::MassSpringOptions options = {material.density, material.youngs_modulus, grid::Counted::deforming,
+                                             is_explicit(parameters.integrator)
+                                               ? grid::TieStiffness::of_explicit_steps
+                                               : grid::TieStiffness::of_fronts};
   return [=](const CutBody& body) {
     return std::make_unique<physics::Springs>(
-      body,
-      [=](const CutBody& b) {
-        return std::make_unique<spring::MassSpring>(
-          b.solid, spring::MassSpringOptions{material.density, material.youngs_modulus, grid::Counted::deforming});
-      },
+      body, [=](const CutBody& b) { return std::make_unique<spring::MassSpring>(b.solid, options); },
       integrator.make);
   };
 }

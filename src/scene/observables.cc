@@ -321,7 +321,7 @@ const std::vector<Observable>& body_observables() {
     {"left whole", "1",
      "grid edges and segments of the skin that were crossed and left uncut: behind them are shavings of one blade with "
      "less material than a cube, or no material (cut/shreds.h)",
-     [](const Body& b) { return b.cutter ? count(b.cutter->counts().n_left_whole) : 0.0; }},
+     [](const Body& b) { return count(b.solid.cuts.n_left_whole()); }},
     {"material between cuts", "m^3",
      "an estimate of what a neighbour has of what it belongs to, as it lies between two cuts of the same grid edges, "
      "of which each is cut once (cut/cutter.h)",

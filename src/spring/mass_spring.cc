@@ -3,7 +3,6 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/parameters.h"
-#include "grid/fronts.h"
 #include "grid/material.h"
 
 #include <Eigen/Geometry>
@@ -81,7 +80,11 @@ void MassSpring::add_springs(const grid::Solid& solid, const std::vector<double>
       all.push_back({std::min(a, b), std::max(a, b), fill[c.value] * (pair.is_edge ? edge : diagonal),
                      pair.is_edge ? h : std::sqrt(2.0) * h});
     }
-  for (const grid::Tie& tie : grid::ties(solid)) {
+  std::vector<grid::Tie> ties = grid::ties(solid);
+  if (options.ties == grid::TieStiffness::of_explicit_steps)
+    grid::soften(ties, modulus, 1.2 * options.youngs_modulus / (options.density * h * h), // lambda + 2 mu = 1.2 E
+                 [&](const grid::CornerId c) { return mass_[numbers_[c.value]]; });
+  for (const grid::Tie& tie : ties) {
     const auto a = numbers_[tie.a.value], b = numbers_[tie.b.value];
     all.push_back({std::min(a, b), std::max(a, b), modulus * tie.length, 0});
   }

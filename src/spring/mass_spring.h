@@ -24,6 +24,7 @@
 #include "dynamics/model.h"
 #include "dynamics/piece_gains.h"
 #include "grid/corner_numbers.h"
+#include "grid/fronts.h"
 #include "spring/inversion.h"
 
 #include <optional>
@@ -34,6 +35,7 @@ struct MassSpringOptions {
   double density = 1000;                      ///< [kg/m^3]
   double youngs_modulus = 1e4;                ///< E [Pa]
   grid::Counted counted = grid::Counted::all; ///< corners that integrators see
+  grid::TieStiffness ties = grid::TieStiffness::of_fronts;
 };
 
 /// The only value that these springs can have [1].

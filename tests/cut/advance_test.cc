@@ -120,16 +120,6 @@ TEST(Advance, LeavesThemWhereABodyGivesWayUnderABladeThatRests) {
   EXPECT_LE(n_lacking, n / 16); // where the wound's side comes upon the blade: 34 when that told where it went
 }
 
-/// For explicit steps.
-TEST(Advance, IsLeftOutWhereSurfacesAloneEndInsideCells) {
-  Cutting moving(block(), Fronts::of_surfaces_inside_cells), at_once(block(), Fronts::of_surfaces_inside_cells);
-  for (double t = 0; t < 6; t += 0.3)
-    moving.step(along_x(), t, t + 0.3);
-  at_once.cut(Rectangle{Vec3(2, 5, 5.4), Vec3(4.3, 0, 0), Vec3(0, 40, 0)});
-  EXPECT_TRUE(moving.body.complex.tied.empty());
-  EXPECT_FALSE(at_once.body.complex.tied.empty());
-}
-
 /// A stroke from a random place beside a body of this size into it and on, which turns on its way, and whose edge ends
 /// somewhere in it.
 Blade random_stroke(support::Random& random, const double size) {

@@ -73,7 +73,8 @@ TEST(AtSkin, TheOrderOfTwoCutsThatCrossDoesNotMatter) {
     for (const Patient& patient : patients) {
       const int n_whole = wrong.whole;
       count_segments(patient, planes, wrong);
-      EXPECT_LE(wrong.whole - n_whole, 2 * int(patient.n_left_whole)) << i; // two cells share a half of an arc
+      const int n_left_whole = static_cast<int>(patient.body.cuts.n_left_whole());
+      EXPECT_LE(wrong.whole - n_whole, 2 * n_left_whole) << i; // two cells share a half of an arc
       auto volumes = patient.volumes();
       ASSERT_GE(volumes.size(), 4u) << "a bridge, " << i;
       EXPECT_NEAR(total(volumes), box_volume, 1e-12 * box_volume);
@@ -272,7 +273,7 @@ TEST(AtSkin, TipsInAWedgeDoNotHoldItToWhatIsBeside) {
     }
     EXPECT_GE(patient.volumes().size(), 4u) << i;
     EXPECT_EQ(n_bridges(patient, planes), 0) << i;
-    n_left_whole += patient.n_left_whole;
+    n_left_whole += patient.body.cuts.n_left_whole();
   }
   EXPECT_GT(n_left_whole, 0u);
 }

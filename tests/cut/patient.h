@@ -34,7 +34,6 @@ using Map = std::function<Vec3(const Vec3&)>;
 struct Patient {
   Body body;
   Points x;
-  std::size_t n_left_whole = 0; ///< segments and edges (cut/shreds.h)
 
   explicit Patient(Body whole) : body(std::move(whole)) {
     body.complex = grid::build_complex(body);
@@ -58,7 +57,6 @@ struct Patient {
   void cut_through(const Shape& shape, const grid::CutLabel label = 1) {
     Cutter with = cutter(label);
     follow(with.at_once(body, {"", shape, label}, x));
-    n_left_whole += with.counts().n_left_whole;
   }
 
   /// The blade's whole motion, from 0 to 1 s, and a step of rest; until nothing waits.
@@ -66,7 +64,6 @@ struct Patient {
     Cutter with = cutter(blade.label, release);
     for (int k = 0; k <= n_steps || with.n_waiting() > 0; ++k)
       follow(with.step(body, std::span(&blade, 1), double(k) / n_steps, double(k + 1) / n_steps, x));
-    n_left_whole += with.counts().n_left_whole;
   }
 
   /// Is the complex, which each cut has brought up to date, the one that all cuts make?

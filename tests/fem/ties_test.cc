@@ -111,6 +111,47 @@ TEST(Ties, RestWhereTheCutIsClosed) {
     EXPECT_LT(f.norm(), 1e-9 * model.material().youngs_modulus);
 }
 
+/// By what hangs at each corner and what it weighs, whatever the material.
+TEST(Ties, AreSoftForExplicitSteps) {
+  const support::Body body = cracked(1.55);
+  const material::Elastic rubber{.density = 1200, .youngs_modulus = 3e5, .poissons_ratio = 0.4};
+  const Hexahedra model(body, {.material = rubber, .inertia = Inertia::extended});
+  const double square_frequency = 2 * std::pow(rubber.pressure_wave_speed() / body.grid.h(), 2);
+  const Ties soft = model.ties(body), stiff = Hexahedra(body, {.material = rubber}).ties(body);
+  const auto sums = [&](const Ties& ties) {
+    std::vector<double> sums(body.complex.n_corners(), 0.0);
+    for (const Tie& tie : ties.all())
+      for (const std::uint32_t corner : {tie.a, tie.b})
+        sums[corner] += tie.stiffness;
+    return sums;
+  };
+  const std::vector<double> of_soft = sums(soft), of_stiff = sums(stiff);
+  int n_reached = 0, n_beyond = 0;
+  for (std::size_t c = 0; c < of_soft.size(); ++c) {
+    const double most = model.lumped_mass()[c] * square_frequency;
+    EXPECT_LE(of_soft[c], (1 + 1e-12) * most);
+    n_reached += of_soft[c] > (1 - 1e-12) * most;
+    n_beyond += of_stiff[c] > most;
+  }
+  EXPECT_GT(n_reached, 3);
+  EXPECT_GT(n_beyond, n_reached);
+  ASSERT_EQ(soft.all().size(), stiff.all().size());
+  int n_same = 0;
+  for (std::size_t i = 0; i < soft.all().size(); ++i) {
+    const auto& [a, b, k] = soft.all()[i];
+    const auto& [a_stiff, b_stiff, k_stiff] = stiff.all()[i];
+    EXPECT_TRUE(a == a_stiff && b == b_stiff);
+    EXPECT_LE(k, k_stiff);
+    const bool bears_it =
+      std::max(of_stiff[a] / model.lumped_mass()[a], of_stiff[b] / model.lumped_mass()[b]) < square_frequency;
+    if (bears_it) {
+      EXPECT_EQ(k, k_stiff);
+    }
+    n_same += bears_it;
+  }
+  EXPECT_GT(n_same, 3);
+}
+
 /// A cut that comes through the cells of its front leaves no ties there.
 TEST(Ties, GoWithTheCut) {
   support::Body body = cracked(1.9);

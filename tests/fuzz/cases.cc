@@ -25,7 +25,7 @@ namespace {
 enum class Release { one, drained, at_once };
 
 constexpr std::array<const char*, 3> release_names = {"one release a sweep", "released until nothing waits", "at once"};
-constexpr std::array<const char*, 4> front_names = {"no fronts", "fronts of surfaces", "fronts", "fronts as faces"};
+constexpr std::array<const char*, 3> front_names = {"no fronts", "fronts", "fronts as faces"};
 
 /// Number 0 draws the case itself, number k + 1 its sweep k.
 Random generator(const std::uint32_t seed, const std::uint32_t number) {
@@ -147,7 +147,7 @@ class Run {
       random_(generator(one.seed, 0)),
       subject_(make_subject(specimens[draw(random_, static_cast<int>(specimens.size()))], tally)),
       release_(one.has_fronts() ? Release::one : static_cast<Release>(draw(random_, 3))),
-      fronts_(one.has_fronts() ? static_cast<cut::Fronts>(1 + draw(random_, 3)) : cut::Fronts::at_faces),
+      fronts_(one.has_fronts() ? static_cast<cut::Fronts>(1 + draw(random_, 2)) : cut::Fronts::at_faces),
       tally_(tally),
       outcome_(outcome) {
     is_gentle_ = one.has_fronts() && draw(random_, 3) > 0;
@@ -177,7 +177,7 @@ class Run {
     drain();
     if (judge)
       judge(subject_.solid, true);
-    tally_.n_left_whole += subject_.cutter.counts().n_left_whole;
+    tally_.n_left_whole += subject_.solid.cuts.n_left_whole();
     if (case_.has_fronts()) // else each sweep says
       tally_.n_double_crossings += subject_.cutter.counts().n_double_crossings;
     require_untouched_elsewhere();
@@ -209,7 +209,7 @@ class Run {
     last_ = swept;
     if (const auto* const surface = std::get_if<cut::CutSurface>(&swept.sweep)) {
       cut_at_once(*surface, label);
-      if (plane && is_first && subject_.cutter.counts().n_left_whole == 0)
+      if (plane && is_first && subject_.solid.cuts.n_left_whole() == 0)
         require_parted(subject_, *plane);
     } else {
       const std::vector<cut::SweptTriangle> strip = strip_of(swept.sweep);

@@ -212,9 +212,11 @@ TEST(Cuts, OfTheSkinAreTakenBackUntilTheyAreSettled) {
     for (std::size_t k = n_settled; k < order.size(); ++k)
       if (taken.contains(order[k]))
         left.insert(order[k]);
-    EXPECT_EQ(body.cuts.segments_left_whole(), left);
-    for (const SkinSegment& segment : left)
+    ASSERT_EQ(body.cuts.n_left_whole(), left.size());
+    for (const SkinSegment& segment : left) {
       EXPECT_EQ(body.cuts.later_cuts(segment).size(), 1u);
+      EXPECT_EQ(body.cuts.segments_left_whole().at(segment).t, expected[segment]);
+    }
     for (std::size_t k = order.size(); k-- > n_settled;)
       if (taken.contains(order[k])) {
         expected.erase(order[k]);

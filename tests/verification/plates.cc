@@ -132,17 +132,19 @@ PennyResult penny(const Penny& problem, const fem::HexahedraOptions& options) {
   return result;
 }
 
-double front_error(const EdgeCrack& crack, const fem::Strain strain) {
+double front_error(const EdgeCrack& crack, const fem::Strain strain, const fem::Inertia inertia) {
   // By n = 20, 40, 80, extrapolated: work for a thickness of 1 m [J], and what it grows by with the crack [J/m].
   constexpr double exact = 3.0392, slope = 10.57;
   const double h = 1.0 / crack.n, y = 2 * h;
+  fem::HexahedraOptions options = hooke(1, 0.3, strain);
+  options.inertia = inertia;
   auto [body, model, cost] = build(
     [&] {
       Body plate = box({Vec3::Zero(), Vec3(1, y, 2)}, h, Vec3(1 - crack.along, 0, 1 - crack.across));
       cut_at_once(plate, cut::Rectangle{Vec3(-0.1, h, 1), Vec3(1, 0, 0), Vec3(0, 1, 0)});
       return plate;
     },
-    hooke(1, 0.3, strain));
+    options);
   const Points rest = body.rest();
   const Points f = traction_forces(body, [&](const SurfacePoint& p) -> Vec3 {
     return p.label == grid::skin_label && std::abs(p.normal[2]) > 0.9 ? Vec3(p.normal[2] * Vec3::UnitZ())

@@ -131,6 +131,17 @@ TEST(EdgeCrack, TellsWhereItsFrontLies) {
       }
 }
 
+/// Ties that explicit steps bear are too soft while the front has come through less than a quarter of its cell: it enters
+/// the next one, with its lag, at .75.
+TEST(EdgeCrack, IsHardlyAheadOfItsFrontInExplicitSteps) {
+  for (const double along : {0.02, 0.2, 0.3, 0.5, 0.7, 0.76, 0.8, 0.9})
+    for (const double across : {0.5, 0.25, 0.02}) {
+      const double error = front_error({along, across}, fem::Strain::enhanced, fem::Inertia::extended);
+      EXPECT_GT(error, -0.045) << along << ' ' << across;
+      EXPECT_LT(error, along > 0.3 && along < 0.75 ? 0.075 : 0.25) << along << ' ' << across;
+    }
+}
+
 /// As the solvers see it, scaled by blocks: the ghost penalty keeps it where it is without slivers.
 TEST(Condition, OfSliversIsBoundedByTheGhostPenalty) {
   const auto with_weight = [](const double depth, const double weight) {
