@@ -86,6 +86,11 @@ void Hexahedra::follow(const grid::Solid& solid, const std::span<const grid::Cop
   if (inertia_ == Inertia::gathered)
     gathered_ = grid::is_cut(solid.cuts) ? gathered_mass(solid, mass_, material_.density * h_ * h_ * h_)
                                          : GatheredMass{ghost_penalty_.extended_mass(), {}};
+  tied_mass_.clear();
+  if (inertia_ == Inertia::extended && !solid.complex.tied.empty()) {
+    tied_mass_ = ghost_penalty_.extended_mass();
+    grid::share_mass(grid::ties(solid), tied_mass_);
+  }
   ties_ = ties(solid);
   if (consistent_mass_)
     consistent_mass_->update(solid, changed, mass_, mass_by_corner());

@@ -45,8 +45,8 @@ namespace kerf::fem {
 /// What integrators get as the mass of a corner.
 enum class Inertia {
   lumped,   ///< density times the integral of its shape function
-  extended, ///< of that, a part goes to corners that only near-empty copies know (ghost_penalty.h): what explicit
-            ///< integrators need
+  extended, ///< of that, a part goes to corners that only near-empty copies know (ghost_penalty.h), or only ties hold
+            ///< (grid/fronts.h): what explicit integrators need
   gathered  ///< extended; once cut, light corners have none (gathered_mass.h): for integrators that take no energy
 };
 
@@ -121,7 +121,8 @@ class Hexahedra : public dynamics::ElasticModel, public dynamics::StiffnessMatri
   const std::vector<double>& mass_by_corner() const {
     return inertia_ == Inertia::lumped     ? mass_
            : inertia_ == Inertia::gathered ? gathered_.mass
-                                           : ghost_penalty_.extended_mass();
+           : tied_mass_.empty()            ? ghost_penalty_.extended_mass()
+                                           : tied_mass_;
   }
   /// Takes the corners of all that integrators see by number.
   void count();
@@ -188,6 +189,7 @@ class Hexahedra : public dynamics::ElasticModel, public dynamics::StiffnessMatri
   Ties ties_;
   std::vector<double> mass_;                        // by corner
   std::vector<double> mass_by_number_;              // that integrators get; none where all corners have their own
+  std::vector<double> tied_mass_;                   // extended, and shared over ties (grid/fronts.h); none without ties
   GatheredMass gathered_;                           // where it is wanted; followers by number
   std::unique_ptr<ConsistentMass> consistent_mass_; // none where mass is lumped
   std::unique_ptr<Multigrid> multigrid_;            // none until it is asked for

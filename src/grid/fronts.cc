@@ -110,6 +110,27 @@ std::vector<Tie> ties(const Solid& solid) {
   return ties;
 }
 
+void share_mass(const std::span<const Tie> ties, std::vector<double>& mass) {
+  constexpr double part = 1.0 / 16; // that a corner gives away in all
+  struct Gift {
+    std::uint32_t from, to;
+  };
+  std::vector<Gift> gifts;
+  std::map<std::uint32_t, int> n_gifts;
+  for (const auto& [a, b, length] : ties) {
+    const bool is_a_lighter = mass[a.value] < mass[b.value];
+    gifts.push_back(is_a_lighter ? Gift{b.value, a.value} : Gift{a.value, b.value});
+    ++n_gifts[gifts.back().from];
+  }
+  std::vector<double> amounts;
+  for (const auto& [from, to] : gifts)
+    amounts.push_back(std::max(0.0, part * mass[from] / n_gifts[from] - mass[to]));
+  for (std::size_t i = 0; i < gifts.size(); ++i) {
+    mass[gifts[i].from] -= amounts[i];
+    mass[gifts[i].to] += amounts[i];
+  }
+}
+
 void soften(std::vector<Tie>& ties, const double modulus, const double square_frequency,
             const FunctionRef<double(CornerId)> mass) {
   std::map<CornerId, double> parts; // of ties at a corner that are left

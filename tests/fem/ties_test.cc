@@ -7,6 +7,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <map>
 #include <numeric>
 
 namespace kerf::fem::ties_test {
@@ -150,6 +152,38 @@ TEST(Ties, AreSoftForExplicitSteps) {
     n_same += bears_it;
   }
   EXPECT_GT(n_same, 3);
+}
+
+/// Corners that are tied are at one place at rest: no moment of the body changes.
+TEST(Ties, ShareMassOfExplicitSteps) {
+  const support::Body body = cracked(1.55);
+  const std::vector<grid::Tie> ties = grid::ties(body);
+  const Hexahedra plain(body, {.material = {}}), model(body, {.material = {}, .inertia = Inertia::extended});
+  const std::vector<double>& extended = model.ghost_penalty().extended_mass();
+  const auto shared = model.lumped_mass();
+  const Points rest = grid::rest_positions(body);
+  std::map<std::uint32_t, double> gained; // by node
+  double total = 0, most = 0;
+  for (std::size_t c = 0; c < rest.size(); ++c) {
+    gained[body.complex.node[grid::CornerId(c)].value] += shared[c] - extended[c];
+    EXPECT_GE(shared[c], (1 - 1.0 / 16) * extended[c]);
+    total += shared[c];
+    most = std::max(most, shared[c] / extended[c]);
+  }
+  for (const auto& [node, mass] : gained)
+    EXPECT_NEAR(mass, 0, 1e-15 * total);
+  EXPECT_NEAR(total, std::accumulate(plain.lumped_mass().begin(), plain.lumped_mass().end(), 0.0), 1e-13 * total);
+  EXPECT_GT(most, 2);
+  for (const grid::Tie& tie : ties) { // of those that no other tie is at, the light one gets a 16th
+    const auto is_alone = [&](const grid::CornerId c) {
+      return std::ranges::count_if(ties, [&](const grid::Tie& t) { return t.a == c || t.b == c; }) == 1;
+    };
+    if (!is_alone(tie.a) || !is_alone(tie.b))
+      continue;
+    const double light = std::min(extended[tie.a.value], extended[tie.b.value]),
+                 heavy = std::max(extended[tie.a.value], extended[tie.b.value]);
+    EXPECT_NEAR(std::min(shared[tie.a.value], shared[tie.b.value]), std::max(light, heavy / 16), 1e-14 * heavy);
+  }
 }
 
 /// A cut that comes through the cells of its front leaves no ties there.

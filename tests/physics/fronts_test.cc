@@ -41,17 +41,23 @@ std::array<double, 3> frequencies(const support::Body& body) {
   return {of_elements(rubber), of_elements(gel), of_springs(body, grid::TieStiffness::of_explicit_steps)};
 }
 
-/// A disc of any place, tilt and radius, and then a blade that stops somewhere. The skin lies half a cube outside of
-/// nodes. Copies vibrate faster than the whole body by up to 16, 11, 14 % without ties.
+/// A box of 7 cubes, or a ball of 3 cubes a radius whose skin lies anywhere between nodes.
+support::Body some_body(const int i, support::Random& random) {
+  return support::with_copies(support::with_placed_skin(
+    i % 2 == 0 ? support::block({7, 7, 7}) : support::ball(3, 1, support::random_offset(random))));
+}
+
+/// A disc of any place, tilt and radius, and then a blade that stops somewhere. Copies alone, without ties, vibrate
+/// faster than the whole body by up to 24, 25, 14 %.
 TEST(Fronts, HardlyShortenExplicitSteps) {
-  const support::Body whole = support::with_copies(support::with_placed_skin(support::block({7, 7, 7})));
-  const std::array<double, 3> of_whole = frequencies(whole);
   std::array<double, 3> soft = {};
   double stiff = 0;
   std::size_t n_tied = 0;
-  for (int seed = 0; seed < 30; ++seed) {
+  for (int seed = 0; seed < 60; ++seed) {
     support::Random random(seed);
-    support::Body body = whole;
+    support::Body body = some_body(seed, random);
+    const Vec3 centre = seed % 2 == 0 ? Vec3(Vec3::Constant(3.5)) : Vec3(Vec3::Zero());
+    const std::array<double, 3> of_whole = frequencies(body);
     const auto rest = [&] { return grid::rest_positions(body); };
     cut::Cutter cutter(2, cut::Release::queued, cut::Fronts::inside_cells);
     cutter.begin(body, rest());
@@ -62,15 +68,16 @@ TEST(Fronts, HardlyShortenExplicitSteps) {
         soft[k] = std::max(soft[k], now[k] / of_whole[k]);
       stiff = std::max(stiff, of_springs(body, grid::TieStiffness::of_fronts) / of_whole[2]);
     };
-    const Vec3 middle = Vec3::Constant(3.5) + support::random_vector(random);
+    const Vec3 middle = centre + support::random_vector(random);
     const cut::Disc disc{middle, support::random_direction(random), support::uniform(random, 1, 3)};
     surface::place(body, cutter.at_once(body, {"disc", disc, 1}, rest()), {});
     compare();
-    const double height = support::uniform(random, 1, 6), end = support::uniform(random, 2, 5);
-    const cut::Blade blade = {.name = "blade",
-                              .edge = {Vec3(0, -1, 0), Vec3(0, 9, support::uniform(random, -0.5, 0.5))},
-                              .key_frames = {{0, Vec3(-1, 0, height)}, {1, Vec3(end, 0, height)}},
-                              .label = 2};
+    const double height = support::uniform(random, -2.5, 2.5), end = support::uniform(random, -1.5, 1.5);
+    const cut::Blade blade = {
+      .name = "blade",
+      .edge = {Vec3(0, -4.5, 0), Vec3(0, 4.5, support::uniform(random, -0.5, 0.5))},
+      .key_frames = {{0, centre + Vec3(-4.5, 0, height)}, {1, centre + Vec3(end, 0, height)}},
+      .label = 2};
     for (int i = 0; i < 10; ++i) {
       surface::place(body, cutter.step(body, std::span(&blade, 1), 0.1 * i, 0.1 * (i + 1), rest()), {});
       if (i > 7)
@@ -80,9 +87,9 @@ TEST(Fronts, HardlyShortenExplicitSteps) {
   EXPECT_GT(n_tied, 1000u);
   std::cout << "over the whole body: " << soft[0] << ", " << soft[1] << ", springs " << soft[2] << "; with ties of fronts "
             << stiff << '\n';
-  EXPECT_LT(soft[0], 1.2);
-  EXPECT_LT(soft[1], 1.15);
-  EXPECT_LT(soft[2], 1.25);
+  EXPECT_LT(soft[0], 1.3);
+  EXPECT_LT(soft[1], 1.3);
+  EXPECT_LT(soft[2], 1.3);
   EXPECT_GT(stiff, 1.8);
 }
 
