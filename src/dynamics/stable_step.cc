@@ -159,9 +159,18 @@ double StepLimit::at(const State& state, const Loads& loads) const {
   return stable_step(scheme_.amplification, mode, loads.stiffness_damping, scheme_.allowance);
 }
 
-void StepLimit::require(const State& state, const Loads& loads, const double dt) {
-  if (options_.beyond == BeyondStable::go_on || dt <= longest_checked_)
+void StepLimit::require(State& state, const Loads& loads, const double dt) {
+  constexpr double between = 200; // steps
+  if (options_.beyond == BeyondStable::go_on)
     return;
+  double& n_since = ++state.numbers[steps_since_];
+  if (dt <= longest_checked_)
+    return;
+  if (const auto known = state.numbers.find(known_);
+      known != state.numbers.end() && dt <= known->second && n_since < between) {
+    last_ = known->second;
+    return;
+  }
   last_ = at(state, loads);
   if (dt > last_)
     throw ParameterError(Complaint{.path = "Time step [s]",
@@ -170,6 +179,8 @@ void StepLimit::require(const State& state, const Loads& loads, const double dt)
                                    .remedy = "Use a smaller time step or an implicit integrator, or set Beyond the "
                                              "stable step = go on"});
   longest_checked_ = dt;
+  state.numbers[known_] = last_;
+  n_since = 0;
 }
 
 } // namespace kerf::dynamics

@@ -60,14 +60,21 @@ struct ExplicitScheme {
   double allowance;
 };
 
-/// Watches an integrator's steps: computes its stable step at the first one, and whenever a longer one is asked for.
+/// Watches an integrator's steps: computes its stable step at the first one, and whenever a longer one is asked for. After
+/// a cut, for which integrators are made again, it does so only if the last time was 200 steps ago, by what the state
+/// remembers: that costs as much as some 15 steps. Until then a step that has become too long shows by what it gains
+/// (sound_steps.h).
 class StepLimit {
  public:
   StepLimit(ElasticModel& model, const ExplicitScheme& scheme, const ExplicitOptions& options)
-    : model_(model), scheme_(scheme), options_(options) {}
+    : model_(model),
+      scheme_(scheme),
+      options_(options),
+      known_("stable step of " + scheme.name + " [s]"),
+      steps_since_("steps since the stable step of " + scheme.name + " was found [1]") {}
 
   /// Throws ParameterError with the stable step if dt is beyond it and beyond is refused.
-  void require(const State& state, const Loads& loads, double dt);
+  void require(State& state, const Loads& loads, double dt);
   /// The stable step when it was computed last [s]; 0: never.
   double last() const { return last_; }
   void archive(Archive& a) { a(longest_checked_, last_); }
@@ -78,6 +85,7 @@ class StepLimit {
   ElasticModel& model_;
   ExplicitScheme scheme_;
   ExplicitOptions options_;
+  std::string known_, steps_since_;       // names in State::numbers
   double longest_checked_ = 0, last_ = 0; // [s]
 };
 
