@@ -60,10 +60,10 @@ struct ExplicitScheme {
   double allowance;
 };
 
-/// Watches an integrator's steps: computes its stable step at the first one, and whenever a longer one is asked for. After
-/// a cut, for which integrators are made again, it does so only if the last time was 200 steps ago, by what the state
-/// remembers: that costs as much as some 15 steps. Until then a step that has become too long shows by what it gains
-/// (sound_steps.h).
+/// Watches an integrator's steps: computes its stable step at the first one, and whenever a longer one is asked for.
+/// After a cut, for which integrators are made again, it does so only if the last time was 200 steps ago, by what the
+/// state remembers: that costs as much as some 15 steps. Until then a step that has become too long shows by what it
+/// gains (sound_steps.h).
 class StepLimit {
  public:
   StepLimit(ElasticModel& model, const ExplicitScheme& scheme, const ExplicitOptions& options)

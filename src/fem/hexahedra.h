@@ -189,13 +189,13 @@ class Hexahedra : public dynamics::ElasticModel, public dynamics::StiffnessMatri
   Ties ties_;
   std::vector<double> mass_;                        // by corner
   std::vector<double> mass_by_number_;              // that integrators get; none where all corners have their own
-  std::vector<double> tied_mass_;                   // extended, and shared over ties (grid/fronts.h); none without ties
+  std::vector<double> tied_mass_;                   // extended, and shared over ties; none where there are none
   GatheredMass gathered_;                           // where it is wanted; followers by number
   std::unique_ptr<ConsistentMass> consistent_mass_; // none where mass is lumped
   std::unique_ptr<Multigrid> multigrid_;            // none until it is asked for
   FormerLevels former_levels_;                      // when it was asked for last, if a cut came since
-  /// That multigrid shares with those who ask for stiffness_diagonal() after linearise(), in its memory; of Hooke's law,
-  /// which is multigrid's, alone.
+  /// That multigrid shares with those who ask for stiffness_diagonal() after linearise(), in its memory; of Hooke's
+  /// law, which is multigrid's, alone.
   mutable std::vector<Row<float>> diagonal_;
   enum class OfDiagonal { unwanted, wanted, there };
   mutable OfDiagonal of_diagonal_ = OfDiagonal::unwanted;

@@ -88,7 +88,7 @@ struct Front {
   double passed = 1;                                 ///< the part of it that the cut has come to, in (0, 1] [1]
   CutLabel label = 1;
   std::vector<Points> come = {}; ///< where the cut has come in the cell, and a little beside it, since the front was
-                                 ///< told last: convex polygons, rest frame [m]; where asked for (cut::Fronts::as_faces)
+                                 ///< told last: convex polygons, rest frame [m]; for cut::Fronts::as_faces
 
   void archive(Archive& a) { a(cell, ahead, point, normal, area, passed, label, come); }
 };

@@ -61,9 +61,10 @@ std::vector<std::array<CopyId, 2>> tied_copies(const Solid& solid, const CellCom
 /// Between them, in their order; none in crumbs, which are rigid (crumbs.h).
 std::vector<Tie> ties(const Solid& solid);
 
-/// Moves mass between corners that are tied, for explicit steps: the lighter one of two gets up to a 16th of the heavier
-/// one's. As they have one place at rest, the total, its centre and moments stay. Parts of skin that ties alone hold have
-/// corners whose mass fades faster than the stiffness of the part, and would vibrate the faster the thinner it is.
+/// Moves mass between corners that are tied, for explicit steps: the lighter one of two gets up to a 16th of the
+/// heavier one's. As they have one place at rest, the total, its centre and moments stay. Parts of skin that ties alone
+/// hold have corners whose mass fades faster than the stiffness of the part, and would vibrate the faster the thinner
+/// it is.
 void share_mass(std::span<const Tie> ties, std::vector<double>& mass);
 
 /// How stiff ties are.
@@ -72,9 +73,9 @@ enum class TieStiffness {
   of_explicit_steps ///< soften()
 };
 
-/// Shortens ties so that at no corner their stiffness, E / (1 - nu^2) = `modulus` [Pa] times the sum of their lengths, is
-/// more than its mass times `square_frequency` [1/s^2]. Corners that hold hardly any mass, and fronts that have just come
-/// into a cell, would let bodies vibrate up to six times faster. With 2 (c / h)^2 for elements and half of it for
+/// Shortens ties so that at no corner their stiffness, E / (1 - nu^2) = `modulus` [Pa] times the sum of their lengths,
+/// is more than its mass times `square_frequency` [1/s^2]. Corners that hold hardly any mass, and fronts that have just
+/// come into a cell, would let bodies vibrate up to six times faster. With 2 (c / h)^2 for elements and half of it for
 /// springs, c the speed of pressure waves, they do not let them vibrate faster by more than a twentieth and a tenth
 /// beyond what the copies do. Where that makes ties too soft, before a quarter of the cell is passed, a front acts as
 /// if it were up to .22 cubes further on, of springs .35.

@@ -41,8 +41,8 @@ void count_segments(const Patient& patient, const std::vector<support::Plane>& p
 }
 
 /// Two planes that cross in the box make four pieces, whichever comes first, as blades and at once; and splinters where
-/// the wedge between them is thinner at the skin than a cell, so that no segment holds it to the rest of its piece. What
-/// the planes part is parted, but for tips that the cut says it has left (cut/shreds.h).
+/// the wedge between them is thinner at the skin than a cell, so that no segment holds it to the rest of its piece.
+/// What the planes part is parted, but for tips that the cut says it has left (cut/shreds.h).
 TEST(AtSkin, TheOrderOfTwoCutsThatCrossDoesNotMatter) {
   Random random(108);
   double worst = 0, largest_splinter = 0;

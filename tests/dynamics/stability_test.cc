@@ -316,8 +316,8 @@ TEST(StableStep, IsRefusedWithTheNumber) {
   EXPECT_THROW(MidpointRungeKutta(model, {}).step(state, {}, 0.5 * exact), ParameterError);
 }
 
-/// Each cut makes integrators again. What it does to the stable step is told at once where that was not asked for within
-/// 200 steps, else then; a longer step, or a body that comes without a past, is asked about at once.
+/// Each cut makes integrators again. What it does to the stable step is told at once where that was not asked for
+/// within 200 steps, else then; a longer step, or a body that comes without a past, is asked about at once.
 TEST(StableStep, IsAskedForAgainAfterACut) {
   Chain whole(std::vector<double>(30, 0.2), {.neighbour = 75}), cut(std::vector<double>(30, 0.2), {.neighbour = 110});
   const double exact = 2 / highest_frequency(30, 0.2, 75), dt = 0.95 * exact;

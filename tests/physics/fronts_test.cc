@@ -85,8 +85,8 @@ TEST(Fronts, HardlyShortenExplicitSteps) {
     }
   }
   EXPECT_GT(n_tied, 1000u);
-  std::cout << "over the whole body: " << soft[0] << ", " << soft[1] << ", springs " << soft[2] << "; with ties of fronts "
-            << stiff << '\n';
+  std::cout << "over the whole body: " << soft[0] << ", " << soft[1] << ", springs " << soft[2]
+            << "; with ties of fronts " << stiff << '\n';
   EXPECT_LT(soft[0], 1.3);
   EXPECT_LT(soft[1], 1.3);
   EXPECT_LT(soft[2], 1.3);

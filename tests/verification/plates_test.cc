@@ -131,8 +131,8 @@ TEST(EdgeCrack, TellsWhereItsFrontLies) {
       }
 }
 
-/// Ties that explicit steps bear are too soft while the front has come through less than a quarter of its cell: it enters
-/// the next one, with its lag, at .75.
+/// Ties that explicit steps bear are too soft while the front has come through less than a quarter of its cell: it
+/// enters the next one, with its lag, at .75.
 TEST(EdgeCrack, IsHardlyAheadOfItsFrontInExplicitSteps) {
   for (const double along : {0.02, 0.2, 0.3, 0.5, 0.7, 0.76, 0.8, 0.9})
     for (const double across : {0.5, 0.25, 0.02}) {
