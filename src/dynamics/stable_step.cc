@@ -160,14 +160,14 @@ double StepLimit::at(const State& state, const Loads& loads) const {
 }
 
 void StepLimit::require(State& state, const Loads& loads, const double dt) {
-  constexpr double between = 200; // steps
+  constexpr double steps_between = 200, part = 0.75;
   if (options_.beyond == BeyondStable::go_on)
     return;
   double& n_since = ++state.numbers[steps_since_];
   if (dt <= longest_checked_)
     return;
   if (const auto known = state.numbers.find(known_);
-      known != state.numbers.end() && dt <= known->second && n_since < between) {
+      known != state.numbers.end() && dt <= part * known->second && n_since < steps_between) {
     last_ = known->second;
     return;
   }

@@ -14,6 +14,8 @@
 
 #include <Eigen/Core>
 
+#include <string>
+
 namespace kerf::dynamics {
 
 /// One vibration: x'' = -square x - (mass_damping + other_damping) x'.
@@ -61,9 +63,9 @@ struct ExplicitScheme {
 };
 
 /// Watches an integrator's steps: computes its stable step at the first one, and whenever a longer one is asked for.
-/// After a cut, for which integrators are made again, it does so only if the last time was 200 steps ago, by what the
-/// state remembers: that costs as much as some 15 steps. Until then a step that has become too long shows by what it
-/// gains (sound_steps.h).
+/// After a cut, for which integrators are made again, it does so at once where steps are longer than .75 of what the
+/// state remembers as the stable one, else no more than once in 200 steps: that costs as much as some 15 steps. Cuts
+/// shorten the stable step by a fifth at most as a rule; if it is more, that shows by what steps gain (sound_steps.h).
 class StepLimit {
  public:
   StepLimit(ElasticModel& model, const ExplicitScheme& scheme, const ExplicitOptions& options)

@@ -2,11 +2,13 @@
 
 #include "base/loan.h"
 #include "base/parallel.h"
+#include "base/sort_unique.h"
 #include "dynamics/state.h"
 #include "fem/two_rows.h"
 #include "grid/carriers.h"
 
 #include <algorithm>
+#include <map>
 #include <numeric>
 #include <utility>
 
@@ -86,16 +88,32 @@ void Hexahedra::follow(const grid::Solid& solid, const std::span<const grid::Cop
   if (inertia_ == Inertia::gathered)
     gathered_ = grid::is_cut(solid.cuts) ? gathered_mass(solid, mass_, material_.density * h_ * h_ * h_)
                                          : GatheredMass{ghost_penalty_.extended_mass(), {}};
-  tied_mass_.clear();
-  if (inertia_ == Inertia::extended && !solid.complex.tied.empty()) {
-    tied_mass_ = ghost_penalty_.extended_mass();
-    grid::share_mass(grid::ties(solid), tied_mass_);
-  }
+  if (inertia_ == Inertia::extended)
+    share_mass(solid);
   ties_ = ties(solid);
   if (consistent_mass_)
     consistent_mass_->update(solid, changed, mass_, mass_by_corner());
   if (!numbers_.are_all())
     count();
+}
+
+/// Enough for a corner is four times an even share of the copies that are tied: an element's stiffness is no larger, in
+/// proportion to its material, than a few times that of a cube.
+void Hexahedra::share_mass(const grid::Solid& solid) {
+  tied_mass_.clear();
+  if (solid.complex.tied.empty())
+    return;
+  std::vector<grid::CopyId> tied;
+  for (const auto& [c, d] : solid.complex.tied)
+    tied.insert(tied.end(), {c, d});
+  sort_unique(tied);
+  std::map<grid::CornerId, double> enough;
+  for (const grid::CopyId c : tied)
+    for (const grid::CornerId corner : solid.complex.copies[c].corners)
+      enough[corner] += 0.5 * material_.density * elements_[c.value].volume;
+  tied_mass_ = ghost_penalty_.extended_mass();
+  grid::share_mass(
+    grid::ties(solid), [&](const grid::CornerId c) { return enough.at(c); }, tied_mass_);
 }
 
 Ties Hexahedra::ties(const grid::Solid& solid) const {

@@ -118,6 +118,7 @@ class Hexahedra : public dynamics::ElasticModel, public dynamics::StiffnessMatri
   bool is_hookean() const { return frame_ == Frame::fixed || std::holds_alternative<material::Corotational>(law_); }
   void follow(const grid::Solid& solid, std::span<const grid::CopyId> changed, std::span<const std::uint32_t> corners);
   void sum_mass(std::span<const std::uint32_t> corners);
+  void share_mass(const grid::Solid& solid);
   const std::vector<double>& mass_by_corner() const {
     return inertia_ == Inertia::lumped     ? mass_
            : inertia_ == Inertia::gathered ? gathered_.mass

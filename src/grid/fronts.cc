@@ -1,5 +1,6 @@
 #include "grid/fronts.h"
 
+#include "base/sort_unique.h"
 #include "grid/material.h"
 #include "grid/shape.h"
 
@@ -110,24 +111,34 @@ std::vector<Tie> ties(const Solid& solid) {
   return ties;
 }
 
-void share_mass(const std::span<const Tie> ties, std::vector<double>& mass) {
+void share_mass(const std::span<const Tie> ties, const FunctionRef<double(CornerId)> enough,
+                std::vector<double>& mass) {
   constexpr double part = 1.0 / 16; // that a corner gives away in all
   struct Gift {
-    std::uint32_t from, to;
+    CornerId from, to;
+    double amount = 0;
+    auto operator<=>(const Gift& other) const = default;
   };
   std::vector<Gift> gifts;
-  std::map<std::uint32_t, int> n_gifts;
   for (const auto& [a, b, length] : ties) {
     const bool is_a_lighter = mass[a.value] < mass[b.value];
-    gifts.push_back(is_a_lighter ? Gift{b.value, a.value} : Gift{a.value, b.value});
-    ++n_gifts[gifts.back().from];
+    const Gift gift = is_a_lighter ? Gift{b, a} : Gift{a, b};
+    if (mass[gift.to.value] < enough(gift.to))
+      gifts.push_back(gift);
   }
-  std::vector<double> amounts;
-  for (const auto& [from, to] : gifts)
-    amounts.push_back(std::max(0.0, part * mass[from] / n_gifts[from] - mass[to]));
-  for (std::size_t i = 0; i < gifts.size(); ++i) {
-    mass[gifts[i].from] -= amounts[i];
-    mass[gifts[i].to] += amounts[i];
+  sort_unique(gifts); // cells around a corner have the same ties
+  std::map<CornerId, int> n_from, n_to;
+  for (const Gift& gift : gifts) {
+    ++n_from[gift.from];
+    ++n_to[gift.to];
+  }
+  for (auto& [from, to, amount] : gifts) {
+    const double wanted = (enough(to) - mass[to.value]) / n_to[to];
+    amount = std::min(wanted, std::max(0.0, part * mass[from.value] / n_from[from] - mass[to.value]));
+  }
+  for (const auto& [from, to, amount] : gifts) {
+    mass[from.value] -= amount;
+    mass[to.value] += amount;
   }
 }
 

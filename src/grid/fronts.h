@@ -61,11 +61,12 @@ std::vector<std::array<CopyId, 2>> tied_copies(const Solid& solid, const CellCom
 /// Between them, in their order; none in crumbs, which are rigid (crumbs.h).
 std::vector<Tie> ties(const Solid& solid);
 
-/// Moves mass between corners that are tied, for explicit steps: the lighter one of two gets up to a 16th of the
-/// heavier one's. As they have one place at rest, the total, its centre and moments stay. Parts of skin that ties alone
-/// hold have corners whose mass fades faster than the stiffness of the part, and would vibrate the faster the thinner
-/// it is.
-void share_mass(std::span<const Tie> ties, std::vector<double>& mass);
+/// Moves mass between corners that are tied, for explicit steps: the heavier one of two gives at most a 16th of its own
+/// to those that have less than is `enough` [kg]. As they have one place at rest, the total, its centre and moments stay
+/// in the rest shape. Parts of skin that ties alone hold have corners whose mass fades faster than the stiffness of the
+/// part, and would vibrate the faster the thinner it is. More than is enough for that would be a weight that the ties of
+/// such a part cannot bear.
+void share_mass(std::span<const Tie> ties, FunctionRef<double(CornerId)> enough, std::vector<double>& mass);
 
 /// How stiff ties are.
 enum class TieStiffness {

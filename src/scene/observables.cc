@@ -352,8 +352,8 @@ const std::vector<Observable>& body_observables() {
      "stiffness of its corner, so that what stands at stiff supports counts less",
      [](const Body& b) { return b.report.residual; }},
     {"stable step", "s",
-     "longest time step that the explicit integrator bears, as of the first step after the start or a cut; 0 where it "
-     "was not computed",
+     "longest time step that the explicit integrator bears, as of the first step after the start or a cut, or up to 200 "
+     "steps before where steps are shorter than .75 of it; 0 where it was not computed",
      [](const Body& b) { return b.report.stable_step; }},
     {"waiting pairs", "1", "of phyxels or corners that wait for a look at a new cut (backend pba)",
      [](const Body& b) {

@@ -1,6 +1,7 @@
 /// A model that follows cuts is the model that is built anew, bit by bit.
 
 #include "base/parallel.h"
+#include "cut/cutter.h"
 #include "dynamics/state.h"
 #include "tests/fem/models.h"
 
@@ -68,6 +69,28 @@ TEST(Update, IsBuildingAnewBitByBit) {
       }
       EXPECT_GT(body.complex.n_copies(), 64u);
     }
+}
+
+/// A front that moves on, by masses that tied corners share and ties that explicit steps bear.
+TEST(Update, OfAFrontIsBuildingAnewBitByBit) {
+  Draw draw(91);
+  Body body = make_block({6, 6, 6}, 0.2, draw, {0.3, 0.7});
+  cut::Cutter cutter(1, cut::Release::queued, cut::Fronts::inside_cells);
+  cutter.begin(body, body.rest());
+  const HexahedraOptions options{.material = rubber, .strain = Strain::enhanced, .inertia = Inertia::extended};
+  Hexahedra model = make_model(body, options);
+  std::size_t n_tied = 0;
+  for (double radius = 0.2; radius < 0.6; radius += 0.017) {
+    const cut::Disc disc{Vec3(0.53, 0.48, 0.51), Vec3(0.1, 0.2, 1).normalized(), radius};
+    const grid::CutChange change = cutter.at_once(body, {"disc", disc, 1}, body.rest());
+    surface::place(body, change, {});
+    model.update(body, change.reshaped);
+    const Points x = disturbed(body, draw);
+    Hexahedra anew = make_model(body, options);
+    ASSERT_EQ(answers(model, x), answers(anew, x)) << radius;
+    n_tied += body.complex.tied.size();
+  }
+  EXPECT_GT(n_tied, 200u);
 }
 
 /// Whether somebody has asked for the diagonal of the stiffness or nobody has, before a cut, after one and after two:

@@ -2,6 +2,10 @@
 
 #include "tests/scene/trials.h"
 
+#include <cmath>
+#include <cstdio>
+#include <utility>
+
 namespace kerf::scene::fronts_scenes_test {
 namespace {
 
@@ -26,7 +30,7 @@ double sag(const std::string& backend, const std::string& integrator, const doub
 }
 
 /// To within what a front is ahead of where it is for explicit steps, in the cell that the blade enters at .125 m and
-/// passes at .075 m; there cuts were a cell deep or not until then.
+/// passes at .075 m.
 void expect_alike(const std::string& backend, const std::string& at_rest, const double dt_at_rest, const double dt) {
   double before = 0;
   for (const auto& [end, tolerance] : {std::pair{0.119, 0.05}, {0.098, 0.005}}) {
