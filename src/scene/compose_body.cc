@@ -148,7 +148,6 @@ std::string describe_physics(const Section& section, const BodyParameters& param
               mass, parameters.integrator);
 }
 
-
 /// Which parts of the mesh the grid takes for pieces of their own, too thin to be deformed.
 std::string describe_crumbs(const Body& body) {
   constexpr std::size_t most = 5;
