@@ -5,6 +5,7 @@
 #include "dynamics/constraints.h"
 #include "dynamics/load.h"
 
+#include <cstddef>
 #include <span>
 
 namespace kerf::dynamics {
@@ -19,6 +20,21 @@ struct LinearEquation {
   const Constraints& constraints;
 };
 
+/// C^T C, a part of A that is much stiffer than the rest, as what a nearly incompressible body has against changes of
+/// volume. C has a row for each of its constraints.
+class StiffPart {
+ public:
+  virtual ~StiffPart() = default;
+
+  virtual std::size_t n_rows() const = 0;
+  /// q = C p.
+  virtual void product(std::span<const double> p, std::span<double> q) const = 0;
+  /// y += C^T q.
+  virtual void add_transposed(std::span<const double> q, std::span<double> y) const = 0;
+  /// About the largest eigenvalue of C (A - C^T C)^-1 C^T [1].
+  virtual double excess() const = 0;
+};
+
 class Preconditioner {
  public:
   virtual ~Preconditioner() = default;
@@ -26,6 +42,8 @@ class Preconditioner {
   /// z = B r [m] for r [N], 3 n numbers each, with B near A^-1: symmetric, and positive among the free directions. What
   /// r has along others is not looked at, and z has none there.
   virtual void apply(std::span<const double> r, std::span<double> z) = 0;
+  /// What of A it leaves out: then B is near the inverse of what remains. Null: nothing.
+  virtual const StiffPart* stiff_part() const { return nullptr; }
 };
 
 /// L^-1 for the Cholesky factor L of a diagonal block among its free directions, from whose basis it maps; zero rows

@@ -1,5 +1,7 @@
 #include "fem/element.h"
 
+#include "fem/dilatation.h"
+
 #include <Eigen/Cholesky>
 
 #include <algorithm>
@@ -93,7 +95,7 @@ Element make_element(const Moments& moments, const double h, const material::Ela
   for (int p = 0; p < n_hourglass; ++p)
     for (int q = 0; q <= p; ++q)
       element.hourglass[pair_index(p, q)] = static_cast<float>(0.5 * (K(p, q) + K(q, p)));
-  element.bound = jacobi_bound(element, material);
+  element.bound = jacobi_bound(element, for_multigrid(material, options.strain));
   return element;
 }
 

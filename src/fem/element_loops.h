@@ -15,6 +15,7 @@ struct ElementLoops : RowLoops<T, W> {
   using Rows::add_nodes;
   using Rows::load;
   using Rows::read_nodes;
+  using Rows::store;
 
   /// Do reflections leave this pair of hourglass unknowns coupled in a full cube? Each must change the sign of both or
   /// of none.
@@ -257,6 +258,54 @@ struct ElementLoops : RowLoops<T, W> {
         product_hooke<true>(cube, batch, lane, p, y);
       else
         product_hooke<false>(cube, batch, lane, p, y);
+  }
+
+  // --- Changes of volume -------------------------------------------------------------------------------------------
+
+  template <bool is_partial>
+  [[gnu::always_inline]] static void dilatation_of(const CubeConstants<T>& cube, const Batch<T>& batch, const int lane,
+                                                   const Row<T>* const p, T* const q) {
+    V c[8][3], R[9], G[9], sum = V{};
+    read_modes(batch, lane, p, c);
+    load_rotation(batch, lane, R);
+    mean_gradient<is_partial>(cube, batch, lane, c, G);
+#pragma GCC unroll 9
+    for (int i = 0; i < 9; ++i)
+      sum += R[i] * G[i];
+    store(q + lane, sum);
+  }
+  [[gnu::always_inline]] static void dilatation(const CubeConstants<T>& cube, const Batch<T>& batch,
+                                                const Row<T>* const p, T* const q) {
+    for (int lane = 0; lane < int(n_lanes); lane += W)
+      if (batch.partial)
+        dilatation_of<true>(cube, batch, lane, p, q);
+      else
+        dilatation_of<false>(cube, batch, lane, p, q);
+  }
+  template <bool is_partial>
+  [[gnu::always_inline]] static void add_pressure_of(const CubeConstants<T>& cube, const Batch<T>& batch,
+                                                     const int lane, const T* const q, Row<T>* const y) {
+    V P[9], f[8][3];
+    load_rotation(batch, lane, P);
+    const V pressure = load(q + lane);
+#pragma GCC unroll 9
+    for (int i = 0; i < 9; ++i)
+      P[i] *= pressure;
+#pragma GCC unroll 8
+    for (int m = 0; m < 8; ++m)
+#pragma GCC unroll 3
+      for (int i = 0; i < 3; ++i)
+        f[m][i] = V{};
+    put_stress<is_partial>(cube, batch, lane, P, f);
+    add_modes(f, batch, lane, y);
+  }
+  [[gnu::always_inline]] static void add_pressure(const CubeConstants<T>& cube, const Batch<T>& batch,
+                                                  const T* const q, Row<T>* const y) {
+    for (int lane = 0; lane < int(n_lanes); lane += W)
+      if (batch.partial)
+        add_pressure_of<true>(cube, batch, lane, q, y);
+      else
+        add_pressure_of<false>(cube, batch, lane, q, y);
   }
 
   // --- Diagonal blocks ---------------------------------------------------------------------------------------------

@@ -4,6 +4,7 @@
 #include "base/parallel.h"
 #include "base/sort_unique.h"
 #include "dynamics/state.h"
+#include "fem/dilatation.h"
 #include "fem/two_rows.h"
 #include "grid/carriers.h"
 
@@ -32,6 +33,7 @@ Hexahedra::Hexahedra(const grid::Solid& solid, const HexahedraOptions& options)
     frame_(frame_of(law_)),
     inertia_(options.inertia),
     material_(options.material),
+    of_multigrid_(for_multigrid(options.material, options.strain)),
     elements_(solid, table_options(options)),
     incidence_(solid),
     counted_(options.counted),
@@ -60,7 +62,7 @@ void Hexahedra::follow(const grid::Solid& solid, const std::span<const grid::Cop
   if (multigrid_) {
     former_levels_ = multigrid_->give_way();
     multigrid_ = nullptr;
-    if (is_hookean())
+    if (shares_diagonal())
       diagonal_ = std::move(former_levels_.diagonal);
   }
   of_diagonal_ = OfDiagonal::unwanted;
@@ -201,7 +203,7 @@ PartialElements Hexahedra::partial_elements() const {
 PartialElements Hexahedra::weighed_partial_elements() const {
   PartialElements partial = partial_elements();
   partial.bound = elements_.full().bound;
-  partial.in_diagonal = is_hookean() ? InDiagonal::excess : InDiagonal::all;
+  partial.in_diagonal = shares_diagonal() ? InDiagonal::excess : InDiagonal::all;
   return partial;
 }
 
@@ -221,21 +223,9 @@ double Hexahedra::volume() const {
   return sum;
 }
 
-void Hexahedra::put_rows(const std::span<const double> values, Row<double>* const rows, Row<double>* const sums) const {
-  const std::size_t n = numbers_.size();
-  parallel_for(
-    batching_->n_rows(),
-    [&](const std::size_t i) {
-      rows[i] = i < n ? Row<double>{values[3 * i], values[3 * i + 1], values[3 * i + 2]} : Row<double>{};
-      if (sums)
-        sums[i] = {};
-    },
-    many_corners_of_copies);
-}
-
 void Hexahedra::apply_stiffness(const std::span<const double> p, const std::span<double> y) const {
   const TwoRows lent(batching_->n_rows());
-  put_rows(p, lent.first, lent.second);
+  put_rows(p, batching_->n_rows(), lent.first, lent.second);
   add_product(*batching_, batched_, lent.first, lent.second);
   write(lent.second, y);
   ghost_penalty_.add_product(p, y);
@@ -282,12 +272,12 @@ void Hexahedra::make_multigrid() {
   multigrid_ = std::make_unique<Multigrid>(
     FinestLevel{{places_, {corner_numbers(0), 8 * n_elements()}, numbers_.size()},
                 h_,
-                material_,
+                of_multigrid_,
                 elements_.full(),
                 kinds_,
                 [this](const std::uint32_t copy) -> const Element& { return elements_[copy]; },
                 batching_,
-                former_levels_.coarse.empty() ? batched<float>(*batching_, h_, material_, elements_.full(),
+                former_levels_.coarse.empty() ? batched<float>(*batching_, h_, of_multigrid_, elements_.full(),
                                                                weighed_partial_elements(), batched_.shared)
                                               : std::move(former_levels_.finest),
                 ghost_penalty_.faces(),
@@ -312,8 +302,11 @@ dynamics::Preconditioner* Hexahedra::preconditioner(const dynamics::LinearEquati
     make_multigrid();
   if (multigrid_->n_levels() == 1)
     return nullptr;
-  if (!is_hookean()) {
+  if (!shares_diagonal()) {
     multigrid_->prepare(equation);
+    if (leaves_out_dilatation())
+      multigrid_->leave_out(
+        std::make_unique<Dilatation>(*batching_, batched_, of_multigrid_, equation.stiffness_factor));
     return multigrid_.get();
   }
   if (of_diagonal_ != OfDiagonal::there) {

@@ -115,6 +115,10 @@ class Hexahedra : public dynamics::ElasticModel, public dynamics::StiffnessMatri
   Mat3 deformation_gradient(std::size_t copy, const Points& x) const;
 
  private:
+  /// Multigrid leaves a part of the stiffness out (dilatation.h).
+  bool leaves_out_dilatation() const { return of_multigrid_.poissons_ratio != material_.poissons_ratio; }
+  /// What stands in the diagonal of the stiffness stands in multigrid's too.
+  bool shares_diagonal() const { return is_hookean() && !leaves_out_dilatation(); }
   bool is_hookean() const { return frame_ == Frame::fixed || std::holds_alternative<material::Corotational>(law_); }
   void follow(const grid::Solid& solid, std::span<const grid::CopyId> changed, std::span<const std::uint32_t> corners);
   void sum_mass(std::span<const std::uint32_t> corners);
@@ -145,8 +149,6 @@ class Hexahedra : public dynamics::ElasticModel, public dynamics::StiffnessMatri
   Turned turned_element(std::size_t copy, const Points& x) const;
   Matrix24 element_matrix(std::size_t copy, const Points& x, dynamics::Tangent kind) const;
 
-  /// A row for each corner, and zeros after them; clears as many `sums` on the way, where there are some.
-  void put_rows(std::span<const double> values, Row<double>* rows, Row<double>* sums = nullptr) const;
   /// F and R of a batch.
   Turns turns(std::size_t batch, const Row<double>* x) const;
   /// Calls f(lane, copy) for each lane of a batch that is used.
@@ -174,7 +176,7 @@ class Hexahedra : public dynamics::ElasticModel, public dynamics::StiffnessMatri
   material::AnyLaw law_;
   Frame frame_;
   Inertia inertia_;
-  material::Elastic material_;
+  material::Elastic material_, of_multigrid_;
 
   ElementTable elements_;
   Incidence incidence_;

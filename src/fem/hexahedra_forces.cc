@@ -73,7 +73,7 @@ double Hexahedra::energy_of_batch(const std::size_t batch, const Turns& turns, c
 Loan<double> Hexahedra::energies(const Points& x, const dynamics::Pieces& pieces) const {
   const TwoRows lent(batching_->n_rows());
   Row<double>* const rows = lent.first;
-  put_rows(dynamics::flat(x), rows);
+  put_rows(dynamics::flat(x), batching_->n_rows(), rows);
   Loan<double> of_copies(incidence_.n_copies(), 0), sums(pieces.n(), 0);
   batching_->for_each([&](const std::size_t i) {
     const Turns turns = this->turns(i, rows);
@@ -96,7 +96,7 @@ double Hexahedra::energy(const Points& x) const {
     return *known;
   const TwoRows lent(batching_->n_rows());
   Row<double>* const rows = lent.first;
-  put_rows(dynamics::flat(x), rows);
+  put_rows(dynamics::flat(x), batching_->n_rows(), rows);
   Loan<double> energies(batching_->batches().size());
   batching_->for_each([&](const std::size_t i) {
     const Turns turns = this->turns(i, rows);
@@ -170,7 +170,7 @@ void Hexahedra::find_forces(const Points& x, const WithEnergy with_energy, Point
     return;
   const TwoRows lent(batching_->n_rows());
   Row<double>*const rows = lent.first, *const sums = lent.second;
-  put_rows(dynamics::flat(x), rows, sums);
+  put_rows(dynamics::flat(x), batching_->n_rows(), rows, sums);
   energies.assign(gives_energies(with_energy) ? batching_->batches().size() : 0, 0.0);
   batching_->for_each_in_order([&](const std::size_t i) {
     const double energy = add_forces(i, with_energy, rows, sums);
@@ -213,13 +213,13 @@ bool Hexahedra::update_forces(const Points& x, const WithEnergy with_energy, Poi
 }
 
 void Hexahedra::linearise(const Points& x) {
-  if (is_hookean() && multigrid_ && diagonal_.empty())
+  if (shares_diagonal() && multigrid_ && diagonal_.empty())
     diagonal_ = multigrid_->lend_diagonal();
-  of_diagonal_ = is_hookean() && (multigrid_ || !former_levels_.coarse.empty()) ? OfDiagonal::wanted
+  of_diagonal_ = shares_diagonal() && (multigrid_ || !former_levels_.coarse.empty()) ? OfDiagonal::wanted
                                                                                 : OfDiagonal::unwanted;
   const TwoRows lent(batching_->n_rows());
   Row<double>* const rows = lent.first;
-  put_rows(dynamics::flat(x), rows);
+  put_rows(dynamics::flat(x), batching_->n_rows(), rows);
   const std::size_t n = batching_->batches().size();
   batched_.tangents.resize(is_hookean() ? 0 : n);
   batching_->for_each([&](const std::size_t i) {

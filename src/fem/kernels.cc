@@ -24,6 +24,14 @@ namespace {
                                                      Row<float>* const blocks) {
   ElementLoops<float, 16>::diagonal(cube, batch, blocks);
 }
+[[gnu::target("arch=x86-64-v4")]] void dilatation_wide(const CubeConstants<double>& cube, const Batch<double>& batch,
+                                                       const Row<double>* const p, double* const q) {
+  ElementLoops<double, 8>::dilatation(cube, batch, p, q);
+}
+[[gnu::target("arch=x86-64-v4")]] void add_pressure_wide(const CubeConstants<double>& cube, const Batch<double>& batch,
+                                                         const double* const q, Row<double>* const y) {
+  ElementLoops<double, 8>::add_pressure(cube, batch, q, y);
+}
 [[gnu::target("arch=x86-64-v4")]] unsigned turn_wide(const CubeConstants<double>& cube, const Batch<double>& batch,
                                                      const Row<double>* const x, Turns& turns) {
   return ForceLoops<double, 8>::turn_all(cube, batch, x, turns);
@@ -65,6 +73,14 @@ namespace {
                                                        Row<float>* const blocks) {
   ElementLoops<float, 8>::diagonal(cube, batch, blocks);
 }
+[[gnu::target("arch=x86-64-v3")]] void dilatation_middle(const CubeConstants<double>& cube, const Batch<double>& batch,
+                                                         const Row<double>* const p, double* const q) {
+  ElementLoops<double, 4>::dilatation(cube, batch, p, q);
+}
+[[gnu::target("arch=x86-64-v3")]] void add_pressure_middle(const CubeConstants<double>& cube,
+                                                           const Batch<double>& batch, const double* const q, Row<double>* const y) {
+  ElementLoops<double, 4>::add_pressure(cube, batch, q, y);
+}
 [[gnu::target("arch=x86-64-v3")]] unsigned turn_middle(const CubeConstants<double>& cube, const Batch<double>& batch,
                                                        const Row<double>* const x, Turns& turns) {
   return ForceLoops<double, 4>::turn_all(cube, batch, x, turns);
@@ -104,6 +120,14 @@ void product_narrow(const CubeConstants<float>& cube, const Batch<float>& batch,
 void diagonal_narrow(const CubeConstants<float>& cube, const Batch<float>& batch, Row<float>* const blocks) {
   ElementLoops<float, 4>::diagonal(cube, batch, blocks);
 }
+void dilatation_narrow(const CubeConstants<double>& cube, const Batch<double>& batch,
+                       const Row<double>* const p, double* const q) {
+  ElementLoops<double, 4>::dilatation(cube, batch, p, q);
+}
+void add_pressure_narrow(const CubeConstants<double>& cube, const Batch<double>& batch,
+                         const double* const q, Row<double>* const y) {
+  ElementLoops<double, 4>::add_pressure(cube, batch, q, y);
+}
 unsigned turn_narrow(const CubeConstants<double>& cube, const Batch<double>& batch, const Row<double>* const x,
                      Turns& turns) {
   return ForceLoops<double, 4>::turn_all(cube, batch, x, turns);
@@ -141,9 +165,10 @@ template const ElementKernels<double>& element_kernels<double>(InstructionSet);
 template const ElementKernels<float>& element_kernels<float>(InstructionSet);
 
 const ForceKernels& force_kernels(const InstructionSet set) {
-  static constexpr ForceKernels kernels[3] = {{turn_narrow, force_narrow, turned_force_narrow, energy_narrow},
-                                              {turn_middle, force_middle, turned_force_middle, energy_middle},
-                                              {turn_wide, force_wide, turned_force_wide, energy_wide}};
+  static constexpr ForceKernels kernels[3] = {
+    {turn_narrow, force_narrow, turned_force_narrow, energy_narrow, dilatation_narrow, add_pressure_narrow},
+    {turn_middle, force_middle, turned_force_middle, energy_middle, dilatation_middle, add_pressure_middle},
+    {turn_wide, force_wide, turned_force_wide, energy_wide, dilatation_wide, add_pressure_wide}};
   return kernels[static_cast<int>(set)];
 }
 

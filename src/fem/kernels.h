@@ -107,6 +107,10 @@ struct ForceKernels {
   /// E of each lane [J].
   void (*energy)(const CubeConstants<double>& cube, const Batch<double>& batch, const Turns& turns, MeanPart mean,
                  const Row<double>* x, double* energies);
+  /// q = tr(R^T G) of each lane, G the mean gradient of p and R the batch's rotation: how a volume changes.
+  void (*dilatation)(const CubeConstants<double>& cube, const Batch<double>& batch, const Row<double>* p, double* q);
+  /// y += the derivative of that by p, times q.
+  void (*add_pressure)(const CubeConstants<double>& cube, const Batch<double>& batch, const double* q, Row<double>* y);
 };
 const ForceKernels& force_kernels(InstructionSet set = instruction_set());
 

@@ -87,7 +87,11 @@ class Multigrid : public dynamics::Preconditioner {
   /// Gives the memory of such a diagonal back, for that of the next equation; until it is prepared it is of no use.
   std::vector<Row<float>> lend_diagonal();
 
+  /// Says what of the equation it does not know, after prepare().
+  void leave_out(std::unique_ptr<dynamics::StiffPart> part) { left_out_ = std::move(part); }
+
   void apply(std::span<const double> r, std::span<double> z) override;
+  const dynamics::StiffPart* stiff_part() const override { return left_out_.get(); }
 
  private:
   struct Level;
@@ -105,6 +109,7 @@ class Multigrid : public dynamics::Preconditioner {
   std::vector<Level> levels_;
   std::unique_ptr<Coarsest> coarsest_;
   std::unique_ptr<Cycle> cycle_;
+  std::unique_ptr<dynamics::StiffPart> left_out_; // null: nothing
   double stiffness_factor_ = 1;
 };
 

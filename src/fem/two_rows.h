@@ -20,6 +20,20 @@ struct TwoRows {
   Row<double>*first, *second;
 };
 
+/// A row for each corner, and zeros after them; clears as many `sums` on the way, where there are some.
+inline void put_rows(const std::span<const double> values, const std::size_t n_rows, Row<double>* const rows,
+                     Row<double>* const sums = nullptr) {
+  const std::size_t n = values.size() / 3;
+  parallel_for(
+    n_rows,
+    [&](const std::size_t i) {
+      rows[i] = i < n ? Row<double>{values[3 * i], values[3 * i + 1], values[3 * i + 2]} : Row<double>{};
+      if (sums)
+        sums[i] = {};
+    },
+    many_corners_of_copies);
+}
+
 /// Three numbers of each row.
 inline void write(const Row<double>* const rows, const std::span<double> y) {
   parallel_for(
