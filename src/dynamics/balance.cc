@@ -338,10 +338,9 @@ int BalanceSolver::correct_by_cg(const Problem& problem, Loan<Vec3> guess, const
     own ? CgEquation{A, [own](const auto r, const auto z) { own->apply(r, z); }, J} : CgEquation{A, J, {}};
   Loan<Vec3> unsolved(residual_.size());
   CgReport report;
-  const StiffPart* const stiff = own ? own->stiff_part() : nullptr;
-  if (stiff)
-    report = minimal_residuals(equation, *stiff, flat(residual_), stop, options_.max_cg_iterations, flat(correction_),
-                               flat(*unsolved));
+  if (const StiffPart* const stiff = own ? own->stiff_part() : nullptr)
+    report = minimal_residuals(equation, *stiff, flat(residual_), stop.residual, options_.max_cg_iterations,
+                               flat(correction_), flat(*unsolved));
   if (!report.converged) {
     const int before = report.n_iterations;
     report = patient_conjugate_gradients(equation, flat(residual_), stop, options_.max_cg_iterations - before,

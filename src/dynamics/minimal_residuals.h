@@ -1,29 +1,34 @@
 #pragma once
 
-/// Equations with a part that is much stiffer than the rest, (A + C^T C) x = b: by minimal residuals (MINRES; Paige and
-/// Saunders 1975, Solution of sparse indefinite systems of linear equations, SIAM J. Numer. Anal. 12) for x and
-/// q = C x together,
+/// Equations with a part that is much stiffer than the rest, (A + C^T C) x = b: by generalised minimal residuals (Saad
+/// and Schultz 1986, GMRES, SIAM J. Sci. Stat. Comput. 7) for x and q = C x together,
 ///
 ///     [ A   C^T ] [x]   [b]
 ///     [ C   -1  ] [q] = [0],
 ///
-/// preconditioned by B near A^-1 and by 1 / (1 + e), with e near the largest eigenvalue of C A^-1 C^T. That is as well
-/// conditioned as the problem of Stokes, however stiff the part is (Elman, Silvester and Wathen 2014, Finite elements
-/// and fast iterative solvers, 2nd ed., sec. 4.2): conjugate gradients for x alone by B take as many more iterations as
-/// the root of e says.
+/// preconditioned from the right by the inverse of
 ///
-/// With r and g what is left of both rows, what is left of the equation for x is r + C^T g, and in its energy norm x is
-/// off by at most |r| + |g|, the first in the norm of A^-1. Both are had from the iteration (Herzog and Soodhalter 2017,
-/// A modified implementation of MINRES to monitor residual subvector norms for block systems, SIAM J. Sci. Comput. 39).
+///     [ B^-1      0    ]
+///     [  C    -(1 + e) ],     B near A^-1, e near the largest eigenvalue of C A^-1 C^T.
+///
+/// That is as well conditioned as the problem of Stokes, however stiff the part is (Elman, Silvester and Wathen 2014,
+/// Finite elements and fast iterative solvers, 2nd ed., ch. 4 and 9), while conjugate gradients for x alone by B take
+/// as many more iterations as the root of e says. Residuals r, g of the two rows are measured by r.Br + g.g / (1 + e),
+/// and what is left of the equation for x alone is r + C^T g. A few directions are remembered, and then x and q are gone
+/// on from.
+///
+/// Two others were tried. MINRES with the diagonal blocks of that takes twice the iterations. The conjugate gradients
+/// of Bramble and Pasciak (1988, Math. Comp. 50) need B^-1 below A, and multigrid is far from that for a few motions.
 
 #include "dynamics/conjugate_gradients.h"
 #include "dynamics/preconditioner.h"
 
 namespace kerf::dynamics {
 
-/// As conjugate_gradients(), for an equation whose A is the whole, stiff part included, and whose B leaves that out,
-/// with J. Gives up, not converged, where the whole is not positive, or where iterations get on too slowly.
+/// Solves equation.A x = b, the stiff part included, from the x that is given until the residual in the measure
+/// equation.J is the one that is asked for. equation.B leaves the stiff part out. `left`: where b - A x is to be. Gives
+/// up, not converged, where it gets on too slowly, or where the matrix does not resist what was found.
 CgReport minimal_residuals(const CgEquation& equation, const StiffPart& stiff, std::span<const double> b,
-                           const CgStop& stop, int max_iterations, std::span<double> x, std::span<double> left);
+                           double residual, int max_iterations, std::span<double> x, std::span<double> left);
 
 } // namespace kerf::dynamics

@@ -8,24 +8,24 @@
 
 namespace kerf::fem {
 
-material::Elastic for_multigrid(const material::Elastic& material, const Strain strain) {
-  constexpr double nearly_incompressible = 0.49, moderate = 0.45; // nu
+material::Elastic without_excess(const material::Elastic& material, const Strain strain) {
+  constexpr double nearly_incompressible = 0.49, moderate = 0.475; // nu
   if (strain != Strain::enhanced || material.poissons_ratio <= nearly_incompressible)
     return material;
   const material::AnyLaw law = material::law_of(material);
   if (!std::holds_alternative<material::Corotational>(law) && !std::holds_alternative<material::SmallStrain>(law))
     return material; // whose tangent is not Hooke's
-  material::Elastic of_multigrid = material;
-  of_multigrid.poissons_ratio = moderate;
-  of_multigrid.youngs_modulus = 2 * material.mu() * (1 + moderate);
-  return of_multigrid;
+  material::Elastic rest = material;
+  rest.poissons_ratio = moderate;
+  rest.youngs_modulus = 2 * material.mu() * (1 + moderate);
+  return rest;
 }
 
 Dilatation::Dilatation(const Batching& batching, const BatchedElements<double>& elements,
-                       const material::Elastic& of_multigrid, const double factor)
+                       const material::Elastic& rest, const double factor)
   : batching_(batching), elements_(elements), weights_(n_lanes * batching.batches().size(), 0) {
-  const double lambda = elements.cube.lambda - of_multigrid.lambda();
-  excess_ = lambda / (of_multigrid.lambda() + 2 * of_multigrid.mu());
+  const double lambda = elements.cube.lambda - rest.lambda();
+  excess_ = lambda / (rest.lambda() + 2 * rest.mu());
   batching.for_each([&](const std::size_t i) {
     const BatchOfCopies& batch = batching.batches()[i];
     for (std::size_t lane = 0; lane < batch.n_used; ++lane) {

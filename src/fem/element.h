@@ -21,7 +21,7 @@ struct Element {
   std::array<double, 8> mass = {};                     ///< lumped: density times the integral of N_a [kg]
   Vec3 centroid;                                       ///< of the material, in the unit cube [1]
   double volume = 0;                                   ///< of the material [m^3]
-  double bound = 0; ///< of the eigenvalues of D^-1 K, see jacobi_bound(), of what multigrid is made for [1]
+  double bound = 0; ///< of the eigenvalues of D^-1 K, see jacobi_bound(); of A too (dilatation.h) [1]
 
   /// Mean of grad N_a over the material [1/m].
   Vec3 gradient(int a) const;

@@ -33,7 +33,6 @@ Hexahedra::Hexahedra(const grid::Solid& solid, const HexahedraOptions& options)
     frame_(frame_of(law_)),
     inertia_(options.inertia),
     material_(options.material),
-    of_multigrid_(for_multigrid(options.material, options.strain)),
     elements_(solid, table_options(options)),
     incidence_(solid),
     counted_(options.counted),
@@ -268,16 +267,21 @@ void Hexahedra::keep_diagonal(const Row<double>* const blocks) const {
   of_diagonal_ = OfDiagonal::there;
 }
 
+material::Elastic Hexahedra::material_of_multigrid() const {
+  return leaves_out_dilatation_ ? without_excess(material_, elements_.strain()) : material_;
+}
+
 void Hexahedra::make_multigrid() {
+  const material::Elastic material = material_of_multigrid();
   multigrid_ = std::make_unique<Multigrid>(
     FinestLevel{{places_, {corner_numbers(0), 8 * n_elements()}, numbers_.size()},
                 h_,
-                of_multigrid_,
+                material,
                 elements_.full(),
                 kinds_,
                 [this](const std::uint32_t copy) -> const Element& { return elements_[copy]; },
                 batching_,
-                former_levels_.coarse.empty() ? batched<float>(*batching_, h_, of_multigrid_, elements_.full(),
+                former_levels_.coarse.empty() ? batched<float>(*batching_, h_, material, elements_.full(),
                                                                weighed_partial_elements(), batched_.shared)
                                               : std::move(former_levels_.finest),
                 ghost_penalty_.faces(),
@@ -298,15 +302,22 @@ dynamics::Preconditioner* Hexahedra::preconditioner(const dynamics::LinearEquati
     inertia += 3 * equation.mass_factor * m;
   if (equation.trace < stiff * inertia)
     return nullptr;
+  const bool leaves_out = equation.mass_factor == 0 &&
+                          without_excess(material_, elements_.strain()).poissons_ratio != material_.poissons_ratio;
+  if (leaves_out != leaves_out_dilatation_) {
+    multigrid_ = nullptr;
+    former_levels_ = {};
+    leaves_out_dilatation_ = leaves_out;
+  }
   if (!multigrid_)
     make_multigrid();
   if (multigrid_->n_levels() == 1)
     return nullptr;
   if (!shares_diagonal()) {
     multigrid_->prepare(equation);
-    if (leaves_out_dilatation())
+    if (leaves_out)
       multigrid_->leave_out(
-        std::make_unique<Dilatation>(*batching_, batched_, of_multigrid_, equation.stiffness_factor));
+        std::make_unique<Dilatation>(*batching_, batched_, material_of_multigrid(), equation.stiffness_factor));
     return multigrid_.get();
   }
   if (of_diagonal_ != OfDiagonal::there) {

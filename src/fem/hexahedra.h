@@ -115,10 +115,8 @@ class Hexahedra : public dynamics::ElasticModel, public dynamics::StiffnessMatri
   Mat3 deformation_gradient(std::size_t copy, const Points& x) const;
 
  private:
-  /// Multigrid leaves a part of the stiffness out (dilatation.h).
-  bool leaves_out_dilatation() const { return of_multigrid_.poissons_ratio != material_.poissons_ratio; }
   /// What stands in the diagonal of the stiffness stands in multigrid's too.
-  bool shares_diagonal() const { return is_hookean() && !leaves_out_dilatation(); }
+  bool shares_diagonal() const { return is_hookean() && !leaves_out_dilatation_; }
   bool is_hookean() const { return frame_ == Frame::fixed || std::holds_alternative<material::Corotational>(law_); }
   void follow(const grid::Solid& solid, std::span<const grid::CopyId> changed, std::span<const std::uint32_t> corners);
   void sum_mass(std::span<const std::uint32_t> corners);
@@ -141,6 +139,8 @@ class Hexahedra : public dynamics::ElasticModel, public dynamics::StiffnessMatri
   PartialElements partial_elements() const;
   /// As the finest level has them.
   PartialElements weighed_partial_elements() const;
+  /// Of its elements.
+  material::Elastic material_of_multigrid() const;
   void make_multigrid();
   /// Of elements alone, two rows a corner.
   void find_diagonal(Row<double>* blocks) const;
@@ -176,7 +176,7 @@ class Hexahedra : public dynamics::ElasticModel, public dynamics::StiffnessMatri
   material::AnyLaw law_;
   Frame frame_;
   Inertia inertia_;
-  material::Elastic material_, of_multigrid_;
+  material::Elastic material_;
 
   ElementTable elements_;
   Incidence incidence_;
@@ -197,6 +197,7 @@ class Hexahedra : public dynamics::ElasticModel, public dynamics::StiffnessMatri
   std::unique_ptr<ConsistentMass> consistent_mass_; // none where mass is lumped
   std::unique_ptr<Multigrid> multigrid_;            // none until it is asked for
   FormerLevels former_levels_;                      // when it was asked for last, if a cut came since
+  bool leaves_out_dilatation_ = false;              // of the stiffness, multigrid (dilatation.h)
   /// That multigrid shares with those who ask for stiffness_diagonal() after linearise(), in its memory; of Hooke's
   /// law, which is multigrid's, alone.
   mutable std::vector<Row<float>> diagonal_;

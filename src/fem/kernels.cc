@@ -78,7 +78,8 @@ namespace {
   ElementLoops<double, 4>::dilatation(cube, batch, p, q);
 }
 [[gnu::target("arch=x86-64-v3")]] void add_pressure_middle(const CubeConstants<double>& cube,
-                                                           const Batch<double>& batch, const double* const q, Row<double>* const y) {
+                                                           const Batch<double>& batch, const double* const q,
+                                                           Row<double>* const y) {
   ElementLoops<double, 4>::add_pressure(cube, batch, q, y);
 }
 [[gnu::target("arch=x86-64-v3")]] unsigned turn_middle(const CubeConstants<double>& cube, const Batch<double>& batch,
