@@ -337,16 +337,8 @@ int BalanceSolver::correct_by_cg(const Problem& problem, Loan<Vec3> guess, const
   const CgEquation equation =
     own ? CgEquation{A, [own](const auto r, const auto z) { own->apply(r, z); }, J} : CgEquation{A, J, {}};
   Loan<Vec3> unsolved(residual_.size());
-  CgReport report;
-  if (const StiffPart* const stiff = own ? own->stiff_part() : nullptr)
-    report = minimal_residuals(equation, *stiff, flat(residual_), stop.residual, options_.max_cg_iterations,
-                               flat(correction_), flat(*unsolved));
-  if (!report.converged) {
-    const int before = report.n_iterations;
-    report = patient_conjugate_gradients(equation, flat(residual_), stop, options_.max_cg_iterations - before,
-                                         flat(correction_), flat(*unsolved));
-    report.n_iterations += before;
-  }
+  const CgReport report = solve_equation(equation, own ? own->stiff_part() : nullptr, flat(residual_), stop,
+                                         options_.max_cg_iterations, flat(correction_), flat(*unsolved));
   if (!report.converged && !report.indefinite)
     throw NumericalError("conjugate gradients left a relative residual of " + to_text(report.residual / scale) +
                          " after " + std::to_string(report.n_iterations) + " iterations. Use " +

@@ -191,4 +191,17 @@ CgReport minimal_residuals(const CgEquation& equation, const StiffPart& stiff, c
   return report;
 }
 
+CgReport solve_equation(const CgEquation& equation, const StiffPart* const stiff, const std::span<const double> b,
+                        const CgStop& stop, const int max_iterations, const std::span<double> x,
+                        const std::span<double> left) {
+  CgReport first;
+  if (stiff)
+    first = minimal_residuals(equation, *stiff, b, stop.residual, max_iterations, x, left);
+  if (first.converged)
+    return first;
+  CgReport report = patient_conjugate_gradients(equation, b, stop, max_iterations - first.n_iterations, x, left);
+  report.n_iterations += first.n_iterations;
+  return report;
+}
+
 } // namespace kerf::dynamics

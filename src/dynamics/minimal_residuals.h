@@ -14,8 +14,8 @@
 /// That is as well conditioned as the problem of Stokes, however stiff the part is (Elman, Silvester and Wathen 2014,
 /// Finite elements and fast iterative solvers, 2nd ed., ch. 4 and 9), while conjugate gradients for x alone by B take
 /// as many more iterations as the root of e says. Residuals r, g of the two rows are measured by r.Br + g.g / (1 + e),
-/// and what is left of the equation for x alone is r + C^T g. A few directions are remembered, and then x and q are gone
-/// on from.
+/// and what is left of the equation for x alone is r + C^T g. A few directions are remembered, and then x and q are
+/// gone on from.
 ///
 /// Two others were tried. MINRES with the diagonal blocks of that takes twice the iterations. The conjugate gradients
 /// of Bramble and Pasciak (1988, Math. Comp. 50) need B^-1 below A, and multigrid is far from that for a few motions.
@@ -30,5 +30,10 @@ namespace kerf::dynamics {
 /// up, not converged, where it gets on too slowly, or where the matrix does not resist what was found.
 CgReport minimal_residuals(const CgEquation& equation, const StiffPart& stiff, std::span<const double> b,
                            double residual, int max_iterations, std::span<double> x, std::span<double> left);
+
+/// By minimal residuals where there is a stiff part, and by patient conjugate gradients where there is none (null), or
+/// from where the others give up.
+CgReport solve_equation(const CgEquation& equation, const StiffPart* stiff, std::span<const double> b,
+                        const CgStop& stop, int max_iterations, std::span<double> x, std::span<double> left);
 
 } // namespace kerf::dynamics

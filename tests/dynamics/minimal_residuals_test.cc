@@ -138,5 +138,21 @@ TEST(MinimalResiduals, GiveUpWhereTheMatrixDoesNotResist) {
   EXPECT_FALSE(problem.solve(1e-6 * problem.size_of_b(), x, left).converged);
 }
 
+/// A part that misjudges itself, so that cycles get nowhere: conjugate gradients go on.
+TEST(MinimalResiduals, AreFollowedByConjugateGradientsWhereTheyGiveUp) {
+  Problem problem(1e4, 10);
+  problem.stiff.largest = 1e-9;
+  const double residual = 1e-8 * problem.size_of_b();
+  Vector x = Vector::Zero(problem.b.size()), left = x;
+  const int by_cycles = problem.solve(residual, x, left).n_iterations;
+  x.setZero();
+  const CgReport report =
+    solve_equation(problem.equation(), &problem.stiff, {problem.b.data(), problem.b.data() + problem.b.size()},
+          {.residual = residual}, 20000, {x.data(), x.data() + x.size()}, {left.data(), left.data() + left.size()});
+  EXPECT_TRUE(report.converged);
+  EXPECT_GE(report.n_iterations, by_cycles);
+  EXPECT_LT((x - problem.solution).norm(), 1e-5 * problem.solution.norm());
+}
+
 } // namespace
 } // namespace kerf::dynamics::minimal_residuals_test
