@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace kerf::dynamics {
 
@@ -22,6 +23,9 @@ void for_each_number(const std::size_t n, const Function& f) {
       f(i);
   });
 }
+
+/// Not a number where the square is none of anything, as of what is not positive or not finite.
+double root(const double square) { return square >= 0 ? std::sqrt(square) : std::numeric_limits<double>::quiet_NaN(); }
 
 /// In the memory that steps have for vectors of corners.
 class Numbers {
@@ -70,9 +74,11 @@ class Cycle {
 
   double residual() const { return std::abs(right_[n_taken_]); }
   bool is_full() const { return n_taken_ == most_directions || !(size_ > 0); }
+  int n_taken() const { return n_taken_; }
 
+  /// Where it finds nothing new that the preconditioner measures, the cycle ends as if it had not been asked.
   void take() {
-    const int k = n_taken_++;
+    const int k = n_taken_;
     Direction& from = directions_[k];
     Direction& next = add(from.x().size());
     apply(from, next);
@@ -90,11 +96,16 @@ class Cycle {
       column[i + 1] = cosines_[i] * lower - sines_[i] * upper;
     }
     const double length = std::hypot(column[k], column[k + 1]);
-    cosines_[k] = length > 0 ? column[k] / length : 1;
-    sines_[k] = length > 0 ? column[k + 1] / length : 0;
+    if (!(length > 0)) { // or no number
+      size_ = 0;
+      return;
+    }
+    cosines_[k] = column[k] / length;
+    sines_[k] = column[k + 1] / length;
     column[k] = length;
     right_[k + 1] = -sines_[k] * right_[k];
     right_[k] *= cosines_[k];
+    ++n_taken_;
   }
 
   /// Adds what has been found.
@@ -104,15 +115,19 @@ class Cycle {
       y[i] = right_[i];
       for (int k = i + 1; k < n_taken_; ++k)
         y[i] -= columns_[k][i] * y[k];
-      y[i] = columns_[i][i] > 0 ? y[i] / columns_[i][i] : 0;
+      y[i] /= columns_[i][i];
     }
-    const std::span<double> Cz = Cz_.all();
+    Numbers lent(x.size());
+    const std::span<double> Cz = Cz_.all(), z = lent.all();
+    std::fill(z.begin(), z.end(), 0);
     for (int k = 0; k < n_taken_; ++k) {
-      const std::span<const double> z = directions_[k].Bx(), g = directions_[k].q();
-      stiff_.product(z, Cz);
-      for_each_number(x.size(), [&](const std::size_t i) { x[i] += y[k] * z[i]; });
-      for_each_number(q.size(), [&](const std::size_t i) { q[i] += y[k] * of_q_ * (Cz[i] - g[i]); });
+      const std::span<const double> of_x = directions_[k].Bx(), g = directions_[k].q();
+      for_each_number(z.size(), [&](const std::size_t i) { z[i] += y[k] * of_x[i]; });
+      for_each_number(q.size(), [&](const std::size_t i) { q[i] -= y[k] * of_q_ * g[i]; });
     }
+    stiff_.product(z, Cz);
+    for_each_number(x.size(), [&](const std::size_t i) { x[i] += z[i]; });
+    for_each_number(q.size(), [&](const std::size_t i) { q[i] += of_q_ * Cz[i]; });
   }
 
  private:
@@ -122,7 +137,7 @@ class Cycle {
   void apply(Direction& from, Direction& next) {
     const std::span<double> Cz = Cz_.all(), to = next.q();
     const std::span<const double> q = from.q();
-    equation_.A(from.Bx(), next.x()); // by C^T C z too much
+    equation_.A(from.Bx(), next.x()); // K z, from which C^T C z is taken below
     stiff_.product(from.Bx(), Cz);
     for_each_number(q.size(), [&](const std::size_t i) {
       const double z_q = of_q_ * (Cz[i] - q[i]);
@@ -133,7 +148,7 @@ class Cycle {
   }
   void scale(Direction& direction) {
     equation_.B(direction.x(), direction.Bx());
-    size_ = std::sqrt(std::max(0.0, product(direction, direction)));
+    size_ = root(product(direction, direction));
     const double over = size_ > 0 ? 1 / size_ : 0;
     for (const std::span<double> values : {direction.all(), direction.Bx()})
       for_each_number(values.size(), [&](const std::size_t i) { values[i] *= over; });
@@ -164,29 +179,34 @@ CgReport minimal_residuals(const CgEquation& equation, const StiffPart& stiff, c
     equation.A(x, product);
     for_each_number(b.size(), [&](const std::size_t i) { left[i] = b[i] - product[i]; });
     equation.J(left, product);
-    report.residual = std::sqrt(std::max(0.0, dot(left, product)));
+    report.residual = root(dot(left, product));
     report.converged = report.residual <= residual;
   };
   measure();
   stiff.product(x, q);
-  bool gets_on = true;
   double aim = residual / std::sqrt(1 + stiff.excess()); // in the measure of both rows, if g is all that is left
-  while (!report.converged && gets_on && report.n_iterations < max_iterations) {
+  double earlier = std::numeric_limits<double>::infinity(), earlier_of_x = earlier;
+  while (!report.converged && report.n_iterations < max_iterations) {
     stiff.product(x, g);
     for_each_number(g.size(), [&](const std::size_t i) { g[i] = q[i] - g[i]; });
     Cycle cycle(equation, stiff, left, g);
-    const double at_start = cycle.residual();
+    const bool gets_on = cycle.residual() <= too_slow * earlier || report.residual <= too_slow * earlier_of_x;
+    if (!gets_on)
+      break;
+    earlier = cycle.residual();
+    earlier_of_x = report.residual;
     while (!cycle.is_full() && cycle.residual() > aim && report.n_iterations < max_iterations) {
       cycle.take();
       ++report.n_iterations;
     }
+    if (cycle.n_taken() == 0)
+      break;
     cycle.add_to(x, q);
     measure();
-    gets_on = cycle.residual() <= too_slow * at_start;
     if (cycle.residual() <= aim)
-      aim *= safety * std::min(1.0, residual / report.residual);
+      aim = safety * std::min(1.0, residual / report.residual) * cycle.residual();
   }
-  if (dot(x, b) < dot(x, left)) // x.Ax < 0
+  if (dot(x, b) < dot(x, left)) // x.Kx < 0
     report.converged = false;
   return report;
 }
@@ -196,9 +216,11 @@ CgReport solve_equation(const CgEquation& equation, const StiffPart* const stiff
                         const std::span<double> left) {
   CgReport first;
   if (stiff)
-    first = minimal_residuals(equation, *stiff, b, stop.residual, max_iterations, x, left);
+    first = minimal_residuals(equation, *stiff, b, stop.residual, max_iterations / 2, x, left);
   if (first.converged)
     return first;
+  if (!std::isfinite(first.residual))
+    std::fill(x.begin(), x.end(), 0);
   CgReport report = patient_conjugate_gradients(equation, b, stop, max_iterations - first.n_iterations, x, left);
   report.n_iterations += first.n_iterations;
   return report;

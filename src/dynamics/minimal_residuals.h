@@ -1,6 +1,6 @@
 #pragma once
 
-/// Equations with a part that is much stiffer than the rest, (A + C^T C) x = b: by generalised minimal residuals (Saad
+/// Equations with a part that is much stiffer than the rest, K x = b with K = A + C^T C: by generalised minimal residuals (Saad
 /// and Schultz 1986, GMRES, SIAM J. Sci. Stat. Comput. 7) for x and q = C x together,
 ///
 ///     [ A   C^T ] [x]   [b]
@@ -25,14 +25,16 @@
 
 namespace kerf::dynamics {
 
-/// Solves equation.A x = b, the stiff part included, from the x that is given until the residual in the measure
-/// equation.J is the one that is asked for. equation.B leaves the stiff part out. `left`: where b - A x is to be. Gives
-/// up, not converged, where it gets on too slowly, or where the matrix does not resist what was found.
+/// Solves K x = b from the x that is given until the residual in the measure equation.J is the one that is asked for.
+/// equation.A is K, the stiff part included; equation.B leaves that out. `left`: where b - K x is to be. Gives up, not
+/// converged, where it gets on too slowly, where B measures nothing (a square that is negative or no number), or where K
+/// does not resist what was found.
 CgReport minimal_residuals(const CgEquation& equation, const StiffPart& stiff, std::span<const double> b,
                            double residual, int max_iterations, std::span<double> x, std::span<double> left);
 
 /// By minimal residuals where there is a stiff part, and by patient conjugate gradients where there is none (null), or
-/// from where the others give up.
+/// from where the others give up, for which half of the iterations are kept. Minimal residuals look at stop.residual
+/// alone, and tell no way.
 CgReport solve_equation(const CgEquation& equation, const StiffPart* stiff, std::span<const double> b,
                         const CgStop& stop, int max_iterations, std::span<double> x, std::span<double> left);
 

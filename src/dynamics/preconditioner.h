@@ -31,7 +31,7 @@ class StiffPart {
   virtual void product(std::span<const double> p, std::span<double> q) const = 0;
   /// y += C^T q.
   virtual void add_transposed(std::span<const double> q, std::span<double> y) const = 0;
-  /// About the largest eigenvalue of C (A - C^T C)^-1 C^T [1].
+  /// About the largest eigenvalue of C R^-1 C^T with R = A - C^T C, what remains [1].
   virtual double excess() const = 0;
 };
 
@@ -42,7 +42,8 @@ class Preconditioner {
   /// z = B r [m] for r [N], 3 n numbers each, with B near A^-1: symmetric, and positive among the free directions. What
   /// r has along others is not looked at, and z has none there.
   virtual void apply(std::span<const double> r, std::span<double> z) = 0;
-  /// What of A it leaves out: then B is near the inverse of what remains. Null: nothing.
+  /// What of A it leaves out, which it may in statics alone (mass_factor 0): then B is near the inverse of what remains,
+  /// and solve_equation() of minimal_residuals.h is for that. Null: nothing.
   virtual const StiffPart* stiff_part() const { return nullptr; }
 };
 

@@ -8,13 +8,13 @@
 
 namespace kerf::fem {
 
-material::Elastic without_excess(const material::Elastic& material, const Strain strain) {
+std::optional<material::Elastic> without_excess(const material::Elastic& material, const Strain strain) {
   constexpr double nearly_incompressible = 0.49, moderate = 0.475; // nu
   if (strain != Strain::enhanced || material.poissons_ratio <= nearly_incompressible)
-    return material;
+    return std::nullopt;
   const material::AnyLaw law = material::law_of(material);
   if (!std::holds_alternative<material::Corotational>(law) && !std::holds_alternative<material::SmallStrain>(law))
-    return material; // whose tangent is not Hooke's
+    return std::nullopt; // whose tangent is not Hooke's
   material::Elastic rest = material;
   rest.poissons_ratio = moderate;
   rest.youngs_modulus = 2 * material.mu() * (1 + moderate);

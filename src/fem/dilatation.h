@@ -2,8 +2,8 @@
 
 /// What nearly incompressible elements have against changes of volume, apart from the rest.
 ///
-/// As nu goes to 1/2, Hooke's stiffness is K = A + C^T C, with A that of another material with the same mu and a
-/// moderate nu against the mean strain of each element, and C u = sqrt(excess of lambda times volume) tr(R^T G) there,
+/// As nu goes to 1/2, Hooke's stiffness is K = A + C^T C. In A each element resists its mean strain as another material
+/// would, of the same mu and a moderate nu, and C u = sqrt(excess of lambda times volume) tr(R^T G) there,
 /// with G the mean of grad u. Multigrid's smoothing at single corners is good for A, but not for C^T C: hardly any
 /// motion at a corner keeps all volumes around it (Schoeberl 1999, Multigrid methods for a parameter dependent problem
 /// in primal variables, Numer. Math. 84). So multigrid is made for A, and the equation is solved for displacements and
@@ -18,10 +18,12 @@
 #include "fem/batches.h"
 #include "fem/hourglass.h"
 
+#include <optional>
+
 namespace kerf::fem {
 
-/// The material of A; the same where nothing is to be kept apart.
-material::Elastic without_excess(const material::Elastic& material, Strain strain);
+/// The material of A; none where nothing is to be kept apart.
+std::optional<material::Elastic> without_excess(const material::Elastic& material, Strain strain);
 
 class Dilatation : public dynamics::StiffPart {
  public:

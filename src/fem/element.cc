@@ -96,9 +96,8 @@ Element make_element(const Moments& moments, const double h, const material::Ela
     for (int q = 0; q <= p; ++q)
       element.hourglass[pair_index(p, q)] = static_cast<float>(0.5 * (K(p, q) + K(q, p)));
   element.bound = jacobi_bound(element, material);
-  if (const material::Elastic rest = without_excess(material, options.strain);
-      rest.poissons_ratio != material.poissons_ratio)
-    element.bound = std::max(element.bound, jacobi_bound(element, rest));
+  if (const std::optional<material::Elastic> rest = without_excess(material, options.strain))
+    element.bound = std::max(element.bound, jacobi_bound(element, *rest));
   return element;
 }
 

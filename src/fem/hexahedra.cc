@@ -268,7 +268,7 @@ void Hexahedra::keep_diagonal(const Row<double>* const blocks) const {
 }
 
 material::Elastic Hexahedra::material_of_multigrid() const {
-  return leaves_out_dilatation_ ? without_excess(material_, elements_.strain()) : material_;
+  return leaves_out_dilatation_ ? without_excess(material_, elements_.strain()).value() : material_;
 }
 
 void Hexahedra::make_multigrid() {
@@ -302,8 +302,7 @@ dynamics::Preconditioner* Hexahedra::preconditioner(const dynamics::LinearEquati
     inertia += 3 * equation.mass_factor * m;
   if (equation.trace < stiff * inertia)
     return nullptr;
-  const bool leaves_out = equation.mass_factor == 0 &&
-                          without_excess(material_, elements_.strain()).poissons_ratio != material_.poissons_ratio;
+  const bool leaves_out = equation.mass_factor == 0 && without_excess(material_, elements_.strain());
   if (leaves_out != leaves_out_dilatation_) {
     multigrid_ = nullptr;
     former_levels_ = {};

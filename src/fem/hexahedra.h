@@ -197,7 +197,7 @@ class Hexahedra : public dynamics::ElasticModel, public dynamics::StiffnessMatri
   std::unique_ptr<ConsistentMass> consistent_mass_; // none where mass is lumped
   std::unique_ptr<Multigrid> multigrid_;            // none until it is asked for
   FormerLevels former_levels_;                      // when it was asked for last, if a cut came since
-  bool leaves_out_dilatation_ = false;              // of the stiffness, multigrid (dilatation.h)
+  bool leaves_out_dilatation_ = false;              // multigrid is made for A of dilatation.h
   /// That multigrid shares with those who ask for stiffness_diagonal() after linearise(), in its memory; of Hooke's
   /// law, which is multigrid's, alone.
   mutable std::vector<Row<float>> diagonal_;

@@ -8,6 +8,7 @@
 #include <Eigen/QR>
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <random>
 
 namespace kerf::dynamics::minimal_residuals_test {
@@ -120,37 +121,57 @@ TEST(MinimalResiduals, StartFromWhatIsGiven) {
   x = 2 * problem.solution;
   EXPECT_TRUE(problem.solve(1e-6 * problem.size_of_b(), x, left).converged);
   EXPECT_LT((x - problem.solution).norm(), 1e-4 * problem.solution.norm());
-  const Problem nothing(1e3, 8);
-  Problem zero = nothing;
+  Problem zero(1e3, 8);
+  x = zero.solution;
+  const double from = 1e-6 * zero.size_of_b();
   zero.b.setZero();
-  x.setZero();
-  EXPECT_TRUE(zero.solve(1e-12, x, left).converged);
-  EXPECT_EQ(x, Vector::Zero(x.size()));
+  EXPECT_TRUE(zero.solve(from, x, left).converged);
+  EXPECT_LT(x.norm(), 1e-4 * zero.solution.norm());
 }
 
-/// A x = b has a solution there too, but one that no descent leads to.
+/// K x = b has a solution there too, but one that no descent leads to.
 TEST(MinimalResiduals, GiveUpWhereTheMatrixDoesNotResist) {
   Problem problem(1e2, 9);
   problem.whole -= 100 * problem.solution * problem.solution.transpose() * problem.whole.norm() /
                    problem.solution.squaredNorm();
   problem.b = problem.whole * problem.solution;
+  Vector x = problem.solution, left;
+  const CgReport report = problem.solve(1e-6 * problem.b.norm(), x, left);
+  EXPECT_LE(report.residual, 1e-6 * problem.b.norm()) << "solved, but at no minimum";
+  EXPECT_FALSE(report.converged);
+}
+
+/// What B gives is not positive, nothing, or no number: that is said, and comes to an end.
+TEST(MinimalResiduals, GiveUpWhereThePreconditionerMeasuresNothing) {
+  for (const double factor : {-1., 0., std::numeric_limits<double>::quiet_NaN()}) {
+    Problem problem(1e3, 11);
+    problem.B *= factor;
+    Vector x = Vector::Zero(problem.b.size()), left;
+    const CgReport report = problem.solve(1e-6 * problem.size_of_b(), x, left);
+    EXPECT_FALSE(report.converged) << factor;
+    EXPECT_EQ(x, Vector::Zero(x.size())) << factor;
+  }
+  Problem problem(1e3, 12);
+  problem.whole(3, 3) = std::numeric_limits<double>::quiet_NaN();
   Vector x = Vector::Zero(problem.b.size()), left;
-  EXPECT_FALSE(problem.solve(1e-6 * problem.size_of_b(), x, left).converged);
+  EXPECT_FALSE(problem.solve(1e-6 * problem.b.norm(), x, left).converged);
 }
 
 /// A part that misjudges itself, so that cycles get nowhere: conjugate gradients go on.
 TEST(MinimalResiduals, AreFollowedByConjugateGradientsWhereTheyGiveUp) {
   Problem problem(1e4, 10);
-  problem.stiff.largest = 1e-9;
+  problem.stiff.largest = -1 + 1e-6;
   const double residual = 1e-8 * problem.size_of_b();
   Vector x = Vector::Zero(problem.b.size()), left = x;
-  const int by_cycles = problem.solve(residual, x, left).n_iterations;
+  const CgReport alone = problem.solve(residual, x, left, 10000);
+  EXPECT_FALSE(alone.converged);
   x.setZero();
   const CgReport report =
     solve_equation(problem.equation(), &problem.stiff, {problem.b.data(), problem.b.data() + problem.b.size()},
-          {.residual = residual}, 20000, {x.data(), x.data() + x.size()}, {left.data(), left.data() + left.size()});
+                   {.residual = residual}, 20000, {x.data(), x.data() + x.size()},
+                   {left.data(), left.data() + left.size()});
   EXPECT_TRUE(report.converged);
-  EXPECT_GE(report.n_iterations, by_cycles);
+  EXPECT_GT(report.n_iterations, alone.n_iterations);
   EXPECT_LT((x - problem.solution).norm(), 1e-5 * problem.solution.norm());
 }
 
