@@ -160,6 +160,44 @@ TEST(Dilatation, FollowsWhatIsAsked) {
     }
 }
 
+/// Multigrid and what it leaves out, after each of several cuts in places.
+TEST(Dilatation, FollowsCutsBitByBit) {
+  Draw draw(80);
+  Body body = make_block({6, 6, 6}, 0.1, draw, {0.1, 0.9});
+  const HexahedraOptions options{.material = tissue(0.4999, "corotational"), .strain = Strain::enhanced};
+  Hexahedra model(body, options);
+  const auto answers = [](Hexahedra& of, const Points& x, const Points& r) {
+    const dynamics::Constraints free({}, x.size());
+    of.linearise(x);
+    const auto blocks = dynamics::stiffness_blocks(of);
+    dynamics::Preconditioner* const own = of.preconditioner({0, 1, of.lumped_mass(), 1, {}, free});
+    if (!own || !own->stiff_part())
+      throw std::logic_error("nothing is left out");
+    std::vector<double> all = applied(*own, r), q(own->stiff_part()->n_rows());
+    own->stiff_part()->product(flat(r), q);
+    own->stiff_part()->add_transposed(q, all);
+    return all;
+  };
+  for (int step = 0; step < 5; ++step) {
+    std::vector<grid::EdgeId> edges;
+    for (const grid::EdgeId e : inner_edges(body))
+      if (draw(0, 1) < (step == 0 ? 0 : 0.02)) {
+        body.cuts.add(body.grid, {e, draw(0.1, 0.9), draw.vector().normalized(), 1});
+        edges.push_back(e);
+      }
+    surface::place(body, {});
+    model.update(body, grid::update_complex(body, edges).reshaped);
+    Points x = body.rest(), r(x.size());
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      x[i] += 0.01 * draw.vector();
+      r[i] = draw.vector();
+    }
+    Hexahedra anew(body, options);
+    ASSERT_EQ(answers(model, x, r), answers(anew, x, r)) << step;
+  }
+  EXPECT_GT(body.complex.n_copies(), 343u);
+}
+
 /// A solution, in far fewer iterations than by conjugate gradients that know nothing of pressures.
 TEST(Dilatation, LeavesAnEquationThatIsSolvedForPressures) {
   for (const double nu : {0.499, 0.4999}) {
