@@ -5,6 +5,9 @@
 #include "base/function_ref.h"
 
 #include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
 
 namespace kerf {
 
@@ -26,6 +29,30 @@ void parallel_for(const std::size_t n, const Function& f, const std::size_t wort
       f(i);
   });
 }
+
+/// What must be done before what (a precedence graph).
+class Precedence {
+ public:
+  /// An item after all others, for which it need not wait but for those in `before`.
+  void add(std::span<const std::uint32_t> before);
+
+  std::size_t n() const { return ends_.size(); }
+  /// What item i waits for, each less than i.
+  std::span<const std::uint32_t> before(const std::size_t i) const {
+    const std::size_t begin = i == 0 ? 0 : ends_[i - 1];
+    return std::span(before_).subspan(begin, ends_[i] - begin);
+  }
+  /// How many items can be worked on at once, on average, by as many threads as one likes.
+  double width() const { return n() == 0 ? 0 : double(n()) / longest_; }
+
+ private:
+  std::vector<std::uint32_t> ends_, before_;
+  std::vector<std::uint32_t> length_; // of the longest chain that ends with an item
+  std::uint32_t longest_ = 0;
+};
+
+/// Calls f(i) for each item, on several threads and from the first on, but not until all that it comes after are done.
+void parallel_in_order(const Precedence& items, FunctionRef<void(std::size_t)> f);
 
 /// Keeps what libraries do for the calling thread to that thread: BLAS (OpenBLAS) and what has OpenMP inside (CHOLMOD).
 /// Our loops are parallel already; threads beside theirs wait for each other, on a busy machine six times as long as

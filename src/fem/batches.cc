@@ -2,31 +2,73 @@
 
 #include <algorithm>
 #include <bit>
+#include <numeric>
 #include <utility>
 
 namespace kerf::fem {
 
-std::vector<std::uint32_t> colours_of_chunks(const std::span<const std::uint32_t> chunk_ends,
-                                             const std::span<const std::uint32_t> vertices,
-                                             const std::size_t n_vertices) {
+namespace {
+
+/// The vertices of each chunk, 8 a cube.
+struct VerticesOfChunks {
+  std::span<const std::uint32_t> ends, vertices;
+
+  std::span<const std::uint32_t> operator[](const std::size_t chunk) const {
+    const std::size_t begin = chunk == 0 ? 0 : ends[chunk - 1];
+    return vertices.subspan(8 * begin, 8 * (ends[chunk] - begin));
+  }
+};
+
+std::vector<std::uint32_t> colours(const VerticesOfChunks& chunks, const std::size_t n_vertices) {
   std::vector<std::uint64_t> taken(n_vertices, 0); // bits of the colours that hold a vertex
   std::vector<std::uint32_t> colours;
   std::uint32_t n_colours = 64;
-  std::uint32_t begin = 0;
-  for (const std::uint32_t end : chunk_ends) {
-    const auto of_chunk = vertices.subspan(8 * std::size_t(begin), 8 * std::size_t(end - begin));
-    begin = end;
+  for (std::size_t k = 0; k < chunks.ends.size(); ++k) {
     std::uint64_t met = 0;
-    for (const std::uint32_t v : of_chunk)
+    for (const std::uint32_t v : chunks[k])
       met |= v != no_vertex ? taken[v] : 0;
     // With all 64 taken, which a chunk's neighbours never do, a chunk would stand alone in a colour of its own.
     const bool is_alone = met == ~std::uint64_t(0);
     colours.push_back(is_alone ? n_colours++ : static_cast<std::uint32_t>(std::countr_one(met)));
-    for (const std::uint32_t v : of_chunk)
+    for (const std::uint32_t v : chunks[k])
       if (v != no_vertex && !is_alone)
         taken[v] |= std::uint64_t(1) << colours.back();
   }
   return colours;
+}
+
+/// Of chunks in their order. At each vertex a chunk need only wait for the last one before it, which has waited too.
+Precedence precedence(const VerticesOfChunks& chunks, const std::span<const std::uint32_t> order,
+                      const std::size_t n_vertices) {
+  constexpr std::uint32_t none = 0xffffffff;
+  std::vector<std::uint32_t> last(n_vertices, none), is_named_by(order.size(), none); // places in the order
+  std::vector<std::uint32_t> of_chunk;
+  Precedence all;
+  for (std::uint32_t place = 0; place < order.size(); ++place) {
+    of_chunk.clear();
+    for (const std::uint32_t v : chunks[order[place]])
+      if (v != no_vertex) {
+        const std::uint32_t before = std::exchange(last[v], place);
+        if (before != none && before != place && std::exchange(is_named_by[before], place) != place)
+          of_chunk.push_back(before);
+      }
+    all.add(of_chunk);
+  }
+  return all;
+}
+
+} // namespace
+
+OrderOfChunks order_of_chunks(const std::span<const std::uint32_t> chunk_ends,
+                              const std::span<const std::uint32_t> vertices, const std::size_t n_vertices) {
+  const VerticesOfChunks of_chunks{chunk_ends, vertices};
+  const std::vector<std::uint32_t> colour = colours(of_chunks, n_vertices);
+  OrderOfChunks order;
+  order.chunks.resize(colour.size());
+  std::iota(order.chunks.begin(), order.chunks.end(), 0);
+  std::ranges::stable_sort(order.chunks, {}, [&](const std::uint32_t k) { return colour[k]; });
+  order.shared = precedence(of_chunks, order.chunks, n_vertices);
+  return order;
 }
 
 Batching::Batching(const CopiesInOrder& copies) {
@@ -35,7 +77,7 @@ Batching::Batching(const CopiesInOrder& copies) {
   for (const std::uint32_t copy : copies.order)
     for (std::size_t a = 0; a < 8; ++a)
       corners.push_back(copies.kind[copy] != Kind::unused ? copies.corners[8 * std::size_t(copy) + a] : no_vertex);
-  colour_of_chunk_ = colours_of_chunks(copies.chunk_ends, corners, copies.n_corners);
+  order_ = order_of_chunks(copies.chunk_ends, corners, copies.n_corners);
   update(copies, {}, {});
 }
 
@@ -85,7 +127,6 @@ ChangeOfBatches Batching::update(const CopiesInOrder& copies, const std::span<co
   }
   n_places_ = std::max(n_places_, place);
   n_rows_ = copies.n_corners + chunks_.size();
-  sort_by_colour();
   return change;
 }
 
@@ -161,13 +202,6 @@ void Batching::add_batches(std::vector<std::uint32_t>& copies, const std::uint32
     }
     batch.is_row = batch.n_used == n_lanes && are_row({batch.copies, n_lanes}, corners);
   }
-}
-
-void Batching::sort_by_colour() {
-  colours_.clear();
-  colours_.resize(chunks_.empty() ? 0 : 1 + std::ranges::max(colour_of_chunk_));
-  for (std::size_t k = 0; k < chunks_.size(); ++k)
-    colours_[colour_of_chunk_[k]].push_back(chunks_[k]);
 }
 
 namespace {

@@ -5,10 +5,11 @@
 /// Copies go in chunks, those of some hundred cells that lie in a block each: first a chunk's full cubes, then its
 /// partial ones, each in batches of 16, of which the first are rows of cubes along x. Chunks that share a corner have
 /// different colours. One colour after the other, and a chunk's batches in their order, is the order of all sums: the
-/// same for any number of threads, as it depends on the copies and their corners alone.
+/// same for any number of threads, as it depends on the copies and their corners alone. A chunk waits for those that
+/// come before it and share a corner with it, and for no others.
 ///
 /// A cut changes the batches of the chunks that it meets, and all others stay as they are, with what their partial
-/// cubes are made of. Chunks of cells are coloured by the grid's nodes, which no cut changes.
+/// cubes are made of. Chunks of cells share what nodes of the grid they share, which no cut changes.
 
 #include "base/parallel.h"
 #include "fem/element.h"
@@ -47,10 +48,16 @@ struct CopiesInOrder {
   std::size_t n_corners;
 };
 
-/// A colour of each chunk of cubes, given by their 8 vertices: the first that no chunk before it has that shares a
-/// vertex. Cubes without use have the vertex `no_vertex`.
-std::vector<std::uint32_t> colours_of_chunks(std::span<const std::uint32_t> chunk_ends,
-                                             std::span<const std::uint32_t> vertices, std::size_t n_vertices);
+/// An order of chunks in which those that share a vertex are far from each other, and several can be worked on.
+struct OrderOfChunks {
+  std::vector<std::uint32_t> chunks;
+  Precedence shared; ///< of places in `chunks`: what comes after what it shares a vertex with
+};
+
+/// Of chunks of cubes, given by their 8 vertices: by colours, of which each has the first that no chunk before it has
+/// that shares a vertex. Cubes without use have the vertex `no_vertex`.
+OrderOfChunks order_of_chunks(std::span<const std::uint32_t> chunk_ends, std::span<const std::uint32_t> vertices,
+                              std::size_t n_vertices);
 constexpr std::uint32_t no_vertex = 0xffffffff;
 
 /// Do copies that are the same have the corners of the same numbers?
@@ -68,10 +75,10 @@ class Batching {
  public:
   static constexpr std::size_t chunk_size = 512; ///< cells
 
-  /// Coloured by the copies' corners.
+  /// In an order by the copies' corners.
   explicit Batching(const CopiesInOrder& copies);
-  /// Without copies as yet. Chunks whose copies share a corner must have different colours after any update.
-  explicit Batching(std::vector<std::uint32_t> colour_of_chunk) : colour_of_chunk_(std::move(colour_of_chunk)) {}
+  /// Without copies as yet. Chunks whose copies share a corner must share a vertex of the order, after any update.
+  explicit Batching(OrderOfChunks order) : order_(std::move(order)) {}
   Batching() = default;
 
   /// Takes over copies after a cut; is_same: of each, whether it is in the cell that it was in, with the material that
@@ -94,18 +101,15 @@ class Batching {
   /// Calls f(i) for each batch; those that share a corner never at once, and in the order of sums.
   template <class Function>
   void for_each_in_order(const Function& f) const {
-    for (const std::vector<Chunk>& chunks : colours_)
-      parallel_for(
-        chunks.size(),
-        [&](const std::size_t c) {
-          for (std::uint32_t i = chunks[c].first; i < chunks[c].first + chunks[c].n; ++i)
-            f(i);
-        },
-        worth_chunks_);
+    parallel_in_order(order_.shared, [&](const std::size_t place) {
+      const Chunk& chunk = chunks_[order_.chunks[place]];
+      for (std::uint32_t i = chunk.first; i < chunk.first + chunk.n; ++i)
+        f(i);
+    });
   }
 
  private:
-  static constexpr std::size_t worth_ = 256, worth_chunks_ = 4; // batches, chunks from which on a second thread pays
+  static constexpr std::size_t worth_ = 256; // batches from which on a second thread pays
   struct Chunk {
     std::uint32_t first, n_full, n; // batches: full ones come first
   };
@@ -117,12 +121,10 @@ class Batching {
   void add_batches(std::vector<std::uint32_t>& copies, const std::uint32_t* corners, std::uint32_t row);
   void add_chunk(const CopiesInOrder& copies, std::span<const std::uint32_t> of_chunk, std::uint32_t row);
   void keep_chunk(const Before& before, const Chunk& chunk, std::uint32_t row);
-  void sort_by_colour();
 
-  std::vector<std::uint32_t> colour_of_chunk_;
+  OrderOfChunks order_;
   std::vector<BatchOfCopies> batches_;
   std::vector<Chunk> chunks_;
-  std::vector<std::vector<Chunk>> colours_;
   std::size_t n_places_ = 0, n_rows_ = 0;
 };
 

@@ -143,7 +143,7 @@ Batching batching_of(const grid::Grid& grid, const CellsInChunks& chunks) {
   for (const grid::CellId cell : chunks.cells)
     for (const grid::NodeId node : grid.nodes(cell))
       nodes.push_back(node.value);
-  return Batching(colours_of_chunks(chunks.ends, nodes, grid.n_nodes()));
+  return Batching(order_of_chunks(chunks.ends, nodes, grid.n_nodes()));
 }
 
 } // namespace

@@ -1,0 +1,87 @@
+#include "base/parallel.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <random>
+#include <stdexcept>
+
+namespace kerf::parallel_test {
+namespace {
+
+/// n items, each after `most` at most of those that come up to `far` before it.
+Precedence random_precedence(const std::uint32_t n, const std::uint32_t far, const std::uint32_t most,
+                             std::mt19937& random) {
+  Precedence all;
+  for (std::uint32_t i = 0; i < n; ++i) {
+    std::vector<std::uint32_t> before;
+    for (std::uint32_t k = 0; k < most && i > 0; ++k)
+      before.push_back(i - 1 - static_cast<std::uint32_t>(random() % std::min(i, far)));
+    all.add(before);
+  }
+  return all;
+}
+
+class ParallelInOrder : public testing::Test {
+ protected:
+  void SetUp() override { set_n_threads(4); }
+  void TearDown() override { set_n_threads(n_processors()); }
+};
+
+TEST_F(ParallelInOrder, BeginsWithAnItemWhenThoseBeforeItAreDone) {
+  std::mt19937 random(1);
+  std::size_t n_at_once = 0;
+  for (int turn = 0; turn < 50; ++turn) {
+    const Precedence items = random_precedence(1 + random() % 300, 1 + random() % 60, random() % 4, random);
+    std::vector<std::atomic<int>> done(items.n());
+    std::atomic<std::size_t> n_early = 0, n_busy = 0, most_busy = 0;
+    parallel_in_order(items, [&](const std::size_t i) {
+      const std::size_t busy = ++n_busy;
+      if (busy > most_busy)
+        most_busy = busy;
+      for (const std::uint32_t before : items.before(i))
+        n_early += done[before] != 1 ? 1 : 0;
+      double sum = 0;
+      for (int k = 0; k < 2000; ++k)
+        sum += 1.0 / (1 + k);
+      done[i] += sum > 1 ? 1 : 2;
+      --n_busy;
+    });
+    EXPECT_EQ(n_early, 0u);
+    for (const auto& times : done)
+      EXPECT_EQ(times, 1);
+    n_at_once = std::max(n_at_once, most_busy.load());
+  }
+  if (n_processors() > 1) {
+    EXPECT_GT(n_at_once, 1u) << "no two items ran at once";
+  }
+}
+
+TEST_F(ParallelInOrder, HandsOnAnErrorAndHangsNobody) {
+  std::mt19937 random(2);
+  for (int turn = 0; turn < 20; ++turn) {
+    const Precedence items = random_precedence(200, 30, 2, random);
+    EXPECT_THROW(parallel_in_order(items,
+                                   [&](const std::size_t i) {
+                                     if (i == 40)
+                                       throw std::runtime_error("no");
+                                   }),
+                 std::runtime_error);
+  }
+}
+
+TEST(Precedence, KnowsHowManyItemsCanBeWorkedOnAtOnce) {
+  Precedence chain, two, alone;
+  EXPECT_EQ(chain.width(), 0);
+  for (std::uint32_t i = 0; i < 10; ++i) {
+    chain.add(i == 0 ? std::vector<std::uint32_t>{} : std::vector{i - 1});
+    two.add(i < 2 ? std::vector<std::uint32_t>{} : std::vector{i - 2});
+    alone.add({});
+  }
+  EXPECT_EQ(chain.width(), 1);
+  EXPECT_EQ(two.width(), 2);
+  EXPECT_EQ(alone.width(), 10);
+}
+
+} // namespace
+} // namespace kerf::parallel_test
