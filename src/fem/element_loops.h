@@ -249,7 +249,7 @@ struct ElementLoops : RowLoops<T, W> {
   }
   [[gnu::always_inline]] static void product(const CubeConstants<T>& cube, const Batch<T>& batch, const Row<T>* const p,
                                              Row<T>* const y) {
-    for (int lane = 0; lane < int(n_lanes); lane += W)
+    for (int lane = 0; lane < int(batch.n_used); lane += W)
       if (batch.tangent && batch.partial)
         product_law<true>(cube, batch, lane, p, y);
       else if (batch.tangent)
@@ -445,11 +445,11 @@ struct ElementLoops : RowLoops<T, W> {
                                               Row<T>* const blocks) {
     if (!batch.partial && !batch.tangent) {
       const FullBlocks of = full_blocks(cube);
-      for (int lane = 0; lane < int(n_lanes); lane += W)
+      for (int lane = 0; lane < int(batch.n_used); lane += W)
         diagonal_of_full(of, batch, lane, blocks);
       return;
     }
-    for (int lane = 0; lane < int(n_lanes); lane += W)
+    for (int lane = 0; lane < int(batch.n_used); lane += W)
       if (batch.partial)
         diagonal_of<true>(cube, batch, lane, blocks);
       else

@@ -21,6 +21,10 @@ struct ForceLoops : ElementLoops<T, W> {
   using Loops::turn_back;
   using typename Loops::V;
 
+  /// Vectors of a batch, and how many of them have lanes that are used.
+  static constexpr int n_vectors = int(n_lanes) / W;
+  [[gnu::always_inline]] static int n_used_vectors(const Batch<T>& batch) { return (int(batch.n_used) + W - 1) / W; }
+
   // --- Rotations ---------------------------------------------------------------------------------------------------
 
   /// R^-T times its determinant, which is returned.
@@ -38,76 +42,126 @@ struct ForceLoops : ElementLoops<T, W> {
   /// II = |cof F|^2 and J = det F (Hoger and Carlson 1984, Determination of the stretch and rotation in the polar
   /// decomposition of the deformation gradient). R = ds/dF, as s is the largest value of tr R^T F. The root is found by
   /// Halley's iteration from (I + 3) / 2, which is not below it, and off by squares of strain alone: two steps with
-  /// strains of a per cent, three with .3. Returns bits of lanes where R is no rotation to 1e-12, by its norm, or F is
-  /// near singular or inverted.
-  [[gnu::always_inline]] static unsigned nearest_rotation(const V (&F)[9], V (&R)[9]) {
-    constexpr int most = 8;
-    constexpr T well_conditioned = T(1e-5), stands = T(3e-6), is_rotation = T(1e-12); // one more step would cube that
-    V C[9], I = V{}, II = V{};
-    const V J = cofactors(F, C);
-#pragma GCC unroll 9
-    for (int i = 0; i < 9; ++i) {
-      I += F[i] * F[i];
-      II += C[i] * C[i];
+  /// strains of a per cent, three with .3.
+  struct Stretch {
+    V I, II, J, trace;
+  };
+  [[gnu::always_inline]] static void find_invariants(const V (&F)[9], Stretch& S) {
+    V C[9], I[3], II[3];
+    S.J = cofactors(F, C);
+#pragma GCC unroll 3
+    for (int j = 0; j < 3; ++j) {
+      I[j] = F[3 * j] * F[3 * j] + F[3 * j + 1] * F[3 * j + 1] + F[3 * j + 2] * F[3 * j + 2];
+      II[j] = C[3 * j] * C[3 * j] + C[3 * j + 1] * C[3 * j + 1] + C[3 * j + 2] * C[3 * j + 2];
     }
-    V s = T(0.5) * (I + T(3));
-    auto is_done = I != I;
-    for (int n = 0; n < most; ++n) {
-      const V a = s * s - I, f = a * a - 4 * II - 8 * J * s, df = 4 * s * a - 8 * J, ddf = 12 * s * s - 4 * I,
-              step = 2 * f * df / (2 * df * df - f * ddf);
-      s = is_done ? s : s - step;
-      is_done |= step * step < stands * stands * s * s;
-      bool all = true;
+    S.I = I[0] + I[1] + I[2];
+    S.II = II[0] + II[1] + II[2];
+  }
+  /// Of n vectors side by side: each step waits for the one before, and those of other vectors fill the time.
+  template <int n>
+  [[gnu::always_inline]] static void find_traces(Stretch* const S) {
+    constexpr int most = 8;
+    constexpr T stands = T(3e-6); // one more step would cube that
+    V s[n];
+    decltype(S->I != S->I) is_done[n];
+#pragma GCC unroll 8
+    for (int g = 0; g < n; ++g) {
+      s[g] = T(0.5) * (S[g].I + T(3));
+      is_done[g] = S[g].I == V{}; // lanes that are not used
+    }
+    for (int k = 0; k < most; ++k) {
+      auto all = is_done[0] | ~is_done[0];
+#pragma GCC unroll 8
+      for (int g = 0; g < n; ++g) {
+        const V a = s[g] * s[g] - S[g].I, f = a * a - 4 * S[g].II - 8 * S[g].J * s[g],
+                df = 4 * s[g] * a - 8 * S[g].J, ddf = 12 * s[g] * s[g] - 4 * S[g].I,
+                step = 2 * f * df / (2 * df * df - f * ddf);
+        s[g] = is_done[g] ? s[g] : s[g] - step;
+        is_done[g] |= step * step < stands * stands * s[g] * s[g];
+        all &= is_done[g];
+      }
+      bool is_all = true;
       for (int l = 0; l < W; ++l)
-        all &= is_done[l] != 0;
-      if (all)
+        is_all &= all[l] != 0;
+      if (is_all)
         break;
     }
-    const V a = s * s - I, scale = T(1) / (s * a - 2 * J), of_F = (s * s + I) * scale, of_C = 2 * s * scale,
-            of_S = -2 * scale;
-    V square = V{}, B[9]; // F^T F
+#pragma GCC unroll 8
+    for (int g = 0; g < n; ++g)
+      S[g].trace = s[g];
+  }
+  /// Of all lanes of a batch that are used.
+  [[gnu::always_inline]] static void find_traces(const int n, Stretch (&S)[n_vectors]) {
+    if (n == n_vectors)
+      find_traces<n_vectors>(S);
+    else
+      for (int g = 0; g < n; ++g)
+        find_traces<1>(S + g);
+  }
+  /// R by the trace. Returns bits of lanes where it is no rotation to 1e-12, by its norm, or F is near singular or
+  /// inverted.
+  [[gnu::always_inline]] static unsigned nearest_rotation(const V (&F)[9], const Stretch& S, V (&R)[9]) {
+    constexpr T well_conditioned = T(1e-5), is_rotation = T(1e-12);
+    V C[9], B[9], square[3];
+    cofactors(F, C);
+    const V s = S.trace, a = s * s - S.I, scale = T(1) / (s * a - 2 * S.J), of_F = (s * s + S.I) * scale,
+            of_C = 2 * s * scale, of_S = -2 * scale;
 #pragma GCC unroll 3
     for (int j = 0; j < 3; ++j)
 #pragma GCC unroll 3
-      for (int k = 0; k <= j; ++k)
+      for (int k = 0; k <= j; ++k) // F^T F
         B[3 * j + k] = B[3 * k + j] = F[3 * k] * F[3 * j] + F[3 * k + 1] * F[3 * j + 1] + F[3 * k + 2] * F[3 * j + 2];
 #pragma GCC unroll 3
-    for (int j = 0; j < 3; ++j)
+    for (int j = 0; j < 3; ++j) {
 #pragma GCC unroll 3
-      for (int i = 0; i < 3; ++i) {
+      for (int i = 0; i < 3; ++i)
         R[3 * j + i] = of_F * F[3 * j + i] + of_C * C[3 * j + i] +
                        of_S * (F[i] * B[3 * j] + F[3 + i] * B[3 * j + 1] + F[6 + i] * B[3 * j + 2]);
-        square += R[3 * j + i] * R[3 * j + i];
-      }
-    square -= 3;
-    const auto is_found = (square * square < is_rotation * is_rotation) & (J > 0) &
-                          (J * J * 27 > well_conditioned * well_conditioned * I * I * I);
+      square[j] = R[3 * j] * R[3 * j] + R[3 * j + 1] * R[3 * j + 1] + R[3 * j + 2] * R[3 * j + 2];
+    }
+    const V off = square[0] + square[1] + square[2] - T(3);
+    const auto is_found = (off * off < is_rotation * is_rotation) & (S.J > 0) &
+                          (S.J * S.J * 27 > well_conditioned * well_conditioned * S.I * S.I * S.I);
     unsigned unknown = 0;
     for (int l = 0; l < W; ++l)
       unknown |= unsigned(is_found[l] == 0) << l;
     return unknown;
   }
   template <bool is_partial>
-  [[gnu::always_inline]] static unsigned turn_of(const CubeConstants<T>& cube, const Batch<T>& batch, const int lane,
-                                                 const Row<T>* const x, Turns& turns) {
-    V c[8][3], F[9], R[9];
-    read_shape(batch, lane, x, c);
-    Loops::template mean_gradient<is_partial>(cube, batch, lane, c, F);
-    const unsigned unknown = nearest_rotation(F, R);
+  [[gnu::always_inline]] static unsigned turn_batch(const CubeConstants<T>& cube, const Batch<T>& batch,
+                                                    const Row<T>* const x, Turns& turns) {
+    Stretch S[n_vectors];
+    const int n = n_used_vectors(batch);
+    for (int g = 0; g < n; ++g) {
+      V c[8][3], F[9];
+      read_shape(batch, g * W, x, c);
+      Loops::template mean_gradient<is_partial>(cube, batch, g * W, c, F);
+      find_invariants(F, S[g]);
 #pragma GCC unroll 9
-    for (int i = 0; i < 9; ++i) {
-      store(turns.F[i] + lane, F[i]);
-      store(turns.R[i] + lane, R[i]);
+      for (int i = 0; i < 9; ++i)
+        store(turns.F[i] + g * W, F[i]);
     }
-    return unknown << lane;
+    find_traces(n, S);
+    unsigned unknown = 0;
+    for (int g = 0; g < n; ++g) {
+      V F[9], R[9];
+      load_nine(turns.F, g * W, F);
+      unknown |= nearest_rotation(F, S[g], R) << g * W;
+#pragma GCC unroll 9
+      for (int i = 0; i < 9; ++i)
+        store(turns.R[i] + g * W, R[i]);
+    }
+    for (int g = n; g < n_vectors; ++g)
+#pragma GCC unroll 9
+      for (int i = 0; i < 9; ++i) {
+        store(turns.F[i] + g * W, V{});
+        store(turns.R[i] + g * W, V{});
+      }
+    return unknown;
   }
   [[gnu::always_inline]] static unsigned turn_all(const CubeConstants<T>& cube, const Batch<T>& batch,
                                                   const Row<T>* const x, Turns& turns) {
-    unsigned unknown = 0;
-    for (int lane = 0; lane < int(n_lanes); lane += W)
-      unknown |=
-        batch.partial ? turn_of<true>(cube, batch, lane, x, turns) : turn_of<false>(cube, batch, lane, x, turns);
-    return unknown;
+    return batch.partial ? turn_batch<true>(cube, batch, x, turns) : turn_batch<false>(cube, batch, x, turns);
   }
 
   // --- Forces ------------------------------------------------------------------------------------------------------
@@ -256,34 +310,58 @@ struct ForceLoops : ElementLoops<T, W> {
         R[i][l] = found[i];
     }
   }
+  /// What the first loop over a batch leaves to the second.
+  struct Shape {
+    V c[7][3]; ///< of modes, but for the mean
+    V F[9];
+  };
   template <bool is_partial>
   [[gnu::always_inline]] static void turned_force_of(const CubeConstants<T>& cube, const Batch<T>& batch,
-                                                     const int lane, const FindRotation find, const Row<T>* const x,
+                                                     const FindRotation find, const Row<T>* const x,
                                                      Row<T>* const forces, T* const energies) {
-    V R[9], F[9];
-    Strained s;
-    read_shape(batch, lane, x, s.u);
-    Loops::template mean_gradient<is_partial>(cube, batch, lane, s.u, F);
+    Shape shapes[n_vectors];
+    Stretch S[n_vectors];
+    const int n = n_used_vectors(batch);
+    for (int g = 0; g < n; ++g) {
+      V c[8][3];
+      read_shape(batch, g * W, x, c);
+      Loops::template mean_gradient<is_partial>(cube, batch, g * W, c, shapes[g].F);
+      find_invariants(shapes[g].F, S[g]);
+#pragma GCC unroll 7
+      for (int m = 1; m < 8; ++m)
+#pragma GCC unroll 3
+        for (int i = 0; i < 3; ++i)
+          shapes[g].c[m - 1][i] = c[m][i];
+    }
+    find_traces(n, S);
     const unsigned used = (1U << batch.n_used) - 1;
-    if (const unsigned unknown = nearest_rotation(F, R) & used >> lane; unknown != 0)
-      find_rotations(find, unknown, F, R);
-    strain<is_partial, MeanPart::hooke>(cube, batch, lane, R, s);
-    store(energies + lane, half_product(s));
-    add_force<is_partial>(cube, batch, lane, R, nullptr, T(1), s, forces);
+    for (int g = 0; g < n; ++g) {
+      V R[9];
+      Strained s;
+      if (const unsigned unknown = nearest_rotation(shapes[g].F, S[g], R) & used >> g * W; unknown != 0)
+        find_rotations(find, unknown, shapes[g].F, R);
+#pragma GCC unroll 7
+      for (int m = 1; m < 8; ++m)
+#pragma GCC unroll 3
+        for (int i = 0; i < 3; ++i)
+          s.u[m][i] = shapes[g].c[m - 1][i];
+      strain<is_partial, MeanPart::hooke>(cube, batch, g * W, R, s);
+      store(energies + g * W, half_product(s));
+      add_force<is_partial>(cube, batch, g * W, R, nullptr, T(1), s, forces);
+    }
   }
   [[gnu::always_inline]] static void turned_force(const CubeConstants<T>& cube, const Batch<T>& batch,
                                                   const FindRotation find, const Row<T>* const x, Row<T>* const forces,
                                                   T* const energies) {
-    for (int lane = 0; lane < int(n_lanes); lane += W)
-      if (batch.partial)
-        turned_force_of<true>(cube, batch, lane, find, x, forces, energies);
-      else
-        turned_force_of<false>(cube, batch, lane, find, x, forces, energies);
+    if (batch.partial)
+      turned_force_of<true>(cube, batch, find, x, forces, energies);
+    else
+      turned_force_of<false>(cube, batch, find, x, forces, energies);
   }
   [[gnu::always_inline]] static void force(const CubeConstants<T>& cube, const Batch<T>& batch, const Turns& turns,
                                            const MeanPart mean, const T (*const stress)[n_lanes], const T spins,
                                            const Row<T>* const x, Row<T>* const forces, T* const energies) {
-    for (int lane = 0; lane < int(n_lanes); lane += W)
+    for (int lane = 0; lane < int(batch.n_used); lane += W)
       if (batch.partial && mean == MeanPart::hooke)
         force_of<true, MeanPart::hooke>(cube, batch, lane, turns, stress, spins, x, forces, energies);
       else if (batch.partial)
@@ -305,7 +383,7 @@ struct ForceLoops : ElementLoops<T, W> {
   }
   [[gnu::always_inline]] static void energy(const CubeConstants<T>& cube, const Batch<T>& batch, const Turns& turns,
                                             const MeanPart mean, const Row<T>* const x, T* const energies) {
-    for (int lane = 0; lane < int(n_lanes); lane += W)
+    for (int lane = 0; lane < int(batch.n_used); lane += W)
       if (batch.partial && mean == MeanPart::hooke)
         store(energies + lane, energy_of<true, MeanPart::hooke>(cube, batch, lane, turns, x));
       else if (batch.partial)

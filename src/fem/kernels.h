@@ -104,7 +104,7 @@ struct ForceKernels {
   /// none.
   void (*turned_force)(const CubeConstants<double>& cube, const Batch<double>& batch, FindRotation find,
                        const Row<double>* x, Row<double>* forces, double* energies);
-  /// E of each lane [J].
+  /// E of each lane that is used [J].
   void (*energy)(const CubeConstants<double>& cube, const Batch<double>& batch, const Turns& turns, MeanPart mean,
                  const Row<double>* x, double* energies);
   /// q = tr(R^T G) of each lane, G the mean gradient of p and R the batch's rotation: how a volume changes.
