@@ -152,7 +152,7 @@ void BalanceSolver::factorise(const Problem& problem) {
     if (!of_loads.empty())
       block += of_loads[i];
     size_[i] = block.trace();
-    scaling_[i] = inverse_factor(block, problem.constraints.freedom(i)).cast<float>();
+    scaling_[i] = inverse_factor_in_single(block, problem.constraints.freedom(i));
   });
 }
 
@@ -194,7 +194,9 @@ double BalanceSolver::assemble_residual(const Problem& problem, const Points& x)
       if (!constraints.is_free(i))
         residual_[i] = constraints.freedom(i).project * residual_[i];
       const Mat3 S = scaling_[i].cast<double>();
-      sum += (S * force[i]).squaredNorm() + (S * weight).squaredNorm() + (S * load_force(i)).squaredNorm();
+      sum += (S * force[i]).squaredNorm() + (S * weight).squaredNorm();
+      if (!of_loads.empty())
+        sum += (S * of_loads[i]).squaredNorm();
     }
     return sum;
   });

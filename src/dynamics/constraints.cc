@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <tuple>
 
 namespace kerf::dynamics {
@@ -41,18 +40,22 @@ std::span<const Constraints::Hold> those_that_count(const Loads& loads,
   return holds;
 }
 
-/// Of a positive block alone, entry by entry.
-std::optional<Mat3> inverse_factor(const Mat3& block) {
-  const double d0 = block(0, 0), r0 = 1 / d0, l10 = r0 * block(1, 0), l20 = r0 * block(2, 0), // L D L^T, r = 1 / D
-    d1 = block(1, 1) - l10 * block(1, 0), r1 = 1 / d1, below = block(2, 1) - l20 * block(1, 0), l21 = r1 * below,
-               d2 = block(2, 2) - l20 * block(2, 0) - l21 * below;
-  if (!(d0 > 0 && d1 > 0 && d2 > 0))
-    return std::nullopt;
-  const double s0 = std::sqrt(r0), s1 = std::sqrt(r1), s2 = 1 / std::sqrt(d2);
-  Mat3 inverse;
+/// Of a positive block alone, entry by entry. False: it is not positive.
+template <class T>
+bool invert_factor(const Mat3& block, Eigen::Matrix<T, 3, 3>& inverse) {
+  const T a = T(block(0, 0)), b = T(block(1, 0)), c = T(block(2, 0)), d = T(block(1, 1)), e = T(block(2, 1)),
+          f = T(block(2, 2));
+  const T r0 = 1 / a, l10 = r0 * b, l20 = r0 * c, d1 = d - l10 * b, r1 = 1 / d1, below = e - l20 * b, // L D L^T
+    l21 = r1 * below, d2 = f - l20 * c - l21 * below;                                                 // r = 1 / D
+  if (!(a > 0 && d1 > 0 && d2 > 0))
+    return false;
+  const T s0 = std::sqrt(r0), s1 = std::sqrt(r1), s2 = 1 / std::sqrt(d2);
   inverse << s0, 0, 0, -s1 * l10, s1, 0, s2 * (l21 * l10 - l20), -s2 * l21, s2;
-  return inverse;
+  return true;
 }
+
+/// Nearly all are free in all directions, in the basis of the axes.
+bool is_all_free(const Constraints::Freedom& freedom) { return freedom.n_free == 3 && freedom.sum.isZero(0); }
 
 } // namespace
 
@@ -173,12 +176,12 @@ void Constraints::project(Points& values) const {
 
 Mat3 inverse_factor(const Mat3& block, const Constraints::Freedom& freedom) {
   const int n = freedom.n_free;
-  Mat3 inverse = Mat3::Zero();
+  Mat3 inverse;
+  if (is_all_free(freedom) && invert_factor(block, inverse))
+    return inverse;
+  inverse.setZero();
   if (n == 0)
     return inverse;
-  if (n == 3 && freedom.sum.isZero()) // nearly all are free in all directions, in the basis of the axes
-    if (const auto of_block = inverse_factor(block))
-      return *of_block;
   const Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 3> Q = freedom.basis.leftCols(n);
   const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 3> reduced = Q.transpose() * block * Q;
   const Eigen::LLT<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 3>> factor(reduced);
@@ -187,6 +190,12 @@ Mat3 inverse_factor(const Mat3& block, const Constraints::Freedom& freedom) {
   else if (reduced.trace() > 0) // a block that is no more than semi-definite: at least its size
     inverse.topRows(n) = std::sqrt(n / reduced.trace()) * Q.transpose();
   return inverse;
+}
+
+Eigen::Matrix3f inverse_factor_in_single(const Mat3& block, const Constraints::Freedom& freedom) {
+  Eigen::Matrix3f inverse;
+  return is_all_free(freedom) && invert_factor(block, inverse) ? inverse
+                                                               : inverse_factor(block, freedom).cast<float>().eval();
 }
 
 Loan<std::uint8_t> free_pieces(const Pieces& pieces, const Loads& loads, const std::size_t n_corners) {

@@ -7,7 +7,6 @@
 #include <Eigen/LU>
 
 #include <algorithm>
-#include <tuple>
 #include <utility>
 
 namespace kerf::fem {
@@ -73,9 +72,47 @@ std::vector<GhostLine> lines_of(const std::span<const GhostFace> faces) {
   return lines;
 }
 
+namespace {
+
+/// Items in the order in which they come, each under a number: found among the few that are under the same one.
+class ItemsByNumber {
+ public:
+  explicit ItemsByNumber(const std::size_t n_numbers) : last_(n_numbers, none) {}
+
+  /// The item of this number for which is_it(item) holds; else a new one, the next.
+  template <class IsIt>
+  std::uint32_t find_or_add(const std::uint32_t number, const IsIt& is_it) {
+    for (std::uint32_t item = last_[number]; item != none; item = before_[item])
+      if (is_it(item))
+        return item;
+    before_.push_back(last_[number]);
+    return last_[number] = static_cast<std::uint32_t>(before_.size() - 1);
+  }
+
+ private:
+  static constexpr std::uint32_t none = 0xffffffff;
+  Loan<std::uint32_t> last_;
+  std::vector<std::uint32_t> before_; // of each item the one before it under its number
+};
+
+} // namespace
+
 std::vector<GhostLine> coarsened(const std::span<const GhostLine> fine, const CellsView& cells,
                                  const Coarsening& coarsening) {
-  std::map<std::tuple<std::uint32_t, std::uint32_t, int, int>, double> stiffness; // by copies, axis, vertex
+  std::vector<GhostLine> lines;
+  ItemsByNumber by_lower(coarsening.coarse.n_copies());
+  const auto add = [&](const std::uint32_t lower, const std::uint32_t upper, const int axis, const int vertex,
+                       const double stiffness) {
+    const std::uint32_t i = by_lower.find_or_add(lower, [&](const std::uint32_t line) {
+      return lines[line].upper == upper && lines[line].axis == axis && lines[line].vertex == vertex;
+    });
+    if (i == lines.size()) {
+      const std::uint32_t* const below = coarsening.coarse.corners.data() + 8 * std::size_t(lower);
+      const std::uint32_t* const above = coarsening.coarse.corners.data() + 8 * std::size_t(upper);
+      lines.push_back({lower, upper, axis, vertex, below[vertex ^ 1 << axis], below[vertex], above[vertex], 0});
+    }
+    lines[i].stiffness += stiffness;
+  };
   for (const GhostLine& line : fine) {
     const std::uint32_t lower = coarsening.parent[line.lower], upper = coarsening.parent[line.upper];
     if (lower == upper)
@@ -86,15 +123,8 @@ std::vector<GhostLine> coarsened(const std::span<const GhostLine> fine, const Ce
       const double weight = 0.25 * ((vertex >> j & 1) != 0 ? halves(j) : 2 - halves(j)) *
                             ((vertex >> k & 1) != 0 ? halves(k) : 2 - halves(k));
       if (weight > 0)
-        stiffness[{lower, upper, line.axis, vertex}] += 0.25 * weight * line.stiffness;
+        add(lower, upper, line.axis, vertex, 0.25 * weight * line.stiffness);
     }
-  }
-  std::vector<GhostLine> lines;
-  for (const auto& [key, k] : stiffness) {
-    const auto& [lower, upper, axis, vertex] = key;
-    const std::uint32_t* const below = coarsening.coarse.corners.data() + 8 * std::size_t(lower);
-    const std::uint32_t* const above = coarsening.coarse.corners.data() + 8 * std::size_t(upper);
-    lines.push_back({lower, upper, axis, vertex, below[vertex ^ 1 << axis], below[vertex], above[vertex], k});
   }
   return lines;
 }
@@ -102,20 +132,23 @@ std::vector<GhostLine> coarsened(const std::span<const GhostLine> fine, const Ce
 /// The two corners of a tie are one node, so they lie among the same coarse nodes, which come in the same order; those
 /// of crumbs (grid/crumbs.h) among none.
 std::vector<Tie> coarsened(const std::span<const Tie> fine, const Coarsening& coarsening) {
-  std::map<std::array<std::uint32_t, 2>, double> stiffness; // by corners
+  std::vector<Tie> ties;
+  ItemsByNumber by_corner(coarsening.coarse.n_corners);
   for (const Tie& tie : fine) {
     std::array<std::uint32_t, 8> of_b;
     std::size_t n = 0, i = 0;
     coarsening.for_each_weight(tie.b, [&](const std::uint32_t corner, float) { of_b[n++] = corner; });
     coarsening.for_each_weight(tie.a, [&](const std::uint32_t corner, const float weight) {
-      if (i < n && corner != of_b[i])
-        stiffness[{corner, of_b[i]}] += double(weight) * tie.stiffness;
+      if (i < n && corner != of_b[i]) {
+        const std::uint32_t k =
+          by_corner.find_or_add(corner, [&](const std::uint32_t other) { return ties[other].b == of_b[i]; });
+        if (k == ties.size())
+          ties.push_back({corner, of_b[i], 0});
+        ties[k].stiffness += double(weight) * tie.stiffness;
+      }
       ++i;
     });
   }
-  std::vector<Tie> ties;
-  for (const auto& [corners, k] : stiffness)
-    ties.push_back({corners[0], corners[1], k});
   return ties;
 }
 

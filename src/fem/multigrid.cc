@@ -345,24 +345,22 @@ void Multigrid::put_coarse_rotations(const std::size_t l) {
     256);
 }
 
-/// By parent, times volumes. In the order of batches, as they lie in memory.
+/// By parent, times volumes. Copies that have one parent lie in one coarse cube, whose cells share a node.
 Loan<Mat3> Multigrid::sums_of_finest_rotations() const {
   const Level& fine = levels_[0];
   const BatchedElements<float>& elements = fine.elements;
   Loan<Mat3> sums(cells_of(1).n_copies(), Mat3::Zero());
   const std::vector<Lanes9>& rotations = *elements.shared.rotations;
-  for (std::size_t i = 0; i < rotations.size(); ++i) {
+  fine.batching->for_each_in_order([&](const std::size_t i) {
     const BatchOfCopies& batch = fine.batching->batches()[i];
-    for (std::size_t lane = 0; lane < n_lanes; ++lane) {
-      if (batch.copies[lane] == BatchOfCopies::none)
-        continue;
+    for (std::size_t lane = 0; lane < batch.n_used; ++lane) {
       const double volume = batch.partial == BatchOfCopies::none ? elements.cube.volume
                                                                  : elements.partial[batch.partial].volume[lane];
       Mat3& sum = sums[fine.to_coarse.parent[batch.copies[lane]]];
       for (int k = 0; k < 9; ++k)
         sum.data()[k] += volume * rotations[i].row[k][lane];
     }
-  }
+  });
   return sums;
 }
 
