@@ -40,14 +40,15 @@ std::span<const Constraints::Hold> those_that_count(const Loads& loads,
   return holds;
 }
 
-/// Of a positive block alone, entry by entry. False: it is not positive.
+/// Of a positive block alone, entry by entry. False: it is not positive, or so narrow that T would tell little of it.
 template <class T>
 bool invert_factor(const Mat3& block, Eigen::Matrix<T, 3, 3>& inverse) {
+  constexpr T narrow = sizeof(T) == sizeof(float) ? T(1e-3) : T(0); // of what elimination leaves over what was there
   const T a = T(block(0, 0)), b = T(block(1, 0)), c = T(block(2, 0)), d = T(block(1, 1)), e = T(block(2, 1)),
           f = T(block(2, 2));
   const T r0 = 1 / a, l10 = r0 * b, l20 = r0 * c, d1 = d - l10 * b, r1 = 1 / d1, below = e - l20 * b, // L D L^T
     l21 = r1 * below, d2 = f - l20 * c - l21 * below;                                                 // r = 1 / D
-  if (!(a > 0 && d1 > 0 && d2 > 0))
+  if (!(a > 0 && d1 > narrow * d && d2 > narrow * f))
     return false;
   const T s0 = std::sqrt(r0), s1 = std::sqrt(r1), s2 = 1 / std::sqrt(d2);
   inverse << s0, 0, 0, -s1 * l10, s1, 0, s2 * (l21 * l10 - l20), -s2 * l21, s2;
