@@ -70,10 +70,12 @@ Constraints::Constraints(const Loads& loads, const std::size_t n_corners)
       if (const auto corner = loads.supports[s].corners[i]; !is_carried(loads, corner))
         all->push_back({corner, {s, i}});
   }
-  std::sort(all->begin(), all->end(), [](const auto& a, const auto& b) {
+  const auto is_before = [](const auto& a, const auto& b) {
     return std::tuple(a.first, a.second.support, a.second.index) <
            std::tuple(b.first, b.second.support, b.second.index);
-  });
+  };
+  if (!std::is_sorted(all->begin(), all->end(), is_before)) // one support's corners are, as a rule
+    std::sort(all->begin(), all->end(), is_before);
   Loan<Hold> of_corner;
   for (std::size_t i = 0; i < all.size(); ++i) {
     of_corner->push_back(all[i].second);
@@ -97,10 +99,15 @@ void Constraints::add_carried() {
 }
 
 void Constraints::add(const std::uint32_t corner, const std::span<const Hold> holds) {
-  Mat3 sum = Mat3::Zero();
-  for (const Hold& hold : holds)
-    sum += loads_.supports[hold.support].held;
-  kind_[corner] = kind_of(sum);
+  if (const auto before = held_->empty() ? std::span<const Hold>() : this->holds(held_->back());
+      holds.size() == 1 && before.size() == 1 && holds[0].support == before[0].support) {
+    kind_[corner] = kind_[held_->back().corner];
+  } else {
+    Mat3 sum = Mat3::Zero();
+    for (const Hold& hold : holds)
+      sum += loads_.supports[hold.support].held;
+    kind_[corner] = kind_of(sum);
+  }
   const auto begin = static_cast<std::uint32_t>(holds_.size());
   holds_->insert(holds_->end(), holds.begin(), holds.end());
   held_->push_back({corner, begin, static_cast<std::uint32_t>(holds_.size())});

@@ -131,9 +131,9 @@ StepReport VelocityVerlet::step(State& state, const Loads& loads, const double d
     many_corners);
   obey(constraints, state.time + dt, dt, x, predicted);
   total_force(model_, loads, {state.time + dt, x, predicted}, MassDamping::left_out, force_);
+  const double damped = 1 / (1 + half * alpha);
   parallel_for(
-    n, [&](const std::size_t i) { v[i] = (v[i] + per_mass(half, mass[i]) * force_[i]) / (1 + half * alpha); },
-    many_corners);
+    n, [&](const std::size_t i) { v[i] = damped * (v[i] + per_mass(half, mass[i]) * force_[i]); }, many_corners);
   obey(constraints, state.time + dt, dt, x, v);
   take_over(state, x, v, dt, "velocity Verlet");
   return {.stable_step = limit_.last()};

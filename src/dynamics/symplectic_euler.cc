@@ -29,11 +29,12 @@ StepReport SymplecticEuler::step(State& state, const Loads& loads, const double 
   const auto mass = model_.lumped_mass();
   total_force(model_, loads, {state.time, state.x, state.v}, MassDamping::left_out, force_);
   const std::size_t n = state.x.size();
+  const double damped = 1 / (1 + dt * loads.mass_damping);
   Loan<Vec3> x(n, AnyValues()), v(n, AnyValues());
   parallel_for(
     n,
     [&](const std::size_t i) {
-      v[i] = (state.v[i] + per_mass(dt, mass[i]) * force_[i]) / (1 + dt * loads.mass_damping);
+      v[i] = damped * (state.v[i] + per_mass(dt, mass[i]) * force_[i]);
       x[i] = state.x[i] + dt * v[i];
     },
     many_corners);
