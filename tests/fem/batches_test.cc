@@ -1,8 +1,13 @@
 #include "fem/batches.h"
+
+#include "base/parallel.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <numeric>
+#include <random>
 
 namespace kerf::fem::batches_test {
 namespace {
@@ -183,6 +188,65 @@ TEST(Batches, RotationsAreKeptOnce) {
   const BatchedElements<float> other = batched<float>(batching, 0.1, material, full, {}, model.shared);
   EXPECT_EQ(other.shared.rotations, model.shared.rotations);
   EXPECT_EQ(first, 0.5);
+}
+
+/// Chunks of random sizes in a block of cubes, some of them without use, by four threads: no two batches that share a
+/// corner are at work at once, nor two whose cubes lie in one cube twice as large, and each corner meets its batches in
+/// the order in which one thread calls them.
+TEST(Batches, ThatShareACornerKeepTheirOrder) {
+  constexpr std::uint32_t n = 24, m = n + 1;
+  std::vector<std::uint32_t> order(n * n * n), corners, chunk_ends;
+  std::vector<Kind> kinds;
+  std::mt19937 random(12);
+  std::iota(order.begin(), order.end(), 0);
+  for (const std::uint32_t c : order) {
+    const std::uint32_t x = c % n, y = c / n % n, z = c / (n * n);
+    for (std::uint32_t a = 0; a < 8; ++a)
+      corners.push_back(x + a % 2 + m * (y + a / 2 % 2 + m * (z + a / 4)));
+    kinds.push_back(random() % 10 == 0 ? Kind::unused : random() % 3 == 0 ? Kind::partial : Kind::full);
+  }
+  for (std::uint32_t end = 0; end < order.size();)
+    chunk_ends.push_back(end = std::min<std::uint32_t>(end + 1 + random() % 300, n * n * n));
+  const OrderOfChunks of_cells = order_of_chunks(chunk_ends, corners, m * m * m);
+  EXPECT_GT(of_cells.shared.width(), 2);
+  Batching batching(of_cells);
+  batching.update({order, chunk_ends, kinds, corners.data(), m * m * m}, {}, {});
+  const auto coarse = [](const std::uint32_t c) { return c % n / 2 + n * (c / n % n / 2 + n * (c / (n * n) / 2)); };
+
+  using Sequences = std::vector<std::vector<std::size_t>>; // of batches, by corner
+  std::vector<std::atomic<std::uint32_t>> users(m * m * m), users_of_coarse(n * n * n);
+  std::atomic<int> n_met = 0;
+  const auto sequences = [&](const int n_threads) {
+    set_n_threads(n_threads);
+    Sequences all(m * m * m);
+    batching.for_each_in_order([&](const std::size_t i) {
+      const BatchOfCopies& batch = batching.batches()[i];
+      const auto me = static_cast<std::uint32_t>(i + 1);
+      const auto enter = [&](std::atomic<std::uint32_t>& user) {
+        const std::uint32_t other = user.exchange(me);
+        n_met += other != 0 && other != me ? 1 : 0;
+      };
+      for (std::uint32_t lane = 0; lane < batch.n_used; ++lane) {
+        enter(users_of_coarse[coarse(batch.copies[lane])]);
+        for (const auto& of_lanes : batch.corners) {
+          enter(users[of_lanes[lane]]);
+          if (auto& sequence = all[of_lanes[lane]]; sequence.empty() || sequence.back() != i)
+            sequence.push_back(i);
+        }
+      }
+      for (std::uint32_t lane = 0; lane < batch.n_used; ++lane) {
+        users_of_coarse[coarse(batch.copies[lane])] = 0;
+        for (const auto& of_lanes : batch.corners)
+          users[of_lanes[lane]] = 0;
+      }
+    });
+    set_n_threads(1);
+    return all;
+  };
+  const Sequences by_one = sequences(1);
+  for (int turn = 0; turn < 20; ++turn)
+    EXPECT_EQ(sequences(4), by_one);
+  EXPECT_EQ(n_met, 0);
 }
 
 } // namespace
