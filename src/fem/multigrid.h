@@ -46,7 +46,7 @@ struct FinestLevel {
   const Element& full;
   std::span<const Kind> kind; ///< of each copy
   std::function<const Element&(std::uint32_t copy)> element;
-  std::shared_ptr<const Batching> batching;
+  std::shared_ptr<const Batching> batching; ///< in an order by the nodes of cells: copies of one coarse cube share one
   BatchedElements<float> elements; ///< partial ones count by their bounds over that of `full`
   std::span<const GhostFace> faces;
   std::span<const Tie> ties;
