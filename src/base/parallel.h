@@ -52,6 +52,7 @@ class Precedence {
 };
 
 /// Calls f(i) for each item, on several threads and from the first on, but not until all that it comes after are done.
+/// f must not start loops of several threads itself: its thread could be given an item that waits for this one.
 void parallel_in_order(const Precedence& items, FunctionRef<void(std::size_t)> f);
 
 /// Keeps what libraries do for the calling thread to that thread: BLAS (OpenBLAS) and what has OpenMP inside (CHOLMOD).

@@ -68,7 +68,7 @@ StepReport ExplicitEuler::step(State& state, const Loads& loads, const double dt
   limit_.require(state, loads, dt);
   const Constraints constraints(loads, state.x.size());
   const auto mass = model_.lumped_mass();
-  total_force(model_, loads, {state.time, state.x, state.v}, MassDamping::included, force_);
+  total_force(model_, loads, {state.time, state.x, state.v}, force_);
   const std::size_t n = state.x.size();
   Loan<Vec3> x(n, AnyValues()), v(n, AnyValues());
   parallel_for(
@@ -88,7 +88,7 @@ StepReport MidpointRungeKutta::step(State& state, const Loads& loads, const doub
   const Constraints constraints(loads, state.x.size());
   const auto mass = model_.lumped_mass();
   const double half = 0.5 * dt;
-  total_force(model_, loads, {state.time, state.x, state.v}, MassDamping::included, force_);
+  total_force(model_, loads, {state.time, state.x, state.v}, force_);
   const std::size_t n = state.x.size();
   Loan<Vec3> x(n, AnyValues()), v(n, AnyValues());
   parallel_for(
@@ -99,7 +99,7 @@ StepReport MidpointRungeKutta::step(State& state, const Loads& loads, const doub
     },
     many_corners);
   obey(constraints, state.time + half, dt, x, v);
-  total_force(model_, loads, {state.time + half, x, v}, MassDamping::included, force_);
+  total_force(model_, loads, {state.time + half, x, v}, force_);
   parallel_for(
     n,
     [&](const std::size_t i) {
@@ -117,23 +117,24 @@ StepReport VelocityVerlet::step(State& state, const Loads& loads, const double d
   const Constraints constraints(loads, state.x.size());
   const auto mass = model_.lumped_mass();
   const double half = 0.5 * dt, alpha = loads.mass_damping;
-  total_force(model_, loads, {state.time, state.x, state.v}, MassDamping::left_out, force_);
+  applied_force(model_, loads, {state.time, state.x, state.v}, force_);
   const std::size_t n = state.x.size();
   Loan<Vec3> x(n, AnyValues()), v(n, AnyValues()), predicted(n, AnyValues());
   parallel_for(
     n,
     [&](const std::size_t i) {
-      const Vec3 a = per_mass(force_[i], mass[i]) - alpha * state.v[i];
+      const Vec3 a = acceleration(force_[i], mass[i], loads) - alpha * state.v[i];
       v[i] = state.v[i] + half * a;
       x[i] = state.x[i] + dt * v[i];
       predicted[i] = v[i] + half * a;
     },
     many_corners);
   obey(constraints, state.time + dt, dt, x, predicted);
-  total_force(model_, loads, {state.time + dt, x, predicted}, MassDamping::left_out, force_);
+  applied_force(model_, loads, {state.time + dt, x, predicted}, force_);
   const double damped = 1 / (1 + half * alpha);
   parallel_for(
-    n, [&](const std::size_t i) { v[i] = damped * (v[i] + per_mass(half, mass[i]) * force_[i]); }, many_corners);
+    n, [&](const std::size_t i) { v[i] = damped * (v[i] + half * acceleration(force_[i], mass[i], loads)); },
+    many_corners);
   obey(constraints, state.time + dt, dt, x, v);
   take_over(state, x, v, dt, "velocity Verlet");
   return {.stable_step = limit_.last()};

@@ -45,13 +45,17 @@ LoadTangent load_tangent(const Loads& loads, const Tangent kind, const Moment& m
   return tangent;
 }
 
-void total_force(ForceModel& model, const Loads& loads, const Moment& moment, const MassDamping mass_damping,
-                 Points& forces) {
+void applied_force(ForceModel& model, const Loads& loads, const Moment& moment, Points& forces) {
   model.force(moment.x, forces);
   if (loads.stiffness_damping > 0)
     add_stiffness_damping(model, loads.stiffness_damping, moment, forces);
+  add_load_forces(loads, moment, forces);
+}
+
+void total_force(ForceModel& model, const Loads& loads, const Moment& moment, Points& forces) {
+  applied_force(model, loads, moment, forces);
   const auto mass = model.lumped_mass();
-  const double alpha = mass_damping == MassDamping::included ? loads.mass_damping : 0;
+  const double alpha = loads.mass_damping;
   parallel_for(
     forces.size(), [&](const std::size_t i) { forces[i] += mass[i] * (loads.gravity - alpha * moment.v[i]); },
     many_corners);
@@ -60,7 +64,6 @@ void total_force(ForceModel& model, const Loads& loads, const Moment& moment, co
     for (std::size_t i = 0; i < more.size(); ++i)
       forces[i] -= alpha * more[i];
   }
-  add_load_forces(loads, moment, forces);
 }
 
 Loan<Vec3> coupled(const ForceModel& model, const Points& v) {

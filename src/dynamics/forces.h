@@ -15,17 +15,21 @@ double load_energy(const Loads& loads, double time, const Points& x);
 /// Sum of their tangents, see Load::add_tangent.
 LoadTangent load_tangent(const Loads& loads, Tangent kind, const Moment& moment, double velocity_factor);
 
-/// What mass damping is not part of: a stepper may take it implicitly.
-enum class MassDamping { left_out, included };
-
 /// Elastic forces, gravity, damping and loads, together [N]. Linearises the model at moment.x if stiffness is damped; a
 /// model that has no stiffness to offer damps it in a way of its own, which is left out.
-void total_force(ForceModel& model, const Loads& loads, const Moment& moment, MassDamping mass_damping, Points& forces);
+void total_force(ForceModel& model, const Loads& loads, const Moment& moment, Points& forces);
+/// The same but for gravity and mass damping, which are accelerations: a stepper may take damping implicitly.
+void applied_force(ForceModel& model, const Loads& loads, const Moment& moment, Points& forces);
 
 /// A value over a mass; zero where there is none, as at corners that a rigid body carries (Loads::carried).
 inline double per_mass(const double value, const double mass) { return mass > 0 ? value / mass : 0; }
 inline Vec3 per_mass(const Vec3& value, const double mass) {
   return mass > 0 ? Vec3(value / mass) : Vec3(Vec3::Zero());
+}
+
+/// Of a corner under a force beside gravity; zero without a mass [m/s^2].
+inline Vec3 acceleration(const Vec3& force, const double mass, const Loads& loads) {
+  return mass > 0 ? Vec3(1 / mass * force + loads.gravity) : Vec3(Vec3::Zero());
 }
 
 /// (M - diag m) v; nothing where the mass is lumped.

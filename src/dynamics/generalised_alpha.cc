@@ -80,7 +80,7 @@ Points GeneralisedAlpha::first_acceleration(const State& state, const Loads& loa
   const Constraints constraints(loads, state.x.size());
   Points v = state.v, a;
   constraints.place_velocity(state.time, part_of_step * dt, v);
-  total_force(model_, loads, {state.time, state.x, v}, MassDamping::included, a);
+  total_force(model_, loads, {state.time, state.x, v}, a);
   const auto mass = model_.lumped_mass();
   const double least = massless * *std::max_element(mass.begin(), mass.end());
   for (const Follower& follower : model_.followers())

@@ -11,7 +11,7 @@ namespace {
 /// M a less all forces, at each corner [N]: zero where nothing is held.
 Points missing_force(ForceModel& model, const Loads& loads, const State& state, const Points& acceleration) {
   Points missing;
-  total_force(model, loads, {state.time, state.x, state.v}, MassDamping::included, missing);
+  total_force(model, loads, {state.time, state.x, state.v}, missing);
   const Points inertia = momenta(model, acceleration);
   for (std::size_t i = 0; i < missing.size(); ++i)
     missing[i] = inertia[i] - missing[i];

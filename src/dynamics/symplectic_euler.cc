@@ -27,14 +27,14 @@ StepReport SymplecticEuler::step(State& state, const Loads& loads, const double 
   limit_.require(state, loads, dt);
   const Constraints constraints(loads, state.x.size());
   const auto mass = model_.lumped_mass();
-  total_force(model_, loads, {state.time, state.x, state.v}, MassDamping::left_out, force_);
+  applied_force(model_, loads, {state.time, state.x, state.v}, force_);
   const std::size_t n = state.x.size();
   const double damped = 1 / (1 + dt * loads.mass_damping);
   Loan<Vec3> x(n, AnyValues()), v(n, AnyValues());
   parallel_for(
     n,
     [&](const std::size_t i) {
-      v[i] = damped * (state.v[i] + per_mass(dt, mass[i]) * force_[i]);
+      v[i] = damped * (state.v[i] + dt * acceleration(force_[i], mass[i], loads));
       x[i] = state.x[i] + dt * v[i];
     },
     many_corners);
