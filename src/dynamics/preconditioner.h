@@ -50,7 +50,7 @@ class Preconditioner {
 /// L^-1 for the Cholesky factor L of a diagonal block among its free directions, from whose basis it maps; zero rows
 /// for those that are held. So S^T S is the block's inverse.
 Mat3 inverse_factor(const Mat3& block, const Constraints::Freedom& freedom);
-/// The same in single precision, in a third of the time.
+/// The same in single precision; of blocks that are too narrow for it, found in double.
 Eigen::Matrix3f inverse_factor_in_single(const Mat3& block, const Constraints::Freedom& freedom);
 
 } // namespace kerf::dynamics
