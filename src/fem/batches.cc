@@ -9,50 +9,60 @@ namespace kerf::fem {
 
 namespace {
 
-/// The vertices of each chunk, 8 a cube.
-struct VerticesOfChunks {
-  std::span<const std::uint32_t> ends, vertices;
+/// Few enough of many chunks to be taken by many threads; of few, one each.
+std::vector<Run> runs(const std::size_t n_chunks) {
+  constexpr std::size_t least = 64, longest = 12; // runs, chunks
+  const std::size_t length = std::clamp<std::size_t>(n_chunks / least, 1, longest);
+  std::vector<Run> all;
+  for (std::size_t first = 0; first < n_chunks; first += length)
+    all.push_back({static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(std::min(first + length, n_chunks))});
+  return all;
+}
 
-  std::span<const std::uint32_t> operator[](const std::size_t chunk) const {
-    const std::size_t begin = chunk == 0 ? 0 : ends[chunk - 1];
-    return vertices.subspan(8 * begin, 8 * (ends[chunk] - begin));
+/// The vertices of each run, 8 a cube.
+struct VerticesOfRuns {
+  std::span<const std::uint32_t> chunk_ends, vertices;
+
+  std::span<const std::uint32_t> operator[](const Run& run) const {
+    const std::size_t begin = run.first == 0 ? 0 : chunk_ends[run.first - 1];
+    return vertices.subspan(8 * begin, 8 * (chunk_ends[run.end - 1] - begin));
   }
 };
 
-std::vector<std::uint32_t> colours(const VerticesOfChunks& chunks, const std::size_t n_vertices) {
+std::vector<std::uint32_t> colours(const std::span<const Run> runs, const VerticesOfRuns& vertices,
+                                   const std::size_t n_vertices) {
   std::vector<std::uint64_t> taken(n_vertices, 0); // bits of the colours that hold a vertex
   std::vector<std::uint32_t> colours;
   std::uint32_t n_colours = 64;
-  for (std::size_t k = 0; k < chunks.ends.size(); ++k) {
+  for (const Run& run : runs) {
     std::uint64_t met = 0;
-    for (const std::uint32_t v : chunks[k])
+    for (const std::uint32_t v : vertices[run])
       met |= v != no_vertex ? taken[v] : 0;
-    // With all 64 taken, which a chunk's neighbours never do, a chunk would stand alone in a colour of its own.
+    // With all 64 taken, which a run's neighbours never do, a run would stand alone in a colour of its own.
     const bool is_alone = met == ~std::uint64_t(0);
     colours.push_back(is_alone ? n_colours++ : static_cast<std::uint32_t>(std::countr_one(met)));
-    for (const std::uint32_t v : chunks[k])
+    for (const std::uint32_t v : vertices[run])
       if (v != no_vertex && !is_alone)
         taken[v] |= std::uint64_t(1) << colours.back();
   }
   return colours;
 }
 
-/// Of chunks in their order. At each vertex a chunk need only wait for the last one before it, which has waited too.
-Precedence precedence(const VerticesOfChunks& chunks, const std::span<const std::uint32_t> order,
-                      const std::size_t n_vertices) {
+/// Of runs in their order. At each vertex a run need only wait for the last one before it, which has waited too.
+Precedence precedence(const std::span<const Run> runs, const VerticesOfRuns& vertices, const std::size_t n_vertices) {
   constexpr std::uint32_t none = 0xffffffff;
-  std::vector<std::uint32_t> last(n_vertices, none), is_named_by(order.size(), none); // places in the order
-  std::vector<std::uint32_t> of_chunk;
+  std::vector<std::uint32_t> last(n_vertices, none), is_named_by(runs.size(), none); // places in the order
+  std::vector<std::uint32_t> of_run;
   Precedence all;
-  for (std::uint32_t place = 0; place < order.size(); ++place) {
-    of_chunk.clear();
-    for (const std::uint32_t v : chunks[order[place]])
+  for (std::uint32_t place = 0; place < runs.size(); ++place) {
+    of_run.clear();
+    for (const std::uint32_t v : vertices[runs[place]])
       if (v != no_vertex) {
         const std::uint32_t before = std::exchange(last[v], place);
         if (before != none && before != place && std::exchange(is_named_by[before], place) != place)
-          of_chunk.push_back(before);
+          of_run.push_back(before);
       }
-    all.add(of_chunk);
+    all.add(of_run);
   }
   return all;
 }
@@ -61,13 +71,16 @@ Precedence precedence(const VerticesOfChunks& chunks, const std::span<const std:
 
 OrderOfChunks order_of_chunks(const std::span<const std::uint32_t> chunk_ends,
                               const std::span<const std::uint32_t> vertices, const std::size_t n_vertices) {
-  const VerticesOfChunks of_chunks{chunk_ends, vertices};
-  const std::vector<std::uint32_t> colour = colours(of_chunks, n_vertices);
+  const VerticesOfRuns of_runs{chunk_ends, vertices};
+  const std::vector<Run> in_memory = runs(chunk_ends.size());
+  const std::vector<std::uint32_t> colour = colours(in_memory, of_runs, n_vertices);
+  std::vector<std::uint32_t> places(in_memory.size());
+  std::iota(places.begin(), places.end(), 0);
+  std::ranges::stable_sort(places, {}, [&](const std::uint32_t k) { return colour[k]; });
   OrderOfChunks order;
-  order.chunks.resize(colour.size());
-  std::iota(order.chunks.begin(), order.chunks.end(), 0);
-  std::ranges::stable_sort(order.chunks, {}, [&](const std::uint32_t k) { return colour[k]; });
-  order.shared = precedence(of_chunks, order.chunks, n_vertices);
+  for (const std::uint32_t k : places)
+    order.runs.push_back(in_memory[k]);
+  order.shared = precedence(order.runs, of_runs, n_vertices);
   return order;
 }
 

@@ -3,10 +3,12 @@
 /// Elements in batches for the kernels: which copies go through them together, and what they are made of.
 ///
 /// Copies go in chunks, those of some hundred cells that lie in a block each: first a chunk's full cubes, then its
-/// partial ones, each in batches of 16, of which the first are rows of cubes along x. Chunks that share a corner have
-/// different colours. One colour after the other, and a chunk's batches in their order, is the order of all sums: the
-/// same for any number of threads, as it depends on the copies and their corners alone. A chunk waits for those that
-/// come before it and share a corner with it, and for no others.
+/// partial ones, each in batches of 16, of which the first are rows of cubes along x. In large bodies a few chunks side
+/// by side make a run, which one thread takes in a go: it finds corners between them in its cache, and goes on along
+/// the rows of corners in memory. Runs that share a corner have different colours. One colour after the other, a run's
+/// chunks and a chunk's batches in their order, is the order of all sums: the same for any number of threads, as it
+/// depends on the copies and their corners alone. A run waits for those that come before it and share a corner with it,
+/// and for no others.
 ///
 /// A cut changes the batches of the chunks that it meets, and all others stay as they are, with what their partial
 /// cubes are made of. Chunks of cells share what nodes of the grid they share, which no cut changes.
@@ -48,14 +50,19 @@ struct CopiesInOrder {
   std::size_t n_corners;
 };
 
-/// An order of chunks in which those that share a vertex are far from each other, and several can be worked on.
-struct OrderOfChunks {
-  std::vector<std::uint32_t> chunks;
-  Precedence shared; ///< of places in `chunks`: what comes after what it shares a vertex with
+/// Chunks one after the other.
+struct Run {
+  std::uint32_t first, end;
 };
 
-/// Of chunks of cubes, given by their 8 vertices: by colours, of which each has the first that no chunk before it has
-/// that shares a vertex. Cubes without use have the vertex `no_vertex`.
+/// An order of chunks in which runs that share a vertex are far from each other, and several can be worked on.
+struct OrderOfChunks {
+  std::vector<Run> runs;
+  Precedence shared; ///< of places in `runs`: what comes after what it shares a vertex with
+};
+
+/// Of chunks of cubes, given by their 8 vertices: by colours of runs, of which each has the first that no run before it
+/// has that shares a vertex. Cubes without use have the vertex `no_vertex`.
 OrderOfChunks order_of_chunks(std::span<const std::uint32_t> chunk_ends, std::span<const std::uint32_t> vertices,
                               std::size_t n_vertices);
 constexpr std::uint32_t no_vertex = 0xffffffff;
@@ -102,8 +109,9 @@ class Batching {
   template <class Function>
   void for_each_in_order(const Function& f) const {
     parallel_in_order(order_.shared, [&](const std::size_t place) {
-      const Chunk& chunk = chunks_[order_.chunks[place]];
-      for (std::uint32_t i = chunk.first; i < chunk.first + chunk.n; ++i)
+      const Run& run = order_.runs[place];
+      const Chunk& last = chunks_[run.end - 1];
+      for (std::uint32_t i = chunks_[run.first].first; i < last.first + last.n; ++i)
         f(i);
     });
   }
