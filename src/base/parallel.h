@@ -4,6 +4,7 @@
 
 #include "base/function_ref.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -27,6 +28,17 @@ void parallel_for(const std::size_t n, const Function& f, const std::size_t wort
   parallel_ranges(n, worth, [&f](const std::size_t begin, const std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
       f(i);
+  });
+}
+
+/// Makes one vector the other, in the memory that it has.
+template <class T>
+void copy(const std::vector<T>& from, std::vector<T>& to) {
+  constexpr std::size_t worth = 65536 / sizeof(T); // values
+  to.resize(from.size());
+  parallel_ranges(from.size(), worth, [&](const std::size_t begin, const std::size_t end) {
+    std::copy(from.begin() + static_cast<std::ptrdiff_t>(begin), from.begin() + static_cast<std::ptrdiff_t>(end),
+              to.begin() + static_cast<std::ptrdiff_t>(begin));
   });
 }
 

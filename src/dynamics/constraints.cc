@@ -128,9 +128,14 @@ std::size_t Constraints::n_free() const {
   return n;
 }
 
-void Constraints::impose(const Points& wanted, Points& values) const {
+std::span<const Constraints::Held> Constraints::held(const std::size_t begin, const std::size_t end) const {
+  const auto first = std::ranges::lower_bound(*held_, begin, {}, &Held::corner);
+  return {first, std::ranges::lower_bound(first, held_.end(), end, {}, &Held::corner)};
+}
+
+void Constraints::impose(const Points& wanted, const std::span<const Held> some, Points& values) const {
   const auto of = [&](const Hold& hold) -> const Vec3& { return wanted[first_[hold.support] + hold.index]; };
-  for (const Held& held : *held_) {
+  for (const Held& held : some) {
     Vec3& value = values[held.corner];
     const Freedom& freedom = this->freedom(held.corner);
     const auto holds = this->holds(held);
@@ -158,19 +163,22 @@ Loan<Vec3> Constraints::places(const double time) const {
   return all;
 }
 
+Loan<Vec3> Constraints::velocities(const double time, const double delta) const {
+  Loan<Vec3> all = places(time + delta);
+  const Loan<Vec3> before = places(time - delta);
+  for (std::size_t i = 0; i < all.size(); ++i)
+    all[i] = (all[i] - before[i]) / (2 * delta);
+  return all;
+}
+
 void Constraints::place(const double time, Points& x) const {
   if (!held_.empty())
-    impose(places(time), x);
+    impose(places(time), *held_, x);
 }
 
 void Constraints::place_velocity(const double time, const double delta, Points& v) const {
-  if (held_.empty())
-    return;
-  Loan<Vec3> velocities = places(time + delta);
-  const Loan<Vec3> before = places(time - delta);
-  for (std::size_t i = 0; i < velocities.size(); ++i)
-    velocities[i] = (velocities[i] - before[i]) / (2 * delta);
-  impose(velocities, v);
+  if (!held_.empty())
+    impose(velocities(time, delta), *held_, v);
 }
 
 void Constraints::project(Points& values) const {

@@ -55,6 +55,13 @@ class Constraints {
     std::uint32_t corner, begin, end;
   };
   const std::vector<Held>& held() const { return *held_; }
+  /// Of the corners from one to another.
+  std::span<const Held> held(std::size_t begin, std::size_t end) const;
+  /// What supports want at a time, for each corner of each support, in a row: places [m], velocities [m/s].
+  Loan<Vec3> places(double time) const;
+  Loan<Vec3> velocities(double time, double delta) const;
+  /// Gives that to held components of the values of some corners.
+  void impose(const Points& wanted, std::span<const Held> held, Points& values) const;
   /// The supports that a held corner obeys.
   std::span<const Hold> holds(const Held& held) const {
     return std::span<const Hold>(*holds_).subspan(held.begin, held.end - held.begin);
@@ -64,10 +71,6 @@ class Constraints {
   void add(std::uint32_t corner, std::span<const Hold> holds);
   void add_carried();
   std::uint32_t kind_of(const Mat3& sum);
-  /// Moves held components of values to what `wanted` has for them, a value for each corner of each support, in a row.
-  void impose(const Points& wanted, Points& values) const;
-  /// Of the corners of all supports, in a row.
-  Loan<Vec3> places(double time) const;
 
   const Loads& loads_;
   Loan<Freedom> freedoms_;

@@ -1,13 +1,7 @@
 #include "dynamics/explicit_steppers.h"
 
-#include "base/error.h"
 #include "base/loan.h"
-#include "base/parallel.h"
-#include "dynamics/constraints.h"
 #include "dynamics/forces.h"
-#include "dynamics/points.h"
-
-#include <cmath>
 
 namespace kerf::dynamics {
 
@@ -39,105 +33,82 @@ Eigen::Matrix2d of_verlet(const Mode& mode, const double dt) {
   return A;
 }
 
-void obey(const Constraints& constraints, const double time, const double dt, Points& x, Points& v) {
-  constraints.place(time, x);
-  constraints.place_velocity(time, part_of_step * dt, v);
-}
-
-void take_over(State& state, Points& x, Points& v, const double dt, const char* const name) {
-  require_finite(v, name);
-  state.x.swap(x);
-  state.v.swap(v);
-  state.time += dt;
+/// With mass damping; zero without a mass.
+Vec3 damped_acceleration(const Vec3& force, const double mass, const Vec3& v, const Loads& loads) {
+  return mass > 0 ? Vec3(1 / mass * force + loads.gravity - loads.mass_damping * v) : Vec3(Vec3::Zero());
 }
 
 } // namespace
-
-void require_finite(const Points& v, const char* name) {
-  if (!std::isfinite(product(v, v))) // a sum, not a maximum: it keeps NaN
-    throw NumericalError("velocities are no longer finite: " + std::string(name) +
-                         " is unstable beyond a time step that the largest frequency sets. Use a smaller time step, "
-                         "or implicit Euler");
-}
 
 ExplicitScheme ExplicitEuler::scheme() { return {"explicit Euler", of_explicit_euler, 1e-3}; }
 ExplicitScheme MidpointRungeKutta::scheme() { return {"midpoint Runge-Kutta", of_midpoint, 1e-3}; }
 ExplicitScheme VelocityVerlet::scheme() { return {"velocity Verlet", of_verlet, 1e-10}; }
 
-StepReport ExplicitEuler::step(State& state, const Loads& loads, const double dt) {
-  limit_.require(state, loads, dt);
-  const Constraints constraints(loads, state.x.size());
-  const auto mass = model_.lumped_mass();
-  total_force(model_, loads, {state.time, state.x, state.v}, force_);
-  const std::size_t n = state.x.size();
-  Loan<Vec3> x(n, AnyValues()), v(n, AnyValues());
-  parallel_for(
-    n,
+SumsOfStep ExplicitEuler::move(const Step& step, Points& x, Points& v) {
+  const auto& [before, loads, constraints, mass, dt] = step;
+  const Points& force = this->force(loads, {before.time, before.x, before.v});
+  const Held held(step, step.end());
+  return pass(
+    x.size(),
     [&](const std::size_t i) {
-      x[i] = state.x[i] + dt * state.v[i];
-      v[i] = state.v[i] + per_mass(dt, mass[i]) * force_[i];
+      x[i] = before.x[i] + dt * before.v[i];
+      v[i] = before.v[i] + dt * damped_acceleration(force[i], mass[i], before.v[i], loads);
     },
-    many_corners);
-  obey(constraints, state.time + dt, dt, x, v);
-  take_over(state, x, v, dt, "explicit Euler");
-  return {.stable_step = limit_.last()};
+    [&](const std::size_t begin, const std::size_t end) { held.put(begin, end, x, v); },
+    [&](const std::size_t i, SumsOfStep& sum) {
+      sum.before.add(mass[i], before.x[i], before.v[i]);
+      sum.after.add(mass[i], x[i], v[i]);
+    });
 }
 
-StepReport MidpointRungeKutta::step(State& state, const Loads& loads, const double dt) {
-  limit_.require(state, loads, dt);
-  const Constraints constraints(loads, state.x.size());
-  const auto mass = model_.lumped_mass();
+SumsOfStep MidpointRungeKutta::move(const Step& step, Points& x, Points& v) {
+  const auto& [before, loads, constraints, mass, dt] = step;
   const double half = 0.5 * dt;
-  total_force(model_, loads, {state.time, state.x, state.v}, force_);
-  const std::size_t n = state.x.size();
-  Loan<Vec3> x(n, AnyValues()), v(n, AnyValues());
-  parallel_for(
-    n,
+  const Points& force = this->force(loads, {before.time, before.x, before.v});
+  const Held held_half_way(step, before.time + half), held(step, step.end());
+  SumsOfStep sums = pass(
+    x.size(),
     [&](const std::size_t i) {
-      x[i] = state.x[i] + half * state.v[i];
-      v[i] = state.v[i] + per_mass(half, mass[i]) * force_[i];
+      x[i] = before.x[i] + half * before.v[i];
+      v[i] = before.v[i] + half * damped_acceleration(force[i], mass[i], before.v[i], loads);
     },
-    many_corners);
-  obey(constraints, state.time + half, dt, x, v);
-  total_force(model_, loads, {state.time + half, x, v}, force_);
-  parallel_for(
-    n,
+    [&](const std::size_t begin, const std::size_t end) { held_half_way.put(begin, end, x, v); },
+    [&](const std::size_t i, SumsOfStep& sum) { sum.before.add(mass[i], before.x[i], before.v[i]); });
+  this->force(loads, {before.time + half, x, v});
+  sums += pass(
+    x.size(),
     [&](const std::size_t i) {
-      x[i] = state.x[i] + dt * v[i];
-      v[i] = state.v[i] + per_mass(dt, mass[i]) * force_[i];
+      const Vec3 a = damped_acceleration(force[i], mass[i], v[i], loads);
+      x[i] = before.x[i] + dt * v[i];
+      v[i] = before.v[i] + dt * a;
     },
-    many_corners);
-  obey(constraints, state.time + dt, dt, x, v);
-  take_over(state, x, v, dt, "midpoint Runge-Kutta");
-  return {.stable_step = limit_.last()};
+    [&](const std::size_t begin, const std::size_t end) { held.put(begin, end, x, v); },
+    [&](const std::size_t i, SumsOfStep& sum) { sum.after.add(mass[i], x[i], v[i]); });
+  return sums;
 }
 
-StepReport VelocityVerlet::step(State& state, const Loads& loads, const double dt) {
-  limit_.require(state, loads, dt);
-  const Constraints constraints(loads, state.x.size());
-  const auto mass = model_.lumped_mass();
-  const double half = 0.5 * dt, alpha = loads.mass_damping;
-  applied_force(model_, loads, {state.time, state.x, state.v}, force_);
-  const std::size_t n = state.x.size();
-  Loan<Vec3> x(n, AnyValues()), v(n, AnyValues()), predicted(n, AnyValues());
-  parallel_for(
-    n,
+SumsOfStep VelocityVerlet::move(const Step& step, Points& x, Points& v) {
+  const auto& [before, loads, constraints, mass, dt] = step;
+  const double half = 0.5 * dt, alpha = loads.mass_damping, damped = 1 / (1 + half * alpha);
+  const Points& force = this->force(loads, {before.time, before.x, before.v});
+  const Held held(step, step.end());
+  Loan<Vec3> predicted(x.size(), AnyValues());
+  SumsOfStep sums = pass(
+    x.size(),
     [&](const std::size_t i) {
-      const Vec3 a = acceleration(force_[i], mass[i], loads) - alpha * state.v[i];
-      v[i] = state.v[i] + half * a;
-      x[i] = state.x[i] + dt * v[i];
+      const Vec3 a = acceleration(force[i], mass[i], loads) - alpha * before.v[i];
+      v[i] = before.v[i] + half * a;
+      x[i] = before.x[i] + dt * v[i];
       predicted[i] = v[i] + half * a;
     },
-    many_corners);
-  obey(constraints, state.time + dt, dt, x, predicted);
-  applied_force(model_, loads, {state.time + dt, x, predicted}, force_);
-  const double damped = 1 / (1 + half * alpha);
-  parallel_for(
-    n, [&](const std::size_t i) { v[i] = damped * (v[i] + half * acceleration(force_[i], mass[i], loads)); },
-    many_corners);
-  obey(constraints, state.time + dt, dt, x, v);
-  take_over(state, x, v, dt, "velocity Verlet");
-  return {.stable_step = limit_.last()};
+    [&](const std::size_t begin, const std::size_t end) { held.put(begin, end, x, predicted); },
+    [&](const std::size_t i, SumsOfStep& sum) { sum.before.add(mass[i], before.x[i], before.v[i]); });
+  this->force(loads, {step.end(), x, predicted});
+  sums += pass(
+    x.size(), [&](const std::size_t i) { v[i] = damped * (v[i] + half * acceleration(force[i], mass[i], loads)); },
+    [&](const std::size_t begin, const std::size_t end) { held.put(begin, end, x, v); },
+    [&](const std::size_t i, SumsOfStep& sum) { sum.after.add(mass[i], x[i], v[i]); });
+  return sums;
 }
 
 } // namespace kerf::dynamics

@@ -14,60 +14,41 @@
 ///
 /// Held components follow their places, with their velocity.
 
-#include "dynamics/stable_step.h"
-#include "dynamics/stepper.h"
+#include "dynamics/explicit_stepper.h"
 
 namespace kerf::dynamics {
 
-class ExplicitEuler : public Stepper {
+class ExplicitEuler : public ExplicitStepper {
  public:
   /// The model must outlive the stepper.
-  ExplicitEuler(ElasticModel& model, const ExplicitOptions& options)
-    : model_(model), limit_(model, scheme(), options) {}
+  ExplicitEuler(ElasticModel& model, const ExplicitOptions& options) : ExplicitStepper(model, scheme(), options) {}
 
-  StepReport step(State& state, const Loads& loads, double dt) override;
-  void archive(Archive& a) override { limit_.archive(a); }
   static ExplicitScheme scheme();
 
  private:
-  ElasticModel& model_;
-  StepLimit limit_;
-  Points force_;
+  SumsOfStep move(const Step& step, Points& x, Points& v) override;
 };
 
-class MidpointRungeKutta : public Stepper {
+class MidpointRungeKutta : public ExplicitStepper {
  public:
   /// The model must outlive the stepper.
-  MidpointRungeKutta(ElasticModel& model, const ExplicitOptions& options)
-    : model_(model), limit_(model, scheme(), options) {}
+  MidpointRungeKutta(ElasticModel& model, const ExplicitOptions& options) : ExplicitStepper(model, scheme(), options) {}
 
-  StepReport step(State& state, const Loads& loads, double dt) override;
-  void archive(Archive& a) override { limit_.archive(a); }
   static ExplicitScheme scheme();
 
  private:
-  ElasticModel& model_;
-  StepLimit limit_;
-  Points force_;
+  SumsOfStep move(const Step& step, Points& x, Points& v) override;
 };
 
-class VelocityVerlet : public Stepper {
+class VelocityVerlet : public ExplicitStepper {
  public:
   /// The model must outlive the stepper.
-  VelocityVerlet(ElasticModel& model, const ExplicitOptions& options)
-    : model_(model), limit_(model, scheme(), options) {}
+  VelocityVerlet(ElasticModel& model, const ExplicitOptions& options) : ExplicitStepper(model, scheme(), options) {}
 
-  StepReport step(State& state, const Loads& loads, double dt) override;
-  void archive(Archive& a) override { limit_.archive(a); }
   static ExplicitScheme scheme();
 
  private:
-  ElasticModel& model_;
-  StepLimit limit_;
-  Points force_;
+  SumsOfStep move(const Step& step, Points& x, Points& v) override;
 };
-
-/// Throws NumericalError when a velocity is no longer finite.
-void require_finite(const Points& v, const char* name);
 
 } // namespace kerf::dynamics

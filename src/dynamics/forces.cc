@@ -112,10 +112,8 @@ MassSums mass_sums(const ForceModel& model, const State& state) {
   const auto mass = model.lumped_mass();
   return sum_in_blocks(
     state.x.size(), MassSums(), [&](const std::size_t begin, const std::size_t end, MassSums& part) {
-      for (std::size_t i = begin; i < end; ++i) {
-        const Vec3 &x = state.x[i], &v = state.v[i], moment = mass[i] * x, momentum = mass[i] * v;
-        part += {{mass[i], momentum}, moment, moment.dot(x), 0.5 * momentum.dot(v)};
-      }
+      for (std::size_t i = begin; i < end; ++i)
+        part.add(mass[i], state.x[i], state.v[i]);
     });
 }
 

@@ -3,6 +3,7 @@
 /// Sums of all that acts on a body.
 
 #include "dynamics/loads.h"
+#include "dynamics/mass_sums.h"
 #include "dynamics/pieces.h"
 #include "dynamics/state.h"
 
@@ -40,33 +41,9 @@ Loan<Vec3> momenta(const ForceModel& model, const Points& v);
 double kinetic_energy(const ForceModel& model, const Points& v);
 /// Of it, what a mass matrix has beside its lumped masses [J].
 double kinetic_energy_of_coupling(const ForceModel& model, const Points& v);
-/// Mass [kg] and momentum by the lumped masses [kg m/s].
-struct MassAndMomentum {
-  double mass = 0;
-  Vec3 momentum = Vec3::Zero();
-
-  MassAndMomentum& operator+=(const MassAndMomentum& more) {
-    mass += more.mass;
-    momentum += more.momentum;
-    return *this;
-  }
-};
+/// By the lumped masses.
 MassAndMomentum mass_and_momentum(const ForceModel& model, const Points& v);
-/// What the lumped masses say of a state, all in one pass. Not finite where a position or a velocity is not.
-struct MassSums {
-  MassAndMomentum all;
-  Vec3 moment = Vec3::Zero(); ///< sum of m x [kg m]
-  double second_moment = 0;   ///< sum of m x.x [kg m^2]
-  double kinetic_energy = 0;  ///< of the lumped masses [J]
-
-  MassSums& operator+=(const MassSums& more) {
-    all += more.all;
-    moment += more.moment;
-    second_moment += more.second_moment;
-    kinetic_energy += more.kinetic_energy;
-    return *this;
-  }
-};
+/// All in one pass.
 MassSums mass_sums(const ForceModel& model, const State& state);
 /// Kinetic energy of the motion beside the mean one of each piece [J].
 double inner_kinetic_energy(const ForceModel& model, const Pieces& pieces, const Points& v);

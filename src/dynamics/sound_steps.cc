@@ -155,8 +155,8 @@ struct EnergyChange {
 
 /// elastic_0: at the start.
 EnergyChange energy_change(const ForceModel& model, const Pieces& pieces, ElasticEnergies& energies, const Loads& loads,
-                           const State& before, const double elastic_0, const State& after, const MassSums& sums_1) {
-  const MassSums sums_0 = mass_sums(model, before);
+                           const State& before, const double elastic_0, const State& after, const SumsOfStep& sums) {
+  const auto& [sums_0, sums_1] = sums;
   const double elastic_1 = energies.at(after.x),
                kinetic_0 = sums_0.kinetic_energy + kinetic_energy_of_coupling(model, before.v),
                kinetic_1 = sums_1.kinetic_energy + kinetic_energy_of_coupling(model, after.v),
@@ -214,7 +214,7 @@ double ElasticEnergies::at(const Points& x) {
   return known_[0].energy;
 }
 
-SoundSteps::LentState SoundSteps::lend(const State& like) {
+SoundSteps::LentState SoundSteps::lend() {
   LentState lent(nullptr, {this});
   if (idle_.empty()) {
     lent.reset(new State);
@@ -222,19 +222,18 @@ SoundSteps::LentState SoundSteps::lend(const State& like) {
     lent.reset(idle_.back().release());
     idle_.pop_back();
   }
-  assign(*lent, like);
   return lent;
 }
 
 void SoundSteps::add_checked(const State& state, const Loads& loads, const double dt, Tried& tried) {
-  LentState lent = lend(state);
+  LentState lent = lend();
   State& after = *lent;
   // Asked for while the step asks for forces here too: the model knows them at one place alone.
   const double elastic = energies_.at(state.x);
-  const StepReport report = stepper_->step(after, loads, dt);
+  const auto [report, found] = stepper_->step_from(state, loads, dt, after);
   keep_carried(loads, state, after);
-  const MassSums sums = mass_sums(model_, after);
-  require_finite(after, sums);
+  const SumsOfStep sums = found ? *found : SumsOfStep{mass_sums(model_, state), mass_sums(model_, after)};
+  require_finite(after, sums.after);
   const EnergyChange change = energy_change(model_, pieces_, energies_, loads, state, elastic, after, sums);
   const double shift = options_.kick * change.kick + change.unseen;
   if (!(change.gained <= options_.most_gain * change.dealt + shift) && change.gained > noise_of_energy(model_, after.x))

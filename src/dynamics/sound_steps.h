@@ -113,7 +113,7 @@ class SoundSteps : public Stepper {
     double gained = 0; ///< in substeps that gained [J]
   };
 
-  LentState lend(const State& like);
+  LentState lend();
   /// From a state, all in `n` substeps.
   Tried divided(const State& state, const Loads& loads, double dt, int n);
   /// One substep more from `state`, which may be that of `tried`.

@@ -159,15 +159,16 @@ double StepLimit::at(const State& state, const Loads& loads) const {
   return stable_step(scheme_.amplification, mode, loads.stiffness_damping, scheme_.allowance);
 }
 
-void StepLimit::require(State& state, const Loads& loads, const double dt) {
+void StepLimit::require(const State& state, const Loads& loads, const double dt,
+                        std::map<std::string, double>& numbers) {
   constexpr double steps_between = 200, part = 0.75;
   if (options_.beyond == BeyondStable::go_on)
     return;
-  double& n_since = ++state.numbers[steps_since_];
+  double& n_since = ++numbers[steps_since_];
   if (dt <= longest_checked_)
     return;
-  if (const auto known = state.numbers.find(known_);
-      known != state.numbers.end() && dt <= part * known->second && n_since < steps_between) {
+  if (const auto known = numbers.find(known_);
+      known != numbers.end() && dt <= part * known->second && n_since < steps_between) {
     last_ = known->second;
     return;
   }
@@ -179,7 +180,7 @@ void StepLimit::require(State& state, const Loads& loads, const double dt) {
                                    .remedy = "Use a smaller time step or an implicit integrator, or set Beyond the "
                                              "stable step = go on"});
   longest_checked_ = dt;
-  state.numbers[known_] = last_;
+  numbers[known_] = last_;
   n_since = 0;
 }
 

@@ -75,8 +75,9 @@ class StepLimit {
       known_("stable step of " + scheme.name + " [s]"),
       steps_since_("steps since the stable step of " + scheme.name + " was found [1]") {}
 
-  /// Throws ParameterError with the stable step if dt is beyond it and beyond is refused.
-  void require(State& state, const Loads& loads, double dt);
+  /// Throws ParameterError with the stable step if dt is beyond it and beyond is refused. `numbers`: State::numbers, of
+  /// this state or of what comes of it.
+  void require(const State& state, const Loads& loads, double dt, std::map<std::string, double>& numbers);
   /// The stable step when it was computed last [s]; 0: never.
   double last() const { return last_; }
   void archive(Archive& a) { a(longest_checked_, last_); }

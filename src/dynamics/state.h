@@ -2,6 +2,7 @@
 
 /// What a body's past amounts to. A stepper may be thrown away and made again from it, after a cut or a restart.
 
+#include "base/parallel.h"
 #include "dynamics/rigid_body.h"
 
 #include <map>
@@ -33,10 +34,8 @@ struct State {
 inline const std::string last_acceleration = "acceleration of the last step", energy_gained = "energy gained [J]",
                          dissipated_energy = "dissipated energy [J]";
 
-/// Makes one state the other, in the memory that it has.
-inline void assign(State& to, const State& from) {
-  to.x = from.x;
-  to.v = from.v;
+/// Makes one state the other but for positions and velocities, in the memory that it has.
+inline void assign_but_motion(State& to, const State& from) {
   to.time = from.time;
   to.crumbs = from.crumbs;
   std::erase_if(to.history, [&](const auto& known) { return from.history.count(known.first) == 0; });
@@ -45,6 +44,13 @@ inline void assign(State& to, const State& from) {
   std::erase_if(to.numbers, [&](const auto& known) { return from.numbers.count(known.first) == 0; });
   for (const auto& [name, value] : from.numbers)
     to.numbers[name] = value;
+}
+
+/// All of it.
+inline void assign(State& to, const State& from) {
+  copy(from.x, to.x);
+  copy(from.v, to.v);
+  assign_but_motion(to, from);
 }
 
 /// The 3 n numbers of n points.

@@ -1,7 +1,10 @@
 #pragma once
 
 #include "dynamics/loads.h"
+#include "dynamics/mass_sums.h"
 #include "dynamics/state.h"
+
+#include <optional>
 
 namespace kerf::dynamics {
 
@@ -31,6 +34,12 @@ struct StepReport {
   }
 };
 
+/// A step from one state to another.
+struct Stepped {
+  StepReport report;
+  std::optional<SumsOfStep> sums = {}; ///< where they were found on the way
+};
+
 /// What a stepper makes of inertia.
 enum class MotionKind { dynamic, quasi_static };
 
@@ -41,6 +50,11 @@ class Stepper {
 
   /// Advances the state by dt [s]. Throws NumericalError when it cannot, and then leaves the state as it was.
   virtual StepReport step(State& state, const Loads& loads, double dt) = 0;
+  /// The same to another state, in the memory that this one has: `before` stays.
+  virtual Stepped step_from(const State& before, const Loads& loads, const double dt, State& after) {
+    assign(after, before);
+    return {step(after, loads, dt)};
+  }
   virtual MotionKind motion() const { return MotionKind::dynamic; }
   /// What it knows beside the state, and would not find again by itself.
   virtual void archive(Archive&) {}

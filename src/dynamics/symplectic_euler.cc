@@ -1,11 +1,7 @@
 #include "dynamics/symplectic_euler.h"
 
 #include "base/loan.h"
-#include "base/parallel.h"
-#include "dynamics/constraints.h"
-#include "dynamics/explicit_steppers.h"
 #include "dynamics/forces.h"
-#include "dynamics/points.h"
 
 namespace kerf::dynamics {
 
@@ -23,29 +19,27 @@ Eigen::Matrix2d of_symplectic_euler(const Mode& mode, const double dt) {
 
 ExplicitScheme SymplecticEuler::scheme() { return {"symplectic Euler", of_symplectic_euler, 1e-10}; }
 
-StepReport SymplecticEuler::step(State& state, const Loads& loads, const double dt) {
-  limit_.require(state, loads, dt);
-  const Constraints constraints(loads, state.x.size());
-  const auto mass = model_.lumped_mass();
-  applied_force(model_, loads, {state.time, state.x, state.v}, force_);
-  const std::size_t n = state.x.size();
+SumsOfStep SymplecticEuler::move(const Step& step, Points& x, Points& v) {
+  const auto& [before, loads, constraints, mass, dt] = step;
+  const Points& force = this->force(loads, {before.time, before.x, before.v});
   const double damped = 1 / (1 + dt * loads.mass_damping);
-  Loan<Vec3> x(n, AnyValues()), v(n, AnyValues());
-  parallel_for(
-    n,
+  const Loan<Vec3> places = constraints.places(step.end());
+  return pass(
+    x.size(),
     [&](const std::size_t i) {
-      v[i] = damped * (state.v[i] + dt * acceleration(force_[i], mass[i], loads));
-      x[i] = state.x[i] + dt * v[i];
+      v[i] = damped * (before.v[i] + dt * acceleration(force[i], mass[i], loads));
+      x[i] = before.x[i] + dt * v[i];
     },
-    many_corners);
-  constraints.place(state.time + dt, x);
-  for (const auto& held : constraints.held())
-    v[held.corner] = (x[held.corner] - state.x[held.corner]) / dt;
-  require_finite(v, "symplectic Euler");
-  state.x.swap(x);
-  state.v.swap(v);
-  state.time += dt;
-  return {.stable_step = limit_.last()};
+    [&](const std::size_t begin, const std::size_t end) {
+      const auto held = constraints.held(begin, end);
+      constraints.impose(places, held, x);
+      for (const auto& one : held)
+        v[one.corner] = (x[one.corner] - before.x[one.corner]) / dt;
+    },
+    [&](const std::size_t i, SumsOfStep& sum) {
+      sum.before.add(mass[i], before.x[i], before.v[i]);
+      sum.after.add(mass[i], x[i], v[i]);
+    });
 }
 
 } // namespace kerf::dynamics

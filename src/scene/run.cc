@@ -89,7 +89,8 @@ void advance(Body& body, World& world, const int step, Watch& watch, Timings& se
     hold(body, world.forceps, step, t0);
     if (body.accounts)
       body.accounts->before_step(body.state);
-    const Loan<Vec3> before(body.state.x);
+    Loan<Vec3> before = Loan<Vec3>::with_room(body.state.x.size());
+    copy(body.state.x, *before);
     body.report = body.physics->step(body.state, body.loads, dt);
     watch.way += require_sound_motion(body, before, dt);
     body.n_divided += body.report.n_rejected > 0 ? 1 : 0;

@@ -328,15 +328,15 @@ TEST(StableStep, IsAskedForAgainAfterACut) {
     for (const int n_before : {0, 50, 199, 200, 1000}) {
       State state = whole.state();
       StepLimit of_whole = limit(whole);
-      of_whole.require(state, {}, part * exact);
+      of_whole.require(state, {}, part * exact, state.numbers);
       EXPECT_NEAR(of_whole.last(), exact, 1e-2 * exact);
       for (int i = 0; i < n_before; ++i)
-        of_whole.require(state, {}, part * exact);
+        of_whole.require(state, {}, part * exact, state.numbers);
       int n = 0;
       try {
         for (; n < 1000; ++n) {
           StepLimit of_cut = limit(cut);
-          of_cut.require(state, {}, part * exact);
+          of_cut.require(state, {}, part * exact, state.numbers);
           EXPECT_EQ(of_cut.last(), of_whole.last());
         }
       } catch (const ParameterError&) {
@@ -344,10 +344,10 @@ TEST(StableStep, IsAskedForAgainAfterACut) {
       EXPECT_EQ(n, part < 0.75 ? std::max(0, 199 - n_before) : 0) << n_before;
     }
   State state = whole.state(), without_past = whole.state();
-  limit(whole).require(state, {}, 0.5 * exact);
-  EXPECT_NO_THROW(limit(cut).require(state, {}, 0.7 * exact));
-  EXPECT_THROW(limit(cut).require(state, {}, 0.8 * exact), ParameterError);
-  EXPECT_THROW(limit(cut).require(without_past, {}, 0.7 * exact), ParameterError);
+  limit(whole).require(state, {}, 0.5 * exact, state.numbers);
+  EXPECT_NO_THROW(limit(cut).require(state, {}, 0.7 * exact, state.numbers));
+  EXPECT_THROW(limit(cut).require(state, {}, 0.8 * exact, state.numbers), ParameterError);
+  EXPECT_THROW(limit(cut).require(without_past, {}, 0.7 * exact, without_past.numbers), ParameterError);
 }
 
 } // namespace
