@@ -42,9 +42,9 @@ class ExplicitStepper : public Stepper {
   /// What acts beside gravity and mass damping [N]; good until it is asked again.
   const Points& force(const Loads& loads, const Moment& moment);
 
-  /// Calls move(i) for each corner, hold(begin, end) for some that were just moved, and add(i, sum) for each of these.
-  template <class Move, class Hold, class Add>
-  static SumsOfStep pass(std::size_t n, const Move& move, const Hold& hold, const Add& add);
+  /// Calls move(i) for each corner, and finish(begin, end, sum) for a few that were just moved.
+  template <class Move, class Finish>
+  static SumsOfStep pass(std::size_t n, const Move& move, const Finish& finish);
   /// What is held, where supports want it at a time, with their velocity.
   class Held {
    public:
@@ -65,17 +65,15 @@ class ExplicitStepper : public Stepper {
   State next_; // of step(): its memory
 };
 
-template <class Move, class Hold, class Add>
-SumsOfStep ExplicitStepper::pass(const std::size_t n, const Move& move, const Hold& hold, const Add& add) {
+template <class Move, class Finish>
+SumsOfStep ExplicitStepper::pass(const std::size_t n, const Move& move, const Finish& finish) {
   constexpr std::size_t few = 256; // corners that stay in the nearest cache
   return sum_in_blocks(n, SumsOfStep(), [&](const std::size_t begin, const std::size_t end, SumsOfStep& sum) {
     for (std::size_t first = begin; first < end; first += few) {
       const std::size_t last = std::min(first + few, end);
       for (std::size_t i = first; i < last; ++i)
         move(i);
-      hold(first, last);
-      for (std::size_t i = first; i < last; ++i)
-        add(i, sum);
+      finish(first, last, sum);
     }
   });
 }

@@ -54,10 +54,10 @@ SumsOfStep ExplicitEuler::move(const Step& step, Points& x, Points& v) {
       x[i] = before.x[i] + dt * before.v[i];
       v[i] = before.v[i] + dt * damped_acceleration(force[i], mass[i], before.v[i], loads);
     },
-    [&](const std::size_t begin, const std::size_t end) { held.put(begin, end, x, v); },
-    [&](const std::size_t i, SumsOfStep& sum) {
-      sum.before.add(mass[i], before.x[i], before.v[i]);
-      sum.after.add(mass[i], x[i], v[i]);
+    [&](const std::size_t begin, const std::size_t end, SumsOfStep& sum) {
+      held.put(begin, end, x, v);
+      sum.before += mass_sums(mass, before.x, before.v, begin, end);
+      sum.after += mass_sums(mass, x, v, begin, end);
     });
 }
 
@@ -72,8 +72,10 @@ SumsOfStep MidpointRungeKutta::move(const Step& step, Points& x, Points& v) {
       x[i] = before.x[i] + half * before.v[i];
       v[i] = before.v[i] + half * damped_acceleration(force[i], mass[i], before.v[i], loads);
     },
-    [&](const std::size_t begin, const std::size_t end) { held_half_way.put(begin, end, x, v); },
-    [&](const std::size_t i, SumsOfStep& sum) { sum.before.add(mass[i], before.x[i], before.v[i]); });
+    [&](const std::size_t begin, const std::size_t end, SumsOfStep& sum) {
+      held_half_way.put(begin, end, x, v);
+      sum.before += mass_sums(mass, before.x, before.v, begin, end);
+    });
   this->force(loads, {before.time + half, x, v});
   sums += pass(
     x.size(),
@@ -82,8 +84,10 @@ SumsOfStep MidpointRungeKutta::move(const Step& step, Points& x, Points& v) {
       x[i] = before.x[i] + dt * v[i];
       v[i] = before.v[i] + dt * a;
     },
-    [&](const std::size_t begin, const std::size_t end) { held.put(begin, end, x, v); },
-    [&](const std::size_t i, SumsOfStep& sum) { sum.after.add(mass[i], x[i], v[i]); });
+    [&](const std::size_t begin, const std::size_t end, SumsOfStep& sum) {
+      held.put(begin, end, x, v);
+      sum.after += mass_sums(mass, x, v, begin, end);
+    });
   return sums;
 }
 
@@ -101,13 +105,17 @@ SumsOfStep VelocityVerlet::move(const Step& step, Points& x, Points& v) {
       x[i] = before.x[i] + dt * v[i];
       predicted[i] = v[i] + half * a;
     },
-    [&](const std::size_t begin, const std::size_t end) { held.put(begin, end, x, predicted); },
-    [&](const std::size_t i, SumsOfStep& sum) { sum.before.add(mass[i], before.x[i], before.v[i]); });
+    [&](const std::size_t begin, const std::size_t end, SumsOfStep& sum) {
+      held.put(begin, end, x, predicted);
+      sum.before += mass_sums(mass, before.x, before.v, begin, end);
+    });
   this->force(loads, {step.end(), x, predicted});
   sums += pass(
     x.size(), [&](const std::size_t i) { v[i] = damped * (v[i] + half * acceleration(force[i], mass[i], loads)); },
-    [&](const std::size_t begin, const std::size_t end) { held.put(begin, end, x, v); },
-    [&](const std::size_t i, SumsOfStep& sum) { sum.after.add(mass[i], x[i], v[i]); });
+    [&](const std::size_t begin, const std::size_t end, SumsOfStep& sum) {
+      held.put(begin, end, x, v);
+      sum.after += mass_sums(mass, x, v, begin, end);
+    });
   return sums;
 }
 

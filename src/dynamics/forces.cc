@@ -112,8 +112,7 @@ MassSums mass_sums(const ForceModel& model, const State& state) {
   const auto mass = model.lumped_mass();
   return sum_in_blocks(
     state.x.size(), MassSums(), [&](const std::size_t begin, const std::size_t end, MassSums& part) {
-      for (std::size_t i = begin; i < end; ++i)
-        part.add(mass[i], state.x[i], state.v[i]);
+      part += mass_sums(mass, state.x, state.v, begin, end);
     });
 }
 

@@ -4,6 +4,9 @@
 
 #include "base/vec.h"
 
+#include <cstddef>
+#include <span>
+
 namespace kerf::dynamics {
 
 /// Mass [kg] and momentum [kg m/s].
@@ -25,10 +28,6 @@ struct MassSums {
   double second_moment = 0;   ///< sum of m x.x [kg m^2]
   double kinetic_energy = 0;  ///< [J]
 
-  void add(const double mass, const Vec3& x, const Vec3& v) {
-    const Vec3 more = mass * x, momentum = mass * v;
-    *this += {{mass, momentum}, more, more.dot(x), 0.5 * momentum.dot(v)};
-  }
   MassSums& operator+=(const MassSums& more) {
     all += more.all;
     moment += more.moment;
@@ -37,6 +36,17 @@ struct MassSums {
     return *this;
   }
 };
+
+/// Of the corners from one to another, by the mass of each [kg].
+inline MassSums mass_sums(const std::span<const double> mass, const Points& x, const Points& v, const std::size_t begin,
+                          const std::size_t end) {
+  MassSums sum; // of its own: no other memory can be it
+  for (std::size_t i = begin; i < end; ++i) {
+    const Vec3 moment = mass[i] * x[i], momentum = mass[i] * v[i];
+    sum += {{mass[i], momentum}, moment, moment.dot(x[i]), 0.5 * momentum.dot(v[i])};
+  }
+  return sum;
+}
 
 /// Of both ends of a step.
 struct SumsOfStep {

@@ -30,15 +30,13 @@ SumsOfStep SymplecticEuler::move(const Step& step, Points& x, Points& v) {
       v[i] = damped * (before.v[i] + dt * acceleration(force[i], mass[i], loads));
       x[i] = before.x[i] + dt * v[i];
     },
-    [&](const std::size_t begin, const std::size_t end) {
+    [&](const std::size_t begin, const std::size_t end, SumsOfStep& sum) {
       const auto held = constraints.held(begin, end);
       constraints.impose(places, held, x);
       for (const auto& one : held)
         v[one.corner] = (x[one.corner] - before.x[one.corner]) / dt;
-    },
-    [&](const std::size_t i, SumsOfStep& sum) {
-      sum.before.add(mass[i], before.x[i], before.v[i]);
-      sum.after.add(mass[i], x[i], v[i]);
+      sum.before += mass_sums(mass, before.x, before.v, begin, end);
+      sum.after += mass_sums(mass, x, v, begin, end);
     });
 }
 

@@ -44,7 +44,7 @@ class KnownForces {
     const std::lock_guard lock(mutex_);
     if (where_ != at)
       return false;
-    copy(of_elements_.forces, forces);
+    forces = of_elements_.forces;
     return true;
   }
   std::optional<double> energy(const std::uint64_t at) const {
@@ -56,7 +56,7 @@ class KnownForces {
            const std::optional<double>& energy) {
     const std::lock_guard lock(mutex_);
     where_ = at;
-    copy(forces, of_elements_.forces);
+    of_elements_.forces = forces;
     of_elements_.energies.swap(energies);
     energy_ = energy;
   }

@@ -206,9 +206,10 @@ TEST(Batches, ThatShareACornerKeepTheirOrder) {
     kinds.push_back(random() % 10 == 0 ? Kind::unused : random() % 3 == 0 ? Kind::partial : Kind::full);
   }
   for (std::uint32_t end = 0; end < order.size();)
-    chunk_ends.push_back(end = std::min<std::uint32_t>(end + 1 + random() % 300, n * n * n));
+    chunk_ends.push_back(end = std::min<std::uint32_t>(end + 1 + random() % 60, n * n * n));
   const OrderOfChunks of_cells = order_of_chunks(chunk_ends, corners, m * m * m);
   EXPECT_GT(of_cells.shared.width(), 2);
+  EXPECT_LT(2 * of_cells.runs.size(), chunk_ends.size());
   Batching batching(of_cells);
   batching.update({order, chunk_ends, kinds, corners.data(), m * m * m}, {}, {});
   const auto coarse = [](const std::uint32_t c) { return c % n / 2 + n * (c / n % n / 2 + n * (c / (n * n) / 2)); };
