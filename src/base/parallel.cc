@@ -91,7 +91,12 @@ void parallel_in_order(const Precedence& items, const FunctionRef<void(std::size
         const SetInTheEnd done{Flag(is_done[i])};
         for (const std::uint32_t before : items.before(i))
           wait_for(Flag(is_done[before]));
-        f(i);
+        try {
+          f(i);
+        } catch (...) {
+          next = n; // nothing more is begun
+          throw;
+        }
       }
     },
     tbb::simple_partitioner());

@@ -48,7 +48,7 @@ bool invert_factor(const Mat3& block, Eigen::Matrix<T, 3, 3>& inverse) {
           f = T(block(2, 2));
   const T r0 = 1 / a, l10 = r0 * b, l20 = r0 * c, d1 = d - l10 * b, r1 = 1 / d1, below = e - l20 * b, // L D L^T
     l21 = r1 * below, d2 = f - l20 * c - l21 * below;                                                 // r = 1 / D
-  if (!(a > 0 && d1 > narrow * d && d2 > narrow * f))
+  if (!(a > 0 && r0 > 0 && d1 > narrow * d && d2 > narrow * f)) // r0 is 0 where T has no number as large as a
     return false;
   const T s0 = std::sqrt(r0), s1 = std::sqrt(r1), s2 = 1 / std::sqrt(d2);
   inverse << s0, 0, 0, -s1 * l10, s1, 0, s2 * (l21 * l10 - l20), -s2 * l21, s2;

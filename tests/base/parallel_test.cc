@@ -1,4 +1,4 @@
-#include "base/parallel.h"
+#include "tests/support/threads.h"
 
 #include <gtest/gtest.h>
 
@@ -22,20 +22,14 @@ Precedence random_precedence(const std::uint32_t n, const std::uint32_t far, con
   return all;
 }
 
-class ParallelInOrder : public testing::Test {
- protected:
-  void SetUp() override { set_n_threads(4); }
-  void TearDown() override { set_n_threads(n_processors()); }
-};
-
-TEST_F(ParallelInOrder, BeginsWithAnItemWhenThoseBeforeItAreDone) {
+TEST(ParallelInOrder, BeginsWithAnItemWhenThoseBeforeItAreDone) {
   std::mt19937 random(1);
   std::size_t n_at_once = 0;
   for (int turn = 0; turn < 50; ++turn) {
     const Precedence items = random_precedence(1 + random() % 300, 1 + random() % 60, random() % 4, random);
     std::vector<std::atomic<int>> done(items.n());
     std::atomic<std::size_t> n_early = 0, n_busy = 0, most_busy = 0;
-    parallel_in_order(items, [&](const std::size_t i) {
+    const auto work = [&](const std::size_t i) {
       const std::size_t busy = ++n_busy;
       if (busy > most_busy)
         most_busy = busy;
@@ -46,7 +40,8 @@ TEST_F(ParallelInOrder, BeginsWithAnItemWhenThoseBeforeItAreDone) {
         sum += 1.0 / (1 + k);
       done[i] += sum > 1 ? 1 : 2;
       --n_busy;
-    });
+    };
+    with_threads(4, [&] { parallel_in_order(items, work); });
     EXPECT_EQ(n_early, 0u);
     for (const auto& times : done)
       EXPECT_EQ(times, 1);
@@ -57,16 +52,19 @@ TEST_F(ParallelInOrder, BeginsWithAnItemWhenThoseBeforeItAreDone) {
   }
 }
 
-TEST_F(ParallelInOrder, HandsOnAnErrorAndHangsNobody) {
+/// Nor begins with anything more than what other threads had taken.
+TEST(ParallelInOrder, HandsOnAnErrorAndHangsNobody) {
   std::mt19937 random(2);
   for (int turn = 0; turn < 20; ++turn) {
-    const Precedence items = random_precedence(200, 30, 2, random);
-    EXPECT_THROW(parallel_in_order(items,
-                                   [&](const std::size_t i) {
-                                     if (i == 40)
-                                       throw std::runtime_error("no");
-                                   }),
-                 std::runtime_error);
+    const Precedence items = random_precedence(20000, 30, 2, random);
+    std::atomic<std::size_t> n_begun = 0;
+    const auto work = [&](const std::size_t i) {
+      ++n_begun;
+      if (i == 40)
+        throw std::runtime_error("no");
+    };
+    with_threads(4, [&] { EXPECT_THROW(parallel_in_order(items, work), std::runtime_error); });
+    EXPECT_LT(n_begun, items.n());
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "dynamics/constraints.h"
+#include "dynamics/preconditioner.h"
 #include "tests/dynamics/chain.h"
 #include "tests/dynamics/integrators.h"
 
@@ -65,6 +66,30 @@ TEST(Constraints, CombineWhatSupportsHold) {
   EXPECT_NEAR(Vec3(0, -4, 3).dot(x[1] - Vec3(0.7, 0.8, 0.9)), 0, 1e-14);
   EXPECT_LT((x[2] - model.rest()[2]).norm(), 1e-14);
   EXPECT_NEAR((x[3] - model.rest()[3]).sum(), 0, 1e-14);
+}
+
+/// Of blocks that single precision can tell, of those that are too narrow for it, and of numbers that it does not have.
+TEST(Constraints, InverseFactorsInSinglePrecisionAreThoseInDouble) {
+  const Constraints free_everywhere(Loads{}, 1);
+  const Mat3 turned = Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()).toRotationMatrix();
+  for (const Vec3& eigenvalues :
+       {Vec3(1, 2, 3), Vec3(1e9, 2e9, 3e8), Vec3(1, 1e-2, 1e-4), Vec3(1, 1, 1e-7), Vec3(1, 1e-9, 1e-12)}) {
+    const Mat3 block = turned * eigenvalues.asDiagonal() * turned.transpose();
+    const Mat3 S = inverse_factor(block, free_everywhere.freedom(0));
+    const Mat3 in_single = inverse_factor_in_single(block, free_everywhere.freedom(0)).cast<double>();
+    EXPECT_LT((in_single - S).norm(), 2e-4 * S.norm()) << eigenvalues.transpose();
+    EXPECT_LT((S * block * S.transpose() - Mat3::Identity()).norm(), 1e-4) << eigenvalues.transpose();
+  }
+  for (const double large : {1e39, 1e200})
+    for (int k = 0; k < 3; ++k) {
+      Mat3 block = Mat3::Identity();
+      block(k, k) = large;
+      const Mat3 in_single = inverse_factor_in_single(block, free_everywhere.freedom(0)).cast<double>();
+      EXPECT_NEAR(in_single(k, k), 1 / std::sqrt(large), 1e-6 / std::sqrt(large) + 1e-40) << large << ", " << k;
+      EXPECT_NEAR(in_single((k + 1) % 3, (k + 1) % 3), 1, 1e-6);
+    }
+  const Mat3 semidefinite = Vec3(1, 1, 0).asDiagonal();
+  EXPECT_TRUE(inverse_factor_in_single(semidefinite, free_everywhere.freedom(0)).allFinite());
 }
 
 TEST(Constraints, WordsAreAxes) {

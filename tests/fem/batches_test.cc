@@ -1,6 +1,6 @@
 #include "fem/batches.h"
 
-#include "base/parallel.h"
+#include "tests/support/threads.h"
 
 #include <gtest/gtest.h>
 
@@ -218,9 +218,8 @@ TEST(Batches, ThatShareACornerKeepTheirOrder) {
   std::vector<std::atomic<std::uint32_t>> users(m * m * m), users_of_coarse(n * n * n);
   std::atomic<int> n_met = 0;
   const auto sequences = [&](const int n_threads) {
-    set_n_threads(n_threads);
     Sequences all(m * m * m);
-    batching.for_each_in_order([&](const std::size_t i) {
+    const auto note = [&](const std::size_t i) {
       const BatchOfCopies& batch = batching.batches()[i];
       const auto me = static_cast<std::uint32_t>(i + 1);
       const auto enter = [&](std::atomic<std::uint32_t>& user) {
@@ -240,8 +239,8 @@ TEST(Batches, ThatShareACornerKeepTheirOrder) {
         for (const auto& of_lanes : batch.corners)
           users[of_lanes[lane]] = 0;
       }
-    });
-    set_n_threads(1);
+    };
+    with_threads(n_threads, [&] { batching.for_each_in_order(note); });
     return all;
   };
   const Sequences by_one = sequences(1);

@@ -73,6 +73,7 @@ Body make_slit_block(Draw& draw) {
 struct Outcome {
   double error = 1e300; ///< shape_error(); as it is if a step cannot be done
   int winding = 0;      ///< winding()
+  int n_divided = 0;    ///< steps
 };
 
 /// How often the ring of nodes about the middle one turns around an axis; the largest of the three. 1 at rest.
@@ -102,18 +103,19 @@ int winding(const Body& body, const Points& x) {
 }
 
 /// A step that conjugate gradients do not end is divided, as runs do (dynamics/sound_steps.h): it takes one in some
-/// hundred blocks that are thrown together.
-void step_or_divide(dynamics::ImplicitEuler& stepper, dynamics::State& state, const dynamics::Loads& loads,
+/// hundred blocks that are thrown together. Returns how often.
+int step_or_divide(dynamics::ImplicitEuler& stepper, dynamics::State& state, const dynamics::Loads& loads,
                     const double dt) {
   const dynamics::State before = state;
   try {
     stepper.step(state, loads, dt);
+    return 0;
   } catch (const NumericalError&) {
     if (dt < 1.0 / 60 / 4)
       throw;
     state = before;
-    step_or_divide(stepper, state, loads, dt / 2);
-    step_or_divide(stepper, state, loads, dt / 2);
+    const int of_first_half = step_or_divide(stepper, state, loads, dt / 2);
+    return 1 + of_first_half + step_or_divide(stepper, state, loads, dt / 2);
   }
 }
 
@@ -130,13 +132,14 @@ Outcome outcome(const int n_steps, const Mistreatment mistreatment, const Hexahe
   if (mistreatment == Mistreatment::point && !is_corotational)
     for (Vec3& x : state.x) // at a point exactly it has no stress, by symmetry
       x += 0.05 * h * draw.vector();
+  int n_divided = 0;
   try {
     for (int i = 0; i < n_steps && !(i % 10 == 9 && shape_error(body, state.x) < good); ++i)
-      step_or_divide(stepper, state, {.mass_damping = 1, .supports = {}}, 1.0 / 60);
+      n_divided += step_or_divide(stepper, state, {.mass_damping = 1, .supports = {}}, 1.0 / 60);
   } catch (const NumericalError&) {
     return {};
   }
-  return {shape_error(body, state.x), winding(body, state.x)};
+  return {shape_error(body, state.x), winding(body, state.x), n_divided};
 }
 
 HexahedraOptions block_options(const std::string& law, const double E, const Strain strain) {
@@ -150,23 +153,34 @@ int enough_steps(const double E) { return E < 1e4 ? 1500 : 300; }
 
 class Robustness : public testing::TestWithParam<const char*> {
  protected:
+  void TearDown() override {
+    RecordProperty("steps_divided", n_divided_);
+    EXPECT_LE(n_divided_, 3);
+  }
+  double error_of(const Outcome& end) {
+    n_divided_ += end.n_divided;
+    return end.error;
+  }
   void expect_return(const std::span<const double> moduli, const Mistreatment mistreatment, const Strain strain,
-                     const unsigned seed) const {
+                     const unsigned seed) {
     for (const double E : moduli) {
       const auto options = block_options(GetParam(), E, strain);
-      EXPECT_LT(outcome(enough_steps(E), mistreatment, options, make_plain_block, seed).error, 1e-2)
+      EXPECT_LT(error_of(outcome(enough_steps(E), mistreatment, options, make_plain_block, seed)), 1e-2)
         << "E " << E << ", " << static_cast<int>(mistreatment) << ", " << name_of(options) << ", seed " << seed;
     }
   }
   /// Expects rest, or a block wound twice; counts and returns whether it is at rest.
   int came_back(const int n_steps, const double E, const Mistreatment mistreatment, Body (*const make)(Draw&),
-                const unsigned seed) const {
+                const unsigned seed) {
     const Outcome end = outcome(n_steps, mistreatment, block_options(GetParam(), E, Strain::enhanced), make, seed);
-    const bool is_at_rest = end.error < 1e-2, is_wound_twice = end.winding == 2 && end.error > 2.5 && end.error < 3;
+    const bool is_at_rest = error_of(end) < 1e-2, is_wound_twice = end.winding == 2 && end.error > 2.5 && end.error < 3;
     EXPECT_TRUE(is_at_rest || is_wound_twice) << "E " << E << ", " << static_cast<int>(mistreatment) << ", seed "
                                               << seed << ", error " << end.error << ", winding " << end.winding;
     return is_at_rest ? 1 : 0;
   }
+
+ private:
+  int n_divided_ = 0; // in one test
 };
 
 TEST_P(Robustness, ComesBackFromAPointAPlaneInsideOutAndScrambled) {
@@ -184,7 +198,7 @@ TEST_P(Robustness, ComesBackWithALineSearch) {
   for (const double E : quick_moduli)
     for (unsigned seed = 81; seed < 84; ++seed) {
       const auto options = block_options(GetParam(), E, Strain::enhanced);
-      EXPECT_LT(outcome(300, Mistreatment::scrambled, options, make_plain_block, seed, careful).error, 1e-2)
+      EXPECT_LT(error_of(outcome(300, Mistreatment::scrambled, options, make_plain_block, seed, careful)), 1e-2)
         << "E " << E << ", seed " << seed;
     }
 }
