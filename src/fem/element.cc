@@ -81,7 +81,9 @@ Element make_element(const Moments& moments, const double h, const material::Ela
   const Moments positive = without_negative_squares(moments);
   fill_mass(element, positive, material.density * h * h * h);
 
-  const Centred as_it_lies = centred(moments);
+  // Affine motions meet exact forces where the mean gradient is that of the material as it is. Where that is none, an
+  // element would be stiff without bound, for hardly any mass.
+  const Centred as_it_lies = centred(are_in_cube(moments) ? moments : positive);
   element.centroid = as_it_lies.centroid;
   const std::array<Vec3, 8> gradients = mean_gradients(as_it_lies); // of a unit cube
   for (int k = 0; k < 4; ++k) {
@@ -90,7 +92,6 @@ Element make_element(const Moments& moments, const double h, const material::Ela
       element.mode_gradient[k] += sign(hourglass_modes[k], a) / (8 * h) * gradients[a];
   }
   element.slope = 1 / (4 * h);
-  // The mean gradient is that of the material as it is: so affine motions meet exact forces.
   const MatrixOfModes K = h * hourglass_stiffness(centred(positive), material, options.strain);
   for (int p = 0; p < n_hourglass; ++p)
     for (int q = 0; q <= p; ++q)

@@ -8,6 +8,7 @@
 
 #include <deal.II/base/quadrature_lib.h>
 
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -132,6 +133,11 @@ Moments without_negative_squares(const Moments& m) {
   for (int n = 0; n < 27; ++n)
     result[n] = (1 - part) * m[n] + part * spread[n];
   return result;
+}
+
+bool are_in_cube(const Moments& m) {
+  const double beyond = 0.25 * m[0];
+  return std::ranges::all_of(m, [&](const double moment) { return moment >= -beyond && moment <= m[0] + beyond; });
 }
 
 Moments material_moments(const grid::Solid& solid, const grid::Copy& copy) {
