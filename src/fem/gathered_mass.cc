@@ -94,7 +94,7 @@ void give_to_pieces(const Left& left, const std::vector<std::uint32_t>& piece, c
 } // namespace
 
 GatheredMass gathered_mass(const grid::Solid& solid, const std::span<const double> mass, const double mass_of_cube) {
-  constexpr double light = 1.0 / 32; // of a cube: below it the penalty fades with mass
+  constexpr double light = 1.0 / 128; // of a cube (header)
   std::vector<std::uint8_t> is_heavy(mass.size());
   std::ranges::transform(mass, is_heavy.begin(), [&](const double m) { return m >= light * mass_of_cube ? 1 : 0; });
   const auto carrier = grid::nearest_carriers(solid.complex, is_heavy);

@@ -19,6 +19,12 @@
 /// half of it but by its part of what comes in: where it has many light corners on one side, the moment that is left is
 /// given to all heavy corners of the piece in the same way.
 ///
+/// `light` is 1/128, a quarter of where the penalty begins to fade. By experiment: a ball of 10 kPa, five cubes a radius,
+/// that nobody cuts and that vibrates for a second (Newmark) draws a cube out 30 times with 0, 4.9 times with 1/128, 5.4
+/// with 1/32; 50 random bodies under strokes are drawn out as far with 1/128 as with 1/32, within 1 % in the mean. But
+/// 1/32 takes the edges of a box of which half a cube is beyond the last node (1/64), and puts the first tone of a bar of
+/// eight cubes .56 % off, as much as lumping does; with 1/128 the tone is that of the mass matrix.
+///
 /// Limits: corners of pieces without a carrier keep their mass.
 
 #include "dynamics/model.h"

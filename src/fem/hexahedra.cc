@@ -6,7 +6,6 @@
 #include "dynamics/state.h"
 #include "fem/dilatation.h"
 #include "fem/two_rows.h"
-#include "grid/carriers.h"
 
 #include <algorithm>
 #include <map>
@@ -87,8 +86,7 @@ void Hexahedra::follow(const grid::Solid& solid, const std::span<const grid::Cop
   ghost_penalty_.update( // to which a crumb's copies are as good as full
     solid, changed, [this](const std::size_t copy) { return incidence_.is_used(copy) ? fill(copy) : 1; }, mass_);
   if (inertia_ == Inertia::gathered)
-    gathered_ = grid::is_cut(solid.cuts) ? gathered_mass(solid, mass_, material_.density * h_ * h_ * h_)
-                                         : GatheredMass{ghost_penalty_.extended_mass(), {}};
+    gathered_ = gathered_mass(solid, mass_, material_.density * h_ * h_ * h_);
   if (inertia_ == Inertia::extended)
     share_mass(solid);
   ties_ = ties(solid);

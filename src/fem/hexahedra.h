@@ -47,7 +47,7 @@ enum class Inertia {
   lumped,   ///< density times the integral of its shape function
   extended, ///< of that, a part goes to corners that only near-empty copies know (ghost_penalty.h), or only ties hold
             ///< (grid/fronts.h): what explicit integrators need
-  gathered  ///< extended; once cut, light corners have none (gathered_mass.h): for integrators that take no energy
+  gathered  ///< light corners have none (gathered_mass.h): for integrators that take no energy
 };
 
 /// The mass matrix that integrators get.

@@ -34,10 +34,6 @@ std::vector<std::uint32_t> carriers_of_copies(const CellComplex& complex,
 
 } // namespace
 
-bool is_cut(const Cuts& cuts) {
-  return !cuts.skin_cuts().empty() || (!cuts.all().empty() && cuts.all().back().label != skin_label);
-}
-
 std::vector<std::uint32_t> nearest_carriers(const CellComplex& complex, const std::span<const std::uint8_t> is_heavy,
                                             const int enough) {
   const auto carrier_of_copy = carriers_of_copies(complex, is_heavy, enough);

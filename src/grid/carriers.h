@@ -3,7 +3,6 @@
 /// Which copies carry the corners that hardly any material holds.
 
 #include "grid/complex.h"
-#include "grid/cuts.h"
 
 #include <cstdint>
 #include <span>
@@ -12,9 +11,6 @@
 namespace kerf::grid {
 
 constexpr std::uint32_t no_carrier = CopyId::no_value;
-
-/// Whether more has cut a body than its skin: without a cut nothing sets light corners ringing.
-bool is_cut(const Cuts& cuts);
 
 /// For each corner the copy that carries it: one that knows it, or else the nearest one of its piece (fewest steps
 /// between copies with a corner in common), of which at least `enough` corners are heavy; `no_carrier` where the piece

@@ -1,7 +1,6 @@
 #include "physics/on_corners.h"
 
 #include "dynamics/rigid_body.h"
-#include "grid/carriers.h"
 
 #include <Eigen/Geometry>
 
@@ -34,7 +33,7 @@ double part_within(const double a, const double b, const double c) {
 
 lattice::Riders riders_of(const fem::Hexahedra& model, const CutBody& body) {
   constexpr double light = 1.0 / 32; // of a cube: what holds corners of less fades with their mass (ghost_penalty.h)
-  if (model.inertia() != fem::Inertia::extended || !grid::is_cut(body.solid.cuts))
+  if (model.inertia() != fem::Inertia::extended)
     return {};
   const double h = body.solid.grid.h();
   return {body.solid.complex, material_mass(model), body.density * h * h * h, light, grid::rest_positions(body.solid),
@@ -42,8 +41,6 @@ lattice::Riders riders_of(const fem::Hexahedra& model, const CutBody& body) {
 }
 
 Bearers bearers_of(const fem::Hexahedra& model, const CutBody& body, std::span<const double>) {
-  if (!grid::is_cut(body.solid.cuts))
-    return {};
   const double eight = 8 * std::pow(model.h(), 3);
   std::vector<double> material(model.incidence().n_corners(), 0.0);
   for (std::size_t i = 0; i < material.size(); ++i)

@@ -49,7 +49,7 @@ TEST(GatheredMass, KeepsMassAndItsCentreAndLeavesNoneAtLightCorners) {
     std::vector<std::uint8_t> follows(mass.size());
     for (const dynamics::Follower& follower : followers) {
       follows[follower.corner] = 1;
-      EXPECT_LT(mass[follower.corner], mass_of_cube(material) / 32);
+      EXPECT_LT(mass[follower.corner], mass_of_cube(material) / 128);
       EXPECT_EQ(gathered[follower.corner], 0);
     }
     for (std::size_t i = 0; i < mass.size(); ++i)
@@ -173,7 +173,7 @@ TEST(GatheredMass, AFollowerDoesNotSwing) {
     state.x[corner] += Vec3(0.5 * h, 0, 0);
     for (int i = 0; i < 5; ++i) {
       stepper.step(state, {}, 0.02);
-      EXPECT_LT((state.x[corner] - rest[corner]).norm(), 0.02 * h) << rho << ' ' << i;
+      EXPECT_LT((state.x[corner] - rest[corner]).norm(), 0.04 * h) << rho << ' ' << i;
     }
   }
 }
