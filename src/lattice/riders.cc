@@ -3,6 +3,7 @@
 #include "grid/carriers.h"
 #include "material/polar.h"
 
+#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
@@ -18,9 +19,10 @@ using grid::CopyId;
 
 /// A rigid body of some corners.
 struct Rigid {
-  double mass = 0, mobility = 0; ///< [kg], |I^-1|: 0 of corners in a line [1/(kg m^2)]
+  double mass = 0;         ///< [kg]
+  bool is_in_line = true;  ///< its corners have no spin about their line, or none at all
   Vec3 centre = Vec3::Zero(), velocity = Vec3::Zero(), spin = Vec3::Zero();
-  Mat3 inverse_inertia = Mat3::Zero();
+  Mat3 inertia = Mat3::Zero(), inverse_inertia = Mat3::Zero();
 
   Vec3 velocity_at(const Vec3& p) const { return velocity + spin.cross(p - centre); }
 };
@@ -35,18 +37,17 @@ Rigid rigid_motion(const std::span<const std::uint32_t> corners, const Points& x
   }
   body.centre /= body.mass;
   body.velocity /= body.mass;
-  Mat3 inertia = Mat3::Zero();
   Vec3 angular = Vec3::Zero();
   for (const auto c : corners) {
     const Vec3 r = x[c] - body.centre;
-    inertia += mass[c] * (r.squaredNorm() * Mat3::Identity() - r * r.transpose());
+    body.inertia += mass[c] * (r.squaredNorm() * Mat3::Identity() - r * r.transpose());
     angular += mass[c] * r.cross(v[c]);
   }
   constexpr double well_conditioned = 1e-6;
-  const double size = inertia.trace();
-  if (inertia.determinant() > well_conditioned * size * size * size) {
-    body.inverse_inertia = inertia.inverse();
-    body.mobility = body.inverse_inertia.norm();
+  const double size = body.inertia.trace();
+  if (body.inertia.determinant() > well_conditioned * size * size * size) {
+    body.is_in_line = false;
+    body.inverse_inertia = body.inertia.inverse();
     body.spin = body.inverse_inertia * angular;
   }
   return body;
@@ -87,7 +88,7 @@ Riders::Riders(const grid::CellComplex& complex, const std::span<const double> m
 
 void Riders::ride(const grid::CellComplex& complex, const std::span<const double> mass, const double mass_of_cube,
                   const double light, const int n_heavy) {
-  const double heavy = light / 8;
+  constexpr double heavy = 1.0 / 32;
   std::vector<std::uint8_t> is_heavy(mass.size());
   std::ranges::transform(mass, is_heavy.begin(), [&](const double m) { return m >= heavy * mass_of_cube ? 1 : 0; });
   const auto carrier = grid::nearest_carriers(complex, is_heavy, n_heavy);
@@ -139,7 +140,7 @@ void Riders::settle(const Points& goals, const std::span<const double> mass, Poi
 void Riders::settle(const Carrier& carrier, const Points& goals, const std::span<const double> mass, Points& x,
                     Points& v) const {
   const auto corners = carrier.own_corners();
-  if (rigid_motion(corners, x, v, mass).mobility == 0)
+  if (rigid_motion(corners, x, v, mass).is_in_line)
     return;
   Vec3 moment = Vec3::Zero(), angular = Vec3::Zero(); // that would be gained
   for (const Rider& rider : riders_of(carrier)) {
@@ -168,9 +169,7 @@ Riders::Place Riders::place(const std::size_t carrier, const Points& x) const {
 }
 
 double Riders::part(const Place& carrier, const std::size_t rider, const Points& x) const {
-  constexpr double from = 0.5, wholly = 1, beside = 1.7; // cubes
-  if (offsets_[rider].squaredNorm() > beside * beside * h_ * h_)
-    return 1;
+  constexpr double from = 0.5, wholly = 1; // cubes
   const Vec3 away = x[riders_[rider].corner] - carrier.middle - carrier.rotation * offsets_[rider];
   return std::clamp((away.norm() / h_ - from) / (wholly - from), 0.0, 1.0);
 }
@@ -181,33 +180,45 @@ void Riders::damp(const Points& x, const std::span<const double> mass, const dou
     damp(carrier, x, mass, kappa, v);
 }
 
+/// The carrier's motion V and spin w after the damping, which is implicit: with r_i a rider's place and m_i kappa_i
+/// (v_i - V - w x r_i) what it gives, V and w satisfy six equations of momentum.
 void Riders::damp(const std::size_t number, const Points& x, const std::span<const double> mass, const double kappa,
                   Points& v) const {
   const Carrier& carrier = carriers_[number];
   const auto corners = carrier.own_corners();
   const Rigid body = rigid_motion(corners, x, v, mass);
-  if (body.mobility == 0)
+  if (body.is_in_line)
     return;
-  const auto weight = [&](const std::uint32_t i) {
-    return std::sqrt(mass[i] * (1 / body.mass + (x[i] - body.centre).squaredNorm() * body.mobility));
-  };
   const std::optional<Place> place = h_ > 0 ? std::optional(this->place(number, x)) : std::nullopt;
-  double sum = 0;
-  for (const Rider& rider : riders_of(carrier))
-    sum += weight(rider.corner);
-  Vec3 impulse = Vec3::Zero(), angular = Vec3::Zero(); // on the carrier
+  const auto damping = [&](const std::size_t rider) {
+    return riders_[rider].need * kappa * (place ? part(*place, rider, x) : 1);
+  };
+  Vec3 given = Vec3::Zero(), turned = Vec3::Zero(), moment = Vec3::Zero();
+  double damped = 0;
+  Mat3 inertia = body.inertia;
   for (std::size_t rider = carrier.first; rider < carrier.last; ++rider) {
     const auto i = riders_[rider].corner;
-    const double part = place ? this->part(*place, rider, x) : 1;
-    const double by = part * riders_[rider].need * kappa / (1 + weight(i) * sum);
-    const Vec3 change = by * (v[i] - body.velocity_at(x[i]));
-    v[i] -= change;
-    impulse += mass[i] * change;
-    angular += mass[i] * (x[i] - body.centre).cross(change);
+    const double by = mass[i] * damping(rider);
+    const Vec3 r = x[i] - body.centre, relative = v[i] - body.velocity_at(x[i]);
+    damped += by;
+    moment += by * r;
+    inertia += by * (r.squaredNorm() * Mat3::Identity() - r * r.transpose());
+    given += by * relative;
+    turned += by * r.cross(relative);
   }
-  const Vec3 pushed = impulse / body.mass, turned = body.inverse_inertia * angular;
+  if (damped == 0)
+    return;
+  // [all, -[moment]x; [moment]x, inertia] [push; spin] = [given; turned]
+  const double all = body.mass + damped;
+  const Mat3 reduced = inertia - (moment.squaredNorm() * Mat3::Identity() - moment * moment.transpose()) / all;
+  const Vec3 spin = reduced.ldlt().solve(turned - moment.cross(given) / all),
+             push = (given - spin.cross(moment)) / all;
+  for (std::size_t rider = carrier.first; rider < carrier.last; ++rider) {
+    const auto i = riders_[rider].corner;
+    v[i] -= damping(rider) * (v[i] - body.velocity_at(x[i]) - push - spin.cross(x[i] - body.centre));
+  }
   for (const auto c : corners)
-    v[c] += pushed + turned.cross(x[c] - body.centre);
+    v[c] += push + spin.cross(x[c] - body.centre);
 }
 
 } // namespace kerf::lattice

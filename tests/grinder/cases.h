@@ -15,8 +15,8 @@ struct Kind {
   int half_width = 0; ///< of lattice shape matching [cells], which bounds its time step; else 0
 };
 
-/// Elements of both strains with two laws, and with integrators that take no energy; points, lattice shape matching,
-/// springs.
+/// Elements of both strains with two laws, and with the other integrators, explicit ones included; points, lattice shape
+/// matching, springs.
 const std::vector<Kind>& kinds();
 /// Throws std::out_of_range when there is none of that name.
 const Kind& kind_named(const std::string& name);

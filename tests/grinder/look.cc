@@ -45,14 +45,20 @@ double ordinary(std::vector<double> values) {
   return *at;
 }
 
-void look_at_speeds(const scene::Body& body, const grid::Pieces& pieces, std::vector<PieceLook>& looks) {
+/// Of a particle [cubes].
+double mass_of(const scene::Body& body, const std::size_t particle) {
+  return body.physics->model().lumped_mass()[particle] / (body.density * std::pow(body.solid.grid.h(), 3));
+}
+
+void look_at_speeds(const scene::Body& body, const grid::Pieces& pieces, const double least_mass,
+                    std::vector<PieceLook>& looks) {
   const auto piece = pieces_of_particles(body, pieces);
   std::vector<std::vector<double>> speeds(looks.size());
   for (std::size_t i = 0; i < piece.size(); ++i) {
     PieceLook& look = looks[piece[i]];
     const double speed = body.state.v[i].norm();
     speeds[piece[i]].push_back(speed);
-    if (speed >= look.fastest) {
+    if (speed >= look.fastest && mass_of(body, i) >= least_mass) {
       look.fastest = speed;
       look.who = i;
     }
@@ -120,13 +126,13 @@ void look_at_surface(const scene::Body& body, const grid::Pieces& pieces, std::v
 
 } // namespace
 
-Look look_at(const scene::Body& body) {
+Look look_at(const scene::Body& body, const double least_mass) {
   Look look{.is_finite = is_finite(body)};
   if (!look.is_finite)
     return look;
   const grid::Pieces pieces = grid::pieces(body.solid.complex);
   look.pieces.resize(pieces.n_pieces);
-  look_at_speeds(body, pieces, look.pieces);
+  look_at_speeds(body, pieces, least_mass, look.pieces);
   look_at_surface(body, pieces, look.pieces);
   look_at_supports(body, pieces, look.pieces);
   look.stretch = stretch_of_material(body);
@@ -140,9 +146,7 @@ Look look_at(const scene::Body& body) {
 
 std::string about_particle(const scene::Body& body, const std::size_t particle) {
   const Vec3& rest = body.physics->rest()[particle];
-  const double h = body.solid.grid.h(), mass = body.physics->model().lumped_mass()[particle];
-  std::string words =
-    "at rest at " + text(rest) + " m, of mass " + to_text(mass / (body.density * h * h * h)) + " cubes";
+  std::string words = "at rest at " + text(rest) + " m, of mass " + to_text(mass_of(body, particle)) + " cubes";
   if (!particles_are_corners(body))
     return words;
   words += ", known to copies with";

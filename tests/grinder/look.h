@@ -25,7 +25,8 @@ struct Look {
   double stretch = 1; ///< that one in a hundred copies with half a cube's nodes exceeds, of an edge over that at rest [1]
 };
 
-Look look_at(const scene::Body& body);
+/// Speeds of particles with less than `least_mass` [cubes] do not count.
+Look look_at(const scene::Body& body, double least_mass = 0);
 
 /// A particle in words: its place at rest, its mass, the copies that know it.
 std::string about_particle(const scene::Body& body, std::size_t particle);

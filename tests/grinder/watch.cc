@@ -41,7 +41,16 @@ double wave_speed(const Scene& scene) {
 bool says(const Scene& scene, const char* const words) { return text(scene).find(words) != std::string::npos; }
 
 /// Shape matching is symplectic Euler.
-bool is_symplectic(const Scene& scene) { return says(scene, "Backend = lattice"); }
+bool is_symplectic(const Scene& scene) {
+  return says(scene, "Backend = lattice") || says(scene, "Integrator = symplectic Euler") ||
+         says(scene, "Integrator = velocity Verlet");
+}
+
+/// Where nothing damps them light corners have their part of the body's vibrations: what they ride on keeps them within
+/// a cube (lattice/riders.h), and their speeds mean nothing.
+double least_mass(const Scene& scene) {
+  return is_symplectic(scene) && !says(scene, "Backend = lattice") ? 1.0 / 128 : 0;
+}
 
 bool keeps_energy(const Scene& scene) {
   return is_symplectic(scene) || says(scene, "Integrator = Newmark") || says(scene, "Integrator = generalised alpha");
@@ -60,6 +69,7 @@ std::string percent(const double part) { return to_text(std::round(1000 * part) 
 Watch::Watch(const Scene& scene, const scene::Body& body)
   : most_energy_gained_(most_gained(scene)),
     keeps_energy_(keeps_energy(scene)),
+    least_mass_(least_mass(scene)),
     gravity_(body.loads.gravity.norm()),
     wave_speed_(wave_speed(scene)),
     recoil_(gravity_ * extent(body) / wave_speed_),
@@ -157,7 +167,7 @@ std::optional<Failure> Watch::watch_pieces(const scene::Body& body, const Look& 
 }
 
 std::optional<Failure> Watch::after_step(const scene::Body& body, const int step, const double dt) {
-  const Look look = look_at(body);
+  const Look look = look_at(body, least_mass_);
   if (!look.is_finite)
     return Failure{"NaN", step, "a number that is none", true};
   for (const auto& failure : {watch_speeds(body, look, step, step * dt), watch_shapes(body, look, step, step * dt),

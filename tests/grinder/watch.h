@@ -44,6 +44,7 @@ class Watch {
 
   double most_energy_gained_;                             ///< of what has been turned over [1]
   bool keeps_energy_;                                     ///< in the mean: no step is as the one before
+  double least_mass_;                                     ///< of particles whose speeds count [cubes]
   double gravity_ = 0;                                    ///< [m/s^2]
   double wave_speed_ = 0, recoil_ = 0;                    ///< [m/s]
   double mass_ = 0;                                       ///< [kg]
