@@ -44,6 +44,17 @@ Integrals integrals_of(const grid::Solid& solid, const grid::Copy& copy) {
   return integrals;
 }
 
+/// A corner may have less than nothing of a copy whose skin is hollow (grid/material.h): this part of what each other one
+/// has keeps the copy's mass.
+double kept_part(const std::array<double, 8>& of_corners) {
+  double sum = 0, positive = 0;
+  for (const double one : of_corners) {
+    sum += one;
+    positive += std::max(one, 0.0);
+  }
+  return sum < positive ? std::max(sum, 0.0) / positive : 1;
+}
+
 /// Bits of those vertices of `nodes` that are the fewest edges away from `corner`.
 unsigned nearest(const unsigned nodes, const int corner) {
   for (int distance = 0; distance <= 3; ++distance) {
@@ -65,20 +76,23 @@ CopyShares shares_of(const grid::Solid& solid, const grid::Copy& copy) {
     return shares;
   }
   const auto& [integrals, elsewhere] = integrals_of(solid, copy);
+  std::array<double, 8> total = elsewhere;
+  for (int a = 0; a < 8; ++a)
+    for (int v = 0; v < 8; ++v)
+      total[a] += integrals[v][a];
+  const double part = kept_part(total);
   for (int a = 0; a < 8; ++a) {
     const unsigned owners = nearest(copy.nodes, a);
-    double total = elsewhere[a], of_owners = 0, least = 1;
-    for (int v = 0; v < 8; ++v) {
-      total += integrals[v][a];
+    double of_owners = 0, least = 1;
+    for (int v = 0; v < 8; ++v)
       if ((owners >> v & 1) != 0) {
         of_owners += integrals[v][a];
         least = std::min(least, integrals[v][a]);
       }
-    }
     for (int v = 0; v < 8; ++v)
-      if ((owners >> v & 1) != 0) // even parts where a hollow skin leaves a node less than nothing (grid/material.h)
-        shares[v][a] = std::max(total, 0.0) *
-                       (least > 0 ? integrals[v][a] / of_owners : 1.0 / std::popcount(owners));
+      if ((owners >> v & 1) != 0) // even parts where a hollow skin leaves a node less than nothing
+        shares[v][a] =
+          part * std::max(total[a], 0.0) * (least > 0 ? integrals[v][a] / of_owners : 1.0 / std::popcount(owners));
   }
   return shares;
 }
@@ -129,8 +143,9 @@ std::vector<Share> material_shares(const grid::Solid& solid, const double densit
       continue;
     const grid::Copy& copy = solid.complex.copies[c];
     const auto integrals = integrals_of(solid, copy).elsewhere;
+    const double part = kept_part(integrals);
     for (int a = 0; a < 8; ++a)
-      shares.push_back({node, copy.corners[a], scale * std::max(integrals[a], least_share)});
+      shares.push_back({node, copy.corners[a], scale * std::max(part * integrals[a], least_share)});
   }
   for (const auto c : ids<grid::CopyId>(solid.complex.n_copies())) {
     const grid::Copy& copy = solid.complex.copies[c];

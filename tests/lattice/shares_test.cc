@@ -34,7 +34,7 @@ double shape_integral(const fem::Moments& m, const int a) {
 }
 
 /// Moments come from a quadrature of monomials; here it is products in barycentric coordinates. Less than nothing,
-/// under a hollow skin (surface/fold.h), counts as nothing.
+/// under a hollow skin (surface/fold.h), counts as nothing, and the copy's other corners have as much less.
 TEST(Shares, CornersWeighTheIntegralsOfTheirShapeFunctions) {
   const Body body = rough_block(10, {0.02, 0.98});
   std::vector<double> mass(body.complex.n_corners(), 0.0), expected = mass;
@@ -42,10 +42,15 @@ TEST(Shares, CornersWeighTheIntegralsOfTheirShapeFunctions) {
     mass[share.corner.value] += share.mass;
   for (const grid::Copy& copy : body.complex.copies) {
     const auto moments = fem::material_moments(body, copy);
+    std::array<double, 8> integrals;
+    double all = 0, positive = 0;
     for (int a = 0; a < 8; ++a) {
-      const double integral = copy.nodes == 0xff ? 1.0 / 8 : shape_integral(moments, a);
-      expected[copy.corners[a].value] += 1100 * 1e-3 * std::max(integral, 0.0);
+      integrals[a] = copy.nodes == 0xff ? 1.0 / 8 : shape_integral(moments, a);
+      all += integrals[a];
+      positive += std::max(integrals[a], 0.0);
     }
+    for (int a = 0; a < 8; ++a)
+      expected[copy.corners[a].value] += 1100 * 1e-3 * std::max(integrals[a], 0.0) * all / positive;
   }
   for (std::size_t c = 0; c < mass.size(); ++c)
     EXPECT_NEAR(mass[c], expected[c], 1e-12 * 1100 * 1e-3) << c;
