@@ -97,8 +97,8 @@ Box in_sight_of(const Solid& solid, const CellId c) { return around(solid, c, 0.
 /// With what a front in another cell may reach over by its lag.
 Box reach_of(const Solid& solid, const CellId c) { return around(solid, c, grid::most_front_lag * solid.grid.h()); }
 
-bool is_in(const Box& box, const Patch& quad) {
-  const Box around = geometry::box_around(quad);
+bool is_in(const Box& box, const Patch& patch) {
+  const Box around = geometry::box_around(patch);
   return (around.lower.array() <= box.upper.array()).all() && (box.lower.array() <= around.upper.array()).all();
 }
 
@@ -109,53 +109,6 @@ Polygon clipped(Polygon polygon, const Box& box) {
   }
   return polygon;
 }
-
-/// Draws the pieces of a path in cells.
-class Sweep {
- public:
-  Sweep(const BladePath& path, const Solid& solid, const Points& x_before, const Points& x)
-    : path_(path), solid_(solid), x_before_(x_before), x_(x), near_(patches(path)) {}
-
-  bool is_near(const EdgeBoxes::Block& block) const { return near_.may_be_in(block.around_cells()); }
-  bool is_near(const CellId c) const {
-    const grid::Copy& copy = solid_.complex.copies[solid_.complex.first_copy[c]];
-    std::array<Vec3, 16> corners;
-    for (int v = 0; v < 8; ++v) {
-      corners[v] = x_[copy.corners[v].value];
-      corners[8 + v] = x_before_[copy.corners[v].value];
-    }
-    Box box = geometry::box_around(corners);
-    const Vec3 lag = Vec3::Constant(grid::most_front_lag * (box.upper - box.lower).maxCoeff());
-    return near_.may_be_in({box.lower - lag, box.upper + lag});
-  }
-
-  /// Calls f(polygon at rest [m]) for what of the path lies in the reach of the cell.
-  template <class Function>
-  void for_each_piece(const CellId c, const Function& f) const {
-    const ToRest before(solid_, c, x_before_), now(solid_, c, x_);
-    const Box reach = reach_of(solid_, c);
-    const auto at = [&](const std::size_t k, const std::size_t i) {
-      const double t = path_.fractions[k];
-      const Vec3& p = path_.lines[k][i];
-      return Vec3((1 - t) * before(p) + t * now(p));
-    };
-    for (std::size_t k = 1; k < path_.lines.size(); ++k)
-      for (std::size_t i = 1; i < path_.lines[k].size(); ++i) {
-        const Patch quad = {at(k - 1, i - 1), at(k - 1, i), at(k, i), at(k, i - 1)};
-        if (!is_in(reach, quad))
-          continue;
-        const Polygon piece = clipped({quad.begin(), quad.end()}, reach);
-        if (area(piece) > 0)
-          f(piece);
-      }
-  }
-
- private:
-  const BladePath& path_;
-  const Solid& solid_;
-  const Points &x_before_, &x_;
-  NearSweep near_;
-};
 
 /// One across a face.
 bool has_neighbour(const Solid& solid, const CellId c, const FunctionRef<bool(CellId)> is_such) {
@@ -178,10 +131,95 @@ double passed(const Front& front, const Raster& section, const Raster& swept) {
 
 } // namespace
 
+/// What is swept, in the cells that it comes into.
+class Advance::Sweep {
+ public:
+  /// `fractions`: of the way from x_before to x, at which the first and the last two points of a patch stand.
+  Sweep(std::vector<Patch> patches, std::vector<std::array<double, 2>> fractions, const Solid& solid,
+        const Points& x_before, const Points& x)
+    : patches_(std::move(patches)),
+      fractions_(std::move(fractions)),
+      solid_(solid),
+      x_before_(x_before),
+      x_(x),
+      near_(patches_) {}
+
+  static Sweep of(const BladePath& path, const Solid& solid, const Points& x_before, const Points& x) {
+    std::vector<std::array<double, 2>> fractions;
+    for (std::size_t k = 1; k < path.lines.size(); ++k)
+      fractions.insert(fractions.end(), path.lines[k].size() - 1, {path.fractions[k - 1], path.fractions[k]});
+    return {patches(path), std::move(fractions), solid, x_before, x};
+  }
+  static Sweep of(const geometry::TriangleMesh& mesh, const Solid& solid, const Points& x) {
+    std::vector<std::array<Vec3, 3>> triangles(mesh.triangles.size());
+    for (std::size_t i = 0; i < triangles.size(); ++i)
+      triangles[i] = corners(mesh, i);
+    return {patches(triangles), std::vector(triangles.size(), std::array{0.0, 0.0}), solid, x, x};
+  }
+
+  bool is_near(const EdgeBoxes::Block& block) const { return near_.may_be_in(block.around_cells()); }
+  bool is_near(const CellId c) const { return near_.may_be_in(box_of(c)); }
+
+  /// Calls f(polygon at rest [m]) for what lies in the reach of the cell.
+  template <class Function>
+  void for_each_piece(const CellId c, const Function& f) const {
+    const ToRest before(solid_, c, x_before_), now(solid_, c, x_);
+    const Box reach = reach_of(solid_, c);
+    std::vector<std::size_t> near;
+    near_.for_each(box_of(c), [&](const std::size_t i) { near.push_back(i); });
+    std::ranges::sort(near);
+    for (const std::size_t i : near) {
+      Patch at_rest;
+      for (std::size_t k = 0; k < at_rest.size(); ++k) {
+        const double t = fractions_[i][k / 2];
+        at_rest[k] = (1 - t) * before(patches_[i][k]) + t * now(patches_[i][k]);
+      }
+      if (!is_in(reach, at_rest))
+        continue;
+      const Polygon piece = clipped({at_rest.begin(), at_rest.end()}, reach);
+      if (area(piece) > 0)
+        f(piece);
+    }
+  }
+
+ private:
+  /// Around a cell on its way, with the lag of fronts.
+  Box box_of(const CellId c) const {
+    const grid::Copy& copy = solid_.complex.copies[solid_.complex.first_copy[c]];
+    std::array<Vec3, 16> corners;
+    for (int v = 0; v < 8; ++v) {
+      corners[v] = x_[copy.corners[v].value];
+      corners[8 + v] = x_before_[copy.corners[v].value];
+    }
+    const Box box = geometry::box_around(corners);
+    const Vec3 lag = Vec3::Constant(grid::most_front_lag * (box.upper - box.lower).maxCoeff());
+    return {box.lower - lag, box.upper + lag};
+  }
+
+  std::vector<Patch> patches_;
+  std::vector<std::array<double, 2>> fractions_;
+  const Solid& solid_;
+  const Points &x_before_, &x_;
+  NearSweep near_;
+};
+
 void Advance::sweep(const BladePath& path, const Solid& solid, const Points& x_before, const Points& x,
                     const EdgeBoxes& boxes, const grid::CutLabel label) {
-  const Sweep sweep(path, solid, x_before, x);
   const bool rests = path.lines.front() == path.lines.back();
+  sweep(Sweep::of(path, solid, x_before, x), solid, boxes, label, rests);
+  for (const CellId c : touched_)
+    for (std::vector<Polygon>* const pieces : {&cells_.at(c).pieces, &cells_.at(c).at_rest})
+      if (pieces->size() > most_pieces)
+        pieces->erase(pieces->begin(), pieces->end() - most_pieces);
+}
+
+void Advance::sweep(const geometry::TriangleMesh& mesh, const Solid& solid, const Points& x, const EdgeBoxes& boxes,
+                    const grid::CutLabel label) {
+  sweep(Sweep::of(mesh, solid, x), solid, boxes, label, false);
+}
+
+void Advance::sweep(const Sweep& sweep, const Solid& solid, const EdgeBoxes& boxes, const grid::CutLabel label,
+                    const bool rests) {
   for (const std::uint32_t k : boxes.blocks([&](const EdgeBoxes::Block& block) { return sweep.is_near(block); }))
     boxes.for_each_cell(k, [&](const CellId c) {
       const bool is_whole = !solid.complex.copies[solid.complex.first_copy[c]].next.valid();
@@ -201,10 +239,7 @@ void Advance::add(const Solid& solid, const CellId c, const Polygon& piece, cons
     if (as_faces_)
       cell.add_fresh(*front, solid.grid.h(), clipped(piece, in_sight_of(solid, c)), n_new);
   } else {
-    std::vector<Polygon>& pieces = rests ? cell.at_rest : cell.pieces;
-    if (pieces.size() == most_pieces)
-      pieces.erase(pieces.begin());
-    pieces.push_back(piece);
+    (rests ? cell.at_rest : cell.pieces).push_back(piece);
   }
   touched_.insert(c);
 }

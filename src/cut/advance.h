@@ -36,6 +36,9 @@ class Advance {
   /// What a blade sweeps while the corners go from x_before to x [m], to which `boxes` are fitted.
   void sweep(const BladePath& path, const grid::Solid& solid, const Points& x_before, const Points& x,
              const EdgeBoxes& boxes, grid::CutLabel label);
+  /// What an open mesh cuts at once, with the corners at x.
+  void sweep(const geometry::TriangleMesh& mesh, const grid::Solid& solid, const Points& x, const EdgeBoxes& boxes,
+             grid::CutLabel label);
 
   /// The fronts that have begun or moved on since it was asked last, ascending; where nothing is left to part, or
   /// several cuts join what they part (Cuts::joined), cells are forgotten. To be asked when what the blades have met
@@ -45,6 +48,7 @@ class Advance {
   void archive(Archive& a) { a(cells_, touched_); }
 
  private:
+  class Sweep;
   struct Cell {
     grid::CutLabel label = 1;
     std::vector<Polygon> pieces = {}, at_rest = {}; ///< of strips of a blade that moves, and rests, rest frame [m];
@@ -59,6 +63,7 @@ class Advance {
     void archive(Archive& a) { a(label, pieces, at_rest, section, swept, fresh, n_fresh); }
   };
 
+  void sweep(const Sweep& sweep, const grid::Solid& solid, const EdgeBoxes& boxes, grid::CutLabel label, bool rests);
   void add(const grid::Solid& solid, grid::CellId c, const Polygon& piece, grid::CutLabel label, bool rests);
   std::optional<grid::Front> front_in(const grid::Solid& solid, grid::CellId c) const;
   bool begin(const grid::Solid& solid, grid::Front& front, const FrontsOfCells& begun);

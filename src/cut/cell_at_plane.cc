@@ -78,22 +78,23 @@ Vec3 normal(const Polygon& points) {
 }
 
 CellAtPlane::CellAtPlane(const grid::Solid& solid, const grid::CellId c, const Plane& plane,
-                         const std::array<Vec3, 8>& x)
-  : solid_(solid), cell_(c), plane_(plane), x_(x) {
+                         const std::array<Vec3, 8>& x, const Mat3& bend)
+  : solid_(solid), cell_(c), plane_(plane), bend_(bend), x_(x) {
   for (int v = 0; v < cube::n_vertices; ++v) {
     height_[v] = height(x_[v]);
     above_ |= unsigned(height_[v] >= 0) << v;
   }
 }
 
-bool CellAtPlane::is_clear(const double margin) const {
+bool CellAtPlane::is_clear(const FunctionRef<double(const Vec3&)> margin) const {
   const grid::CellCuts cuts = grid::cuts_of(solid_, cell_);
   const grid::Skeleton& skeleton = cuts.skeleton();
   std::array<double, skeleton::n_items> heights{};
   for (grid::Items left = skeleton.items; left != 0; left &= left - 1) {
     const int item = std::countr_zero(left);
-    heights[item] = item < skeleton::first_on_line ? height_[item] : height(position(item));
-    if (std::abs(heights[item]) <= margin)
+    const Vec3 place = item < skeleton::first_on_line ? x_[item] : position(item);
+    heights[item] = height(place);
+    if (std::abs(heights[item]) <= margin(place))
       return false;
   }
   for (Segments left = cuts.blades & skeleton.segments; left != 0; left &= left - 1)

@@ -2,6 +2,7 @@
 
 /// A cell that a plane passes, in which a cut may end (fronts.h, advance.h).
 
+#include "base/function_ref.h"
 #include "cut/cut_surface.h"
 
 namespace kerf::cut {
@@ -46,14 +47,17 @@ constexpr double least_passed = 0.02, most_passed = 0.999;
 
 class CellAtPlane {
  public:
-  /// The cell's corners at `x`, and the plane there: at rest or as they are now [m].
-  CellAtPlane(const grid::Solid& solid, grid::CellId c, const Plane& plane, const std::array<Vec3, 8>& x);
+  /// The cell's corners at `x`, and the plane there: at rest or as they are now [m]. The plane may be bent: then above it
+  /// is what lies above it by more than d . bend d / 2, with d from the plane's point and `bend` its curvature, symmetric
+  /// and without a part along the normal [1/m].
+  CellAtPlane(const grid::Solid& solid, grid::CellId c, const Plane& plane, const std::array<Vec3, 8>& x,
+              const Mat3& bend = Mat3::Zero());
 
   bool is_met() const { return above_ != 0 && above_ != 0xff; }
 
-  /// Do all nodes and points of the skin lie farther than this off the plane [m], and those that blades have parted on
-  /// either side of it?
-  bool is_clear(double margin) const;
+  /// Do all nodes and points of the skin lie farther off the plane than margin(where they lie) [m], and those that blades
+  /// have parted on either side of it?
+  bool is_clear(FunctionRef<double(const Vec3&)> margin) const;
 
   /// Where the plane meets the cube, around, there and at rest, point by point. A plane that only grazes the cell is
   /// moved into it by a little, so that its section has an area.
@@ -72,7 +76,10 @@ class CellAtPlane {
   grid::Segments ahead() const;
 
  private:
-  double height(const Vec3& p) const { return height_above(plane_, p); }
+  double height(const Vec3& p) const {
+    const Vec3 d = p - plane_.point;
+    return height_above(plane_, p) - 0.5 * d.dot(bend_ * d);
+  }
   double level() const;
   std::array<double, grid::skeleton::n_items> heights_of_items(const grid::CellCuts& cuts) const;
   Vec3 position(int item) const;
@@ -81,6 +88,7 @@ class CellAtPlane {
   const grid::Solid& solid_;
   grid::CellId cell_;
   Plane plane_;
+  Mat3 bend_;
   std::array<Vec3, 8> x_;
   std::array<double, 8> height_;
   unsigned above_ = 0;

@@ -3,6 +3,7 @@
 #include "cut/cell_at_plane.h"
 #include "cut/shreds.h"
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
@@ -69,6 +70,52 @@ std::optional<Course> course_of(const Points& points, const double h) {
   return course;
 }
 
+/// A surface of the second degree in the place along a plane, nearest to points along its normal. What strays from it
+/// strays farther where it is drawn out beyond them: by the factor by which random errors would grow.
+class BentCourse {
+ public:
+  BentCourse(const Points& points, const Vec3& origin, const Vec3& normal, const double h)
+    : origin_(origin), u_(normal.unitOrthogonal()), v_(normal.cross(u_)), w_(normal), h_(h) {
+    constexpr double least = 1e-9; // so that points which leave it open are an equation too
+    Eigen::Matrix<double, 6, 6> sum = least * Eigen::Matrix<double, 6, 6>::Identity();
+    Row right = Row::Zero();
+    for (const Vec3& p : points) {
+      const Row row = row_at(p);
+      sum += row * row.transpose() / double(points.size());
+      right += w_.dot(p - origin_) / h_ * row / double(points.size());
+    }
+    sum_.compute(sum);
+    a_ = sum_.solve(right);
+    for (const Vec3& p : points)
+      stray_ = std::max(stray_, std::abs(w_.dot(p - origin_) / h_ - a_.dot(row_at(p))));
+  }
+
+  Plane plane() const { return {origin_ + h_ * a_[0] * w_, (w_ - a_[1] * u_ - a_[2] * v_) / steepness()}; }
+  Mat3 bend() const {
+    return (a_[3] * u_ * u_.transpose() + a_[4] * (u_ * v_.transpose() + v_ * u_.transpose()) +
+            a_[5] * v_ * v_.transpose()) /
+           (steepness() * h_);
+  }
+  double stray(const Vec3& p) const {
+    constexpr double least = 0.005; // of a cube: what cuts of a body in motion are known by
+    const Row row = row_at(p);
+    return h_ * std::max(least, stray_) * std::max(1.0, std::sqrt(row.dot(sum_.solve(row)) / 6));
+  }
+
+ private:
+  using Row = Eigen::Matrix<double, 6, 1>;
+  Row row_at(const Vec3& p) const {
+    const double x = u_.dot(p - origin_) / h_, y = v_.dot(p - origin_) / h_;
+    return Row{{1, x, y, 0.5 * x * x, x * y, 0.5 * y * y}};
+  }
+  double steepness() const { return std::sqrt(1 + a_[1] * a_[1] + a_[2] * a_[2]); }
+
+  Vec3 origin_, u_, v_, w_;
+  double h_, stray_ = 0;
+  Row a_; // in cubes
+  Eigen::LDLT<Eigen::Matrix<double, 6, 6>> sum_;
+};
+
 /// As the predicates have it, by which blades cut (geometry/predicates.h): what lies right in a plane is behind it
 /// along the first axis that is not in the plane.
 Plane displaced(const Plane& plane, const double distance) {
@@ -129,22 +176,35 @@ bool leaves_shreds(const Solid& solid, const Front& front, const FrontsOfCells& 
   });
 }
 
+std::optional<Front> front_of(const Solid& solid, const CellAtPlane& cell, const grid::CutLabel label) {
+  if (!cell.is_met())
+    return std::nullopt;
+  Front front = cell.front(cell.section(), 0);
+  front.label = label;
+  return front.ahead != 0 && parts_in_two(solid, front) && !hangs_by_skin(solid, front) ? std::optional(front)
+                                                                                        : std::nullopt;
+}
+
 } // namespace
 
 std::optional<Front> front_ahead(const Solid& solid, const CellId c, const std::vector<Polygon>& pieces,
                                  const grid::CutLabel label) {
   constexpr double safety = 2;
   const double h = solid.grid.h();
-  const std::optional<Course> course = course_of(known_points(solid, c, pieces, label), h);
+  const Points points = known_points(solid, c, pieces, label);
+  const std::optional<Course> course = course_of(points, h);
   if (!course)
     return std::nullopt;
-  const CellAtPlane at_plane(solid, c, displaced(course->plane, in_plane * h), rest_of(solid, c));
-  if (!at_plane.is_met() || !at_plane.is_clear(std::max(safety * course->stray, 0.9 * in_plane * h)))
-    return std::nullopt;
-  Front front = at_plane.front(at_plane.section(), 0);
-  front.label = label;
-  return front.ahead != 0 && parts_in_two(solid, front) && !hangs_by_skin(solid, front) ? std::optional(front)
-                                                                                        : std::nullopt;
+  const auto corners = rest_of(solid, c);
+  const CellAtPlane flat(solid, c, displaced(course->plane, in_plane * h), corners);
+  const double margin = std::max(safety * course->stray, 0.9 * in_plane * h);
+  if (flat.is_clear([&](const Vec3&) { return margin; }))
+    return front_of(solid, flat, label);
+  const BentCourse bent(points, solid.grid.origin(c) + Vec3::Constant(0.5 * h), course->plane.normal, h);
+  const CellAtPlane at_bent(solid, c, bent.plane(), corners, bent.bend());
+  if (at_bent.is_clear([&](const Vec3& p) { return safety * bent.stray(p); }))
+    return front_of(solid, at_bent, label);
+  return std::nullopt;
 }
 
 bool is_corner_ahead(const Solid& solid, const Front& front, const FrontsOfCells& begun) {

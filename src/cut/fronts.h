@@ -7,8 +7,7 @@
 /// come. The shape is taken larger by the lag of fronts, as elements are too stiff there. Corners ahead of it are parted
 /// too (is_corner_ahead, course.h).
 ///
-/// Limits: only shapes that are flat and have an end; a mesh ends with the last cell that it parts. Moving blades:
-/// advance.h.
+/// Only shapes that are flat and have an end: meshes and blades that move leave those of advance.h.
 
 #include "cut/cut_surface.h"
 

@@ -4,6 +4,8 @@
 
 #include <Eigen/Geometry>
 
+#include <algorithm>
+
 namespace kerf::geometry {
 
 std::array<Vec3, 3> corners(const TriangleMesh& mesh, const std::size_t i) {
@@ -30,6 +32,22 @@ Box bounding_box(const TriangleMesh& mesh) {
     box.upper = box.upper.cwiseMax(v);
   }
   return box;
+}
+
+bool has_border(const TriangleMesh& mesh) {
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> sides;
+  sides.reserve(3 * mesh.triangles.size());
+  for (const Triangle& triangle : mesh.triangles)
+    for (int i = 0; i < 3; ++i)
+      sides.emplace_back(std::minmax(triangle[i], triangle[(i + 1) % 3]));
+  std::ranges::sort(sides);
+  for (auto first = sides.begin(); first != sides.end();) {
+    const auto last = std::find_if(first, sides.end(), [&](const auto& side) { return side != *first; });
+    if ((last - first) % 2 != 0)
+      return true;
+    first = last;
+  }
+  return false;
 }
 
 std::vector<std::uint32_t> shells(const TriangleMesh& mesh) {

@@ -29,6 +29,9 @@ double volume(const TriangleMesh& mesh);
 /// The smallest box around the vertices [m]; of no extent at the origin when there are none.
 Box bounding_box(const TriangleMesh& mesh);
 
+/// Has it an edge of an odd number of triangles?
+bool has_border(const TriangleMesh& mesh);
+
 /// For each triangle its shell, numbered from 0 in order of first triangles: triangles that share vertices are one
 /// shell.
 std::vector<std::uint32_t> shells(const TriangleMesh& mesh);
