@@ -123,6 +123,13 @@ bool is_cut_beside(const Solid& solid, const CellId c) {
                        [&](const CellId next) { return grid::cuts_of_copies(solid, next).blades != 0; });
 }
 
+/// Is a line of this face parted in the cell, as cuts or a front have it?
+bool divides(const Solid& solid, const CellId c, const int face, const FrontsOfCells& begun) {
+  const auto at = begun.find(c);
+  const grid::Segments parted = at != begun.end() ? at->second.ahead : grid::cuts_of_copies(solid, c).blades;
+  return std::ranges::any_of(grid::cube::face_lines[face], [&](const int line) { return (parted >> line & 1) != 0; });
+}
+
 /// The part of a section that what is drawn covers, with its lag.
 double passed(const Front& front, const Raster& section, const Raster& swept) {
   const Raster come = section & swept.grown(grid::front_lag(front.normal));
@@ -245,20 +252,43 @@ void Advance::add(const Solid& solid, const CellId c, const Polygon& piece, cons
 }
 
 /// By how the blade has moved, or else by all that it has met.
-std::optional<Front> Advance::front_in(const Solid& solid, const CellId c) const {
-  const Cell& cell = cells_.at(c);
-  auto front = cell.pieces.empty() ? std::nullopt : front_ahead(solid, c, cell.pieces, cell.label);
-  if (!front && !cell.at_rest.empty()) {
-    std::vector<Polygon> all = cell.pieces;
-    all.insert(all.end(), cell.at_rest.begin(), cell.at_rest.end());
-    front = front_ahead(solid, c, all, cell.label);
+std::optional<Front> Advance::front_in(const Solid& solid, const CellId c, const grid::CutLabel label) const {
+  const auto at = cells_.find(c);
+  const bool is_met = at != cells_.end() && at->second.label == label;
+  const std::vector<Polygon> pieces = is_met ? at->second.pieces : std::vector<Polygon>(),
+                             at_rest = is_met ? at->second.at_rest : std::vector<Polygon>();
+  const auto around = [&](Points& points) { add_around(solid, c, label, points); };
+  auto front = pieces.empty() && !at_rest.empty() ? std::nullopt : front_ahead(solid, c, pieces, label, around);
+  if (!front && !at_rest.empty()) {
+    std::vector<Polygon> all = pieces;
+    all.insert(all.end(), at_rest.begin(), at_rest.end());
+    front = front_ahead(solid, c, all, label, around);
   }
   return front;
+}
+
+/// What has been swept in the cells around, in part where that is much.
+void Advance::add_around(const Solid& solid, const CellId c, const grid::CutLabel label, Points& points) const {
+  constexpr std::size_t enough = 16; // pieces a cell
+  for (const CellId next : cells_around(solid.grid, c)) {
+    const auto at = cells_.find(next);
+    if (next == c || at == cells_.end() || at->second.label != label)
+      continue;
+    const std::vector<Polygon>& pieces = at->second.pieces;
+    for (std::size_t i = 0; i < pieces.size(); i += 1 + pieces.size() / enough)
+      points.insert(points.end(), pieces[i].begin(), pieces[i].end());
+  }
+}
+
+bool Advance::can_begin(const Solid& solid, const CellId c) const {
+  return !solid.cuts.front(c) && !solid.cuts.joined(c) && grid::whole_parts_of(grid::cuts_of(solid, c)).n == 1;
 }
 
 std::vector<Front> Advance::take(const Solid& solid, const PendingCuts& pending) {
   std::vector<Front> fronts;
   FrontsOfCells begun;
+  std::map<CellId, Cell> followed;
+  std::vector<CellId> forgotten;
   std::set<CellId> later;
   const auto waits = [&](const CellId c) {
     return std::ranges::any_of(solid.grid.edges(c), [&](const grid::EdgeId e) { return pending.waits(e); });
@@ -266,9 +296,8 @@ std::vector<Front> Advance::take(const Solid& solid, const PendingCuts& pending)
   for (const CellId c : touched_) {
     Cell& cell = cells_.at(c);
     const Front* const earlier = solid.cuts.front(c);
-    if (earlier ? !is_ahead(solid, *earlier)
-                : solid.cuts.joined(c) || grid::whole_parts_of(grid::cuts_of(solid, c)).n > 1)
-      cells_.erase(c);
+    if (earlier ? !is_ahead(solid, *earlier) : !can_begin(solid, c))
+      forgotten.push_back(c);
     else if (waits(c))
       later.insert(c);
     else if (earlier) {
@@ -276,19 +305,64 @@ std::vector<Front> Advance::take(const Solid& solid, const PendingCuts& pending)
       moved.passed = passed(moved, cell.section, cell.swept);
       if (moved.passed > earlier->passed && !as_faces_)
         fronts.push_back(moved);
-    } else if (const auto front = front_in(solid, c))
+    } else if (auto front = front_in(solid, c, cell.label)) {
+      followed.emplace(c, follow(solid, *front));
       begun.emplace(c, *front);
+    }
   }
-  for (auto& [c, front] : begun)
-    if (begin(solid, front, begun))
-      fronts.push_back(front);
-    else if (has_neighbour(solid, c, waits)) // which may be what it lacks
+  FrontsOfCells all;
+  const auto begin = [&](const Front& front, const FrontsOfCells& others, Cell&& followed) {
+    if (!fits_in(solid, front, others))
+      return false;
+    fronts.push_back(front);
+    all.emplace(front.cell, front);
+    cells_[front.cell] = std::move(followed);
+    return true;
+  };
+  for (const auto& [c, front] : begun) {
+    Cell& cell = followed.at(c);
+    const bool has_come =
+      front.passed >= least_passed && ((cell.section & cell.swept).any() || is_cut_beside(solid, c));
+    if (!(has_come && begin(front, begun, std::move(cell))) && has_neighbour(solid, c, waits)) // which may be what it lacks
       later.insert(c);
+  }
+  for (Front& corner : corners_ahead(solid, begun, all))
+    if (!waits(corner.cell)) {
+      Cell cell = follow(solid, corner);
+      corner.passed = std::max(corner.passed, least_passed);
+      begin(corner, all, std::move(cell));
+    }
+  for (const CellId c : forgotten)
+    cells_.erase(c);
   if (as_faces_)
     tell_where_they_have_come(solid, fronts);
   touched_ = std::move(later);
   std::ranges::sort(fronts, {}, &Front::cell);
   return fronts;
+}
+
+/// Of cells in which too little or nothing has been swept.
+std::vector<Front> Advance::corners_ahead(const Solid& solid, const FrontsOfCells& found,
+                                          const FrontsOfCells& begun) const {
+  std::vector<Front> corners;
+  const auto add = [&](const Front& front) {
+    if (is_corner_ahead(solid, front, begun))
+      corners.push_back(front);
+  };
+  for (const auto& [c, front] : found)
+    if (front.passed < least_passed)
+      add(front);
+  std::set<CellId> known;
+  for (const CellId c : touched_)
+    for (int face = 0; face < grid::cube::n_faces; ++face) {
+      const CellId next = solid.grid.neighbour(c, face);
+      if (!next.valid() || touched_.contains(next) || !can_begin(solid, next) || !divides(solid, c, face, begun) ||
+          !known.insert(next).second)
+        continue;
+      if (const auto front = front_in(solid, next, cells_.at(c).label))
+        add(*front);
+    }
+  return corners;
 }
 
 /// All of them at once, when one has come on by enough: what sees them is made anew then (physics/phyxels.h).
@@ -326,29 +400,21 @@ std::vector<Points> Advance::Cell::take_fresh(const Front& front, const double h
   return around.size() < 3 ? std::vector<Points>() : std::vector<Points>{around};
 }
 
-/// Whether it can, and has come so far that it is worth a copy.
-bool Advance::begin(const Solid& solid, Front& front, const FrontsOfCells& begun) {
-  Cell& cell = cells_.at(front.cell);
+/// Sets how far the front has come, and what follows it from then on.
+Advance::Cell Advance::follow(const Solid& solid, Front& front) const {
+  const auto at = cells_.find(front.cell);
+  const Cell& cell = at != cells_.end() ? at->second : Cell{};
   const InPlane in_plane(front.point, front.normal, solid.grid.h());
-  Raster swept;
+  Cell followed{.label = front.label, .section = section_of(solid, front, in_plane)};
   for (const auto& pieces : {cell.pieces, cell.at_rest})
-    for (const Polygon& piece : pieces)
-      draw(piece, in_plane, swept);
-  const Raster section = section_of(solid, front, in_plane);
-  front.passed = passed(front, section, swept);
-  if (front.passed < least_passed && is_corner_ahead(solid, front, begun))
-    front.passed = least_passed;
-  if (front.passed < least_passed || !((section & swept).any() || is_cut_beside(solid, front.cell)) ||
-      !fits_in(solid, front, begun))
-    return false;
-  Cell followed{.label = cell.label, .section = section, .swept = swept};
-  if (as_faces_)
-    for (const auto& pieces : {cell.pieces, cell.at_rest})
-      for (const Polygon& piece : pieces)
+    for (const Polygon& piece : pieces) {
+      draw(piece, in_plane, followed.swept);
+      if (as_faces_)
         followed.add_fresh(front, solid.grid.h(), clipped(piece, in_sight_of(solid, front.cell)), 0);
+    }
+  front.passed = passed(front, followed.section, followed.swept);
   front.come = followed.take_fresh(front, solid.grid.h());
-  cell = std::move(followed);
-  return true;
+  return followed;
 }
 
 } // namespace kerf::cut

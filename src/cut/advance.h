@@ -65,8 +65,12 @@ class Advance {
 
   void sweep(const Sweep& sweep, const grid::Solid& solid, const EdgeBoxes& boxes, grid::CutLabel label, bool rests);
   void add(const grid::Solid& solid, grid::CellId c, const Polygon& piece, grid::CutLabel label, bool rests);
-  std::optional<grid::Front> front_in(const grid::Solid& solid, grid::CellId c) const;
-  bool begin(const grid::Solid& solid, grid::Front& front, const FrontsOfCells& begun);
+  std::optional<grid::Front> front_in(const grid::Solid& solid, grid::CellId c, grid::CutLabel label) const;
+  void add_around(const grid::Solid& solid, grid::CellId c, grid::CutLabel label, Points& points) const;
+  bool can_begin(const grid::Solid& solid, grid::CellId c) const;
+  Cell follow(const grid::Solid& solid, grid::Front& front) const;
+  std::vector<grid::Front> corners_ahead(const grid::Solid& solid, const FrontsOfCells& found,
+                                         const FrontsOfCells& begun) const;
   void tell_where_they_have_come(const grid::Solid& solid, std::vector<grid::Front>& fronts);
 
   bool as_faces_;

@@ -22,17 +22,6 @@ namespace skeleton = grid::skeleton;
 
 constexpr double in_plane = 1e-6; // cubes; and of a unit vector
 
-/// The cell and those that share a node with it, as far as faces lead to them.
-std::vector<CellId> cells_around(const grid::Grid& grid, const CellId c) {
-  std::vector<CellId> cells = {c};
-  for (int axis = 0; axis < 3; ++axis)
-    for (std::size_t i = 0, n = cells.size(); i < n; ++i)
-      for (const int side : {0, 1})
-        if (const CellId next = grid.neighbour(cells[i], 2 * axis + side); next.valid())
-          cells.push_back(next);
-  return cells;
-}
-
 /// Where a blade has been in a cell and around it, at rest [m].
 Points known_points(const Solid& solid, const CellId c, const std::vector<Polygon>& pieces,
                     const grid::CutLabel label) {
@@ -187,11 +176,21 @@ std::optional<Front> front_of(const Solid& solid, const CellAtPlane& cell, const
 
 } // namespace
 
+std::vector<CellId> cells_around(const grid::Grid& grid, const CellId c) {
+  std::vector<CellId> cells = {c};
+  for (int axis = 0; axis < 3; ++axis)
+    for (std::size_t i = 0, n = cells.size(); i < n; ++i)
+      for (const int side : {0, 1})
+        if (const CellId next = grid.neighbour(cells[i], 2 * axis + side); next.valid())
+          cells.push_back(next);
+  return cells;
+}
+
 std::optional<Front> front_ahead(const Solid& solid, const CellId c, const std::vector<Polygon>& pieces,
-                                 const grid::CutLabel label) {
+                                 const grid::CutLabel label, const FunctionRef<void(Points&)> add_around) {
   constexpr double safety = 2;
   const double h = solid.grid.h();
-  const Points points = known_points(solid, c, pieces, label);
+  Points points = known_points(solid, c, pieces, label);
   const std::optional<Course> course = course_of(points, h);
   if (!course)
     return std::nullopt;
@@ -200,9 +199,10 @@ std::optional<Front> front_ahead(const Solid& solid, const CellId c, const std::
   const double margin = std::max(safety * course->stray, 0.9 * in_plane * h);
   if (flat.is_clear([&](const Vec3&) { return margin; }))
     return front_of(solid, flat, label);
+  add_around(points);
   const BentCourse bent(points, solid.grid.origin(c) + Vec3::Constant(0.5 * h), course->plane.normal, h);
   const CellAtPlane at_bent(solid, c, bent.plane(), corners, bent.bend());
-  if (at_bent.is_clear([&](const Vec3& p) { return safety * bent.stray(p); }))
+  if (at_bent.is_clear([&](const Vec3& p) { return bent.stray(p); }))
     return front_of(solid, at_bent, label);
   return std::nullopt;
 }

@@ -6,10 +6,12 @@
 /// That is taken as certain where no node and no point of the skin lies nearer to the plane than twice what strays
 /// farthest from it, and more where the blade has not come far yet (of what lies right in it, where nothing strays, the
 /// predicates know the side), where what is cut already is parted by it, and where each of the two parts has a node.
+/// Where the blade turns, it goes on in the surface of the second degree nearest to these points and to what it has swept
+/// around the cell, from which less strays.
 /// Cells are parted one by one, but share what they part: so one that is to have a front has to divide its faces as
 /// those beside it do, as far as they divide them at all, and may leave nothing that hangs together with hardly
-/// anything (shreds.h). Where a blade turns or a body swings, a cell so stays whole rather than parted in a wrong
-/// place.
+/// anything (shreds.h). Where a blade turns at once or a body swings, a cell so stays whole rather than parted in
+/// a wrong place.
 
 #include "cut/cell_at_plane.h"
 
@@ -19,9 +21,13 @@
 namespace kerf::cut {
 
 /// The front of a cut that goes on through a cell as it came, and has passed nothing yet; none where that is not
-/// certain. `pieces`: what the blade has swept in the cell, rest frame [m].
+/// certain. `pieces`: what the blade has swept in the cell, rest frame [m]; add_around(points) adds where it has been
+/// around the cell.
 std::optional<grid::Front> front_ahead(const grid::Solid& solid, grid::CellId c, const std::vector<Polygon>& pieces,
-                                       grid::CutLabel label);
+                                       grid::CutLabel label, FunctionRef<void(Points&)> add_around);
+
+/// The cell and those that share a node with it, as far as faces lead to them.
+std::vector<grid::CellId> cells_around(const grid::Grid& grid, grid::CellId c);
 
 using FrontsOfCells = std::map<grid::CellId, grid::Front>;
 

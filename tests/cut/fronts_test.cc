@@ -3,11 +3,11 @@
 #include "cut/cell_at_plane.h"
 #include "grid/fronts.h"
 #include "tests/cut/cutting.h"
+#include "tests/support/cap.h"
 
 #include <gtest/gtest.h>
 
 #include <iostream>
-#include <numbers>
 
 namespace kerf::cut::fronts_test {
 namespace {
@@ -139,29 +139,6 @@ TEST(Fronts, MoveOnAsTheCutGrows) {
   EXPECT_EQ(grid::ties(growing.body).size(), grid::ties(at_once.body).size());
 }
 
-/// A part of a sphere around a pole, of rings of triangles; flat where the radius is none.
-geometry::TriangleMesh cap(const Vec3& pole, const Vec3& normal, const double radius, const double reach,
-                           const int n_rings) {
-  const Vec3 u = normal.unitOrthogonal(), v = normal.cross(u);
-  constexpr std::uint32_t n = 48;
-  geometry::TriangleMesh mesh{{pole}, {}};
-  for (int ring = 1; ring <= n_rings; ++ring)
-    for (std::uint32_t i = 0; i < n; ++i) {
-      const double along = reach * ring / n_rings, angle = 2 * std::numbers::pi * i / n;
-      const double out = radius > 0 ? radius * std::sin(along / radius) : along,
-                   down = radius > 0 ? radius * (1 - std::cos(along / radius)) : 0;
-      mesh.vertices.push_back(pole + out * (std::cos(angle) * u + std::sin(angle) * v) - down * normal);
-    }
-  const auto at = [&](const int ring, const std::uint32_t i) { return ring == 0 ? 0 : 1 + (ring - 1) * n + i % n; };
-  for (int ring = 1; ring <= n_rings; ++ring)
-    for (std::uint32_t i = 0; i < n; ++i) {
-      mesh.triangles.push_back({at(ring - 1, i), at(ring, i), at(ring, i + 1)});
-      if (ring > 1)
-        mesh.triangles.push_back({at(ring - 1, i), at(ring, i + 1), at(ring - 1, i + 1)});
-    }
-  return mesh;
-}
-
 /// A flat mesh, however fine, is the disc that it fills.
 TEST(Fronts, OfAFlatMeshAreThoseOfADisc) {
   support::Random random(5);
@@ -172,7 +149,7 @@ TEST(Fronts, OfAFlatMeshAreThoseOfADisc) {
     const double radius = support::uniform(random, 1.5, 3.8);
     Cutting by_disc(block(), Fronts::inside_cells), by_mesh(block(), Fronts::inside_cells);
     by_disc.cut(Disc{middle, n, radius});
-    by_mesh.cut(cap(middle, n, 0, radius, i % 2 == 0 ? 1 : 30));
+    by_mesh.cut(support::cap(middle, n, 0, radius, i % 2 == 0 ? 1 : 30));
     for (const grid::Front& front : by_disc.body.cuts.fronts()) {
       const grid::Front* const other = by_mesh.body.cuts.front(front.cell);
       n_common += other != nullptr;
@@ -198,13 +175,13 @@ TEST(Fronts, OfCurvedMeshesLeaveThePiecesMassAndSurfaceAsTheyWere) {
     const Vec3 middle = Vec3::Constant(5) + 0.7 * support::random_vector(random), n = support::random_direction(random);
     const double radius = support::uniform(random, 3, 12), reach = support::uniform(random, 1.5, std::min(3.8, radius));
     Cutting with(block(), Fronts::inside_cells), without(block(), Fronts::at_faces);
-    with.cut(cap(middle, n, radius, reach, 20));
-    without.cut(cap(middle, n, radius, reach, 20));
+    with.cut(support::cap(middle, n, radius, reach, 20));
+    without.cut(support::cap(middle, n, radius, reach, 20));
     SCOPED_TRACE(i);
     expect_alike(with, without);
     expect_as_built(with);
     Cutting flat(block(), Fronts::inside_cells);
-    flat.cut(cap(middle, n, 0, reach, 20));
+    flat.cut(support::cap(middle, n, 0, reach, 20));
     n_fronts += with.body.cuts.fronts().size();
     n_lacking += flat.body.cuts.fronts().size();
     std::cout << radius << " " << reach << ": " << with.body.cuts.fronts().size() << " "

@@ -2,6 +2,7 @@
 
 #include "fem/energy_release.h"
 #include "grid/opening.h"
+#include "tests/support/cap.h"
 #include "tests/support/spectrum.h"
 
 #include <Eigen/Dense>
@@ -103,7 +104,35 @@ double release_rate(const Body& body, const fem::Hexahedra& model, const Points&
   return fem::energy_release_rate(body, model, deformed(body, u), front, {0.5, 0.95}) / exact;
 }
 
+/// Under a tension of 1 Pa along the normal.
+Points forces_along(const Body& body, const Vec3& normal) {
+  return traction_forces(body, [&](const SurfacePoint& p) -> Vec3 {
+    return p.label == grid::skin_label ? Vec3(normal * normal.dot(p.normal)) : Vec3(Vec3::Zero());
+  });
+}
+
+double work_of_cut(const Points& f, const Points& u, const double half_width) {
+  const double nu = 0.3, without_cut = std::pow(2 * half_width, 3);
+  return (work(f, u) - without_cut) / (16 * (1 - nu * nu) / 3);
+}
+
 } // namespace
+
+double work_of_cap(const Penny& problem, const double radius, const cut::Fronts fronts,
+                   const fem::HexahedraOptions& options) {
+  const double h = 1.0 / problem.n_over_radius, R = problem.half_width;
+  const Vec3 normal = problem.normal.normalized();
+  auto [body, model, cost] = build(
+    [&] {
+      Body cube = box({Vec3::Constant(-R), Vec3::Constant(R)}, h, Vec3::Zero());
+      cut_at_once(cube, support::cap(h * problem.offset, normal, radius, 1, 40), fronts);
+      return cube;
+    },
+    options);
+  const Points f = forces_along(body, normal);
+  return work_of_cut(f, displacements(body, *model, f, hold_corners(body.rest(), R), LinearSolver::conjugate_gradients),
+                     R);
+}
 
 PennyResult penny(const Penny& problem, const fem::HexahedraOptions& options) {
   const double h = 1.0 / problem.n_over_radius, R = problem.half_width;
@@ -118,14 +147,11 @@ PennyResult penny(const Penny& problem, const fem::HexahedraOptions& options) {
   const CpuTimer timer;
   const Points rest = body.rest();
   const Vec3 normal = problem.normal.normalized();
-  const Points f = traction_forces(body, [&](const SurfacePoint& p) -> Vec3 {
-    return p.label == grid::skin_label ? Vec3(normal * normal.dot(p.normal)) : Vec3(Vec3::Zero());
-  });
+  const Points f = forces_along(body, normal);
   const Points u = displacements(body, *model, f, hold_corners(rest, R), LinearSolver::conjugate_gradients);
   PennyResult result;
   compare(body, u, centre, result);
-  const double nu = 0.3, without_cut = std::pow(2 * R, 3);
-  result.work = (work(f, u) - without_cut) / (16 * (1 - nu * nu) / 3);
+  result.work = work_of_cut(f, u, R);
   result.release_rate = release_rate(body, *model, u, centre, normal);
   result.cost = cost;
   result.cost.solution = timer.seconds();

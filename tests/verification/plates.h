@@ -44,6 +44,9 @@ struct PennyResult {
   Cost cost;
 };
 PennyResult penny(const Penny& problem, const fem::HexahedraOptions& options);
+/// The work of such a cut that is bent to a part of a sphere of `radius`, r from its middle to its rim along it, given
+/// as a mesh, as PennyResult has it.
+double work_of_cap(const Penny& problem, double radius, cut::Fronts fronts, const fem::HexahedraOptions& options);
 
 /// A plate of 1 x 2 m in plane strain (E = 1 Pa, nu = 0.3), in cubes of which n are 1 m, with a crack of .4 m from its
 /// side under a tension of 1 Pa: where its front and its plane lie between nodes.
