@@ -258,11 +258,11 @@ std::optional<Front> Advance::front_in(const Solid& solid, const CellId c, const
   const std::vector<Polygon> pieces = is_met ? at->second.pieces : std::vector<Polygon>(),
                              at_rest = is_met ? at->second.at_rest : std::vector<Polygon>();
   const auto around = [&](Points& points) { add_around(solid, c, label, points); };
-  auto front = pieces.empty() && !at_rest.empty() ? std::nullopt : front_ahead(solid, c, pieces, label, around);
+  auto front = pieces.empty() && !at_rest.empty() ? std::nullopt : front_ahead(solid, c, pieces, label, ahead_, around);
   if (!front && !at_rest.empty()) {
     std::vector<Polygon> all = pieces;
     all.insert(all.end(), at_rest.begin(), at_rest.end());
-    front = front_ahead(solid, c, all, label, around);
+    front = front_ahead(solid, c, all, label, ahead_, around);
   }
   return front;
 }

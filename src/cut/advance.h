@@ -31,7 +31,7 @@ namespace kerf::cut {
 class Advance {
  public:
   /// As faces: fronts tell where blades have come (grid::Front::come).
-  explicit Advance(const bool as_faces) : as_faces_(as_faces) {}
+  explicit Advance(const bool as_faces, const Ahead ahead = Ahead::goes_on) : as_faces_(as_faces), ahead_(ahead) {}
 
   /// What a blade sweeps while the corners go from x_before to x [m], to which `boxes` are fitted.
   void sweep(const BladePath& path, const grid::Solid& solid, const Points& x_before, const Points& x,
@@ -74,6 +74,7 @@ class Advance {
   void tell_where_they_have_come(const grid::Solid& solid, std::vector<grid::Front>& fronts);
 
   bool as_faces_;
+  Ahead ahead_;
   std::map<grid::CellId, Cell> cells_;
   std::set<grid::CellId> touched_; // in which blades have swept since fronts were taken
 };

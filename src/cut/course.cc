@@ -140,14 +140,18 @@ bool divide_alike(const grid::Parts& one, const grid::Parts& other, const int fa
   return a.size() < 2 || b.size() < 2 || a == b;
 }
 
-/// What the copies of a cell would follow.
-grid::CellCuts cuts_with(const Solid& solid, const CellId c, const FrontsOfCells& begun) {
-  const auto at = begun.find(c);
-  return at == begun.end() ? grid::cuts_of_copies(solid, c) : grid::with(grid::cuts_of(solid, c), at->second.ahead);
+/// What the copies of a cell would follow, with a front in some cell and those of `begun`.
+grid::CellCuts cuts_with(const Solid& solid, const CellId c, const Front& front, const FrontsOfCells& begun) {
+  if (c == front.cell)
+    return grid::with(grid::cuts_of(solid, c), front.ahead);
+  if (const auto at = begun.find(c); at != begun.end())
+    return grid::with(grid::cuts_of(solid, c), at->second.ahead);
+  const Front* const earlier = solid.cuts.front(c); // which may be about to be taken back
+  return earlier && !is_ahead(solid, *earlier) ? grid::cuts_of(solid, c) : grid::cuts_of_copies(solid, c);
 }
 
 bool agrees_with_neighbours(const Solid& solid, const Front& front, const FrontsOfCells& begun) {
-  const auto parts = [&](const CellId c) { return grid::parts_of(cuts_with(solid, c, begun)); };
+  const auto parts = [&](const CellId c) { return grid::parts_of(cuts_with(solid, c, front, begun)); };
   const grid::Parts own = parts(front.cell);
   for (int face = 0; face < grid::cube::n_faces; ++face)
     if (const CellId next = solid.grid.neighbour(front.cell, face);
@@ -158,7 +162,7 @@ bool agrees_with_neighbours(const Solid& solid, const Front& front, const Fronts
 
 /// Would a part of the cell hang together with hardly anything?
 bool leaves_shreds(const Solid& solid, const Front& front, const FrontsOfCells& begun) {
-  const auto cuts_of = [&](const CellId c) { return cuts_with(solid, c, begun); };
+  const auto cuts_of = [&](const CellId c) { return cuts_with(solid, c, front, begun); };
   const grid::Parts parts = grid::parts_of(cuts_of(front.cell));
   return std::ranges::any_of(parts, [&](const grid::Part& part) {
     return is_small(solid, front.cell, std::countr_zero(part.items()), cuts_of);
@@ -187,7 +191,8 @@ std::vector<CellId> cells_around(const grid::Grid& grid, const CellId c) {
 }
 
 std::optional<Front> front_ahead(const Solid& solid, const CellId c, const std::vector<Polygon>& pieces,
-                                 const grid::CutLabel label, const FunctionRef<void(Points&)> add_around) {
+                                 const grid::CutLabel label, const Ahead ahead,
+                                 const FunctionRef<void(Points&)> add_around) {
   constexpr double safety = 2;
   const double h = solid.grid.h();
   Points points = known_points(solid, c, pieces, label);
@@ -202,7 +207,7 @@ std::optional<Front> front_ahead(const Solid& solid, const CellId c, const std::
   add_around(points);
   const BentCourse bent(points, solid.grid.origin(c) + Vec3::Constant(0.5 * h), course->plane.normal, h);
   const CellAtPlane at_bent(solid, c, bent.plane(), corners, bent.bend());
-  if (at_bent.is_clear([&](const Vec3& p) { return bent.stray(p); }))
+  if (at_bent.is_clear([&](const Vec3& p) { return ahead == Ahead::ends ? 0 : bent.stray(p); }))
     return front_of(solid, at_bent, label);
   return std::nullopt;
 }

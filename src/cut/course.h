@@ -20,11 +20,14 @@
 
 namespace kerf::cut {
 
+/// Whether a cut may come farther: then it matters on which side nodes that lie near its course will be.
+enum class Ahead { goes_on, ends };
+
 /// The front of a cut that goes on through a cell as it came, and has passed nothing yet; none where that is not
 /// certain. `pieces`: what the blade has swept in the cell, rest frame [m]; add_around(points) adds where it has been
 /// around the cell.
 std::optional<grid::Front> front_ahead(const grid::Solid& solid, grid::CellId c, const std::vector<Polygon>& pieces,
-                                       grid::CutLabel label, FunctionRef<void(Points&)> add_around);
+                                       grid::CutLabel label, Ahead ahead, FunctionRef<void(Points&)> add_around);
 
 /// The cell and those that share a node with it, as far as faces lead to them.
 std::vector<grid::CellId> cells_around(const grid::Grid& grid, grid::CellId c);

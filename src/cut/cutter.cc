@@ -305,7 +305,7 @@ CutChange Cutter::at_once(Solid& solid, const CutSurface& surface, const Points&
   boxes_stand_there_ = false;
   const SweepCuts found = cut_edges(surface, solid, x, &*boxes_);
   counts_.n_double_crossings += found.n_double_crossings;
-  Advance at_once(fronts_ == Fronts::as_faces);
+  Advance at_once(fronts_ == Fronts::as_faces, Ahead::ends);
   const auto* const mesh = std::get_if<geometry::TriangleMesh>(&surface.shape);
   if (mesh && fronts_ != Fronts::at_faces && geometry::has_border(*mesh))
     at_once.sweep(*mesh, solid, x, *boxes_, surface.label);

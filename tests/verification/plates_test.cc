@@ -103,11 +103,11 @@ TEST(Spike, Flat) {
 }
 /// SPIKE
 TEST(Spike, Cap) {
-  for (const double n : {4.0, 8.0})
-    for (const auto fronts : {cut::Fronts::at_faces, cut::Fronts::inside_cells}) {
+  for (const double n : {4.0, 5.7, 8.0, 12.0, 16.0})
+    for (const auto fronts : {cut::Fronts::inside_cells}) {
       support::Random random(5);
       double least = 10, most = 0, sum = 0;
-      const int n_places = n > 5 ? 4 : 12;
+      const int n_places = n > 15 ? 1 : n > 7 ? 4 : 12;
       for (int i = 0; i < n_places; ++i) {
         const Vec3 offset = 0.5 * (Vec3::Ones() + support::random_vector(random)), normal = support::random_direction(random);
         (void)normal;
