@@ -319,11 +319,16 @@ std::vector<Front> Advance::take(const Solid& solid, const PendingCuts& pending)
     cells_[front.cell] = std::move(followed);
     return true;
   };
-  for (const auto& [c, front] : begun) {
+  std::vector<const Front*> in_order;
+  for (const auto& [c, front] : begun)
+    in_order.push_back(&front);
+  std::ranges::stable_sort(in_order, std::greater<>(), [](const Front* const front) { return front->passed; });
+  for (const Front* const front : in_order) {
+    const CellId c = front->cell;
     Cell& cell = followed.at(c);
     const bool has_come =
-      front.passed >= least_passed && ((cell.section & cell.swept).any() || is_cut_beside(solid, c));
-    if (!(has_come && begin(front, begun, std::move(cell))) && has_neighbour(solid, c, waits)) // which may be what it lacks
+      front->passed >= least_passed && ((cell.section & cell.swept).any() || is_cut_beside(solid, c));
+    if (!(has_come && begin(*front, all, std::move(cell))) && has_neighbour(solid, c, waits)) // which may be what it lacks
       later.insert(c);
   }
   for (Front& corner : corners_ahead(solid, begun, all))

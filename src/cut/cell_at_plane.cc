@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 namespace kerf::cut {
@@ -86,14 +87,30 @@ CellAtPlane::CellAtPlane(const grid::Solid& solid, const grid::CellId c, const P
   }
 }
 
+void CellAtPlane::follow_cuts(const FunctionRef<double(const Vec3&)> margin) {
+  const grid::CellCuts cuts = grid::cuts_of(solid_, cell_);
+  const grid::Skeleton& skeleton = cuts.skeleton();
+  for (Segments left = cuts.blades & skeleton.segments & skeleton::lines; left != 0; left &= left - 1) {
+    const auto& [v, w] = skeleton.segment[std::countr_zero(left)].ends;
+    if (std::max(v, w) >= skeleton::first_on_line || (height_[v] >= 0) != (height_[w] >= 0))
+      continue;
+    const int nearer = std::abs(height_[v]) < std::abs(height_[w]) ? v : w;
+    if (std::abs(height_[nearer]) > margin(x_[nearer]))
+      continue;
+    height_[nearer] = height_[nearer] >= 0 ? -std::numeric_limits<double>::min() : 0;
+    above_ ^= 1u << nearer;
+  }
+}
+
 bool CellAtPlane::is_clear(const FunctionRef<double(const Vec3&)> margin) const {
   const grid::CellCuts cuts = grid::cuts_of(solid_, cell_);
   const grid::Skeleton& skeleton = cuts.skeleton();
   std::array<double, skeleton::n_items> heights{};
   for (grid::Items left = skeleton.items; left != 0; left &= left - 1) {
     const int item = std::countr_zero(left);
-    const Vec3 place = item < skeleton::first_on_line ? x_[item] : position(item);
-    heights[item] = height(place);
+    const bool is_node = item < skeleton::first_on_line;
+    const Vec3 place = is_node ? x_[item] : position(item);
+    heights[item] = is_node ? height_[item] : height(place);
     if (std::abs(heights[item]) <= margin(place))
       return false;
   }

@@ -53,6 +53,9 @@ class CellAtPlane {
   CellAtPlane(const grid::Solid& solid, grid::CellId c, const Plane& plane, const std::array<Vec3, 8>& x,
               const Mat3& bend = Mat3::Zero());
 
+  /// Nodes that lie nearer to the plane than margin(where they lie) [m] go to the side that cuts tell.
+  void follow_cuts(FunctionRef<double(const Vec3&)> margin);
+
   bool is_met() const { return above_ != 0 && above_ != 0xff; }
 
   /// Do all nodes and points of the skin lie farther off the plane than margin(where they lie) [m], and those that blades

@@ -206,8 +206,12 @@ std::optional<Front> front_ahead(const Solid& solid, const CellId c, const std::
     return front_of(solid, flat, label);
   add_around(points);
   const BentCourse bent(points, solid.grid.origin(c) + Vec3::Constant(0.5 * h), course->plane.normal, h);
-  const CellAtPlane at_bent(solid, c, bent.plane(), corners, bent.bend());
-  if (at_bent.is_clear([&](const Vec3& p) { return ahead == Ahead::ends ? 0 : bent.stray(p); }))
+  CellAtPlane at_bent(solid, c, bent.plane(), corners, bent.bend());
+  const auto stray = [&](const Vec3& p) { return bent.stray(p); };
+  constexpr double any = -1;
+  if (ahead == Ahead::ends)
+    at_bent.follow_cuts(stray);
+  if (at_bent.is_clear([&](const Vec3& p) { return ahead == Ahead::ends ? any : stray(p); }))
     return front_of(solid, at_bent, label);
   return std::nullopt;
 }

@@ -103,7 +103,7 @@ TEST(Spike, Flat) {
 }
 /// SPIKE
 TEST(Spike, Cap) {
-  for (const double n : {4.0, 5.7, 8.0, 12.0, 16.0})
+  for (const double n : {4.0, 8.0})
     for (const auto fronts : {cut::Fronts::inside_cells}) {
       support::Random random(5);
       double least = 10, most = 0, sum = 0;
@@ -115,7 +115,7 @@ TEST(Spike, Cap) {
         least = std::min(least, work);
         most = std::max(most, work);
         sum += work / n_places;
-        std::cout << work << " " << std::flush;
+        std::cout << offset.transpose() << ": " << work << " " << std::flush;
       }
       std::cout << "\n" << n << " " << (fronts == cut::Fronts::at_faces ? "faces" : "inside") << " mean " << sum << " spread " << most / least - 1 << std::endl;
     }
