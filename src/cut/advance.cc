@@ -118,9 +118,10 @@ bool has_neighbour(const Solid& solid, const CellId c, const FunctionRef<bool(Ce
   return false;
 }
 
-bool is_cut_beside(const Solid& solid, const CellId c) {
-  return has_neighbour(solid, c,
-                       [&](const CellId next) { return grid::cuts_of_copies(solid, next).blades != 0; });
+bool is_cut_beside(const Solid& solid, const CellId c, const FrontsOfCells& begun) {
+  return has_neighbour(solid, c, [&](const CellId next) {
+    return begun.contains(next) || grid::cuts_of_copies(solid, next).blades != 0;
+  });
 }
 
 /// Is a line of this face parted in the cell, as cuts or a front have it?
@@ -319,15 +320,21 @@ std::vector<Front> Advance::take(const Solid& solid, const PendingCuts& pending)
     cells_[front.cell] = std::move(followed);
     return true;
   };
+  const auto is_swept = [&](const Front* const front) {
+    const Cell& cell = followed.at(front->cell);
+    return (cell.section & cell.swept).any();
+  };
   std::vector<const Front*> in_order;
   for (const auto& [c, front] : begun)
     in_order.push_back(&front);
-  std::ranges::stable_sort(in_order, std::greater<>(), [](const Front* const front) { return front->passed; });
+  std::ranges::stable_sort(in_order, std::greater<>(), [&](const Front* const front) {
+    return std::pair(is_swept(front), front->passed);
+  });
   for (const Front* const front : in_order) {
     const CellId c = front->cell;
     Cell& cell = followed.at(c);
     const bool has_come =
-      front->passed >= least_passed && ((cell.section & cell.swept).any() || is_cut_beside(solid, c));
+      front->passed >= least_passed && (is_swept(front) || is_cut_beside(solid, c, all));
     if (!(has_come && begin(*front, all, std::move(cell))) && has_neighbour(solid, c, waits)) // which may be what it lacks
       later.insert(c);
   }

@@ -311,6 +311,42 @@ TEST(Advance, DoesNotDependOnSteps) {
   EXPECT_LE(n_all, n_common + n_common / 15);
 }
 
+/// A blade that turns on its way along a cylinder: most cells in which it ends are parted, as by its sweep as a mesh.
+TEST(Advance, LeavesFrontsWhereABladeTurns) {
+  support::Random random(12);
+  std::size_t n_all = 0, n_common = 0;
+  for (int i = 0; i < 30; ++i) {
+    const double radius = support::uniform(random, 5, 14), end = support::uniform(random, 0.3, 0.6) * 10;
+    const Vec3 axis = (Vec3::UnitY() + 0.2 * support::random_vector(random)).normalized(),
+               start = Vec3(-1, 5, 5) + support::random_vector(random);
+    Blade blade{"blade", {-20 * axis, 20 * axis}, {}};
+    const Vec3 towards = (Vec3::UnitX() - axis.x() * axis).normalized(), up = towards.cross(axis);
+    for (int k = 0; k <= 60; ++k) {
+      const double angle = (end + 1) / radius * k / 60;
+      blade.key_frames.push_back(
+        {k / 60.0, start + radius * (std::sin(angle) * towards + (1 - std::cos(angle)) * up), Vec3::Zero()});
+    }
+    Cutting by_blade(block(), Fronts::inside_cells), by_mesh(block(), Fronts::inside_cells);
+    const int n_steps = std::array{3, 11, 60}[i % 3];
+    for (int k = 0; k < n_steps || by_blade.cutter.n_waiting() > 0; ++k)
+      by_blade.step(blade, std::min(1.0, double(k) / n_steps), std::min(1.0, double(k + 1) / n_steps));
+    geometry::TriangleMesh swept;
+    for (const auto& triangle : sweep(blade, 0, 1)) {
+      const auto first = static_cast<std::uint32_t>(swept.vertices.size());
+      swept.vertices.insert(swept.vertices.end(), triangle.begin(), triangle.end());
+      swept.triangles.push_back({first, first + 1, first + 2});
+    }
+    by_mesh.cut(swept);
+    for (const grid::Front& front : by_mesh.body.cuts.fronts())
+      n_common += by_blade.body.cuts.front(front.cell) != nullptr;
+    n_all += by_mesh.body.cuts.fronts().size();
+    SCOPED_TRACE(i);
+    expect_alike(by_blade, by_mesh);
+  }
+  std::cout << n_common << " of " << n_all << " fronts\n";
+  EXPECT_GT(n_common, 0.6 * double(n_all));
+}
+
 /// Half a stroke, an archive, and the other half: as without one.
 TEST(Advance, GoesOnFromAnArchive) {
   const Body whole = support::with_copies(support::with_placed_skin(support::ball(4, 1, Vec3(0.2, 0.7, 0.4))));

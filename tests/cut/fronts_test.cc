@@ -143,7 +143,7 @@ TEST(Fronts, MoveOnAsTheCutGrows) {
 TEST(Fronts, OfAFlatMeshAreThoseOfADisc) {
   support::Random random(5);
   std::size_t n_all = 0, n_common = 0;
-  double most = 0;
+  double difference = 0;
   for (int i = 0; i < 40; ++i) {
     const Vec3 middle = Vec3::Constant(5) + 0.7 * support::random_vector(random), n = support::random_direction(random);
     const double radius = support::uniform(random, 1.5, 3.8);
@@ -153,24 +153,23 @@ TEST(Fronts, OfAFlatMeshAreThoseOfADisc) {
     for (const grid::Front& front : by_disc.body.cuts.fronts()) {
       const grid::Front* const other = by_mesh.body.cuts.front(front.cell);
       n_common += other != nullptr;
-      if (!other)
-        std::cout << i << " lacks " << front.passed << " " << front.area << "\n";
-      if (other)
-        most = std::max(most, std::abs(other->passed - front.passed));
+      difference += front.area * std::abs((other ? other->passed : 0) - front.passed);
     }
     n_all += std::max(by_disc.body.cuts.fronts().size(), by_mesh.body.cuts.fronts().size());
     SCOPED_TRACE(i);
     expect_alike(by_mesh, by_disc);
     expect_as_built(by_mesh);
   }
-  std::cout << n_common << " of " << n_all << ", off by " << most << "\n";
+  std::cout << n_common << " of " << n_all << ", off by " << difference / double(n_all) << " faces of a cube in the mean\n";
   EXPECT_GT(n_all, 1000u);
+  EXPECT_GT(n_common, 0.95 * double(n_all)); // 97 %: the others are corners ahead
+  EXPECT_LT(difference, 0.02 * double(n_all));
 }
 
-/// Of curved meshes that end in the body.
+/// Of curved meshes that end in the body: about as many as flat ones have.
 TEST(Fronts, OfCurvedMeshesLeaveThePiecesMassAndSurfaceAsTheyWere) {
   support::Random random(6);
-  std::size_t n_fronts = 0, n_lacking = 0;
+  std::size_t n_fronts = 0, n_flat = 0;
   for (int i = 0; i < 40; ++i) {
     const Vec3 middle = Vec3::Constant(5) + 0.7 * support::random_vector(random), n = support::random_direction(random);
     const double radius = support::uniform(random, 3, 12), reach = support::uniform(random, 1.5, std::min(3.8, radius));
@@ -183,11 +182,10 @@ TEST(Fronts, OfCurvedMeshesLeaveThePiecesMassAndSurfaceAsTheyWere) {
     Cutting flat(block(), Fronts::inside_cells);
     flat.cut(support::cap(middle, n, 0, reach, 20));
     n_fronts += with.body.cuts.fronts().size();
-    n_lacking += flat.body.cuts.fronts().size();
-    std::cout << radius << " " << reach << ": " << with.body.cuts.fronts().size() << " "
-              << flat.body.cuts.fronts().size() << "\n";
+    n_flat += flat.body.cuts.fronts().size();
   }
-  std::cout << n_fronts << " " << n_lacking << "\n";
+  std::cout << n_fronts << ", flat " << n_flat << "\n";
+  EXPECT_GT(n_fronts, 0.9 * double(n_flat));
 }
 
 } // namespace

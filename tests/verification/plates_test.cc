@@ -92,33 +92,25 @@ TEST(PennyShapedCut, HardlyFeelsWhereTheGridLies) {
   EXPECT_LT(most / least - 1, 0.05);
 }
 
-/// SPIKE
-TEST(Spike, Flat) {
-      support::Random random(5);
-      for (int i = 0; i < 12; ++i) {
-        const Vec3 offset = 0.5 * (Vec3::Ones() + support::random_vector(random)), normal = support::random_direction(random);
-        const Penny problem{.n_over_radius = 4, .half_width = 2, .offset = offset, .normal = normal};
-        std::cout << work_of_cap(problem, 0, cut::Fronts::inside_cells, hooke(1, 0.3)) << " " << penny(problem, hooke(1, .3)).work << std::endl;
-      }
-}
-/// SPIKE
-TEST(Spike, Cap) {
-  for (const double n : {4.0, 8.0})
-    for (const auto fronts : {cut::Fronts::inside_cells}) {
-      support::Random random(5);
-      double least = 10, most = 0, sum = 0;
-      const int n_places = n > 15 ? 1 : n > 7 ? 4 : 12;
-      for (int i = 0; i < n_places; ++i) {
-        const Vec3 offset = 0.5 * (Vec3::Ones() + support::random_vector(random)), normal = support::random_direction(random);
-        (void)normal;
-        const double work = work_of_cap({.n_over_radius = n, .half_width = 2, .offset = offset}, 1.5, fronts, hooke(1, 0.3));
-        least = std::min(least, work);
-        most = std::max(most, work);
-        sum += work / n_places;
-        std::cout << offset.transpose() << ": " << work << " " << std::flush;
-      }
-      std::cout << "\n" << n << " " << (fronts == cut::Fronts::at_faces ? "faces" : "inside") << " mean " << sum << " spread " << most / least - 1 << std::endl;
-    }
+/// Bent to a part of a sphere of 1.5 radii, as a mesh, anyhow in the grid: with 8, 12, 16 cells a radius its work is .80 to
+/// .85 of that of a flat one in a body without end. It was .33 while meshes ended with the last cell that they part.
+TEST(PennyShapedCut, OfABentMeshEndsInsideCells) {
+  support::Random random(5);
+  double sum = 0, least = 10, most = 0;
+  constexpr int n = 6;
+  for (int i = 0; i < n; ++i) {
+    const Penny problem{.n_over_radius = 4,
+                        .half_width = 2,
+                        .offset = 0.5 * (Vec3::Ones() + support::random_vector(random)),
+                        .normal = support::random_direction(random)};
+    const double work = work_of_cap(problem, 1.5, cut::Fronts::inside_cells, hooke(1, 0.3));
+    sum += work;
+    least = std::min(least, work);
+    most = std::max(most, work);
+  }
+  std::cout << "work " << sum / n << ", from " << least << " to " << most << std::endl;
+  EXPECT_NEAR(sum / n, 0.83, 0.05);
+  EXPECT_LT(most / least - 1, 0.2);
 }
 
 class FineGrid : public testing::TestWithParam<int> {};
