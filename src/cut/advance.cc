@@ -230,8 +230,9 @@ void Advance::sweep(const Sweep& sweep, const Solid& solid, const EdgeBoxes& box
                     const bool rests) {
   for (const std::uint32_t k : boxes.blocks([&](const EdgeBoxes::Block& block) { return sweep.is_near(block); }))
     boxes.for_each_cell(k, [&](const CellId c) {
-      const bool is_whole = !solid.complex.copies[solid.complex.first_copy[c]].next.valid();
-      if ((is_whole || cells_.contains(c)) && sweep.is_near(c))
+      const bool is_whole = !solid.complex.copies[solid.complex.first_copy[c]].next.valid(),
+                 has_front = ahead_ == Ahead::ends && solid.cuts.front(c) != nullptr;
+      if ((is_whole || has_front || cells_.contains(c)) && sweep.is_near(c))
         sweep.for_each_piece(c, [&](const Polygon& piece) { add(solid, c, piece, label, rests); });
     });
 }
@@ -241,7 +242,7 @@ void Advance::add(const Solid& solid, const CellId c, const Polygon& piece, cons
   Cell& cell = cells_.emplace(c, Cell{label}).first->second;
   if (cell.label != label)
     return;
-  if (const Front* const front = solid.cuts.front(c)) {
+  if (const Front* const front = solid.cuts.front(c); front && ahead_ == Ahead::goes_on) {
     const InPlane in_plane(front->point, front->normal, solid.grid.h());
     const int n_new = draw(piece, in_plane, cell.swept);
     if (as_faces_)
@@ -301,7 +302,13 @@ std::vector<Front> Advance::take(const Solid& solid, const PendingCuts& pending)
       forgotten.push_back(c);
     else if (waits(c))
       later.insert(c);
-    else if (earlier) {
+    else if (earlier && ahead_ == Ahead::ends) { // of another cut, or of a blade
+      Front moved = *earlier;
+      if (is_along(*earlier, cell.pieces, solid.grid.h()))
+        follow(solid, moved);
+      if (moved.passed > earlier->passed)
+        fronts.push_back(moved);
+    } else if (earlier) {
       Front moved = *earlier;
       moved.passed = passed(moved, cell.section, cell.swept);
       if (moved.passed > earlier->passed && !as_faces_)

@@ -80,14 +80,15 @@ Vec3 normal(const Polygon& points) {
 
 CellAtPlane::CellAtPlane(const grid::Solid& solid, const grid::CellId c, const Plane& plane,
                          const std::array<Vec3, 8>& x, const Mat3& bend)
-  : solid_(solid), cell_(c), plane_(plane), bend_(bend), x_(x) {
+  : solid_(solid), cell_(c), plane_(plane), bend_(bend), x_(x), room_(1e-7 * solid.grid.h()) {
   for (int v = 0; v < cube::n_vertices; ++v) {
     height_[v] = height(x_[v]);
     above_ |= unsigned(height_[v] >= 0) << v;
   }
 }
 
-void CellAtPlane::follow_cuts(const FunctionRef<double(const Vec3&)> margin) {
+void CellAtPlane::follow_cuts(const double room) {
+  room_ = std::max(room_, room);
   const grid::CellCuts cuts = grid::cuts_of(solid_, cell_);
   const grid::Skeleton& skeleton = cuts.skeleton();
   for (Segments left = cuts.blades & skeleton.segments & skeleton::lines; left != 0; left &= left - 1) {
@@ -95,7 +96,7 @@ void CellAtPlane::follow_cuts(const FunctionRef<double(const Vec3&)> margin) {
     if (std::max(v, w) >= skeleton::first_on_line || (height_[v] >= 0) != (height_[w] >= 0))
       continue;
     const int nearer = std::abs(height_[v]) < std::abs(height_[w]) ? v : w;
-    if (std::abs(height_[nearer]) > margin(x_[nearer]))
+    if (std::abs(height_[nearer]) > room_)
       continue;
     height_[nearer] = height_[nearer] >= 0 ? -std::numeric_limits<double>::min() : 0;
     above_ ^= 1u << nearer;
@@ -105,15 +106,14 @@ void CellAtPlane::follow_cuts(const FunctionRef<double(const Vec3&)> margin) {
 bool CellAtPlane::is_clear(const FunctionRef<double(const Vec3&)> margin) const {
   const grid::CellCuts cuts = grid::cuts_of(solid_, cell_);
   const grid::Skeleton& skeleton = cuts.skeleton();
-  std::array<double, skeleton::n_items> heights{};
   for (grid::Items left = skeleton.items; left != 0; left &= left - 1) {
     const int item = std::countr_zero(left);
     const bool is_node = item < skeleton::first_on_line;
     const Vec3 place = is_node ? x_[item] : position(item);
-    heights[item] = is_node ? height_[item] : height(place);
-    if (std::abs(heights[item]) <= margin(place))
+    if (std::abs(is_node ? height_[item] : height(place)) <= margin(place))
       return false;
   }
+  const auto heights = heights_of_items(cuts);
   for (Segments left = cuts.blades & skeleton.segments; left != 0; left &= left - 1)
     if (const auto& [a, b] = skeleton.segment[std::countr_zero(left)].ends; (heights[a] >= 0) == (heights[b] >= 0))
       return false;
@@ -200,12 +200,11 @@ std::array<double, skeleton::n_items> CellAtPlane::heights_of_items(const grid::
     const int item = std::countr_zero(left);
     heights[item] = item < skeleton::first_on_line ? height_[item] : height(position(item));
   }
-  const double in_plane = 1e-7 * solid_.grid.h();
   for (const Segments kind : {skeleton::lines, ~skeleton::lines & ~skeleton::spokes, skeleton::spokes})
     for (Segments left = skeleton.segments & cuts.blades & kind; left != 0; left &= left - 1) {
       const auto& [a, b] = skeleton.segment[std::countr_zero(left)].ends;
       for (const auto& [p, q] : {std::pair{a, b}, std::pair{b, a}})
-        if (p >= skeleton::first_on_line && std::abs(heights[p]) < in_plane)
+        if (p >= skeleton::first_on_line && std::abs(heights[p]) < room_)
           heights[p] = heights[q] >= 0 ? -1 : 1;
     }
   return heights;

@@ -53,8 +53,8 @@ class CellAtPlane {
   CellAtPlane(const grid::Solid& solid, grid::CellId c, const Plane& plane, const std::array<Vec3, 8>& x,
               const Mat3& bend = Mat3::Zero());
 
-  /// Nodes that lie nearer to the plane than margin(where they lie) [m] go to the side that cuts tell.
-  void follow_cuts(FunctionRef<double(const Vec3&)> margin);
+  /// Nodes and points of the skin that lie no farther off the plane than this [m] go to the side that cuts tell.
+  void follow_cuts(double room);
 
   bool is_met() const { return above_ != 0 && above_ != 0xff; }
 
@@ -95,6 +95,7 @@ class CellAtPlane {
   std::array<Vec3, 8> x_;
   std::array<double, 8> height_;
   unsigned above_ = 0;
+  double room_; ///< what lies nearer to the plane is on the side that cuts tell [m]
 };
 
 /// Would a part of the cell hold on to a neighbour by points of the skin alone? Neighbours that no blade has cut do not

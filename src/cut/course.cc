@@ -209,11 +209,25 @@ std::optional<Front> front_ahead(const Solid& solid, const CellId c, const std::
   CellAtPlane at_bent(solid, c, bent.plane(), corners, bent.bend());
   const auto stray = [&](const Vec3& p) { return bent.stray(p); };
   constexpr double any = -1;
-  if (ahead == Ahead::ends)
-    at_bent.follow_cuts(stray);
+  if (ahead == Ahead::ends) {
+    double most = 0;
+    for (const Vec3& p : corners)
+      most = std::max(most, stray(p));
+    at_bent.follow_cuts(most);
+  }
   if (at_bent.is_clear([&](const Vec3& p) { return ahead == Ahead::ends ? any : stray(p); }))
     return front_of(solid, at_bent, label);
   return std::nullopt;
+}
+
+bool is_along(const Front& front, const std::vector<Polygon>& pieces, const double h) {
+  constexpr double turned = 0.2, off = 0.1; // sine of the angle; of a cube
+  Points points;
+  for (const Polygon& piece : pieces)
+    points.insert(points.end(), piece.begin(), piece.end());
+  const std::optional<Course> course = course_of(points, h);
+  return course && course->plane.normal.cross(front.normal).norm() < turned &&
+         std::abs(front.normal.dot(course->plane.point - front.point)) < off * h;
 }
 
 bool is_corner_ahead(const Solid& solid, const Front& front, const FrontsOfCells& begun) {

@@ -32,6 +32,9 @@ std::optional<grid::Front> front_ahead(const grid::Solid& solid, grid::CellId c,
 /// The cell and those that share a node with it, as far as faces lead to them.
 std::vector<grid::CellId> cells_around(const grid::Grid& grid, grid::CellId c);
 
+/// Do these pieces [rest frame, m] lie along a front, so that what has swept them moves it on?
+bool is_along(const grid::Front& front, const std::vector<Polygon>& pieces, double h);
+
 using FrontsOfCells = std::map<grid::CellId, grid::Front>;
 
 /// Does it lie in a corner that the plane cuts off its cell, beside a cell that is cut, or that another front (of

@@ -15,40 +15,60 @@ std::string write_front(const std::filesystem::path& path, const double end) {
   return path.string();
 }
 
-std::string cut_at(const double time, const std::string& mesh, const std::string& name) {
-  return section("Cut surface " + name, {key("Time [s]", time), "Shape = mesh", "Mesh = " + mesh});
-}
+/// How far what a bar gives off as its cut grows by a cell is off the closed form, and off the growth of the elastic energy.
+struct Released {
+  double off_form, off_elastic;
+};
 
-/// A bar of two arms of 0.1 m, 3 cells each, opened by dead loads at its end; the cut grows by one cell. The front
-/// stays at a column of nodes, from 14.5 to 15.5 cells. G = 12 P^2 a^2 / (E b^2 h^3) (1 + 0.64 h/a)^2 (Foote and
-/// Buchwald 1985) times b da is released: what is missing in the books, and the growth of the elastic energy.
-TEST(EnergyScene, DoubleCantileverGivesAwayItsEnergyRelease) {
-  const output::TemporaryFolder folder;
+/// A bar of two arms of 0.1 m, 3 cells each, opened by dead loads at its end; the cut ends after `end` cells, and grows by
+/// one. G = 12 P^2 a^2 / (E b^2 h^3) (1 + 0.64 h/a)^2 (Foote and Buchwald 1985) times b da is released: what is missing in
+/// the books, and the growth of the elastic energy, but for what ties at the front hold at the instant of cutting.
+Released released(const double end, const std::function<Keys(double end)>& shape) {
   const double cell = 0.1 / 3, b = 0.2, h = 0.1, P = dead_load * b * h;
   const std::string mouth = "0.001, 1, 0.0999";
   const std::string inside =
     material(E, 0.3, "small strain") + section("Support wall", box("0.97, -1, -1", "2, 1, 1")) +
     section("Traction up", box("-1, -1, 0.1", "0.001, 1, 1") + Keys{"Traction [N/m^2] = 0; 0; 10"}) +
     section("Traction down", box("-1, -1, -1", mouth) + Keys{"Traction [N/m^2] = 0; 0; -10"});
+  const auto cut_at = [&](const double time, const double n_cells, const std::string& name) {
+    return section("Cut surface " + name, Keys{key("Time [s]", time)} + shape(n_cells * cell));
+  };
   const Trial bar(
     steps(1, 3) +
     section("Body bar",
             Keys{"Mesh = " + mesh_path("bar.off"), key("Cube edge [m]", cell), "Element = enhanced"} + statics(),
             inside) +
-    cut_at(1, write_front(folder / "a.off", 15 * cell), "start") +
-    cut_at(2, write_front(folder / "b.off", 16 * cell), "growth") +
+    cut_at(1, end, "start") + cut_at(2, end + 1, "growth") +
     observe("missing energy, elastic energy, energy of loads, work of the cut, load forces, pieces"));
   EXPECT_NEAR(bar.last("force of up z"), P, 1e-9);
-  const auto missing = bar.series("missing energy"), elastic = bar.series("elastic energy");
-  const double released = missing[3] - missing[2];
-  const auto at_once = bar.series("work of the cut");
-  EXPECT_NEAR(released, elastic[3] - elastic[2], 5e-3 * released) << "Clapeyron";
-  EXPECT_NEAR(released - (at_once[3] - at_once[2]), elastic[3] - elastic[2], 1e-5 * released);
-  EXPECT_NEAR(at_once[3], 0, 5e-3 * released) << "enhanced strain of new copies differs a little";
-  const double a = 15 * cell, G = 12 * P * P * a * a / (E * b * b * h * h * h) * std::pow(1 + 0.64 * h / a, 2);
-  std::printf("double cantilever: released %.4g J, %.2f %% off the closed form\n", released,
-              100 * (released / (G * b * cell) - 1));
-  EXPECT_NEAR(released, G * b * cell, 0.08 * G * b * cell);
+  const auto missing = bar.series("missing energy"), elastic = bar.series("elastic energy"),
+             at_once = bar.series("work of the cut");
+  const double released = missing[3] - missing[2], growth = elastic[3] - elastic[2];
+  EXPECT_NEAR(released - (at_once[3] - at_once[2]), growth, 1e-5 * released) << "Clapeyron";
+  const double a = (end + 0.5) * cell, G = 12 * P * P * a * a / (E * b * b * h * h * h) * std::pow(1 + 0.64 * h / a, 2);
+  std::printf("double cantilever: released %.4g J, %.2f %% off the closed form; the body gained %.4g J\n", released,
+              100 * (released / (G * b * cell) - 1), growth);
+  return {std::abs(released / (G * b * cell) - 1), std::abs(growth / released - 1)};
+}
+
+/// It ends where, with the lag of its front, it has just come through a cell, so that ties hold next to nothing.
+TEST(EnergyScene, DoubleCantileverGivesAwayItsEnergyRelease) {
+  const auto [off_form, off_elastic] = released(15.25, [](const double end) {
+    return Keys{"Shape = rectangle", "Point [m] = 0, 0, 0.1", "First side [m] = " + std::to_string(2 * end) + ", 0, 0",
+                "Second side [m] = 0, 2, 0"};
+  });
+  EXPECT_LT(off_form, 0.02);
+  EXPECT_LT(off_elastic, 5e-3) << "enhanced strain of new copies differs a little";
+}
+
+/// As a mesh, whose fronts are drawn to a texel, and which moves on those of the one before.
+TEST(EnergyScene, DoubleCantileverCutByMeshesGivesAwayItsEnergyRelease) {
+  const output::TemporaryFolder folder;
+  const auto [off_form, off_elastic] = released(15.3, [&](const double end) {
+    return Keys{"Shape = mesh", "Mesh = " + write_front(folder / (std::to_string(end) + ".off"), end)};
+  });
+  EXPECT_LT(off_form, 0.04);
+  EXPECT_LT(off_elastic, 0.03);
 }
 
 /// Between grips that stay: released is half the way of the grips times what their force falls by.
