@@ -340,9 +340,9 @@ std::vector<Front> Advance::take(const Solid& solid, const PendingCuts& pending)
   for (const Front* const front : in_order) {
     const CellId c = front->cell;
     Cell& cell = followed.at(c);
-    const bool has_come =
-      front->passed >= least_passed && (is_swept(front) || is_cut_beside(solid, c, all));
-    if (!(has_come && begin(*front, all, std::move(cell))) && has_neighbour(solid, c, waits)) // which may be what it lacks
+    const bool has_come = front->passed >= least_passed && (is_swept(front) || is_cut_beside(solid, c, all));
+    const bool has_begun = has_come && begin(*front, all, std::move(cell));
+    if (!has_begun && has_neighbour(solid, c, waits)) // which may be what it lacks
       later.insert(c);
   }
   for (Front& corner : corners_ahead(solid, begun, all))

@@ -207,15 +207,14 @@ std::optional<Front> front_ahead(const Solid& solid, const CellId c, const std::
   add_around(points);
   const BentCourse bent(points, solid.grid.origin(c) + Vec3::Constant(0.5 * h), course->plane.normal, h);
   CellAtPlane at_bent(solid, c, bent.plane(), corners, bent.bend());
-  const auto stray = [&](const Vec3& p) { return bent.stray(p); };
-  constexpr double any = -1;
-  if (ahead == Ahead::ends) {
-    double most = 0;
-    for (const Vec3& p : corners)
-      most = std::max(most, stray(p));
+  constexpr double any = -1, vague = 0.25; // of a cube
+  double most = 0;
+  for (const Vec3& p : corners)
+    most = std::max(most, bent.stray(p));
+  const bool is_known = ahead == Ahead::ends && most < vague * h;
+  if (is_known)
     at_bent.follow_cuts(most);
-  }
-  if (at_bent.is_clear([&](const Vec3& p) { return ahead == Ahead::ends ? any : stray(p); }))
+  if (at_bent.is_clear([&](const Vec3& p) { return is_known ? any : bent.stray(p); }))
     return front_of(solid, at_bent, label);
   return std::nullopt;
 }

@@ -20,7 +20,8 @@
 
 namespace kerf::cut {
 
-/// Whether a cut may come farther: then it matters on which side nodes that lie near its course will be.
+/// Whether a cut may come farther: then it matters on which side nodes that lie near its course will be. Where it ends, as
+/// a mesh does, any side will do that others agree on.
 enum class Ahead { goes_on, ends };
 
 /// The front of a cut that goes on through a cell as it came, and has passed nothing yet; none where that is not
