@@ -256,9 +256,9 @@ void Advance::add(const Solid& solid, const CellId c, const Polygon& piece, cons
 /// By how the blade has moved, or else by all that it has met.
 std::optional<Front> Advance::front_in(const Solid& solid, const CellId c, const grid::CutLabel label) const {
   const auto at = cells_.find(c);
-  const bool is_met = at != cells_.end() && at->second.label == label;
-  const std::vector<Polygon> pieces = is_met ? at->second.pieces : std::vector<Polygon>(),
-                             at_rest = is_met ? at->second.at_rest : std::vector<Polygon>();
+  const Cell not_met;
+  const Cell& cell = at != cells_.end() && at->second.label == label ? at->second : not_met;
+  const std::vector<Polygon>&pieces = cell.pieces, &at_rest = cell.at_rest;
   const auto around = [&](Points& points) { add_around(solid, c, label, points); };
   auto front = pieces.empty() && !at_rest.empty() ? std::nullopt : front_ahead(solid, c, pieces, label, ahead_, around);
   if (!front && !at_rest.empty()) {
@@ -422,11 +422,12 @@ std::vector<Points> Advance::Cell::take_fresh(const Front& front, const double h
 /// Sets how far the front has come, and what follows it from then on.
 Advance::Cell Advance::follow(const Solid& solid, Front& front) const {
   const auto at = cells_.find(front.cell);
-  const Cell& cell = at != cells_.end() ? at->second : Cell{};
+  const Cell not_met;
+  const Cell& cell = at != cells_.end() ? at->second : not_met;
   const InPlane in_plane(front.point, front.normal, solid.grid.h());
   Cell followed{.label = front.label, .section = section_of(solid, front, in_plane)};
-  for (const auto& pieces : {cell.pieces, cell.at_rest})
-    for (const Polygon& piece : pieces) {
+  for (const std::vector<Polygon>* const pieces : {&cell.pieces, &cell.at_rest})
+    for (const Polygon& piece : *pieces) {
       draw(piece, in_plane, followed.swept);
       if (as_faces_)
         followed.add_fresh(front, solid.grid.h(), clipped(piece, in_sight_of(solid, front.cell)), 0);
