@@ -2,6 +2,7 @@
 
 #include "cut/cell_at_plane.h"
 #include "cut/shreds.h"
+#include "cut/sides.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
@@ -125,6 +126,15 @@ bool parts_nodes(const Solid& solid, const Front& front, const grid::Segments bl
   grid::CellCuts cuts = grid::cuts_of(solid, front.cell);
   cuts.blades = blades;
   return std::ranges::count_if(grid::whole_parts_of(cuts), [](const grid::Part& part) { return part.nodes != 0; }) > 1;
+}
+
+/// Where the front's plane crosses a segment of its cell, from the first end to the second [1].
+double crossing(const Solid& solid, const Front& front, const std::array<std::uint8_t, 2>& ends) {
+  const auto height = [&](const int item) {
+    return front.normal.dot(grid::item_point(solid, front.cell, item) - front.point);
+  };
+  const double a = height(ends[0]), b = height(ends[1]);
+  return (a >= 0) == (b >= 0) ? 0.5 : a / (a - b);
 }
 
 /// Do the parts of two cells divide the face between them alike, or does one of the cells hold it together?
@@ -270,9 +280,6 @@ std::vector<grid::SkinCut> missed_cuts(const Solid& solid, const Front& front) {
       n += static_cast<int>(own >> border.segments[i] & 1);
     return n % 2 == 1;
   };
-  const auto height = [&](const int item) {
-    return front.normal.dot(grid::item_point(solid, front.cell, item) - front.point);
-  };
   std::vector<grid::SkinCut> missed;
   for (grid::Segments left = skeleton.segments & ~skeleton::lines & ~cuts.blades; left != 0; left &= left - 1) {
     const int segment = std::countr_zero(left);
@@ -280,13 +287,36 @@ std::vector<grid::SkinCut> missed_cuts(const Solid& solid, const Front& front) {
     if (!is_odd(sides[0]) || !is_odd(sides[1]))
       continue;
     own |= grid::Segments(1) << segment;
-    const double a = height(ends[0]), b = height(ends[1]);
     missed.push_back({.segment = grid::skin_segment(solid.grid, front.cell, segment),
-                      .t = (a >= 0) == (b >= 0) ? 0.5 : a / (a - b),
+                      .t = crossing(solid, front, ends),
                       .normal = front.normal,
                       .label = front.label});
   }
   return parts_nodes(solid, front, own) ? missed : std::vector<grid::SkinCut>();
+}
+
+SweepCuts cuts_between_gaping(const Solid& solid, const Front& front, const Points& x) {
+  SweepCuts between;
+  const CellId c = front.cell;
+  const grid::CellCuts cuts = grid::cuts_of(solid, c);
+  const auto edges = solid.grid.edges(c);
+  for (const grid::Part& part : grid::whole_parts_of(cuts))
+    for (grid::Segments left = front.ahead & ~cuts.blades; left != 0; left &= left - 1) {
+      const int segment = std::countr_zero(left);
+      const auto& ends = cuts.skeleton().segment[segment].ends;
+      const auto holds = [&](const int item) { return (part.items() >> item & 1) != 0; };
+      if (!holds(ends[0]) || !holds(ends[1]) || are_near(solid, c, ends, x))
+        continue;
+      const double t = crossing(solid, front, ends);
+      if (segment >= skeleton::first_half) {
+        between.of_skin.push_back({grid::skin_segment(solid.grid, c, segment), t, front.normal, front.label});
+        continue;
+      }
+      const Vec3 a = grid::item_point(solid, c, ends[0]), p = a + t * (grid::item_point(solid, c, ends[1]) - a),
+                 lower = solid.grid.position(solid.grid.nodes(c)[grid::cube::line_vertices[segment][0]]);
+      between.cuts.push_back({edges[segment], (p - lower).sum() / solid.grid.h(), front.normal, front.label});
+    }
+  return between;
 }
 
 } // namespace kerf::cut

@@ -14,6 +14,7 @@
 /// a wrong place.
 
 #include "cut/cell_at_plane.h"
+#include "cut/recut.h"
 
 #include <map>
 #include <optional>
@@ -47,7 +48,7 @@ bool is_corner_ahead(const grid::Solid& solid, const grid::Front& front, const F
 bool fits_in(const grid::Solid& solid, const grid::Front& front, const FrontsOfCells& begun);
 
 /// Does the front still say how its cell is to be parted? Until its own blade has come between the cell's nodes, also
-/// where that has gone on otherwise: what has come apart may gape, and would snap together.
+/// where that goes on otherwise.
 bool is_ahead(const grid::Solid& solid, const grid::Front& front);
 
 /// What a blade has missed of the skin in a cell that it has passed all through. Around each side of the cell's
@@ -55,5 +56,10 @@ bool is_ahead(const grid::Solid& solid, const grid::Front& front);
 /// of the skin in two places, and one that came to lie in the other copy was not met on its way. A segment between two
 /// sides with odd numbers is cut where the front's plane crosses it. None where the cell does not come apart by that.
 std::vector<grid::SkinCut> missed_cuts(const grid::Solid& solid, const grid::Front& front);
+
+/// What keeps apart what a front that its blade did not follow has parted, where it is not to part it any more: of the
+/// segments ahead that the blade has left whole, those between copies that have moved apart too far to be one again
+/// (are_near, sides.h), cut where the front's plane crosses them. The crack has run there.
+SweepCuts cuts_between_gaping(const grid::Solid& solid, const grid::Front& front, const Points& x);
 
 } // namespace kerf::cut

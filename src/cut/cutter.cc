@@ -334,6 +334,25 @@ std::set<grid::CutLabel> Cutter::labels_that_meet(const Solid& solid, const std:
   return labels;
 }
 
+SweepCuts Cutter::put(Solid& solid, const SweepCuts& cuts, Added& added) {
+  SweepCuts by_others;
+  for (const EdgeCut& cut : cuts.cuts)
+    if (solid.cuts.can_be_cut(solid.grid, cut.edge)) {
+      solid.cuts.add(solid.grid, cut);
+      added.edges.push_back(cut.edge);
+      passed_[cut.label - 1].remove(solid.grid.cells(cut.edge));
+    } else
+      by_others.cuts.push_back(cut);
+  for (const grid::SkinCut& cut : cuts.of_skin)
+    if (!solid.cuts.is_cut(cut.segment)) {
+      solid.cuts.add(cut);
+      added.segments.push_back(cut.segment);
+      passed_[cut.label - 1].remove(cells_of(solid.grid, cut.segment));
+    } else
+      by_others.of_skin.push_back(cut);
+  return by_others;
+}
+
 Cutter::Added Cutter::add(Solid& solid, const SweepCuts& cuts, const Points& x) {
   Added added;
   auto& [edges, segments, edges_met, segments_met, coming] = added;
@@ -352,20 +371,11 @@ Cutter::Added Cutter::add(Solid& solid, const SweepCuts& cuts, const Points& x) 
     meet_edge(cut);
   for (const grid::SkinCut& cut : cuts.later_of_skin)
     meet(cut, cut.segment, segments_met);
-  for (const EdgeCut& cut : cuts.cuts)
-    if (solid.cuts.can_be_cut(solid.grid, cut.edge)) {
-      solid.cuts.add(solid.grid, cut);
-      edges.push_back(cut.edge);
-      passed_[cut.label - 1].remove(solid.grid.cells(cut.edge));
-    } else // by another of the same step
-      meet_edge(cut);
-  for (const grid::SkinCut& cut : cuts.of_skin)
-    if (!solid.cuts.is_cut(cut.segment)) {
-      solid.cuts.add(cut);
-      segments.push_back(cut.segment);
-      passed_[cut.label - 1].remove(cells_of(solid.grid, cut.segment));
-    } else
-      meet(cut, cut.segment, segments_met);
+  const SweepCuts by_others = put(solid, cuts, added);
+  for (const EdgeCut& cut : by_others.cuts)
+    meet_edge(cut);
+  for (const grid::SkinCut& cut : by_others.of_skin)
+    meet(cut, cut.segment, segments_met);
   take_up_left_ones(solid, pending_, edges, segments, edges_met, segments_met);
   std::sort(edges.begin(), edges.end());
   std::sort(segments.begin(), segments.end());
@@ -375,17 +385,33 @@ Cutter::Added Cutter::add(Solid& solid, const SweepCuts& cuts, const Points& x) 
   return added;
 }
 
-CutChange Cutter::part(Solid& solid, const Added& added, const std::span<const grid::Front> fronts, const Points& x) {
-  std::vector<grid::CellId> cells;
-  for (const grid::Front& front : fronts) {
-    solid.cuts.set(front);
-    cells.push_back(front.cell);
+std::vector<grid::CellId> Cutter::take_back_fronts(Solid& solid, Added& added, const Points& x) {
+  std::vector<grid::CellId> cells, touched = grid::touched_cells(solid.grid, added.edges, added.segments);
+  while (!touched.empty()) {
+    Added more;
+    for (const grid::CellId c : touched)
+      if (const grid::Front* const front = solid.cuts.front(c); front && !is_ahead(solid, *front)) {
+        put(solid, cuts_between_gaping(solid, *front, x), more);
+        solid.cuts.take_back_front(c);
+        cells.push_back(c);
+      }
+    for (const EdgeId e : more.edges)
+      ++counts_.n_cut_edges[solid.cuts.find(e)->label - 1];
+    touched = grid::touched_cells(solid.grid, more.edges, more.segments);
+    added.edges.insert(added.edges.end(), more.edges.begin(), more.edges.end());
+    added.segments.insert(added.segments.end(), more.segments.begin(), more.segments.end());
   }
-  for (const grid::CellId c : grid::touched_cells(solid.grid, added.edges, added.segments))
-    if (const grid::Front* const front = solid.cuts.front(c); front && !is_ahead(solid, *front)) {
-      solid.cuts.take_back_front(c);
-      cells.push_back(c);
-    }
+  std::ranges::sort(added.edges);
+  std::ranges::sort(added.segments);
+  return cells;
+}
+
+CutChange Cutter::part(Solid& solid, Added added, const std::span<const grid::Front> fronts, const Points& x) {
+  for (const grid::Front& front : fronts)
+    solid.cuts.set(front);
+  std::vector<grid::CellId> cells = take_back_fronts(solid, added, x);
+  for (const grid::Front& front : fronts)
+    cells.push_back(front.cell);
   join(solid, added, x, cells);
   if (added.edges.empty() && added.segments.empty() && cells.empty())
     return {};

@@ -122,10 +122,15 @@ class Cutter {
     std::vector<grid::SkinSegment> segments_met;
     std::set<grid::CutLabel> coming; // of blades that have met something that they had not before, or whose cuts wait
   };
+  /// Cuts what can be cut; returns what others of the same step have cut.
+  SweepCuts put(grid::Solid& solid, const SweepCuts& cuts, Added& added);
   Added add(grid::Solid& solid, const SweepCuts& cuts, const Points& x);
   /// Of blades that meet something that they have neither cut nor met before.
   std::set<grid::CutLabel> labels_that_meet(const grid::Solid& solid, std::span<const Stroke> strokes) const;
-  grid::CutChange part(grid::Solid& solid, const Added& added, std::span<const grid::Front> fronts, const Points& x);
+  grid::CutChange part(grid::Solid& solid, Added added, std::span<const grid::Front> fronts, const Points& x);
+  /// Takes back the fronts of cells that their blades have come through, and returns these cells; adds what keeps apart
+  /// what gapes.
+  std::vector<grid::CellId> take_back_fronts(grid::Solid& solid, Added& added, const Points& x);
   void join(grid::Solid& solid, const Added& added, const Points& x, std::vector<grid::CellId>& anew);
   /// To the way from x_before_ to x, where that is asked for.
   void fit_boxes(bool is_asked, const Points& x);

@@ -158,6 +158,12 @@ bool are_near(const Solid& solid, const Points& x, const grid::CopyId a, const i
   return (x[copies[a].corners[v].value] - x[copies[b].corners[w].value]).norm() <= near * solid.grid.h();
 }
 
+/// At all corners.
+bool are_near(const Solid& solid, const Points& x, const grid::CopyId a, const grid::CopyId b) {
+  return std::ranges::all_of(std::views::iota(0, grid::cube::n_vertices),
+                             [&](const int v) { return are_near(solid, x, a, v, b, v); });
+}
+
 /// Without those of a face across which the copy that has them is too far away.
 Intervals near_each_other(const Solid& solid, const CellId c, const Joined& group, const Points& x) {
   Intervals kept = group.intervals;
@@ -253,9 +259,7 @@ std::vector<Joined> near_each_other(const Solid& solid, const CellId c, std::vec
     for (const grid::Part& part : parts) {
       if ((part.items() & group.items) == 0)
         continue;
-      const grid::CopyId first = copy_of(solid, c, group.items), of_part = copy_of(solid, c, part.items());
-      const auto is_near = [&](const int v) { return are_near(solid, x, first, v, of_part, v); };
-      if (std::ranges::all_of(std::views::iota(0, grid::cube::n_vertices), is_near))
+      if (are_near(solid, x, copy_of(solid, c, group.items), copy_of(solid, c, part.items())))
         kept |= part.items();
     }
     group.items = kept;
@@ -266,6 +270,11 @@ std::vector<Joined> near_each_other(const Solid& solid, const CellId c, std::vec
            std::ranges::any_of(parts, [&](const grid::Part& part) { return part.items() == group.items; });
   });
   return groups;
+}
+
+bool are_near(const Solid& solid, const CellId c, const std::array<std::uint8_t, 2>& items, const Points& x) {
+  const auto copy = [&](const int i) { return copy_of(solid, c, Items(1) << items[i]); };
+  return are_near(solid, x, copy(0), copy(1));
 }
 
 } // namespace kerf::cut

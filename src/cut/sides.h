@@ -38,4 +38,7 @@ std::vector<grid::Joined> undivided(const grid::Solid& solid, grid::CellId c, co
 std::vector<grid::Joined> near_each_other(const grid::Solid& solid, grid::CellId c, std::vector<grid::Joined> groups,
                                           const Points& x);
 
+/// Are two items of a cell in one copy, or in two whose corners have moved apart by no more than that?
+bool are_near(const grid::Solid& solid, grid::CellId c, const std::array<std::uint8_t, 2>& items, const Points& x);
+
 } // namespace kerf::cut
