@@ -27,8 +27,10 @@ struct Cutting {
   }
   void cut(const Shape& shape) { follow(cutter.at_once(body, {"cut", shape, 1}, grid::rest_positions(body))); }
   void step(const Blade& blade, const double t0, const double t1) { step(blade, t0, t1, grid::rest_positions(body)); }
-  void step(const Blade& blade, const double t0, const double t1, const Points& x) {
-    follow(cutter.step(body, std::span(&blade, 1), t0, t1, x));
+  grid::CutChange step(const Blade& blade, const double t0, const double t1, const Points& x) {
+    grid::CutChange change = cutter.step(body, std::span(&blade, 1), t0, t1, x);
+    follow(change);
+    return change;
   }
   void follow(const grid::CutChange& change) {
     surface::place(body, change, {});
