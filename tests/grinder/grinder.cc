@@ -43,6 +43,14 @@ void run(scene::World& world, const Scene& scene, const Until until, Outcome& ou
 
 std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
 
+/// When it was drawn out so far that it stopped [s].
+std::optional<double> drawn_out_at(const Scene& scene, const Outcome& outcome) {
+  if (!outcome.failure || outcome.failure->reason != "stopped" ||
+      outcome.failure->words.find("is drawn out") == std::string::npos)
+    return {};
+  return outcome.failure->step * number_of(scene, "Time step [s]").value_or(1);
+}
+
 } // namespace
 
 std::string name_of(const Case& one) { return one.solid->name + ':' + one.kind->name + ':' + std::to_string(one.seed); }
@@ -58,6 +66,22 @@ Outcome run(const Scene& scene, const std::vector<std::string>& changes, const U
   }
   run(*world, scene, until, outcome);
   return outcome;
+}
+
+bool hangs_by_a_thread(const Scene& scene, const std::vector<std::string>& changes, const Outcome& outcome) {
+  const auto time = drawn_out_at(scene, outcome);
+  const auto has = [&](const char* words) { return text(scene).find(words) != std::string::npos; };
+  if (!time || has("Backend = "))
+    return false;
+  const auto is_too = [&](const Scene& other, const std::vector<std::string>& with) {
+    const auto other_time = drawn_out_at(other, run(other, with, Until::first_failure));
+    return other_time && std::abs(*other_time - *time) <= 0.1 * *time;
+  };
+  std::vector<std::string> with_other_element = changes;
+  with_other_element.push_back(std::string("Body solid/Element=") +
+                               (has("Element = enhanced") ? "trilinear" : "enhanced"));
+  return is_too(with_number(scene, "Time step [s]", 0.5 * number_of(scene, "Time step [s]").value_or(1)), changes) &&
+         is_too(scene, with_other_element);
 }
 
 namespace {
@@ -93,7 +117,8 @@ Scene shrunk(const Scene& scene, const std::vector<std::string>& changes, const 
   return least;
 }
 
-void Harvest::add(const std::string& name, const std::string& kind, const Scene& scene, const Outcome& outcome) {
+void Harvest::add(const std::string& name, const std::string& kind, const Scene& scene,
+                  const std::vector<std::string>& changes, const Outcome& outcome) {
   ++n_cases_;
   auto& counts = counts_[kind];
   ++counts["cases"];
@@ -110,6 +135,11 @@ void Harvest::add(const std::string& name, const std::string& kind, const Scene&
             std::max(most.runaway, f.runaway), std::max(most.outlier, f.outlier),
             std::max(most.volume, f.volume),   std::max(most.reach, f.reach),
             std::max(most.energy, f.energy),   std::max(most.cut_energy, f.cut_energy)};
+    return;
+  }
+  if (hangs_by_a_thread(scene, changes, outcome)) {
+    ++counts["by a thread"];
+    hanging_.push_back(name + ": " + outcome.failure->words);
     return;
   }
   ++counts[outcome.failure->reason];
@@ -142,6 +172,8 @@ std::string Harvest::summary() const {
   }
   for (const std::string& refusal : refusals_)
     out << "refused: " << refusal << '\n';
+  for (const std::string& hanging : hanging_)
+    out << "by a thread: " << hanging << '\n';
   return out.str();
 }
 

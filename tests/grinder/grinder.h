@@ -32,6 +32,10 @@ enum class Until { first_failure, end };
 /// Runs a scene with some keys changed ("Section/Key=value"); past its first failure only to see how far it goes.
 Outcome run(const Scene& scene, const std::vector<std::string>& changes, Until until);
 
+/// Did it stop as it was drawn out, and does it with half the step and with the other element too, within a tenth of the
+/// time? Then part of the body hangs by a thread, which no step could help: material does not tear here.
+bool hangs_by_a_thread(const Scene& scene, const std::vector<std::string>& changes, const Outcome& outcome);
+
 /// The smallest scene found that fails with the same reason: fewer tools, fewer steps, larger cubes.
 Scene shrunk(const Scene& scene, const std::vector<std::string>& changes, const std::string& reason);
 
@@ -42,7 +46,9 @@ class Harvest {
   explicit Harvest(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
   /// `kind` of physics, under which failures are counted; `name` of the case.
-  void add(const std::string& name, const std::string& kind, const Scene& scene, const Outcome& outcome);
+  /// One that hangs by a thread is no failure.
+  void add(const std::string& name, const std::string& kind, const Scene& scene,
+           const std::vector<std::string>& changes, const Outcome& outcome);
 
   std::size_t n_cases() const { return n_cases_; }
   std::size_t n_refused() const { return n_refused_; }
@@ -54,7 +60,7 @@ class Harvest {
  private:
   std::filesystem::path folder_;
   std::size_t n_cases_ = 0, n_refused_ = 0;
-  std::vector<std::string> failures_, refusals_;
+  std::vector<std::string> failures_, refusals_, hanging_;
   std::map<std::string, std::map<std::string, int>> counts_; ///< of reasons, by kind
   std::map<std::string, Figures> healthy_;                   ///< largest figures of cases that passed, by kind
 };
