@@ -134,7 +134,7 @@ double crossing(const Solid& solid, const Front& front, const std::array<std::ui
     return front.normal.dot(grid::item_point(solid, front.cell, item) - front.point);
   };
   const double a = height(ends[0]), b = height(ends[1]);
-  return (a >= 0) == (b >= 0) ? 0.5 : a / (a - b);
+  return (a >= 0) == (b >= 0) ? 0.5 : std::clamp(a / (a - b), grid::min_edge_parameter, 1 - grid::min_edge_parameter);
 }
 
 /// Do the parts of two cells divide the face between them alike, or does one of the cells hold it together?
@@ -312,9 +312,11 @@ SweepCuts cuts_between_gaping(const Solid& solid, const Front& front, const Poin
         between.of_skin.push_back({grid::skin_segment(solid.grid, c, segment), t, front.normal, front.label});
         continue;
       }
-      const Vec3 a = grid::item_point(solid, c, ends[0]), p = a + t * (grid::item_point(solid, c, ends[1]) - a),
-                 lower = solid.grid.position(solid.grid.nodes(c)[grid::cube::line_vertices[segment][0]]);
-      between.cuts.push_back({edges[segment], (p - lower).sum() / solid.grid.h(), front.normal, front.label});
+      const auto along = [&](const int item) { // the edge; the end of one of the skin is a point of that
+        const auto& [lower, upper] = grid::cube::line_vertices[segment];
+        return item == lower ? 0 : item == upper ? 1 : solid.cuts.find_outer(edges[segment])->t;
+      };
+      between.cuts.push_back({edges[segment], std::lerp(along(ends[0]), along(ends[1]), t), front.normal, front.label});
     }
   return between;
 }
