@@ -15,7 +15,7 @@
 ///
 /// Cells in which cuts wait (pending.h) get no front before they are cut; those beside them are asked again then.
 ///
-/// Errors: a texel is .02 cubes wide; within a cell the map of its copy is taken as affine. A blade that turns leaves
+/// Errors: a texel is .04 cubes wide; within a cell the map of its copy is taken as affine. A blade that turns leaves
 /// the fronts that it had, until it comes between the nodes of their cells: then these are parted as it has cut them.
 
 #include "cut/course.h"

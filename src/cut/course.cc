@@ -179,6 +179,28 @@ bool leaves_shreds(const Solid& solid, const Front& front, const FrontsOfCells& 
   });
 }
 
+/// With more cuts in and around a cell?
+bool leaves_shreds(const Solid& solid, const CellId c, const SweepCuts& more) {
+  const auto cuts_of = [&](const CellId cell) {
+    const auto edges = solid.grid.edges(cell);
+    grid::Segments cut = 0;
+    for (const grid::EdgeCut& one : more.cuts)
+      if (const auto at = std::ranges::find(edges, one.edge); at != edges.end())
+        cut |= grid::Segments(1) << (at - edges.begin());
+    const grid::CellCuts cuts = grid::cuts_of(solid, cell);
+    for (grid::Segments left = more.of_skin.empty() ? 0 : cuts.skeleton().segments & ~skeleton::lines; left != 0;
+         left &= left - 1)
+      if (const auto one = grid::skin_segment(solid.grid, cell, std::countr_zero(left));
+          std::ranges::find(more.of_skin, one, &grid::SkinCut::segment) != more.of_skin.end())
+        cut |= left & -left;
+    return grid::with(cuts, cut);
+  };
+  const grid::Parts parts = grid::parts_of(cuts_of(c));
+  return std::ranges::any_of(parts, [&](const grid::Part& part) {
+    return is_small(solid, c, std::countr_zero(part.items()), cuts_of);
+  });
+}
+
 std::optional<Front> front_of(const Solid& solid, const CellAtPlane& cell, const grid::CutLabel label) {
   if (!cell.is_met())
     return std::nullopt;
@@ -318,7 +340,7 @@ SweepCuts cuts_between_gaping(const Solid& solid, const Front& front, const Poin
       };
       between.cuts.push_back({edges[segment], std::lerp(along(ends[0]), along(ends[1]), t), front.normal, front.label});
     }
-  return between;
+  return leaves_shreds(solid, c, between) ? SweepCuts() : between;
 }
 
 } // namespace kerf::cut

@@ -3,14 +3,12 @@
 #include "base/archive.h"
 #include "base/vec.h"
 
-#include <bitset>
-
 namespace kerf::cut {
 
 /// Bits over a square around a point of a plane.
 class Raster {
  public:
-  static constexpr int n = 128;
+  static constexpr int n = 64;
   static constexpr double side = 2.5; ///< in cubes; more than a cube's space diagonal and twice the lag
 
   /// Sets the texels whose middles lie in a triangle, where the third coordinate is at most `most` away from 0; of
@@ -22,11 +20,10 @@ class Raster {
   bool any() const { return count() > 0; }
   friend Raster operator&(Raster a, const Raster& b);
 
-  void archive(Archive& a);
+  void archive(Archive& a) { a(rows_); }
 
  private:
-  using Row = std::bitset<n>;
-  std::array<Row, n> rows_{};
+  std::array<std::uint64_t, n> rows_{};
 };
 
 } // namespace kerf::cut

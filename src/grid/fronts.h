@@ -27,8 +27,8 @@
 /// has been cut (Front::come).
 ///
 /// A front is provisional: when its blade has come between the cell's nodes, the cell is parted as that has cut it
-/// (complex.h), and copies may be joined again. Those that have moved apart too far for that stay apart: the cell is cut
-/// between them, in the front's plane (cut/course.h).
+/// (complex.h), and copies may be joined again. Those that have moved apart too far for that stay apart, if that leaves no
+/// shred: the cell is cut between them, in the front's plane (cut/course.h).
 ///
 /// What else is cut may leave a third part of the cell, of skin without a node. That is no front: it is held to what it
 /// belongs to, by springs as stiff as its own material is: stiffer ones would do no more, and conjugate gradients would

@@ -121,12 +121,12 @@ TEST(Advance, LeavesThemWhereABodyGivesWayUnderABladeThatRests) {
 }
 
 /// A blade comes along a wound that gapes, and turns away from where it was to go: what the front has parted and does
-/// not divide any more stays apart where it gapes (a crack that closed over half a cube gave a liver .3 J, ten times
-/// what it had).
+/// not divide any more stays apart where it gapes (a crack that closed over half a cube gave a liver .3 J where it had
+/// .1), unless a shred would come free.
 TEST(Advance, JoinsNothingThatGapes) {
   support::Random random(19);
   constexpr double most = 0.25;
-  int n_joined = 0, n_gaping = 0;
+  int n_joined = 0, n_gaping = 0, n_far = 0;
   for (int i = 0; i < 80; ++i) {
     const double height = uniform(random, 4, 5), turn = uniform(random, 2.5, 6.5), slope = uniform(random, -1.5, 1.5);
     const Vec3 edge = Vec3::UnitY() + uniform(random, -0.2, 0.2) * Vec3::UnitZ();
@@ -146,15 +146,17 @@ TEST(Advance, JoinsNothingThatGapes) {
         const double way = (x[lapse.corner.value] - x[lapse.heir.value]).norm();
         ++n_joined;
         n_gaping += way > 0.1;
-        EXPECT_LE(way, most) << i << " at " << t;
+        n_far += way > most;
       }
     }
     expect_as_built(moving);
     EXPECT_TRUE(is_closed(moving.surface));
     EXPECT_NEAR(sum(support::octant_volumes(moving.body)), 729, 1e-9);
   }
-  std::cout << n_joined << " corners joined, " << n_gaping << " over more than a tenth of a cube\n";
+  std::cout << n_joined << " corners joined, " << n_gaping << " over more than a tenth of a cube, " << n_far
+            << " over more than a quarter\n";
   EXPECT_GT(n_joined, 100);
+  EXPECT_LE(n_far, 4); // those of one shred
 }
 
 /// A stroke from a random place beside a body of this size into it and on, which turns on its way, and whose edge ends
@@ -307,9 +309,9 @@ TEST(Advance, LeavesACompletedCutAsItIsWithoutFronts) {
     ++n_same;
     n_led_same += i < n_led;
   }
-  std::cout << n_same << " of " << n_bodies << " bodies the same, " << n_led_same << " of " << n_led << " led; "
-            << n_begun << " fronts in all steps, " << n_lapsed << " corners lapsed, " << n_left << " fronts left\n";
-  EXPECT_GE(n_same, n_bodies - 7u); // of 150 bodies, 126
+  std::cout << n_same << " of " << n_bodies << " bodies the same, " << n_led_same << " of " << n_led << " led; " << n_begun << " fronts in all steps, " << n_lapsed
+            << " corners lapsed, " << n_left << " fronts left\n";
+  EXPECT_GE(n_same, n_bodies - 5u);
   EXPECT_GT(n_begun, 1200u);
   EXPECT_GT(n_lapsed, 10u);
   EXPECT_GT(n_lapsed_copies, 10u);
