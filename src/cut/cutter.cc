@@ -4,9 +4,9 @@
 #include "base/sort_unique.h"
 #include "cut/course.h"
 #include "cut/fronts.h"
-#include "cut/near_sweep.h"
 #include "cut/shreds.h"
 #include "cut/sides.h"
+#include "cut/splinters.h"
 #include "grid/parts.h"
 #include "grid/touched.h"
 
@@ -53,66 +53,6 @@ double between(const Solid& solid, const EdgeCut& later, const Points& x) {
                along = later.normal[solid.grid.axis(later.edge)];
   return part * along * along;
 }
-
-NearSweep near(const Points& line) {
-  std::vector<Patch> pieces;
-  for (std::size_t i = 1; i < line.size(); ++i)
-    pieces.push_back({line[i - 1], line[i], line[i], line[i - 1]});
-  return NearSweep(std::move(pieces));
-}
-
-/// May it be in one of the cell's copies, or nearer than `room` [m]?
-bool is_near(const NearSweep& near, const Solid& solid, const grid::CellId c, const Points& x, const double room) {
-  for (const grid::CopyId copy : solid.complex.copies_of(c)) {
-    const Box box = geometry::box_around(corners_of(solid.complex.copies[copy], x));
-    if (near.may_be_in({box.lower - Vec3::Constant(room), box.upper + Vec3::Constant(room)}))
-      return true;
-  }
-  return false;
-}
-
-/// Where blades are that come on: those that have moved, or are `coming`.
-class Passage {
- public:
-  Passage(const std::span<const StandingEdge> edges, const std::set<grid::CutLabel>& coming) {
-    for (const StandingEdge& edge : edges) {
-      const auto& [label, line, before] = edge;
-      if (edge.rests() && !coming.contains(label))
-        continue;
-      edges_.push_back({label, near(line)});
-    }
-  }
-
-  /// What blades that are in a cell or beside it, and have not left it before, have cut there, if others have cut it
-  /// too. Which have left it is noted.
-  grid::Segments cuts_in(const Solid& solid, const grid::CellId c, const Points& x, const std::size_t n_labels,
-                         std::set<LeftCell>& left) const {
-    grid::Segments cuts = 0;
-    for (grid::CutLabel label = 1; label <= n_labels; ++label) {
-      const grid::Segments own = left.contains({c, label}) ? 0 : grid::cut_by(solid, c, label);
-      if (own == 0)
-        continue;
-      if (holds(label, solid, c, x))
-        cuts |= own;
-      else
-        left.insert({c, label});
-    }
-    return (grid::cuts_of(solid, c).blades & ~cuts) != 0 ? cuts : 0;
-  }
-
- private:
-  bool holds(const grid::CutLabel label, const Solid& solid, const grid::CellId c, const Points& x) const {
-    return std::ranges::any_of(edges_, [&](const Edge& edge) {
-      return edge.label == label && is_near(edge.near, solid, c, x, solid.grid.h());
-    });
-  }
-
-  struct Edge {
-    grid::CutLabel label;
-    NearSweep near;
-  };
-  std::vector<Edge> edges_;
-};
 
 /// Where something is met, in blocks of cells.
 class Meetings {
@@ -210,6 +150,17 @@ void take_up_left_ones(Solid& solid, const PendingCuts& pending, std::vector<Edg
   }
 }
 
+/// Is something of a group in several copies?
+bool joins_copies(const Solid& solid, const grid::CellId c, const std::vector<grid::Joined>& groups) {
+  const auto copies = solid.complex.copies_of(c);
+  return std::ranges::any_of(groups, [&](const grid::Joined& group) {
+    std::size_t n = 0;
+    for (const grid::CopyId copy : copies)
+      n += (solid.complex.copies[copy].items() & group.items) != 0;
+    return n > 1;
+  });
+}
+
 } // namespace
 
 Cutter::Cutter(const std::size_t n_labels, const Release release, const Fronts fronts)
@@ -282,7 +233,7 @@ std::vector<grid::SkinCut> Cutter::missed(const Solid& solid, const SweepCuts& f
     if (front.passed < most_passed || edge == edges_.end())
       continue;
     const auto cuts = missed_cuts(solid, front);
-    if (!cuts.empty() && !is_being_cut(solid, front.cell, found) && !is_near(near(edge->line), solid, front.cell, x, 0))
+    if (!cuts.empty() && !is_being_cut(solid, front.cell, found) && !is_near(near_sweep(edge->line), solid, front.cell, x, 0))
       all.insert(all.end(), cuts.begin(), cuts.end());
   }
   return all;
@@ -428,12 +379,19 @@ void Cutter::join(Solid& solid, const Added& added, const Points& x, std::vector
   std::vector<grid::CellId> cells;
   std::ranges::set_union(cut, met, std::back_inserter(cells));
   cells.insert(cells.end(), unsettled_.begin(), unsettled_.end());
-  sort_unique(cells);
-  unsettled_.clear();
   if (cells.empty())
     return;
+  cells.insert(cells.end(), held_.begin(), held_.end());
+  sort_unique(cells);
+  unsettled_.clear();
   const Passage passage(edges_, added.coming);
+  std::map<grid::CellId, std::vector<grid::Joined>> before;
+  const auto joined = [&](const grid::CellId c) {
+    const std::vector<grid::Joined>* const groups = solid.cuts.joined(c);
+    return groups ? *groups : std::vector<grid::Joined>();
+  };
   for (const grid::CellId c : cells) {
+    before.emplace(c, joined(c));
     std::vector<grid::Joined> groups;
     if (solid.cuts.front(c) == nullptr) {
       const grid::Segments unsettled = passage.cuts_in(solid, c, x, passed_.size(), left_);
@@ -442,23 +400,20 @@ void Cutter::join(Solid& solid, const Added& added, const Points& x, std::vector
       if (unsettled != 0)
         unsettled_.insert(c);
     }
-    const std::vector<grid::Joined>* const earlier = solid.cuts.joined(c);
-    if (earlier ? groups == *earlier : groups.empty())
-      continue;
-    const bool joins = std::ranges::any_of(groups, [&](const grid::Joined& group) {
-      const auto holds = [&](const grid::CopyId copy) {
-        return (solid.complex.copies[copy].items() & group.items) != 0;
-      };
-      const auto copies = solid.complex.copies_of(c);
-      std::size_t n = 0;
-      for (const grid::CopyId copy : copies)
-        n += holds(copy);
-      return n > 1;
-    });
     solid.cuts.set_joined(c, std::move(groups));
-    if (joins || !std::ranges::binary_search(cut, c))
-      anew.push_back(c);
   }
+  held_.clear();
+  for (const auto& [c, parts] : held_splinters(solid, cells, unsettled_, x)) {
+    std::vector<grid::Joined> groups = joined(c);
+    before.emplace(c, groups);
+    groups.push_back(parts);
+    solid.cuts.set_joined(c, std::move(groups));
+    held_.insert(c);
+  }
+  for (const auto& [c, earlier] : before)
+    if (const auto groups = joined(c);
+        groups != earlier && (joins_copies(solid, c, groups) || !std::ranges::binary_search(cut, c)))
+      anew.push_back(c);
 }
 
 std::size_t Cutter::n_passed_cells() const {

@@ -15,6 +15,7 @@
 
 #include "cut/advance.h"
 #include "cut/cut_surface.h"
+#include "cut/passage.h"
 #include "cut/passed.h"
 #include "cut/pending.h"
 #include "grid/solid.h"
@@ -28,26 +29,6 @@ struct Stroke {
   grid::CutLabel label = 1;
   SweepCuts found = {}; ///< that it meets
   std::vector<SweptTriangle> swept = {};
-};
-
-/// A blade's cutting edge where it stands after a step, and where it stood before, world frame [m].
-struct StandingEdge {
-  grid::CutLabel label = 1;
-  Points line = {}, before = {};
-
-  bool rests() const { return line == before; }
-  void archive(Archive& a) { a(label, line, before); }
-};
-
-/// A cell that a blade has cut, and then left, or come to rest in.
-struct LeftCell {
-  grid::CellId cell;
-  grid::CutLabel label = 1;
-
-  friend bool operator<(const LeftCell& a, const LeftCell& b) {
-    return a.cell != b.cell ? a.cell < b.cell : a.label < b.label;
-  }
-  void archive(Archive& a) { a(cell, label); }
 };
 
 /// All so far.
@@ -106,7 +87,7 @@ class Cutter {
   /// All but the boxes, which are made of the body before its first cut and fitted in each step.
   void archive(Archive& a) {
     a.name("cutter");
-    a(pending_, passed_, advance_, edges_, unsettled_, left_, x_before_, counts_);
+    a(pending_, passed_, advance_, edges_, unsettled_, left_, held_, x_before_, counts_);
   }
   /// Memory of what grows with the body [B].
   std::size_t n_bytes() const { return boxes_->n_bytes() + sizeof(Vec3) * x_before_.capacity(); }
@@ -148,6 +129,7 @@ class Cutter {
   std::vector<StandingEdge> edges_; // after the last step
   std::set<grid::CellId> unsettled_;
   std::set<LeftCell> left_; // blades hold these cells no more
+  std::set<grid::CellId> held_; // in which splinters are held (splinters.h)
   Points x_before_;                // where the corners were when the blades were met last [m]
   bool boxes_stand_there_ = false; // fitted to them
   CutCounts counts_;

@@ -212,7 +212,7 @@ bool is_held_across_faces(const grid::Solid& solid, const Shred& shred, const Ce
     for (const grid::Joined& group : on_same_sides(solid, next)) {
       const grid::Part its{0, 0, group.intervals};
       if ((known == shred.items.end() || (group.items & ~known->second) != 0) &&
-          (face % 2 == 1 ? grid::are_glued(mine, its, face / 2) : grid::are_glued(its, mine, face / 2)))
+          are_glued_across(mine, its, face))
         return true;
     }
   }

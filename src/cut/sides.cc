@@ -1,7 +1,5 @@
 #include "cut/sides.h"
 
-#include "grid/parts.h"
-
 #include <algorithm>
 #include <bit>
 #include <map>
@@ -175,8 +173,7 @@ Intervals near_each_other(const Solid& solid, const CellId c, const Joined& grou
       continue;
     const int axis = grid::cube::face_axis(face);
     for (const Joined& others : *there) {
-      const grid::Part mine{0, 0, group.intervals}, its{0, 0, others.intervals};
-      if (face % 2 == 1 ? !grid::are_glued(mine, its, axis) : !grid::are_glued(its, mine, axis))
+      if (!are_glued_across({0, 0, group.intervals}, {0, 0, others.intervals}, face))
         continue;
       const grid::CopyId other = copy_of(solid, next, others.items);
       if (!std::ranges::all_of(grid::cube::face_vertices[face],
@@ -190,7 +187,7 @@ Intervals near_each_other(const Solid& solid, const CellId c, const Joined& grou
 
 } // namespace
 
-std::vector<Joined> on_same_sides(const Solid& solid, const CellId c) {
+std::vector<Joined> all_by_sides(const Solid& solid, const CellId c) {
   const grid::CellCuts cuts = grid::without_joined(grid::cuts_of(solid, c));
   const grid::Parts parts = grid::parts_of(cuts);
   std::vector<Joined> groups;
@@ -203,25 +200,33 @@ std::vector<Joined> on_same_sides(const Solid& solid, const CellId c) {
   if (!sides)
     return groups;
   const auto& skeleton = cuts.skeleton();
-  const auto side_of = [&](const Items items) { return (*sides)[std::countr_zero(items)]; };
-  Items grouped = 0;
-  for (const grid::Part* part = parts.begin(); part != parts.end(); ++part) {
-    const Items items = part->items();
-    if ((items & grouped) != 0)
-      continue;
-    Joined group{items, 0};
-    const Items around = skeleton.reachable(items, 0); // over segments, cut or not
-    for (const grid::Part* other = part + 1; other != parts.end(); ++other)
-      if (side_of(other->items()) == side_of(items) && (around & other->items()) != 0)
-        group.items |= other->items();
-    meetings.for_each_interval(*sides, [&](const Intervals interval, const Sides& at, const Items ends) {
-      if (at == side_of(items) && (around & ends) != 0)
-        group.intervals |= interval;
-    });
-    if (group != Joined{items, 0})
-      groups.push_back(group);
-    grouped |= group.items;
-  }
+  const auto around = [&](const Items items) { return skeleton.reachable(items, 0); }; // over segments, cut or not
+  std::vector<std::pair<Sides, Items>> lie; // of the groups: on these sides, and among these items
+  const auto group_at = [&](const Sides& at, const Items items) -> Joined& {
+    for (std::size_t i = 0; i < groups.size(); ++i)
+      if (lie[i].first == at && (lie[i].second & items) != 0)
+        return groups[i];
+    lie.emplace_back(at, around(items));
+    return groups.emplace_back();
+  };
+  for (const grid::Part& part : parts)
+    group_at((*sides)[std::countr_zero(part.items())], part.items()).items |= part.items();
+  meetings.for_each_interval(*sides, [&](const Intervals interval, const Sides& at, const Items ends) {
+    group_at(at, ends).intervals |= interval;
+  });
+  return groups;
+}
+
+std::vector<Joined> on_same_sides(const Solid& solid, const CellId c) {
+  std::vector<Joined> groups = all_by_sides(solid, c);
+  if (groups.empty())
+    return groups;
+  const grid::Parts parts = grid::parts_of(grid::without_joined(grid::cuts_of(solid, c)));
+  std::erase_if(groups, [&](const Joined& group) {
+    return group.items == 0 || (group.intervals == 0 && std::ranges::any_of(parts, [&](const grid::Part& part) {
+                                  return part.items() == group.items;
+                                }));
+  });
   return groups;
 }
 

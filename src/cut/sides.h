@@ -18,11 +18,20 @@
 /// degrees half the bodies of seven cubes keep splinters, 54 of 88 of which have more of their wedge in a cell with
 /// which they share an edge or a node alone, the others nowhere around.
 
+#include "grid/parts.h"
 #include "grid/solid.h"
 
 namespace kerf::cut {
 
-/// What of a cell lies on the same sides, in groups of two or more parts, or of one with intervals.
+/// Are parts of two cells glued, of which the second lies across a face of the first?
+inline bool are_glued_across(const grid::Part& part, const grid::Part& beyond, const int face) {
+  return face % 2 == 1 ? grid::are_glued(part, beyond, face / 2) : grid::are_glued(beyond, part, face / 2);
+}
+
+/// What of a cell lies on the same sides: all of it, and intervals beside no part of theirs. None where nothing is said.
+std::vector<grid::Joined> all_by_sides(const grid::Solid& solid, grid::CellId c);
+
+/// Of these groups those of two or more parts, or of one with intervals.
 std::vector<grid::Joined> on_same_sides(const grid::Solid& solid, grid::CellId c);
 
 /// What hangs together in a cell without some of its cuts, with the intervals that belong to it by on_same_sides().

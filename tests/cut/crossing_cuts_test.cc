@@ -40,9 +40,8 @@ void count_segments(const Patient& patient, const std::vector<support::Plane>& p
   }
 }
 
-/// Two planes that cross in the box make four pieces, whichever comes first, as blades and at once; and splinters where
-/// the wedge between them is thinner at the skin than a cell, so that no segment holds it to the rest of its piece.
-/// What the planes part is parted, but for tips that the cut says it has left (cut/shreds.h).
+/// Two planes that cross in the box make four pieces, whichever comes first, as blades and at once. What the planes
+/// part is parted, but for tips that the cut says it has left (cut/shreds.h).
 TEST(AtSkin, TheOrderOfTwoCutsThatCrossDoesNotMatter) {
   Random random(108);
   double worst = 0, largest_splinter = 0;
@@ -90,7 +89,7 @@ TEST(AtSkin, TheOrderOfTwoCutsThatCrossDoesNotMatter) {
             << " splinters of at most " << largest_splinter << " h^3; " << wrong.n << " segments of the skin\n";
   EXPECT_LT(worst, 3);
   EXPECT_LT(largest_splinter, 1);
-  EXPECT_LT(n_splinters, n / 3);
+  EXPECT_LE(n_splinters, n / 100);
   EXPECT_LE(wrong.whole, 4); // tips that stay
   EXPECT_EQ(wrong.parted, 0);
   EXPECT_GT(wrong.n, 10000);
@@ -114,18 +113,27 @@ std::vector<std::uint32_t> partition(const Patient& patient) {
   return result;
 }
 
-/// Nodes in one piece, but on different sides of a plane that has cut: a bridge.
+/// Nodes in one piece, but on other sides of the planes that have cut than most of it: a bridge, unless they are so few
+/// that they may be a splinter that the piece holds (cut/splinters.h).
 int n_bridges(const Patient& patient, const std::vector<support::Plane>& planes) {
+  constexpr int most_of_splinters = 4;
   const auto together = partition(patient);
-  const auto sides = [&](const grid::NodeId node) {
+  std::map<std::uint32_t, std::map<unsigned, int>> n_by_sides; // of each piece
+  for (const auto node : ids<grid::NodeId>(together.size())) {
+    if (together[node.value] == grid::NodeId::no_value)
+      continue;
     unsigned bits = 0;
     for (std::size_t i = 0; i < planes.size(); ++i)
       bits |= unsigned(planes[i].height(patient.body.grid.position(node)) >= 0) << i;
-    return bits;
-  };
+    ++n_by_sides[together[node.value]][bits];
+  }
   int n = 0;
-  for (const auto node : ids<grid::NodeId>(together.size()))
-    n += together[node.value] != grid::NodeId::no_value && sides(node) != sides(grid::NodeId(together[node.value]));
+  for (const auto& [piece, of_sides] : n_by_sides) {
+    const int most = std::ranges::max(of_sides | std::views::values);
+    for (const int of_side : of_sides | std::views::values)
+      n += of_side > most_of_splinters ? of_side : 0;
+    n -= most > most_of_splinters ? most : 0;
+  }
   return n;
 }
 
@@ -202,13 +210,13 @@ int n_parted_though_one(const Patient& patient, const std::vector<support::Plane
 
 /// Two planes that cross at a small angle, by blades and at once: four pieces. Where the wedge between them is thinner
 /// than a cube, nodes lie in it here and there: those of one cell hang together, and of cells with a common face, all
-/// of them; others, where the wedge passes through a cell in which it has neither a node nor a point of the skin, may
-/// be splinters of it.
+/// of them; others, where the wedge passes through a cell in which it has neither a node nor a point of the skin, are
+/// held by what is beside, but for some that no interval leads to.
 class SmallAngle : public testing::TestWithParam<int> {};
 
 TEST_P(SmallAngle, LeavesFourPiecesAndFewSplinters) {
   Random random(111);
-  for (const auto& [degrees, least] : {std::pair{5.0, 0.25}, {15.0, 0.95}, {30.0, 1.0}, {60.0, 1.0}}) {
+  for (const auto& [degrees, least] : {std::pair{5.0, 0.9}, {15.0, 1.0}, {30.0, 1.0}, {60.0, 1.0}}) {
     const double angle = degrees * std::numbers::pi / 180;
     int n_bodies = 0, n_of_four = 0;
     std::size_t n_splinters = 0;
