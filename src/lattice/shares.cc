@@ -45,14 +45,14 @@ Integrals integrals_of(const grid::Solid& solid, const grid::Copy& copy) {
 }
 
 /// A corner may have less than nothing of a copy whose skin is hollow (grid/material.h): this part of what each other one
-/// has keeps the copy's mass.
+/// has keeps the copy's mass; none where no corner has any.
 double kept_part(const std::array<double, 8>& of_corners) {
   double sum = 0, positive = 0;
   for (const double one : of_corners) {
     sum += one;
     positive += std::max(one, 0.0);
   }
-  return sum < positive ? std::max(sum, 0.0) / positive : 1;
+  return sum <= 0 ? 0 : sum / positive;
 }
 
 /// Bits of those vertices of `nodes` that are the fewest edges away from `corner`.

@@ -112,5 +112,33 @@ TEST(Shares, EveryCornerAndEveryNodeHasSome) {
   EXPECT_EQ(nodes.size(), 36u);
 }
 
+/// Under a skin that is hollow a copy without nodes may have less than nothing: its corners get next to nothing.
+TEST(Shares, OfLessThanNothingAreNextToNothing) {
+  support::Random random(6);
+  int n_hollow = 0;
+  for (int i = 0; i < 400; ++i) {
+    auto body =
+      support::embedded(geometry::sphere_mesh(0.4, Vec3::Constant(0.5), 1), 0.15, support::random_offset(random));
+    for (grid::CutLabel label = 1; label <= 3; ++label) {
+      const Vec3 normal = support::random_direction(random);
+      const Vec3 through = Vec3::Constant(0.5) + 0.2 * support::random_vector(random);
+      support::cut_through(body, support::cuts_of_plane(body, {normal, normal.dot(through)}, label));
+    }
+    body.complex = grid::build_complex(body);
+    for (const grid::Copy& copy : body.complex.copies) {
+      double sum = 0;
+      if (copy.nodes == 0)
+        grid::for_each_tetrahedron(body, copy, [&](const grid::Tetrahedron& t, int) {
+          for (const double one : shape_integrals(t))
+            sum += one;
+        });
+      n_hollow += sum < 0;
+    }
+    for (const Share& share : material_shares(body, 1000))
+      EXPECT_GT(share.mass, 0) << i;
+  }
+  EXPECT_GT(n_hollow, 0);
+}
+
 } // namespace
 } // namespace kerf::lattice::shares_test
