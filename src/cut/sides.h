@@ -14,9 +14,7 @@
 /// cuts that meet a segment lies on known sides of all, and belongs in each cell around to the part that lies so.
 /// Copies that have an interval in common are glued as those are that have a node in common (grid/parts.h). Three cuts
 /// leave two intervals of a line; a half of an arc that three meet, or a line that four meet, is not asked. Where the
-/// wedge passes through a cell in which it has neither a node nor a point of the skin, nothing leads on: at five
-/// degrees half the bodies of seven cubes keep splinters, 54 of 88 of which have more of their wedge in a cell with
-/// which they share an edge or a node alone, the others nowhere around.
+/// wedge passes through a cell in which it has neither a node nor a point of the skin, nothing leads on (splinters.h).
 
 #include "grid/parts.h"
 #include "grid/solid.h"
