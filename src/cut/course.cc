@@ -340,7 +340,8 @@ SweepCuts cuts_between_gaping(const Solid& solid, const Front& front, const Poin
       };
       between.cuts.push_back({edges[segment], std::lerp(along(ends[0]), along(ends[1]), t), front.normal, front.label});
     }
-  return leaves_shreds(solid, c, between) ? SweepCuts() : between;
+  const bool is_any = !between.cuts.empty() || !between.of_skin.empty();
+  return is_any && leaves_shreds(solid, c, between) ? SweepCuts() : between;
 }
 
 } // namespace kerf::cut
