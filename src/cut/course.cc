@@ -262,10 +262,14 @@ bool is_along(const Front& front, const std::vector<Polygon>& pieces, const doub
 }
 
 bool is_corner_ahead(const Solid& solid, const Front& front, const FrontsOfCells& begun) {
-  constexpr double small = 0.25, far = 0.5; // of a face; of a cell, from which on it is clear that the cut goes on
-  const double h = solid.grid.h();
-  if (front.area >= small * h * h)
-    return false;
+  constexpr double little = 0.25, whole = 0.9, // of a face: of material, and of all
+    far = 0.5;                                 // of a cell, from which on it is clear that the cut goes on
+  const double square = solid.grid.h() * solid.grid.h();
+  if (front.area >= little * square) {
+    const CellAtPlane cell(solid, front.cell, {front.point, front.normal}, rest_of(solid, front.cell));
+    if (area(cell.section().rest) >= whole * square)
+      return false;
+  }
   const auto own = solid.grid.edges(front.cell);
   const auto is_parted = [&](const CellId next, const grid::EdgeId e) {
     if (!next.valid())

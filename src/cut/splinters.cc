@@ -22,7 +22,7 @@ using grid::Joined;
 using grid::Part;
 using grid::Solid;
 
-constexpr double of_splinter = 1;            // of a cube
+constexpr double of_splinter = 1;       // of a cube
 constexpr std::size_t most_around = 64; // cells of a splinter, and between it and the rest of its wedge
 
 using ItemsOfCells = std::map<CellId, Items>;

@@ -134,6 +134,23 @@ double work_of_cap(const Penny& problem, const double radius, const cut::Fronts 
                      R);
 }
 
+double work_of_leaning_crack(const double angle, const double along, const double across,
+                             const fem::HexahedraOptions& options) {
+  const double h = 0.25, R = 1.5;
+  const Vec3 ahead(std::cos(angle), 0, std::sin(angle)), normal(-std::sin(angle), 0, std::cos(angle)),
+    beside = 0.01 * h * Vec3(1.3, 1.1, 1.7); // all nodes
+  auto [body, model, cost] = build(
+    [&] {
+      Body cube = box({Vec3::Constant(-R), Vec3::Constant(R)}, h, Vec3::Zero());
+      const Vec3 front = h * (along * ahead + across * normal) + beside;
+      cut_at_once(cube, cut::Rectangle{front - 2 * R * ahead, 4 * R * ahead, Vec3(0, 4 * R, 0)});
+      return cube;
+    },
+    options);
+  const Points f = forces_along(body, normal);
+  return work(f, displacements(body, *model, f, hold_corners(body.rest(), R), LinearSolver::conjugate_gradients));
+}
+
 PennyResult penny(const Penny& problem, const fem::HexahedraOptions& options) {
   const double h = 1.0 / problem.n_over_radius, R = problem.half_width;
   const Vec3 centre = h * problem.offset;

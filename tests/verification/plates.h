@@ -48,6 +48,11 @@ PennyResult penny(const Penny& problem, const fem::HexahedraOptions& options);
 /// as a mesh, as PennyResult has it.
 double work_of_cap(const Penny& problem, double radius, cut::Fronts fronts, const fem::HexahedraOptions& options);
 
+/// The work of a tension of 1 Pa across a crack from the side of a cube of 3 m, E = 1 Pa, whose plane leans by an angle
+/// [rad] about a line of the grid, along which its front lies: in cubes of .25 m, so many of them ahead of the middle and
+/// above it.
+double work_of_leaning_crack(double angle, double along, double across, const fem::HexahedraOptions& options);
+
 /// A plate of 1 x 2 m in plane strain (E = 1 Pa, nu = 0.3), in cubes of which n are 1 m, with a crack of .4 m from its
 /// side under a tension of 1 Pa: where its front and its plane lie between nodes.
 struct EdgeCrack {
