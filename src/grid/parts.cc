@@ -39,8 +39,10 @@ Parts joined(const Parts& parts, const std::vector<Joined>* const groups) {
         if (first < 0) {
           first = i;
           all[i].intervals |= intervals;
-        } else
+        } else {
           all[first].items |= std::exchange(all[i].items, 0);
+          all[first].intervals |= std::exchange(all[i].intervals, 0);
+        }
       }
   Parts result;
   for (int i = 0; i < parts.n; ++i)
