@@ -262,5 +262,16 @@ TEST(Parts, AreThoseOfAllWhoShareThem) {
   EXPECT_GT(glued.n_by_skin, 1000u);
 }
 
+/// A part that has an interval may be in another group too: what they make has it, whichever part comes first.
+TEST(Parts, OfTwoGroupsKeepTheirIntervals) {
+  constexpr unsigned all_lines = 0xfff; // cut: each node by itself
+  for (const int with_interval : {0, 7}) {
+    const std::vector<Joined> groups = {{grid::Items(1) << with_interval, 2}, {grid::Items(0x81), 0}};
+    const Parts parts = parts_of({0xff, all_lines, all_lines, &groups});
+    ASSERT_EQ(parts.n, 7);
+    EXPECT_EQ(parts.items[0], (Part{0x81, 0, 2})) << with_interval;
+  }
+}
+
 } // namespace
 } // namespace kerf::grid::parts_test
