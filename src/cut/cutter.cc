@@ -14,6 +14,7 @@
 #include <iterator>
 #include <map>
 #include <set>
+#include <utility>
 
 namespace kerf::cut {
 
@@ -402,8 +403,8 @@ void Cutter::join(Solid& solid, const Added& added, const Points& x, std::vector
     }
     solid.cuts.set_joined(c, std::move(groups));
   }
-  held_.clear();
-  for (const auto& [c, parts] : held_splinters(solid, cells, unsettled_, x)) {
+  const std::set<grid::CellId> held_before = std::exchange(held_, {});
+  for (const auto& [c, parts] : held_splinters(solid, cells, held_before, unsettled_, x)) {
     std::vector<grid::Joined> groups = joined(c);
     before.emplace(c, groups);
     groups.push_back(parts);

@@ -172,7 +172,8 @@ std::vector<Rift> rifts_of(const Solid& solid, const ItemsOfCells& lump) {
 } // namespace
 
 std::vector<HeldSplinter> held_splinters(const Solid& solid, const std::span<const CellId> cells,
-                                         const std::set<CellId>& unsettled, const Points& x) {
+                                         const std::set<CellId>& held_before, const std::set<CellId>& unsettled,
+                                         const Points& x) {
   std::vector<HeldSplinter> held;
   Lumps lumps(solid);
   std::set<const ItemsOfCells*> seen;
@@ -185,7 +186,7 @@ std::vector<HeldSplinter> held_splinters(const Solid& solid, const std::span<con
            std::ranges::any_of(lump, [&](const auto& of) { return has_intervals(of.first); });
   };
   for (const CellId c : cells) {
-    bool is_near = has_intervals(c);
+    bool is_near = has_intervals(c) || held_before.contains(c);
     for (int face = 0; face < cube::n_faces && !is_near; ++face)
       is_near = has_intervals(solid.grid.neighbour(c, face));
     if (!is_near)

@@ -20,9 +20,10 @@ struct HeldSplinter {
   grid::Joined parts;
 };
 
-/// Of splinters that have a part in one of these cells, or in a cell beside; none that reach into a cell where blades
-/// still cut (`unsettled`). With the corners at `x` [m]: what has moved away by a quarter of a cube holds nothing.
+/// Of splinters that have a part in one of these cells, near to an interval or where one has been held before; none
+/// that reach into a cell where blades still cut (`unsettled`). With the corners at `x` [m]: what has moved away by a quarter of a cube holds nothing.
 std::vector<HeldSplinter> held_splinters(const grid::Solid& solid, std::span<const grid::CellId> cells,
+                                         const std::set<grid::CellId>& held_before,
                                          const std::set<grid::CellId>& unsettled, const Points& x);
 
 } // namespace kerf::cut
