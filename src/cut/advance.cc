@@ -365,7 +365,7 @@ std::vector<Front> Advance::corners_ahead(const Solid& solid, const FrontsOfCell
                                           const FrontsOfCells& begun) const {
   std::vector<Front> corners;
   const auto add = [&](const Front& front) {
-    if (is_corner_ahead(solid, front, begun))
+    if (opens_early(solid, front, begun))
       corners.push_back(front);
   };
   for (const auto& [c, front] : found)

@@ -10,7 +10,7 @@
 /// leaves the plane by a quarter of a cube does not count. As elements are too stiff at a front, what is drawn is taken
 /// larger by the lag of fronts, and so reaches on into the next cells; one of which the lag alone reaches has to have a
 /// cut one beside it. The part of the section of plane and material that it covers is how far the cut has come. Corners
-/// ahead of a front are parted too (is_corner_ahead, course.h). Where it has come, without that lag, is told as the hull
+/// ahead of a front are parted too (opens_early, course.h). Where it has come, without that lag, is told as the hull
 /// of what has been swept since it was told last, once a front has come on by a twentieth of a cube.
 ///
 /// Cells in which cuts wait (pending.h) get no front before they are cut; those beside them are asked again then.

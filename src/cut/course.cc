@@ -261,7 +261,7 @@ bool is_along(const Front& front, const std::vector<Polygon>& pieces, const doub
          std::abs(front.normal.dot(course->plane.point - front.point)) < off * h;
 }
 
-bool is_corner_ahead(const Solid& solid, const Front& front, const FrontsOfCells& begun) {
+bool opens_early(const Solid& solid, const Front& front, const FrontsOfCells& begun) {
   constexpr double little = 0.25, whole = 0.9, // of a face: of material, and of all
     far = 0.5;                                 // of a cell, from which on it is clear that the cut goes on
   const double square = solid.grid.h() * solid.grid.h();

@@ -6,7 +6,6 @@
 #include "cut/fronts.h"
 #include "cut/shreds.h"
 #include "cut/sides.h"
-#include "cut/splinters.h"
 #include "grid/parts.h"
 #include "grid/touched.h"
 
@@ -14,7 +13,6 @@
 #include <iterator>
 #include <map>
 #include <set>
-#include <utility>
 
 namespace kerf::cut {
 
@@ -382,7 +380,8 @@ void Cutter::join(Solid& solid, const Added& added, const Points& x, std::vector
   cells.insert(cells.end(), unsettled_.begin(), unsettled_.end());
   if (cells.empty())
     return;
-  cells.insert(cells.end(), held_.begin(), held_.end());
+  for (const HeldSplinter& splinter : held_)
+    cells.push_back(splinter.cell);
   sort_unique(cells);
   unsettled_.clear();
   const Passage passage(edges_, added.coming);
@@ -403,13 +402,12 @@ void Cutter::join(Solid& solid, const Added& added, const Points& x, std::vector
     }
     solid.cuts.set_joined(c, std::move(groups));
   }
-  const std::set<grid::CellId> held_before = std::exchange(held_, {});
-  for (const auto& [c, parts] : held_splinters(solid, cells, held_before, unsettled_, x)) {
-    std::vector<grid::Joined> groups = joined(c);
-    before.emplace(c, groups);
-    groups.push_back(parts);
-    solid.cuts.set_joined(c, std::move(groups));
-    held_.insert(c);
+  held_ = held_splinters(solid, cells, held_, unsettled_, x);
+  for (const HeldSplinter& splinter : held_) {
+    std::vector<grid::Joined> groups = joined(splinter.cell);
+    before.emplace(splinter.cell, groups);
+    groups.push_back(splinter.parts);
+    solid.cuts.set_joined(splinter.cell, std::move(groups));
   }
   for (const auto& [c, earlier] : before)
     if (const auto groups = joined(c);

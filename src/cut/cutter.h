@@ -18,6 +18,7 @@
 #include "cut/passage.h"
 #include "cut/passed.h"
 #include "cut/pending.h"
+#include "cut/splinters.h"
 #include "grid/solid.h"
 
 #include <optional>
@@ -129,7 +130,7 @@ class Cutter {
   std::vector<StandingEdge> edges_; // after the last step
   std::set<grid::CellId> unsettled_;
   std::set<LeftCell> left_; // blades hold these cells no more
-  std::set<grid::CellId> held_; // in which splinters are held (splinters.h)
+  std::vector<HeldSplinter> held_;
   Points x_before_;                // where the corners were when the blades were met last [m]
   bool boxes_stand_there_ = false; // fitted to them
   CutCounts counts_;

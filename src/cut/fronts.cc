@@ -151,7 +151,7 @@ std::vector<Front> find_fronts(const CutSurface& surface, const Solid& solid, co
   for (const Front& front : fronts)
     begun.emplace(front.cell, front);
   for (const Front& corner : corners)
-    if (is_corner_ahead(solid, corner, begun))
+    if (opens_early(solid, corner, begun))
       fronts.push_back(corner);
   std::ranges::sort(fronts, {}, &Front::cell);
   return fronts;

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <bit>
 #include <deque>
+#include <functional>
 #include <map>
 #include <set>
 
@@ -101,9 +102,10 @@ double volume(const Solid& solid, const ItemsOfCells& lump) {
   return sum;
 }
 
-/// Does more than it is lie on its sides of all cuts, from interval to interval, through cells in which nothing else
-/// does?
-bool is_less_than_the_rest(const Solid& solid, const ItemsOfCells& lump, const double own, Lumps& lumps) {
+/// Does something that `counts` lie on its sides of all cuts, from interval to interval, through cells in which nothing
+/// else does? Null counts too: something large.
+bool is_led_to(const Solid& solid, const ItemsOfCells& lump, Lumps& lumps,
+               const std::function<bool(const ItemsOfCells*)>& counts) {
   std::vector<std::pair<CellId, Part>> open;
   std::map<CellId, grid::Intervals> seen;
   const auto reach = [&](const CellId c, const grid::Intervals intervals) {
@@ -134,7 +136,7 @@ bool is_less_than_the_rest(const Solid& solid, const ItemsOfCells& lump, const d
         if (group.items == 0)
           continue;
         const ItemsOfCells* const other = lumps.at(next, group.items);
-        if (!other || (known.insert(other).second && volume(solid, *other) > own))
+        if (known.insert(other).second && counts(other))
           return true;
         reach_all(*other);
       }
@@ -172,8 +174,8 @@ std::vector<Rift> rifts_of(const Solid& solid, const ItemsOfCells& lump) {
 } // namespace
 
 std::vector<HeldSplinter> held_splinters(const Solid& solid, const std::span<const CellId> cells,
-                                         const std::set<CellId>& held_before, const std::set<CellId>& unsettled,
-                                         const Points& x) {
+                                         const std::span<const HeldSplinter> held_before,
+                                         const std::set<CellId>& unsettled, const Points& x) {
   std::vector<HeldSplinter> held;
   Lumps lumps(solid);
   std::set<const ItemsOfCells*> seen;
@@ -181,12 +183,23 @@ std::vector<HeldSplinter> held_splinters(const Solid& solid, const std::span<con
     const auto* const groups = c.valid() ? solid.cuts.joined(c) : nullptr;
     return groups && std::ranges::any_of(*groups, [](const Joined& group) { return group.intervals != 0; });
   };
+  ItemsOfCells inner_before;
+  for (const HeldSplinter& splinter : held_before)
+    inner_before[splinter.cell] |= splinter.inner;
+  const auto was_held = [&](const ItemsOfCells& lump) {
+    return std::ranges::any_of(inner_before, [&](const auto& of) { return holds_any(lump, of.first, of.second); });
+  };
+  const auto is_less_than_the_rest = [&](const ItemsOfCells& lump, const double own) {
+    return is_led_to(solid, lump, lumps, [&, least = was_held(lump) ? 0 : own](const ItemsOfCells* const other) {
+      return !other || (!was_held(*other) && volume(solid, *other) > least);
+    });
+  };
   const auto may_be_splinter = [&](const ItemsOfCells& lump) {
     return std::ranges::none_of(lump, [&](const auto& of) { return unsettled.contains(of.first); }) &&
            std::ranges::any_of(lump, [&](const auto& of) { return has_intervals(of.first); });
   };
   for (const CellId c : cells) {
-    bool is_near = has_intervals(c) || held_before.contains(c);
+    bool is_near = has_intervals(c) || inner_before.contains(c);
     for (int face = 0; face < cube::n_faces && !is_near; ++face)
       is_near = has_intervals(solid.grid.neighbour(c, face));
     if (!is_near)
@@ -196,14 +209,14 @@ std::vector<HeldSplinter> held_splinters(const Solid& solid, const std::span<con
       if (!lump || !seen.insert(lump).second || !may_be_splinter(*lump))
         continue;
       const double own = volume(solid, *lump);
-      if (own >= of_splinter || !is_less_than_the_rest(solid, *lump, own, lumps))
+      if (own >= of_splinter || !is_less_than_the_rest(*lump, own))
         continue;
       for (const auto& [cell, inner, outer, distance] : rifts_of(solid, *lump)) {
         if (solid.cuts.front(cell) || lumps.at(cell, outer))
           continue;
         const std::vector<Joined> both = near_each_other(solid, cell, {{inner | outer, 0}}, x);
         if (!both.empty()) {
-          held.push_back({cell, both.front()});
+          held.push_back({cell, inner, both.front()});
           break;
         }
       }

@@ -17,13 +17,18 @@ namespace kerf::cut {
 /// Parts on both sides of a cut that are one in a cell.
 struct HeldSplinter {
   grid::CellId cell;
-  grid::Joined parts;
+  grid::Items inner = 0; ///< of the splinter
+  grid::Joined parts;    ///< it, and what holds it
+
+  void archive(Archive& a) { a(cell, inner, parts); }
 };
 
-/// Of splinters that have a part in one of these cells, near to an interval or where one has been held before; none
-/// that reach into a cell where blades still cut (`unsettled`). With the corners at `x` [m]: what has moved away by a quarter of a cube holds nothing.
+/// Of splinters that have a part in one of these cells, near to an interval or where one was held before; none that
+/// reach into a cell where blades still cut (`unsettled`). One that was held stays so, while there is other material
+/// between the same cuts, though vertices that have moved since make it the larger part. With the corners at `x` [m]:
+/// what has moved away by a quarter of a cube holds nothing.
 std::vector<HeldSplinter> held_splinters(const grid::Solid& solid, std::span<const grid::CellId> cells,
-                                         const std::set<grid::CellId>& held_before,
+                                         std::span<const HeldSplinter> held_before,
                                          const std::set<grid::CellId>& unsettled, const Points& x);
 
 } // namespace kerf::cut
