@@ -1,14 +1,12 @@
 #include "cut/fronts.h"
 
 #include "cut/course.h"
-#include "cut/openings.h"
 #include "grid/fronts.h"
 
 #include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <numbers>
 #include <optional>
 
@@ -27,25 +25,24 @@ struct Outline {
   std::vector<HalfSpace> sides;
 };
 
-/// The shape, larger all around by the lag of fronts in cubes of this edge [m], or not with 0.
-Outline outline_of(const Disc& disc, const double h) {
+/// The shape, larger by `more` [m] all around.
+Outline outline_of(const Disc& disc, const double more) {
   constexpr int n = 256;
-  Outline outline{disc.centre, disc.normal, disc.radius + grid::most_front_lag * h, {}};
+  Outline outline{disc.centre, disc.normal, disc.radius + more, {}};
   const Vec3 u = disc.normal.unitOrthogonal(), v = disc.normal.cross(u);
   for (int i = 0; i < n; ++i) {
     const double angle = 2 * std::numbers::pi * i / n;
     const Vec3 out = std::cos(angle) * u + std::sin(angle) * v;
-    outline.sides.push_back({out, out.dot(disc.centre) + disc.radius + grid::front_lag(out) * h});
+    outline.sides.push_back({out, out.dot(disc.centre) + disc.radius + more});
   }
   return outline;
 }
 
-Outline outline_of(const Rectangle& rectangle, const double h) {
+Outline outline_of(const Rectangle& rectangle, const double more) {
   const Vec3 &a = rectangle.first_side, &b = rectangle.second_side;
-  Outline outline{rectangle.centre, a.cross(b).normalized(), 0.5 * (a + b).norm() + 2 * grid::most_front_lag * h, {}};
+  Outline outline{rectangle.centre, a.cross(b).normalized(), 0.5 * (a + b).norm() + 2 * more, {}};
   for (const Vec3& side : {a, Vec3(-a), b, Vec3(-b)})
-    outline.sides.push_back({side.normalized(),
-                             side.normalized().dot(rectangle.centre) + 0.5 * side.norm() + grid::front_lag(side) * h});
+    outline.sides.push_back({side.normalized(), side.normalized().dot(rectangle.centre) + 0.5 * side.norm() + more});
   return outline;
 }
 
@@ -56,7 +53,7 @@ struct Outlines {
 template <class Flat>
 std::optional<Outlines> outlines_of(const Flat& shape, const double h) {
   const Outline own = outline_of(shape, 0);
-  return Outlines{own, outline_of(shape, h)};
+  return Outlines{own, outline_of(shape, grid::front_lag(own.normal) * h)};
 }
 template <class Shape>
 requires(!std::is_same_v<Shape, Disc> && !std::is_same_v<Shape, Rectangle>) std::optional<Outlines>
@@ -114,92 +111,49 @@ Front with_passed(Front front, const double passed) {
   return front;
 }
 
-/// What of the plane lies around nodes, weighted [m^2]: all of it, and what the shape with its lag covers.
-struct AroundNode {
-  double all = 0, come = 0;
-  double part() const { return all > 0 ? come / all : 0; }
-};
-using AroundNodes = std::map<grid::NodeId, AroundNode>;
-
-/// Adds a cell's; returns the part of it that is covered, by vertex.
-OfVertices add(const Solid& solid, const CellId c, const CellAtPlane& cell, const Points& x, const Outline& with_lag,
-               AroundNodes& nodes) {
-  const bool is_parted = !solid.cuts.front(c) && solid.complex.copies[solid.complex.first_copy[c]].next.valid();
-  const ToRest to_rest(solid, c, x);
-  OfVertices all{}, come{};
-  for (Polygon piece : cell.material()) {
-    const auto add_to = [&](OfVertices& sums) {
-      Polygon at_rest(piece.size());
-      std::ranges::transform(piece, at_rest.begin(), to_rest);
-      add_integrals(solid, c, at_rest, sums);
-    };
-    add_to(all);
-    if (!is_parted)
-      for (const HalfSpace& side : with_lag.sides)
-        piece = clipped(piece, side);
-    add_to(come);
-  }
-  const auto at = solid.grid.nodes(c);
-  for (int v = 0; v < 8; ++v) {
-    AroundNode& node = nodes[at[v]];
-    node.all += all[v];
-    node.come += come[v];
-    come[v] = all[v] > 0 ? come[v] / all[v] : 0;
-  }
-  return come;
-}
-
 } // namespace
 
 std::vector<Front> find_fronts(const CutSurface& surface, const Solid& solid, const Points& x, const bool as_faces) {
   const double h = solid.grid.h();
   const auto outlines = std::visit([&](const auto& shape) { return outlines_of(shape, h); }, surface.shape);
-  std::vector<Front> met, fronts;
+  std::vector<Front> fronts, corners;
   if (!outlines)
     return fronts;
   const Outline& outline = outlines->with_lag;
-  AroundNodes nodes;
   for (const auto c : ids<CellId>(solid.grid.n_cells())) {
     const grid::Copy& copy = solid.complex.copies[solid.complex.first_copy[c]];
     const double size = (x[copy.corners[7].value] - x[copy.corners[0].value]).norm();
     if ((x[copy.corners[0].value] - outline.point).norm() > outline.reach + 2 * size)
       continue;
-    const CellAtPlane cell(solid, c, {outline.point, outline.normal}, grid::corners_of(copy, x));
-    if (!cell.is_met())
-      continue;
-    const OfVertices reached = add(solid, c, cell, x, outline, nodes);
     const Front* const earlier = solid.cuts.front(c);
     if (!earlier && (copy.next.valid() || solid.cuts.joined(c)))
       continue;
+    const CellAtPlane cell(solid, c, {outline.point, outline.normal}, grid::corners_of(copy, x));
+    if (!cell.is_met())
+      continue;
     Front front = front_in(cell, *outlines, as_faces);
-    front.reached = reached;
-    front.label = surface.label;
-    if (earlier ? is_same_plane(front, *earlier, h) : front.ahead != 0 && !hangs_by_skin(solid, front))
-      met.push_back(std::move(front));
-  }
-  for (Front& front : met) {
-    const auto at = solid.grid.nodes(front.cell);
-    if (const Front* const earlier = solid.cuts.front(front.cell)) {
-      Front moved = with_passed(*earlier, std::max(front.passed, earlier->passed));
-      bool comes_on = front.passed > earlier->passed;
-      for (int v = 0; v < 8; ++v) {
-        const double now = held(nodes.at(at[v]).all, nodes.at(at[v]).part());
-        comes_on = comes_on || now < earlier->held[v];
-        moved.held[v] = std::min(now, earlier->held[v]);
-        moved.reached[v] = std::max(front.reached[v], earlier->reached[v]);
+    if (earlier) {
+      if (front.passed > earlier->passed && is_same_plane(front, *earlier, h)) {
+        fronts.push_back(with_passed(*earlier, front.passed));
+        fronts.back().come = front.come;
       }
-      moved.come = front.come;
-      if (comes_on)
-        fronts.push_back(std::move(moved));
       continue;
     }
-    if (!is_near_enough(solid, front) || std::ranges::none_of(at, [&](const grid::NodeId node) { return nodes.at(node).part() > is_open; }))
+    front.label = surface.label;
+    if (front.ahead == 0 || hangs_by_skin(solid, front))
       continue;
-    for (int v = 0; v < 8; ++v)
-      front.held[v] = held(nodes.at(at[v]).all, nodes.at(at[v]).part());
-    front.passed = std::max(front.passed, least_passed);
-    fronts.push_back(std::move(front));
+    if (front.passed >= least_passed)
+      fronts.push_back(front);
+    else
+      corners.push_back(with_passed(front, least_passed));
   }
+  FrontsOfCells begun;
+  for (const Front& front : fronts)
+    begun.emplace(front.cell, front);
+  for (const Front& corner : corners)
+    if (opens_early(solid, corner, begun))
+      fronts.push_back(corner);
+  std::ranges::sort(fronts, {}, &Front::cell);
   return fronts;
 }
 
