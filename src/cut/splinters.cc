@@ -1,5 +1,6 @@
 #include "cut/splinters.h"
 
+#include "base/function_ref.h"
 #include "cut/sides.h"
 #include "grid/material.h"
 #include "grid/parts.h"
@@ -7,7 +8,6 @@
 #include <algorithm>
 #include <bit>
 #include <deque>
-#include <functional>
 #include <map>
 #include <set>
 
@@ -105,7 +105,7 @@ double volume(const Solid& solid, const ItemsOfCells& lump) {
 /// Does something that `counts` lie on its sides of all cuts, from interval to interval, through cells in which nothing
 /// else does? Null counts too: something large.
 bool is_led_to(const Solid& solid, const ItemsOfCells& lump, Lumps& lumps,
-               const std::function<bool(const ItemsOfCells*)>& counts) {
+               const FunctionRef<bool(const ItemsOfCells*)> counts) {
   std::vector<std::pair<CellId, Part>> open;
   std::map<CellId, grid::Intervals> seen;
   const auto reach = [&](const CellId c, const grid::Intervals intervals) {
