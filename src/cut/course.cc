@@ -261,30 +261,11 @@ bool is_along(const Front& front, const std::vector<Polygon>& pieces, const doub
          std::abs(front.normal.dot(course->plane.point - front.point)) < off * h;
 }
 
-bool opens_early(const Solid& solid, const Front& front, const FrontsOfCells& begun) {
-  constexpr double little = 0.25, whole = 0.9, // of a face: of material, and of all
-    far = 0.5;                                 // of a cell, from which on it is clear that the cut goes on
-  const double square = solid.grid.h() * solid.grid.h();
-  if (front.area >= little * square) {
-    const CellAtPlane cell(solid, front.cell, {front.point, front.normal}, rest_of(solid, front.cell));
-    if (area(cell.section().rest) >= whole * square)
-      return false;
-  }
-  const auto own = solid.grid.edges(front.cell);
-  const auto is_parted = [&](const CellId next, const grid::EdgeId e) {
-    if (!next.valid())
-      return false;
-    const auto at = begun.find(next);
-    const Front* const beside = at != begun.end() ? &at->second : solid.cuts.front(next);
-    const int line = solid.grid.line(next, e);
-    return beside ? beside->passed >= far && (beside->ahead >> line & 1) != 0
-                  : (grid::cuts_of_copies(solid, next).blades >> line & 1) != 0;
-  };
-  for (int face = 0; face < grid::cube::n_faces; ++face)
-    for (const int i : grid::cube::face_lines[face])
-      if ((front.ahead >> i & 1) != 0 && is_parted(solid.grid.neighbour(front.cell, face), own[i]))
-        return true;
-  return false;
+bool is_near_enough(const Solid& solid, const Front& front) {
+  const char* w = std::getenv("WH");
+  const double whole = w ? std::atof(w) : 0.9; // of a face
+  const CellAtPlane cell(solid, front.cell, {front.point, front.normal}, rest_of(solid, front.cell));
+  return front.passed > 0 || area(cell.section().rest) < whole * solid.grid.h() * solid.grid.h();
 }
 
 bool fits_in(const Solid& solid, const Front& front, const FrontsOfCells& begun) {

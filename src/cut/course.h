@@ -39,11 +39,8 @@ bool is_along(const grid::Front& front, const std::vector<Polygon>& pieces, doub
 
 using FrontsOfCells = std::map<grid::CellId, grid::Front>;
 
-/// Does it lie where the plane cuts off a part of its cell, smaller than a section along the grid, beside a cell that is
-/// cut, or that another front (of `begun`, or before) has passed by half? Whole, such a cell closes the cut in the one
-/// beside it over all of the face that they share, back to where that cell begins, however little of the cut is to go
-/// through it: in a plane that leans by 45 degrees the front is then up to .25 cubes behind, and comes on by .45 at once.
-bool opens_early(const grid::Solid& solid, const grid::Front& front, const FrontsOfCells& begun);
+/// Has the front come into its cell, or does its plane cut off no more than a part of that?
+bool is_near_enough(const grid::Solid& solid, const grid::Front& front);
 
 /// Can the cell have this front, if others have those of `begun`?
 bool fits_in(const grid::Solid& solid, const grid::Front& front, const FrontsOfCells& begun);

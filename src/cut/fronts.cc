@@ -1,12 +1,14 @@
 #include "cut/fronts.h"
 
 #include "cut/course.h"
+#include "cut/openings.h"
 #include "grid/fronts.h"
 
 #include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <optional>
 
@@ -111,49 +113,92 @@ Front with_passed(Front front, const double passed) {
   return front;
 }
 
+/// What of the plane lies around nodes, weighted [m^2]: all of it, and what the shape with its lag covers.
+struct AroundNode {
+  double all = 0, come = 0;
+  double part() const { return all > 0 ? come / all : 0; }
+};
+using AroundNodes = std::map<grid::NodeId, AroundNode>;
+
+/// Adds a cell's; returns the part of it that is covered, by vertex.
+OfVertices add(const Solid& solid, const CellId c, const CellAtPlane& cell, const Points& x, const Outline& with_lag,
+               AroundNodes& nodes) {
+  const bool is_parted = !solid.cuts.front(c) && solid.complex.copies[solid.complex.first_copy[c]].next.valid();
+  const ToRest to_rest(solid, c, x);
+  OfVertices all{}, come{};
+  for (Polygon piece : cell.material()) {
+    const auto add_to = [&](OfVertices& sums) {
+      Polygon at_rest(piece.size());
+      std::ranges::transform(piece, at_rest.begin(), to_rest);
+      add_integrals(solid, c, at_rest, sums);
+    };
+    add_to(all);
+    if (!is_parted)
+      for (const HalfSpace& side : with_lag.sides)
+        piece = clipped(piece, side);
+    add_to(come);
+  }
+  const auto at = solid.grid.nodes(c);
+  for (int v = 0; v < 8; ++v) {
+    AroundNode& node = nodes[at[v]];
+    node.all += all[v];
+    node.come += come[v];
+    come[v] = all[v] > 0 ? come[v] / all[v] : 0;
+  }
+  return come;
+}
+
 } // namespace
 
 std::vector<Front> find_fronts(const CutSurface& surface, const Solid& solid, const Points& x, const bool as_faces) {
   const double h = solid.grid.h();
   const auto outlines = std::visit([&](const auto& shape) { return outlines_of(shape, h); }, surface.shape);
-  std::vector<Front> fronts, corners;
+  std::vector<Front> met, fronts;
   if (!outlines)
     return fronts;
   const Outline& outline = outlines->with_lag;
+  AroundNodes nodes;
   for (const auto c : ids<CellId>(solid.grid.n_cells())) {
     const grid::Copy& copy = solid.complex.copies[solid.complex.first_copy[c]];
     const double size = (x[copy.corners[7].value] - x[copy.corners[0].value]).norm();
     if ((x[copy.corners[0].value] - outline.point).norm() > outline.reach + 2 * size)
       continue;
-    const Front* const earlier = solid.cuts.front(c);
-    if (!earlier && (copy.next.valid() || solid.cuts.joined(c)))
-      continue;
     const CellAtPlane cell(solid, c, {outline.point, outline.normal}, grid::corners_of(copy, x));
     if (!cell.is_met())
       continue;
+    const OfVertices reached = add(solid, c, cell, x, outline, nodes);
+    const Front* const earlier = solid.cuts.front(c);
+    if (!earlier && (copy.next.valid() || solid.cuts.joined(c)))
+      continue;
     Front front = front_in(cell, *outlines, as_faces);
-    if (earlier) {
-      if (front.passed > earlier->passed && is_same_plane(front, *earlier, h)) {
-        fronts.push_back(with_passed(*earlier, front.passed));
-        fronts.back().come = front.come;
+    front.reached = reached;
+    front.label = surface.label;
+    if (earlier ? is_same_plane(front, *earlier, h) : front.ahead != 0 && !hangs_by_skin(solid, front))
+      met.push_back(std::move(front));
+  }
+  for (Front& front : met) {
+    const auto at = solid.grid.nodes(front.cell);
+    if (const Front* const earlier = solid.cuts.front(front.cell)) {
+      Front moved = with_passed(*earlier, std::max(front.passed, earlier->passed));
+      bool comes_on = front.passed > earlier->passed;
+      for (int v = 0; v < 8; ++v) {
+        const double now = held(nodes.at(at[v]).all, nodes.at(at[v]).part());
+        comes_on = comes_on || now < earlier->held[v];
+        moved.held[v] = std::min(now, earlier->held[v]);
+        moved.reached[v] = std::max(front.reached[v], earlier->reached[v]);
       }
+      moved.come = front.come;
+      if (comes_on)
+        fronts.push_back(std::move(moved));
       continue;
     }
-    front.label = surface.label;
-    if (front.ahead == 0 || hangs_by_skin(solid, front))
+    if (!is_near_enough(solid, front) || std::ranges::none_of(at, [&](const grid::NodeId node) { return nodes.at(node).part() > is_open; }))
       continue;
-    if (front.passed >= least_passed)
-      fronts.push_back(front);
-    else
-      corners.push_back(with_passed(front, least_passed));
+    for (int v = 0; v < 8; ++v)
+      front.held[v] = held(nodes.at(at[v]).all, nodes.at(at[v]).part());
+    front.passed = std::max(front.passed, least_passed);
+    fronts.push_back(std::move(front));
   }
-  FrontsOfCells begun;
-  for (const Front& front : fronts)
-    begun.emplace(front.cell, front);
-  for (const Front& corner : corners)
-    if (opens_early(solid, corner, begun))
-      fronts.push_back(corner);
-  std::ranges::sort(fronts, {}, &Front::cell);
   return fronts;
 }
 

@@ -24,7 +24,6 @@ int Raster::draw(const std::array<Vec3, 3>& triangle, const double most) {
   const Vec3 lower = a.cwiseMin(b).cwiseMin(c), upper = a.cwiseMax(b).cwiseMax(c);
   int n_new = 0;
   const int first = std::max(0, texel(lower[0])), last = std::min(n - 1, texel(upper[0]) + 1);
-  const auto middle = [](const int i) { return ((i + 0.5) / n - 0.5) * side; };
   for (int j = std::max(0, texel(lower[1])); j <= std::min(n - 1, texel(upper[1]) + 1); ++j) {
     std::array<double, 3> of_row;
     for (int k = 0; k < 3; ++k)

@@ -3,6 +3,8 @@
 #include "base/archive.h"
 #include "base/vec.h"
 
+#include <bit>
+
 namespace kerf::cut {
 
 /// Bits over a square around a point of a plane.
@@ -17,12 +19,21 @@ class Raster {
   /// All texels within a distance of set ones.
   Raster grown(double distance) const;
   int count() const;
+  /// Calls f(x, y) for the middles of set texels [cubes].
+  template <class Function>
+  void for_each(const Function& f) const {
+    for (int j = 0; j < n; ++j)
+      for (std::uint64_t left = rows_[j]; left != 0; left &= left - 1)
+        f(middle(std::countr_zero(left)), middle(j));
+  }
   bool any() const { return count() > 0; }
   friend Raster operator&(Raster a, const Raster& b);
 
   void archive(Archive& a) { a(rows_); }
 
  private:
+  static constexpr double middle(const int i) { return ((i + 0.5) / n - 0.5) * side; }
+
   std::array<std::uint64_t, n> rows_{};
 };
 

@@ -87,10 +87,12 @@ struct Front {
   double area = 0;                                   ///< of the material in it, in the cell [m^2]
   double passed = 1;                                 ///< the part of it that the cut has come to, in (0, 1] [1]
   CutLabel label = 1;
+  std::array<double, 8> reached = {}; ///< by vertex: the part of the plane in the cell, weighted by the shape function [1]
+  std::array<double, 8> held = {};    ///< by vertex: what holds the copies there (fronts.h) [m^2]
   std::vector<Points> come = {}; ///< where the cut has come in the cell, and a little beside it, since the front was
                                  ///< told last: convex polygons, rest frame [m]; for cut::Fronts::as_faces
 
-  void archive(Archive& a) { a(cell, ahead, point, normal, area, passed, label, come); }
+  void archive(Archive& a) { a(cell, ahead, point, normal, area, passed, label, reached, held, come); }
 };
 
 class Cuts {

@@ -228,3 +228,38 @@ TEST(Condition, OfSliversIsBoundedByTheGhostPenalty) {
 
 } // namespace
 } // namespace kerf::verification::plates_test
+
+namespace kerf::verification {
+TEST(Spike, Scan) {
+  constexpr int n = 57;
+  double all_squares = 0, all_most = 0, all_jump = 0;
+  int count = 0;
+  for (const int degrees : std::getenv("DEG") ? std::vector<int>{std::atoi(std::getenv("DEG"))} : std::vector<int>{0, 20, 30, 45, 60})
+    for (const double across : {0.2, 0.5, 0.8}) {
+      if (std::getenv("ACR") && std::atof(std::getenv("ACR")) != across) continue;
+      Eigen::Matrix<double, n, 4> powers;
+      Eigen::Matrix<double, n, 1> work;
+      for (int i = 0; i < n; ++i) {
+        const double along = 0.05 * i - 1.4;
+        powers.row(i) << 1, along, along * along, along * along * along;
+        work[i] = std::log(work_of_leaning_crack(degrees * std::numbers::pi / 180, along, across, hooke(1, 0.3)));
+      }
+      const Eigen::Vector4d even = powers.colPivHouseholderQr().solve(work);
+      double most = 0, squares = 0, jump = 0, last = 0;
+      for (int i = 0; i < n; ++i) {
+        const double slope = even[1] + 2 * even[2] * powers(i, 1) + 3 * even[3] * powers(i, 2),
+                     error = (work[i] - powers.row(i).dot(even)) / slope;
+        if (i < 8 || i > 48) continue;
+        squares += error * error;
+        most = std::max(most, std::abs(error));
+        if (i > 8) jump = std::max(jump, error - last);
+        last = error;
+        if (std::getenv("SPIKE_ALL")) std::printf("%.3f ", error);
+      }
+      std::printf("%d %.1f: rms %.3f most %.3f jump %.3f mean slope %.4f at 0 %.4f\n", degrees, across, std::sqrt(squares / 41), most, jump, even[1], even[0]);
+      std::fflush(stdout);
+      all_squares += squares; count += 41; all_most = std::max(all_most, most); all_jump = std::max(all_jump, jump);
+    }
+  std::printf("ALL rms %.3f most %.3f jump %.3f\n", std::sqrt(all_squares / count), all_most, all_jump);
+}
+}
