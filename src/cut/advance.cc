@@ -86,6 +86,13 @@ Polygon clipped(Polygon polygon, const Box& box) {
   return polygon;
 }
 
+/// What of the section is drawn, with its lag.
+Raster come_in(const Front& front, const double h, const Raster& section, const Raster& swept) {
+  const InPlane in_plane(front.point, front.normal, h);
+  return section & swept.grown([&](const double x, const double y) { return grid::front_lag(x * in_plane.u + y * in_plane.v); },
+                               grid::most_front_lag);
+}
+
 /// Over the texels of a part of a front's plane.
 OfVertices weighted(const Solid& solid, const Front& front, const Raster& part) {
   const double h = solid.grid.h();
@@ -333,7 +340,7 @@ std::vector<Front> Advance::take(const Solid& solid, const PendingCuts& pending)
       stand.move(moved);
     } else if (earlier && cell.section.any()) {
       Front moved = *earlier;
-      come_to(solid, cell.section & cell.swept.grown(grid::front_lag(moved.normal)), cell, moved);
+      come_to(solid, come_in(moved, solid.grid.h(), cell.section, cell.swept), cell, moved);
       stand.move(moved);
     } else if (!earlier) {
       look_for(c, cell.label);
@@ -436,7 +443,7 @@ void Advance::tell_where_they_have_come(const Solid& solid, std::vector<Front>& 
   for (auto& [c, cell] : cells_)
     if (const Front* const earlier = solid.cuts.front(c); earlier && cell.n_fresh > 0) {
       Front moved = *earlier;
-      come_to(solid, cell.section & cell.swept.grown(grid::front_lag(moved.normal)), cell, moved);
+      come_to(solid, come_in(moved, solid.grid.h(), cell.section, cell.swept), cell, moved);
       moved.passed = std::max(earlier->passed, moved.passed);
       moved.come = cell.take_fresh(moved, solid.grid.h());
       fronts.push_back(moved);
@@ -475,7 +482,7 @@ Advance::Cell Advance::follow(const Solid& solid, Front& front) const {
     }
   followed.whole = weighted(solid, front, followed.section);
   followed.around = AroundFront(solid, front);
-  come_to(solid, followed.section & followed.swept.grown(grid::front_lag(front.normal)), followed, front);
+  come_to(solid, come_in(front, solid.grid.h(), followed.section, followed.swept), followed, front);
   front.come = followed.take_fresh(front, solid.grid.h());
   return followed;
 }

@@ -27,24 +27,25 @@ struct Outline {
   std::vector<HalfSpace> sides;
 };
 
-/// The shape, larger by `more` [m] all around.
-Outline outline_of(const Disc& disc, const double more) {
+/// The shape, larger all around by the lag of fronts in cubes of this edge [m], or not with 0.
+Outline outline_of(const Disc& disc, const double h) {
   constexpr int n = 256;
-  Outline outline{disc.centre, disc.normal, disc.radius + more, {}};
+  Outline outline{disc.centre, disc.normal, disc.radius + grid::most_front_lag * h, {}};
   const Vec3 u = disc.normal.unitOrthogonal(), v = disc.normal.cross(u);
   for (int i = 0; i < n; ++i) {
     const double angle = 2 * std::numbers::pi * i / n;
     const Vec3 out = std::cos(angle) * u + std::sin(angle) * v;
-    outline.sides.push_back({out, out.dot(disc.centre) + disc.radius + more});
+    outline.sides.push_back({out, out.dot(disc.centre) + disc.radius + grid::front_lag(out) * h});
   }
   return outline;
 }
 
-Outline outline_of(const Rectangle& rectangle, const double more) {
+Outline outline_of(const Rectangle& rectangle, const double h) {
   const Vec3 &a = rectangle.first_side, &b = rectangle.second_side;
-  Outline outline{rectangle.centre, a.cross(b).normalized(), 0.5 * (a + b).norm() + 2 * more, {}};
+  Outline outline{rectangle.centre, a.cross(b).normalized(), 0.5 * (a + b).norm() + 2 * grid::most_front_lag * h, {}};
   for (const Vec3& side : {a, Vec3(-a), b, Vec3(-b)})
-    outline.sides.push_back({side.normalized(), side.normalized().dot(rectangle.centre) + 0.5 * side.norm() + more});
+    outline.sides.push_back({side.normalized(),
+                             side.normalized().dot(rectangle.centre) + 0.5 * side.norm() + grid::front_lag(side) * h});
   return outline;
 }
 
@@ -55,7 +56,7 @@ struct Outlines {
 template <class Flat>
 std::optional<Outlines> outlines_of(const Flat& shape, const double h) {
   const Outline own = outline_of(shape, 0);
-  return Outlines{own, outline_of(shape, grid::front_lag(own.normal) * h)};
+  return Outlines{own, outline_of(shape, h)};
 }
 template <class Shape>
 requires(!std::is_same_v<Shape, Disc> && !std::is_same_v<Shape, Rectangle>) std::optional<Outlines>

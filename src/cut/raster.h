@@ -1,6 +1,7 @@
 #pragma once
 
 #include "base/archive.h"
+#include "base/function_ref.h"
 #include "base/vec.h"
 
 #include <bit>
@@ -16,8 +17,8 @@ class Raster {
   /// Sets the texels whose middles lie in a triangle, where the third coordinate is at most `most` away from 0; of
   /// coordinates in cubes, from the middle. Returns how many of them were not set.
   int draw(const std::array<Vec3, 3>& triangle, double most);
-  /// All texels within a distance of set ones.
-  Raster grown(double distance) const;
+  /// All texels within a distance of set ones, which is distance(x, y) in that direction and at most `most`.
+  Raster grown(FunctionRef<double(double, double)> distance, double most) const;
   int count() const;
   /// Calls f(x, y) for the middles of set texels [cubes].
   template <class Function>

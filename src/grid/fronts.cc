@@ -47,7 +47,10 @@ bool hang_together(const Parts& parts, const Copy& one, const Copy& other) {
 
 } // namespace
 
-double front_lag(const Vec3& normal) { return 0.25 * std::pow(normal.lpNorm<1>(), 0.25); }
+double front_lag(const Vec3& ahead) {
+  const double along_grid = ahead.array().pow(4).sum() / std::pow(ahead.squaredNorm(), 2);
+  return 0.232 + 0.018 * along_grid * along_grid;
+}
 
 std::vector<std::array<CopyId, 2>> tied_copies(const Solid& solid, const CellComplex& complex,
                                                const std::span<const CellId> cells) {

@@ -27,7 +27,7 @@ TEST(Fronts, ArePassedAsFarAsTheCutHasCome) {
   for (double x = 4.01; x < 6; x += 0.13) {
     Cutting cutting(block(), Fronts::inside_cells);
     cutting.cut(Rectangle{Vec3(0.5 * x, 5, 5.4), Vec3(x, 0, 0), Vec3(0, 20, 0)});
-    const double end = x + grid::front_lag(Vec3::UnitZ());
+    const double end = x + grid::front_lag(Vec3::UnitX());
     int n = 0;
     for (const grid::Front& front : cutting.body.cuts.fronts()) {
       const double lower = cutting.body.grid.origin(front.cell)[0];
@@ -69,7 +69,7 @@ TEST(Fronts, LieMidwayThroughABox) {
 /// A rectangle that ends in cells which the skin passes through: they are passed by as much of their material as it has
 /// come through, with its lag. One that ends outside, in the same cubes, parts the body, and leaves nothing tied.
 TEST(Fronts, ArePassedByTheirMaterial) {
-  const double lag = grid::front_lag(Vec3::UnitZ());
+  const double lag = grid::front_lag(Vec3::UnitX());
   for (const double thickness : {0.2, 0.5, 0.8}) { // of material in the last layer of cubes
     const Body bar = support::with_copies(
       support::embedded(geometry::box_mesh(Vec3::Zero(), Vec3(5 + thickness, 3, 3)), 1, Vec3::Zero()));
