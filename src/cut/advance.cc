@@ -89,8 +89,8 @@ Polygon clipped(Polygon polygon, const Box& box) {
 /// What of the section is drawn, with its lag.
 Raster come_in(const Front& front, const double h, const Raster& section, const Raster& swept) {
   const InPlane in_plane(front.point, front.normal, h);
-  return section & swept.grown([&](const double x, const double y) { return grid::front_lag(x * in_plane.u + y * in_plane.v); },
-                               grid::most_front_lag);
+  const auto lag = [&](const double x, const double y) { return grid::front_lag(x * in_plane.u + y * in_plane.v); };
+  return section & swept.grown(lag, grid::most_front_lag);
 }
 
 /// Over the texels of a part of a front's plane.
@@ -288,7 +288,7 @@ class Advance::Stand {
   OfVertices held(const CellId c) {
     OfVertices all;
     for (int v = 0; v < grid::cube::n_vertices; ++v)
-      all[v] = cut::held(around(c).area(v), part(c, v));
+      all[v] = cut::held(around(c).area(v), part(c, v), solid_.grid.h());
     return all;
   }
 
@@ -375,7 +375,7 @@ std::vector<Front> Advance::begin(const Solid& solid, Stand& stand, const Functi
   std::vector<Front> in_order, fronts;
   FrontsOfCells begun;
   for (const auto& [c, label] : wanted)
-    if (stand.has_begun(c) && is_near_enough(solid, *stand.front(c)))
+    if (stand.has_begun(c))
       in_order.push_back(*stand.front(c));
   std::ranges::stable_sort(in_order, std::greater<>(), [&](const Front& front) {
     const Cell& cell = stand.begun(front.cell);

@@ -8,10 +8,10 @@
 ///
 /// What the blade sweeps is drawn onto a raster in that plane, where a point that is passed twice counts once; what
 /// leaves the plane by a quarter of a cube does not count. As elements are too stiff at a front, what is drawn is taken
-/// larger by the lag of fronts, and so reaches on into the next cells. The part of the section of plane and material that
-/// it covers is how far the cut has come. Cells are parted once a vertex of theirs opens (openings.h), also those of
-/// which a blade is still to pass a corner. Where it has come, without that lag, is told as the hull
-/// of what has been swept since it was told last, once a front has come on by a twentieth of a cube.
+/// larger by the lag of fronts, and so reaches on into the next cells. The part of the section of plane and material
+/// that it covers is how far the cut has come. Cells are parted once a vertex of theirs opens (openings.h), into some of
+/// which the front has not come by then. Where it has come, without that lag, is told as the hull of what has been swept since
+/// it was told last, once a front has come on by a twentieth of a cube.
 ///
 /// Cells in which cuts wait (pending.h) get no front before they are cut; those beside them are asked again then.
 ///

@@ -261,13 +261,6 @@ bool is_along(const Front& front, const std::vector<Polygon>& pieces, const doub
          std::abs(front.normal.dot(course->plane.point - front.point)) < off * h;
 }
 
-bool is_near_enough(const Solid& solid, const Front& front) {
-  const char* w = std::getenv("WH");
-  const double whole = w ? std::atof(w) : 0.9; // of a face
-  const CellAtPlane cell(solid, front.cell, {front.point, front.normal}, rest_of(solid, front.cell));
-  return front.passed > 0 || area(cell.section().rest) < whole * solid.grid.h() * solid.grid.h();
-}
-
 bool fits_in(const Solid& solid, const Front& front, const FrontsOfCells& begun) {
   return agrees_with_neighbours(solid, front, begun) && !leaves_shreds(solid, front, begun);
 }

@@ -39,9 +39,6 @@ bool is_along(const grid::Front& front, const std::vector<Polygon>& pieces, doub
 
 using FrontsOfCells = std::map<grid::CellId, grid::Front>;
 
-/// Has the front come into its cell, or does its plane cut off no more than a part of that?
-bool is_near_enough(const grid::Solid& solid, const grid::Front& front);
-
 /// Can the cell have this front, if others have those of `begun`?
 bool fits_in(const grid::Solid& solid, const grid::Front& front, const FrontsOfCells& begun);
 

@@ -109,11 +109,6 @@ bool is_same_plane(const Front& one, const Front& other, const double h) {
   return one.normal.cross(other.normal).norm() < same && std::abs(one.normal.dot(one.point - other.point)) < same * h;
 }
 
-Front with_passed(Front front, const double passed) {
-  front.passed = passed;
-  return front;
-}
-
 /// What of the plane lies around nodes, weighted [m^2]: all of it, and what the shape with its lag covers.
 struct AroundNode {
   double all = 0, come = 0;
@@ -149,15 +144,43 @@ OfVertices add(const Solid& solid, const CellId c, const CellAtPlane& cell, cons
   return come;
 }
 
+/// By vertex of a cell, by how far the vertices are open.
+OfVertices held_at(const Solid& solid, const CellId c, const AroundNodes& nodes) {
+  OfVertices all{};
+  std::ranges::transform(solid.grid.nodes(c), all.begin(), [&](const grid::NodeId node) {
+    const AroundNode& around = nodes.at(node);
+    return held(around.all, around.part(), solid.grid.h());
+  });
+  return all;
+}
+
+bool opens_a_vertex(const Solid& solid, const CellId c, const AroundNodes& nodes) {
+  return std::ranges::any_of(solid.grid.nodes(c), [&](const grid::NodeId node) { return nodes.at(node).part() > is_open; });
+}
+
+/// An earlier front, where the shape has come farther; none elsewhere.
+std::optional<Front> moved_on(const Front& earlier, const Front& now) {
+  Front moved = earlier;
+  moved.passed = std::max(now.passed, earlier.passed);
+  bool comes_on = now.passed > earlier.passed;
+  for (int v = 0; v < grid::cube::n_vertices; ++v) {
+    comes_on = comes_on || now.held[v] < earlier.held[v];
+    moved.held[v] = std::min(now.held[v], earlier.held[v]);
+    moved.reached[v] = std::max(now.reached[v], earlier.reached[v]);
+  }
+  moved.come = now.come;
+  return comes_on ? std::optional(moved) : std::nullopt;
+}
+
 } // namespace
 
 std::vector<Front> find_fronts(const CutSurface& surface, const Solid& solid, const Points& x, const bool as_faces) {
   const double h = solid.grid.h();
   const auto outlines = std::visit([&](const auto& shape) { return outlines_of(shape, h); }, surface.shape);
-  std::vector<Front> met, fronts;
   if (!outlines)
-    return fronts;
+    return {};
   const Outline& outline = outlines->with_lag;
+  std::vector<Front> met;
   AroundNodes nodes;
   for (const auto c : ids<CellId>(solid.grid.n_cells())) {
     const grid::Copy& copy = solid.complex.copies[solid.complex.first_copy[c]];
@@ -177,28 +200,16 @@ std::vector<Front> find_fronts(const CutSurface& surface, const Solid& solid, co
     if (earlier ? is_same_plane(front, *earlier, h) : front.ahead != 0 && !hangs_by_skin(solid, front))
       met.push_back(std::move(front));
   }
+  std::vector<Front> fronts;
   for (Front& front : met) {
-    const auto at = solid.grid.nodes(front.cell);
+    front.held = held_at(solid, front.cell, nodes);
     if (const Front* const earlier = solid.cuts.front(front.cell)) {
-      Front moved = with_passed(*earlier, std::max(front.passed, earlier->passed));
-      bool comes_on = front.passed > earlier->passed;
-      for (int v = 0; v < 8; ++v) {
-        const double now = held(nodes.at(at[v]).all, nodes.at(at[v]).part());
-        comes_on = comes_on || now < earlier->held[v];
-        moved.held[v] = std::min(now, earlier->held[v]);
-        moved.reached[v] = std::max(front.reached[v], earlier->reached[v]);
-      }
-      moved.come = front.come;
-      if (comes_on)
-        fronts.push_back(std::move(moved));
-      continue;
+      if (auto moved = moved_on(*earlier, front))
+        fronts.push_back(std::move(*moved));
+    } else if (opens_a_vertex(solid, front.cell, nodes)) {
+      front.passed = std::max(front.passed, least_passed);
+      fronts.push_back(std::move(front));
     }
-    if (!is_near_enough(solid, front) || std::ranges::none_of(at, [&](const grid::NodeId node) { return nodes.at(node).part() > is_open; }))
-      continue;
-    for (int v = 0; v < 8; ++v)
-      front.held[v] = held(nodes.at(at[v]).all, nodes.at(at[v]).part());
-    front.passed = std::max(front.passed, least_passed);
-    fronts.push_back(std::move(front));
   }
   return fronts;
 }

@@ -17,8 +17,7 @@ using grid::CellId;
 using grid::Solid;
 namespace cube = grid::cube;
 
-constexpr double third = 1.0 / 3, // of the plane around a vertex, what holds it along the grid
-  least_open = 1e-3, most_open = 0.999;
+constexpr double least_open = 1e-3, most_open = 0.999;
 
 /// In the octant (bits for the upper side along x, y, z) around a vertex of a cell; not valid outside of the grid.
 CellId cell_around(const grid::Grid& grid, const CellId own, const int v, const int octant) {
@@ -34,10 +33,10 @@ int vertex_in(const int octant) { return octant ^ (cube::n_vertices - 1); }
 
 } // namespace
 
-double held(const double area, const double part) {
-  const double open = 1 - std::sqrt(std::clamp((1 - part) / (1 - opens_from), 0.0, 1.0)),
-               f = std::clamp(open, least_open, most_open);
-  return third * area * (1 - f) / f;
+double held(const double area, const double part, const double h) {
+  constexpr double least_area = 1e-6;
+  const double open = 1 - std::sqrt(std::clamp(2 * (1 - part), 0.0, 1.0)), f = std::clamp(open, least_open, most_open);
+  return std::max(area, least_area * h * h) / 3 * (1 - f) / f;
 }
 
 ToRest::ToRest(const Solid& solid, const CellId c, const Points& x) : origin(solid.grid.origin(c)) {
@@ -122,7 +121,6 @@ AroundFront::AroundFront(const Solid& solid, const grid::Front& front) {
       area_[v] += area;
     for (int octant = 0; octant < cube::n_vertices && area_[v] > 0; ++octant)
       shares_[v][octant] = static_cast<float>(areas[v][octant] / area_[v]);
-    area_[v] = std::max(area_[v], 1e-6 * h * h);
   }
 }
 

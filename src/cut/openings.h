@@ -6,7 +6,8 @@
 ///
 ///     1 - sqrt(2 (1 - F)),
 ///
-/// which in a plane along the grid is the part that the front has passed of the cells ahead.
+/// which in a plane along the grid is the part that the front has passed of the cells ahead. A vertex is worth copies once
+/// it has opened by a hundredth.
 
 #include "base/function_ref.h"
 #include "grid/solid.h"
@@ -18,11 +19,11 @@ namespace kerf::cut {
 
 using OfVertices = std::array<double, grid::cube::n_vertices>;
 
-/// From which part on a vertex opens, and is worth copies.
-constexpr double opens_from = 0.5, is_open = 0.51;
+constexpr double is_open = 0.51; ///< F from which on a vertex is worth copies
 
-/// What holds copies at a vertex [m^2], of what lies in the plane around it [m^2] and the part that has come.
-double held(double area, double part);
+/// What holds copies at a vertex (grid::Front) [m^2]; of what lies in the plane around it [m^2], of which a little is
+/// taken to lie there always, and F. `h`: edge of the cubes [m].
+double held(double area, double part, double h);
 
 /// A cell's coordinates in which its cube is [0, h]^3 at its place at rest, as an affine map from where it is.
 struct ToRest {

@@ -215,7 +215,7 @@ void penny_order_table() {
               "square [%%] | its order since the row above |\n|---|---|---|---|---|\n");
   std::array<double, 3> before{};
   int n_before = 0;
-  for (const int n : {4, 6}) {
+  for (const int n : {3, 4, 6, 8}) {
     std::array<std::vector<double>, 3> errors;
     for (Penny one : places) {
       one.n_over_radius = n;
