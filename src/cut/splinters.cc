@@ -183,11 +183,10 @@ std::vector<HeldSplinter> held_splinters(const Solid& solid, const std::span<con
     const auto* const groups = c.valid() ? solid.cuts.joined(c) : nullptr;
     return groups && std::ranges::any_of(*groups, [](const Joined& group) { return group.intervals != 0; });
   };
-  ItemsOfCells inner_before;
-  for (const HeldSplinter& splinter : held_before)
-    inner_before[splinter.cell] |= splinter.inner;
   const auto was_held = [&](const ItemsOfCells& lump) {
-    return std::ranges::any_of(inner_before, [&](const auto& of) { return holds_any(lump, of.first, of.second); });
+    return std::ranges::any_of(held_before, [&](const HeldSplinter& splinter) {
+      return holds_any(lump, splinter.cell, splinter.inner) && lump.size() <= splinter.n_cells;
+    });
   };
   const auto is_less_than_the_rest = [&](const ItemsOfCells& lump, const double own) {
     return is_led_to(solid, lump, lumps, [&, least = was_held(lump) ? 0 : own](const ItemsOfCells* const other) {
@@ -199,7 +198,7 @@ std::vector<HeldSplinter> held_splinters(const Solid& solid, const std::span<con
            std::ranges::any_of(lump, [&](const auto& of) { return has_intervals(of.first); });
   };
   for (const CellId c : cells) {
-    bool is_near = has_intervals(c) || inner_before.contains(c);
+    bool is_near = has_intervals(c) || std::ranges::find(held_before, c, &HeldSplinter::cell) != held_before.end();
     for (int face = 0; face < cube::n_faces && !is_near; ++face)
       is_near = has_intervals(solid.grid.neighbour(c, face));
     if (!is_near)
@@ -216,7 +215,7 @@ std::vector<HeldSplinter> held_splinters(const Solid& solid, const std::span<con
           continue;
         const std::vector<Joined> both = near_each_other(solid, cell, {{inner | outer, 0}}, x);
         if (!both.empty()) {
-          held.push_back({cell, inner, both.front()});
+          held.push_back({cell, inner, both.front(), lump->size()});
           break;
         }
       }
