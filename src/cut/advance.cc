@@ -210,9 +210,17 @@ void Advance::sweep(const Sweep& sweep, const Solid& solid, const EdgeBoxes& box
 void Advance::add(const Solid& solid, const CellId c, const Polygon& piece, const grid::CutLabel label,
                   const bool rests) {
   Cell& cell = cells_.emplace(c, Cell{label}).first->second;
-  if (cell.label != label)
-    return;
-  if (const Front* const front = solid.cuts.front(c); front && ahead_ == Ahead::goes_on) {
+  const Front* const front = solid.cuts.front(c);
+  const bool moves_front = front && ahead_ == Ahead::goes_on;
+  if (cell.label != label) {
+    const bool goes_on = moves_front && is_along(*front, {mean(piece), normal(piece)}, solid.grid.h()),
+               has_stopped = !front && !touched_.contains(c); // the blade that came here
+    if (has_stopped)
+      cell = Cell{label};
+    else if (!goes_on)
+      return;
+  }
+  if (moves_front) {
     const InPlane in_plane(front->point, front->normal, solid.grid.h());
     const int n_new = draw(piece, in_plane, cell.swept);
     if (as_faces_)

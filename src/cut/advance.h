@@ -4,7 +4,7 @@
 ///
 /// A cell is parted along the plane in which the blade will go through it, where that is certain (course.h); else it
 /// stays whole until it is cut. A blade that rests while material moves across it does not tell where it goes, unless
-/// it has come into the cell so.
+/// it has come into the cell so. Another blade that goes on in a front's plane moves it on as its own does.
 ///
 /// What the blade sweeps is drawn onto a raster in that plane, where a point that is passed twice counts once; what
 /// leaves the plane by a quarter of a cube does not count. As elements are too stiff at a front, what is drawn is taken

@@ -251,14 +251,18 @@ std::optional<Front> front_ahead(const Solid& solid, const CellId c, const std::
   return std::nullopt;
 }
 
-bool is_along(const Front& front, const std::vector<Polygon>& pieces, const double h) {
+bool is_along(const Front& front, const Plane& plane, const double h) {
   constexpr double turned = 0.2, off = 0.1; // sine of the angle; of a cube
+  return plane.normal.cross(front.normal).norm() < turned &&
+         std::abs(front.normal.dot(plane.point - front.point)) < off * h;
+}
+
+bool is_along(const Front& front, const std::vector<Polygon>& pieces, const double h) {
   Points points;
   for (const Polygon& piece : pieces)
     points.insert(points.end(), piece.begin(), piece.end());
   const std::optional<Course> course = course_of(points, h);
-  return course && course->plane.normal.cross(front.normal).norm() < turned &&
-         std::abs(front.normal.dot(course->plane.point - front.point)) < off * h;
+  return course && is_along(front, course->plane, h);
 }
 
 bool fits_in(const Solid& solid, const Front& front, const FrontsOfCells& begun) {

@@ -34,7 +34,8 @@ std::optional<grid::Front> front_ahead(const grid::Solid& solid, grid::CellId c,
 /// The cell and those that share a node with it, as far as faces lead to them.
 std::vector<grid::CellId> cells_around(const grid::Grid& grid, grid::CellId c);
 
-/// Do these pieces [rest frame, m] lie along a front, so that what has swept them moves it on?
+/// Does a plane, or do these pieces [rest frame, m], lie along a front, so that what has swept there moves it on?
+bool is_along(const grid::Front& front, const Plane& plane, double h);
 bool is_along(const grid::Front& front, const std::vector<Polygon>& pieces, double h);
 
 using FrontsOfCells = std::map<grid::CellId, grid::Front>;
