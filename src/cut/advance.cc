@@ -1,7 +1,7 @@
 #include "cut/advance.h"
 
 #include "base/function_ref.h"
-#include "geometry/convex_hull.h"
+#include "cut/in_plane.h"
 #include "grid/fronts.h"
 #include "grid/parts.h"
 #include "grid/shape.h"
@@ -20,37 +20,7 @@ using grid::CellId;
 using grid::Front;
 using grid::Solid;
 
-constexpr double off_plane = 0.25;       // what counts [cubes]
 constexpr std::size_t most_pieces = 128; // the last ones are kept: a body may swing about a blade that rests
-
-/// Coordinates in a plane and above it, in cubes.
-struct InPlane {
-  InPlane(const Vec3& point, const Vec3& normal, const double h)
-    : origin(point), u(normal.unitOrthogonal() / h), v(normal.cross(u)), w(normal / h) {}
-  Vec3 operator()(const Vec3& p) const { return {u.dot(p - origin), v.dot(p - origin), w.dot(p - origin)}; }
-  Vec3 point(const Eigen::Vector2d& p) const { return origin + (p[0] * u + p[1] * v) / w.squaredNorm(); }
-
-  Vec3 origin, u, v, w;
-};
-
-/// The convex hull of points, in the plane.
-Polygon hull(const Points& points, const InPlane& in_plane) {
-  std::vector<Eigen::Vector2d> flat;
-  for (const Vec3& p : points)
-    flat.push_back(in_plane(p).head<2>());
-  Polygon hull;
-  for (const Eigen::Vector2d& p : geometry::convex_hull(flat))
-    hull.push_back(in_plane.point(p));
-  return hull;
-}
-
-/// Returns how many texels are drawn that were not.
-int draw(const Polygon& piece, const InPlane& in_plane, Raster& raster) {
-  int n_new = 0;
-  for (std::size_t i = 2; i < piece.size(); ++i)
-    n_new += raster.draw({in_plane(piece[0]), in_plane(piece[i - 1]), in_plane(piece[i])}, off_plane);
-  return n_new;
-}
 
 /// Where the plane of a front meets the material of its cell.
 Raster section_of(const Solid& solid, const Front& front, const InPlane& in_plane) {
@@ -58,6 +28,8 @@ Raster section_of(const Solid& solid, const Front& front, const InPlane& in_plan
   Raster section;
   for (const Polygon& piece : cell.material())
     draw(piece, in_plane, section);
+  if (!section.any()) // of less than a texel
+    section.draw({Vec3(-texel, -texel, 0), Vec3(2 * texel, -texel, 0), Vec3(-texel, 2 * texel, 0)}, off_plane);
   return section;
 }
 
@@ -214,7 +186,7 @@ void Advance::add(const Solid& solid, const CellId c, const Polygon& piece, cons
   const bool moves_front = front && ahead_ == Ahead::goes_on;
   if (cell.label != label) {
     const bool goes_on = moves_front && is_along(*front, {mean(piece), normal(piece)}, solid.grid.h()),
-               has_stopped = !front && !touched_.contains(c); // the blade that came here
+               has_stopped = !front && !touched_.contains(c) && !touched_before_.contains(c);
     if (has_stopped)
       cell = Cell{label};
     else if (!goes_on)
@@ -274,6 +246,11 @@ class Advance::Stand {
     begun_.insert_or_assign(front.cell, std::move(cell));
   }
   void move(const Front& front) { fronts_.insert_or_assign(front.cell, front); }
+  /// One that is not to begin.
+  void drop(const CellId c) {
+    fronts_.erase(c);
+    begun_.erase(c);
+  }
   const FrontsOfCells& fronts() const { return fronts_; }
   bool has_begun(const CellId c) const { return begun_.contains(c); }
   Cell& begun(const CellId c) { return begun_.at(c); }
@@ -322,6 +299,7 @@ class Advance::Stand {
 
 std::vector<Front> Advance::take(const Solid& solid, const PendingCuts& pending) {
   std::vector<CellId> forgotten;
+  std::vector<std::pair<CellId, Cell>> moved_on;
   std::set<CellId> later;
   const auto waits = [&](const CellId c) {
     return std::ranges::any_of(solid.grid.edges(c), [&](const grid::EdgeId e) { return pending.waits(e); });
@@ -344,7 +322,7 @@ std::vector<Front> Advance::take(const Solid& solid, const PendingCuts& pending)
       Front moved = *earlier;
       if (!is_along(*earlier, cell.pieces, solid.grid.h()))
         continue;
-      cell = follow(solid, moved);
+      moved_on.emplace_back(c, follow(solid, moved));
       stand.move(moved);
     } else if (earlier && cell.section.any()) {
       Front moved = *earlier;
@@ -354,6 +332,8 @@ std::vector<Front> Advance::take(const Solid& solid, const PendingCuts& pending)
       look_for(c, cell.label);
     }
   }
+  for (auto& [c, cell] : moved_on) // others have asked for what is swept around them
+    cells_[c] = std::move(cell);
   std::vector<Front> fronts = begin(solid, stand, waits, later);
   if (!as_faces_ || ahead_ == Ahead::ends)
     move(solid, stand, fronts);
@@ -361,6 +341,7 @@ std::vector<Front> Advance::take(const Solid& solid, const PendingCuts& pending)
     cells_.erase(c);
   if (as_faces_)
     tell_where_they_have_come(solid, fronts);
+  touched_before_ = std::move(touched_);
   touched_ = std::move(later);
   std::ranges::sort(fronts, {}, &Front::cell);
   return fronts;
@@ -390,12 +371,15 @@ std::vector<Front> Advance::begin(const Solid& solid, Stand& stand, const Functi
     return std::pair((cell.section & cell.swept).any(), front.passed);
   });
   for (Front& front : in_order) {
-    if (!fits_in(solid, front, begun))
-      continue;
     front.passed = std::max(front.passed, least_passed);
-    front.held = stand.held(front.cell);
+    if (fits_in(solid, front, begun))
+      begun.emplace(front.cell, front);
+    else
+      stand.drop(front.cell);
+  }
+  for (auto& [c, front] : begun) {
+    front.held = stand.held(c);
     fronts.push_back(front);
-    begun.emplace(front.cell, front);
   }
   for (const Front& front : fronts)
     cells_[front.cell] = std::move(stand.begun(front.cell));
@@ -442,7 +426,6 @@ void Advance::come_to(const Solid& solid, const Raster& come, const Cell& cell, 
 /// All of them at once, when one has come on by enough: what sees them is made anew then (physics/phyxels.h).
 void Advance::tell_where_they_have_come(const Solid& solid, std::vector<Front>& fronts) {
   constexpr double enough = 0.05; // squares of a cube's edge
-  constexpr double texel = Raster::side / Raster::n;
   if (std::ranges::none_of(touched_, [&](const CellId c) {
         const auto at = cells_.find(c);
         return at != cells_.end() && at->second.n_fresh * texel * texel >= enough;
@@ -479,7 +462,8 @@ std::vector<Points> Advance::Cell::take_fresh(const Front& front, const double h
 Advance::Cell Advance::follow(const Solid& solid, Front& front) const {
   const auto at = cells_.find(front.cell);
   const Cell not_met;
-  const Cell& cell = at != cells_.end() ? at->second : not_met;
+  const bool is_its = at != cells_.end() && (at->second.label == front.label || ahead_ == Ahead::ends);
+  const Cell& cell = is_its ? at->second : not_met;
   const InPlane in_plane(front.point, front.normal, solid.grid.h());
   Cell followed{.label = front.label, .section = section_of(solid, front, in_plane)};
   for (const std::vector<Polygon>* const pieces : {&cell.pieces, &cell.at_rest})

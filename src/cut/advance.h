@@ -4,14 +4,15 @@
 ///
 /// A cell is parted along the plane in which the blade will go through it, where that is certain (course.h); else it
 /// stays whole until it is cut. A blade that rests while material moves across it does not tell where it goes, unless
-/// it has come into the cell so. Another blade that goes on in a front's plane moves it on as its own does.
+/// it has come into the cell so. Another blade that goes on in a front's plane moves it on as its own does; but blades
+/// move no fronts that surfaces have left which cut at once.
 ///
 /// What the blade sweeps is drawn onto a raster in that plane, where a point that is passed twice counts once; what
 /// leaves the plane by a quarter of a cube does not count. As elements are too stiff at a front, what is drawn is taken
 /// larger by the lag of fronts, and so reaches on into the next cells. The part of the section of plane and material
-/// that it covers is how far the cut has come. Cells are parted once a vertex of theirs opens (openings.h), into some of
-/// which the front has not come by then. Where it has come, without that lag, is told as the hull of what has been swept since
-/// it was told last, once a front has come on by a twentieth of a cube.
+/// that it covers is how far the cut has come. Cells are parted once a vertex of theirs opens (openings.h), into some
+/// of which the front has not come by then. Where it has come, without that lag, is told as the hull of what has been
+/// swept since it was told last, once a front has come on by a twentieth of a cube.
 ///
 /// Cells in which cuts wait (pending.h) get no front before they are cut; those beside them are asked again then.
 ///
@@ -47,7 +48,7 @@ class Advance {
   /// is cut.
   std::vector<grid::Front> take(const grid::Solid& solid, const PendingCuts& pending);
 
-  void archive(Archive& a) { a(cells_, touched_); }
+  void archive(Archive& a) { a(cells_, touched_, touched_before_); }
 
  private:
   class Sweep;
@@ -83,7 +84,7 @@ class Advance {
   bool as_faces_;
   Ahead ahead_;
   std::map<grid::CellId, Cell> cells_;
-  std::set<grid::CellId> touched_; // in which blades have swept since fronts were taken
+  std::set<grid::CellId> touched_, touched_before_; // in which blades have swept since fronts were taken; before that
 };
 
 } // namespace kerf::cut

@@ -270,7 +270,8 @@ bool fits_in(const Solid& solid, const Front& front, const FrontsOfCells& begun)
 }
 
 bool is_ahead(const Solid& solid, const Front& front) {
-  return !parts_nodes(solid, front, grid::cut_by(solid, front.cell, front.label));
+  const grid::Segments by_others = front.ahead & grid::cuts_of(solid, front.cell).blades;
+  return !parts_nodes(solid, front, grid::cut_by(solid, front.cell, front.label) | by_others);
 }
 
 std::vector<grid::SkinCut> missed_cuts(const Solid& solid, const Front& front) {

@@ -6,8 +6,8 @@
 ///
 ///     1 - sqrt(2 (1 - F)),
 ///
-/// which in a plane along the grid is the part that the front has passed of the cells ahead. A vertex is worth copies once
-/// it has opened by a hundredth.
+/// which in a plane along the grid is the part that the front has passed of the cells ahead. A vertex is worth copies
+/// once it has opened by a hundredth.
 
 #include "base/function_ref.h"
 #include "grid/solid.h"

@@ -24,11 +24,14 @@ std::vector<int> vertices_apart(const Copy& one, const Copy& other) {
 
 std::array<CornerId, 2> both_of(const Tie& tie) { return {std::min(tie.a, tie.b), std::max(tie.a, tie.b)}; }
 
+/// Is it of skin alone?
+bool is_skin(const Copy& copy) { return copy.nodes == 0; }
+
 /// Of the ties at these vertices.
 std::vector<double> lengths(const Solid& solid, const Front& front, const Copy& one, const Copy& other,
                             const std::vector<int>& apart) {
   const double h = solid.grid.h();
-  if (one.nodes == 0 || other.nodes == 0) // skin alone
+  if (is_skin(one) || is_skin(other))
     // A hollow skin may leave a copy with less than nothing.
     return std::vector<double>(apart.size(), std::max(0.0, std::min(fill(solid, one), fill(solid, other))) * h /
                                                static_cast<double>(apart.size()));
@@ -71,20 +74,25 @@ std::vector<std::array<CopyId, 2>> tied_copies(const Solid& solid, const CellCom
 std::vector<Tie> ties(const Solid& solid) {
   const auto& copies = solid.complex.copies;
   std::vector<Tie> ties;
-  std::map<std::array<CornerId, 2>, int> n; // cells that tie these
+  std::vector<bool> are_shared;             // by the cells around
+  std::map<std::array<CornerId, 2>, int> n; // cells that share the tie of these
   for (const auto& [c, d] : solid.complex.tied) {
     if (solid.crumbs.holds(c))
       continue;
     const Front& front = *solid.cuts.front(copies[c].cell);
     const std::vector<int> apart = vertices_apart(copies[c], copies[d]);
+    const bool is_shared = !is_skin(copies[c]) && !is_skin(copies[d]);
     const std::vector<double> length = lengths(solid, front, copies[c], copies[d], apart);
     for (std::size_t i = 0; i < apart.size(); ++i) {
       ties.push_back({copies[c].corners[apart[i]], copies[d].corners[apart[i]], length[i]});
-      ++n[both_of(ties.back())];
+      are_shared.push_back(is_shared);
+      if (is_shared)
+        ++n[both_of(ties.back())];
     }
   }
-  for (Tie& tie : ties)
-    tie.length /= n.at(both_of(tie));
+  for (std::size_t i = 0; i < ties.size(); ++i)
+    if (are_shared[i])
+      ties[i].length /= n.at(both_of(ties[i]));
   return ties;
 }
 
