@@ -1,12 +1,12 @@
 #include "cut/advance.h"
 
 #include "base/function_ref.h"
-#include "geometry/convex_hull.h"
+#include "cut/in_plane.h"
 #include "grid/fronts.h"
 #include "grid/parts.h"
+#include "grid/shape.h"
 
 #include <Eigen/Geometry>
-#include <Eigen/LU>
 
 #include <algorithm>
 #include <cmath>
@@ -20,61 +20,7 @@ using grid::CellId;
 using grid::Front;
 using grid::Solid;
 
-constexpr double off_plane = 0.25;       // what counts [cubes]
 constexpr std::size_t most_pieces = 128; // the last ones are kept: a body may swing about a blade that rests
-
-/// A cell's coordinates in which its cube is [0, h]^3 at its place at rest, as an affine map from where it is.
-struct ToRest {
-  ToRest(const Solid& solid, const CellId c, const Points& x) : origin(solid.grid.origin(c)) {
-    const grid::Copy& copy = solid.complex.copies[solid.complex.first_copy[c]];
-    Mat3 along = Mat3::Zero();
-    for (int v = 0; v < 8; ++v) {
-      const Vec3& p = x[copy.corners[v].value];
-      middle += p / 8;
-      for (int axis = 0; axis < 3; ++axis)
-        along.col(axis) += ((v >> axis & 1) != 0 ? 0.25 : -0.25) * p;
-    }
-    const double h = solid.grid.h();
-    bool invertible = false;
-    Mat3 inverse;
-    along.computeInverseWithCheck(inverse, invertible, 1e-6 * h * h * h);
-    from = invertible ? Mat3(h * inverse) : Mat3(Mat3::Zero());
-    origin += Vec3::Constant(0.5 * h);
-  }
-  Vec3 operator()(const Vec3& p) const { return origin + from * (p - middle); }
-
-  Vec3 origin, middle = Vec3::Zero();
-  Mat3 from;
-};
-
-/// Coordinates in a plane and above it, in cubes.
-struct InPlane {
-  InPlane(const Vec3& point, const Vec3& normal, const double h)
-    : origin(point), u(normal.unitOrthogonal() / h), v(normal.cross(u)), w(normal / h) {}
-  Vec3 operator()(const Vec3& p) const { return {u.dot(p - origin), v.dot(p - origin), w.dot(p - origin)}; }
-  Vec3 point(const Eigen::Vector2d& p) const { return origin + (p[0] * u + p[1] * v) / w.squaredNorm(); }
-
-  Vec3 origin, u, v, w;
-};
-
-/// The convex hull of points, in the plane.
-Polygon hull(const Points& points, const InPlane& in_plane) {
-  std::vector<Eigen::Vector2d> flat;
-  for (const Vec3& p : points)
-    flat.push_back(in_plane(p).head<2>());
-  Polygon hull;
-  for (const Eigen::Vector2d& p : geometry::convex_hull(flat))
-    hull.push_back(in_plane.point(p));
-  return hull;
-}
-
-/// Returns how many texels are drawn that were not.
-int draw(const Polygon& piece, const InPlane& in_plane, Raster& raster) {
-  int n_new = 0;
-  for (std::size_t i = 2; i < piece.size(); ++i)
-    n_new += raster.draw({in_plane(piece[0]), in_plane(piece[i - 1]), in_plane(piece[i])}, off_plane);
-  return n_new;
-}
 
 /// Where the plane of a front meets the material of its cell.
 Raster section_of(const Solid& solid, const Front& front, const InPlane& in_plane) {
@@ -82,6 +28,8 @@ Raster section_of(const Solid& solid, const Front& front, const InPlane& in_plan
   Raster section;
   for (const Polygon& piece : cell.material())
     draw(piece, in_plane, section);
+  if (!section.any()) // of less than a texel
+    section.draw({Vec3(-texel, -texel, 0), Vec3(2 * texel, -texel, 0), Vec3(-texel, 2 * texel, 0)}, off_plane);
   return section;
 }
 
@@ -110,31 +58,25 @@ Polygon clipped(Polygon polygon, const Box& box) {
   return polygon;
 }
 
-/// One across a face.
-bool has_neighbour(const Solid& solid, const CellId c, const FunctionRef<bool(CellId)> is_such) {
-  for (int face = 0; face < grid::cube::n_faces; ++face)
-    if (const CellId next = solid.grid.neighbour(c, face); next.valid() && is_such(next))
-      return true;
-  return false;
+/// What of the section is drawn, with its lag.
+Raster come_in(const Front& front, const double h, const Raster& section, const Raster& swept) {
+  const InPlane in_plane(front.point, front.normal, h);
+  const auto lag = [&](const double x, const double y) { return grid::front_lag(x * in_plane.u + y * in_plane.v); };
+  return section & swept.grown(lag, grid::most_front_lag);
 }
 
-bool is_cut_beside(const Solid& solid, const CellId c, const FrontsOfCells& begun) {
-  return has_neighbour(solid, c, [&](const CellId next) {
-    return begun.contains(next) || grid::cuts_of_copies(solid, next).blades != 0;
+/// Over the texels of a part of a front's plane.
+OfVertices weighted(const Solid& solid, const Front& front, const Raster& part) {
+  const double h = solid.grid.h();
+  const InPlane in_plane(front.point, front.normal, h);
+  const Vec3 origin = solid.grid.origin(front.cell);
+  OfVertices sums{};
+  part.for_each([&](const double x, const double y) {
+    const Vec3 xi = (in_plane.point({x, y}) - origin) / h;
+    for (int v = 0; v < grid::cube::n_vertices; ++v)
+      sums[v] += grid::shape(v, xi);
   });
-}
-
-/// Is a line of this face parted in the cell, as cuts or a front have it?
-bool divides(const Solid& solid, const CellId c, const int face, const FrontsOfCells& begun) {
-  const auto at = begun.find(c);
-  const grid::Segments parted = at != begun.end() ? at->second.ahead : grid::cuts_of_copies(solid, c).blades;
-  return std::ranges::any_of(grid::cube::face_lines[face], [&](const int line) { return (parted >> line & 1) != 0; });
-}
-
-/// The part of a section that what is drawn covers, with its lag.
-double passed(const Front& front, const Raster& section, const Raster& swept) {
-  const Raster come = section & swept.grown(grid::front_lag(front.normal));
-  return section.any() ? std::min(most_passed, double(come.count()) / section.count()) : 0;
+  return sums;
 }
 
 } // namespace
@@ -240,9 +182,17 @@ void Advance::sweep(const Sweep& sweep, const Solid& solid, const EdgeBoxes& box
 void Advance::add(const Solid& solid, const CellId c, const Polygon& piece, const grid::CutLabel label,
                   const bool rests) {
   Cell& cell = cells_.emplace(c, Cell{label}).first->second;
-  if (cell.label != label)
-    return;
-  if (const Front* const front = solid.cuts.front(c); front && ahead_ == Ahead::goes_on) {
+  const Front* const front = solid.cuts.front(c);
+  const bool moves_front = front && ahead_ == Ahead::goes_on;
+  if (cell.label != label) {
+    const bool goes_on = moves_front && is_along(*front, {mean(piece), normal(piece)}, solid.grid.h()),
+               has_stopped = !front && !touched_.contains(c) && !touched_before_.contains(c);
+    if (has_stopped)
+      cell = Cell{label};
+    else if (!goes_on)
+      return;
+  }
+  if (moves_front) {
     const InPlane in_plane(front->point, front->normal, solid.grid.h());
     const int n_new = draw(piece, in_plane, cell.swept);
     if (as_faces_)
@@ -286,14 +236,80 @@ bool Advance::can_begin(const Solid& solid, const CellId c) const {
   return !solid.cuts.front(c) && !solid.cuts.joined(c) && grid::whole_parts_of(grid::cuts_of(solid, c)).n == 1;
 }
 
+/// What a step's fronts are: before it, or as they have begun or moved on in it.
+class Advance::Stand {
+ public:
+  Stand(const Solid& solid, const std::map<CellId, Cell>& cells) : solid_(solid), cells_(cells) {}
+
+  void begin(const Front& front, Cell&& cell) {
+    fronts_.insert_or_assign(front.cell, front);
+    begun_.insert_or_assign(front.cell, std::move(cell));
+  }
+  void move(const Front& front) { fronts_.insert_or_assign(front.cell, front); }
+  /// One that is not to begin.
+  void drop(const CellId c) {
+    fronts_.erase(c);
+    begun_.erase(c);
+  }
+  const FrontsOfCells& fronts() const { return fronts_; }
+  bool has_begun(const CellId c) const { return begun_.contains(c); }
+  Cell& begun(const CellId c) { return begun_.at(c); }
+  const Front* front(const CellId c) const {
+    const auto at = fronts_.find(c);
+    return at != fronts_.end() ? &at->second : solid_.cuts.front(c);
+  }
+
+  /// Of what lies around a vertex of a front's cell.
+  double part(const CellId c, const int v) {
+    return around(c).part(solid_, c, v, [&](const CellId next, const int w) {
+      const Front* const its = front(next);
+      return is_parted(next) ? 1.0 : its ? its->reached[w] : 0.0;
+    });
+  }
+  const AroundFront& around(const CellId c) const {
+    const auto at = begun_.find(c);
+    return at != begun_.end() ? at->second.around : cells_.at(c).around;
+  }
+  OfVertices held(const CellId c) {
+    OfVertices all;
+    for (int v = 0; v < grid::cube::n_vertices; ++v)
+      all[v] = cut::held(around(c).area(v), part(c, v), solid_.grid.h());
+    return all;
+  }
+
+ private:
+  /// For good.
+  bool is_parted(const CellId c) {
+    if (fronts_.contains(c))
+      return false;
+    const auto [at, is_new] = parted_.try_emplace(c);
+    if (is_new) {
+      const Front* const front = solid_.cuts.front(c);
+      at->second = front ? !is_ahead(solid_, *front) : grid::whole_parts_of(grid::cuts_of(solid_, c)).n > 1;
+    }
+    return at->second;
+  }
+
+  const Solid& solid_;
+  const std::map<CellId, Cell>& cells_;
+  FrontsOfCells fronts_;
+  std::map<CellId, Cell> begun_;
+  std::map<CellId, bool> parted_;
+};
+
 std::vector<Front> Advance::take(const Solid& solid, const PendingCuts& pending) {
-  std::vector<Front> fronts;
-  FrontsOfCells begun;
-  std::map<CellId, Cell> followed;
   std::vector<CellId> forgotten;
+  std::vector<std::pair<CellId, Cell>> moved_on;
   std::set<CellId> later;
   const auto waits = [&](const CellId c) {
     return std::ranges::any_of(solid.grid.edges(c), [&](const grid::EdgeId e) { return pending.waits(e); });
+  };
+  Stand stand(solid, cells_);
+  const auto look_for = [&](const CellId c, const grid::CutLabel label) {
+    if (auto front = front_in(solid, c, label)) {
+      Cell cell = follow(solid, *front);
+      stand.begin(*front, std::move(cell));
+    }
   };
   for (const CellId c : touched_) {
     Cell& cell = cells_.at(c);
@@ -304,90 +320,112 @@ std::vector<Front> Advance::take(const Solid& solid, const PendingCuts& pending)
       later.insert(c);
     else if (earlier && ahead_ == Ahead::ends) { // of another cut, or of a blade
       Front moved = *earlier;
-      if (is_along(*earlier, cell.pieces, solid.grid.h()))
-        follow(solid, moved);
-      if (moved.passed > earlier->passed)
-        fronts.push_back(moved);
-    } else if (earlier) {
+      if (!is_along(*earlier, cell.pieces, solid.grid.h()))
+        continue;
+      moved_on.emplace_back(c, follow(solid, moved));
+      stand.move(moved);
+    } else if (earlier && cell.section.any()) {
       Front moved = *earlier;
-      moved.passed = passed(moved, cell.section, cell.swept);
-      if (moved.passed > earlier->passed && !as_faces_)
-        fronts.push_back(moved);
-    } else if (auto front = front_in(solid, c, cell.label)) {
-      followed.emplace(c, follow(solid, *front));
-      begun.emplace(c, *front);
+      come_to(solid, come_in(moved, solid.grid.h(), cell.section, cell.swept), cell, moved);
+      stand.move(moved);
+    } else if (!earlier) {
+      look_for(c, cell.label);
     }
   }
-  FrontsOfCells all;
-  const auto begin = [&](const Front& front, const FrontsOfCells& others, Cell&& followed) {
-    if (!fits_in(solid, front, others))
-      return false;
-    fronts.push_back(front);
-    all.emplace(front.cell, front);
-    cells_[front.cell] = std::move(followed);
-    return true;
-  };
-  const auto is_swept = [&](const Front* const front) {
-    const Cell& cell = followed.at(front->cell);
-    return (cell.section & cell.swept).any();
-  };
-  std::vector<const Front*> in_order;
-  for (const auto& [c, front] : begun)
-    in_order.push_back(&front);
-  std::ranges::stable_sort(in_order, std::greater<>(), [&](const Front* const front) {
-    return std::pair(is_swept(front), front->passed);
-  });
-  for (const Front* const front : in_order) {
-    const CellId c = front->cell;
-    Cell& cell = followed.at(c);
-    const bool has_come = front->passed >= least_passed && (is_swept(front) || is_cut_beside(solid, c, all));
-    const bool has_begun = has_come && begin(*front, all, std::move(cell));
-    if (!has_begun && has_neighbour(solid, c, waits)) // which may be what it lacks
-      later.insert(c);
-  }
-  for (Front& corner : corners_ahead(solid, begun, all))
-    if (!waits(corner.cell)) {
-      Cell cell = follow(solid, corner);
-      corner.passed = std::max(corner.passed, least_passed);
-      begin(corner, all, std::move(cell));
-    }
+  for (auto& [c, cell] : moved_on) // others have asked for what is swept around them
+    cells_[c] = std::move(cell);
+  std::vector<Front> fronts = begin(solid, stand, waits, later);
+  if (!as_faces_ || ahead_ == Ahead::ends)
+    move(solid, stand, fronts);
   for (const CellId c : forgotten)
     cells_.erase(c);
   if (as_faces_)
     tell_where_they_have_come(solid, fronts);
+  touched_before_ = std::move(touched_);
   touched_ = std::move(later);
   std::ranges::sort(fronts, {}, &Front::cell);
   return fronts;
 }
 
-/// Of cells in which too little or nothing has been swept.
-std::vector<Front> Advance::corners_ahead(const Solid& solid, const FrontsOfCells& found,
-                                          const FrontsOfCells& begun) const {
-  std::vector<Front> corners;
-  const auto add = [&](const Front& front) {
-    if (opens_early(solid, front, begun))
-      corners.push_back(front);
-  };
-  for (const auto& [c, front] : found)
-    if (front.passed < least_passed)
-      add(front);
-  std::set<CellId> known;
-  for (const CellId c : touched_)
-    for (int face = 0; face < grid::cube::n_faces; ++face) {
-      const CellId next = solid.grid.neighbour(c, face);
-      if (!next.valid() || touched_.contains(next) || !can_begin(solid, next) || !divides(solid, c, face, begun) ||
-          !known.insert(next).second)
-        continue;
-      if (const auto front = front_in(solid, next, cells_.at(c).label))
-        add(*front);
+/// In all cells around vertices that open.
+std::vector<Front> Advance::begin(const Solid& solid, Stand& stand, const FunctionRef<bool(CellId)> waits,
+                                  std::set<CellId>& later) {
+  std::map<CellId, grid::CutLabel> wanted;
+  for (const auto& [c, front] : stand.fronts())
+    for (int v = 0; v < grid::cube::n_vertices; ++v)
+      if (stand.part(c, v) > is_open)
+        stand.around(c).for_each_cell(solid, c, v, [&](const CellId next) { wanted.emplace(next, front.label); });
+  for (const auto& [c, label] : wanted)
+    if (!stand.front(c) && !touched_.contains(c) && can_begin(solid, c) && !waits(c))
+      if (auto front = front_in(solid, c, label)) {
+        Cell cell = follow(solid, *front);
+        stand.begin(*front, std::move(cell));
+      }
+  std::vector<Front> in_order, fronts;
+  FrontsOfCells begun;
+  for (const auto& [c, label] : wanted)
+    if (stand.has_begun(c))
+      in_order.push_back(*stand.front(c));
+  std::ranges::stable_sort(in_order, std::greater<>(), [&](const Front& front) {
+    const Cell& cell = stand.begun(front.cell);
+    return std::pair((cell.section & cell.swept).any(), front.passed);
+  });
+  for (Front& front : in_order) {
+    front.passed = std::max(front.passed, least_passed);
+    if (fits_in(solid, front, begun))
+      begun.emplace(front.cell, front);
+    else
+      stand.drop(front.cell);
+  }
+  for (auto& [c, front] : begun) {
+    front.held = stand.held(c);
+    fronts.push_back(front);
+  }
+  for (const Front& front : fronts)
+    cells_[front.cell] = std::move(stand.begun(front.cell));
+  for (const auto& [c, front] : stand.fronts()) // which may lack what waits
+    if (touched_.contains(c) && std::ranges::any_of(cells_around(solid.grid, c), waits))
+      later.insert(c);
+  return fronts;
+}
+
+/// Of earlier fronts those that have come on, or around which others have.
+void Advance::move(const Solid& solid, Stand& stand, std::vector<Front>& fronts) {
+  constexpr double little = 1e-3;
+  std::set<CellId> near;
+  for (const auto& [c, front] : stand.fronts())
+    for (const CellId next : cells_around(solid.grid, c))
+      near.insert(next);
+  for (const CellId c : near) {
+    const Front* const earlier = solid.cuts.front(c);
+    const auto at = cells_.find(c);
+    if (!earlier || at == cells_.end() || !at->second.section.any() ||
+        (at->second.label != earlier->label && ahead_ == Ahead::goes_on) || !is_ahead(solid, *earlier))
+      continue;
+    Front moved = *stand.front(c);
+    moved.passed = std::max(moved.passed, earlier->passed);
+    bool comes_on = moved.passed > earlier->passed;
+    const OfVertices held = stand.held(c);
+    for (int v = 0; v < grid::cube::n_vertices; ++v) {
+      comes_on = comes_on || held[v] < (1 - little) * earlier->held[v];
+      moved.held[v] = std::min(held[v], earlier->held[v]);
     }
-  return corners;
+    if (comes_on)
+      fronts.push_back(std::move(moved));
+  }
+}
+
+/// A front that has come through a part of its cell's section.
+void Advance::come_to(const Solid& solid, const Raster& come, const Cell& cell, Front& front) {
+  front.passed = cell.section.any() ? std::min(most_passed, double(come.count()) / cell.section.count()) : 0;
+  const OfVertices sums = weighted(solid, front, come);
+  for (int v = 0; v < grid::cube::n_vertices; ++v)
+    front.reached[v] = std::max(front.reached[v], cell.whole[v] > 0 ? sums[v] / cell.whole[v] : 0);
 }
 
 /// All of them at once, when one has come on by enough: what sees them is made anew then (physics/phyxels.h).
 void Advance::tell_where_they_have_come(const Solid& solid, std::vector<Front>& fronts) {
   constexpr double enough = 0.05; // squares of a cube's edge
-  constexpr double texel = Raster::side / Raster::n;
   if (std::ranges::none_of(touched_, [&](const CellId c) {
         const auto at = cells_.find(c);
         return at != cells_.end() && at->second.n_fresh * texel * texel >= enough;
@@ -396,7 +434,8 @@ void Advance::tell_where_they_have_come(const Solid& solid, std::vector<Front>& 
   for (auto& [c, cell] : cells_)
     if (const Front* const earlier = solid.cuts.front(c); earlier && cell.n_fresh > 0) {
       Front moved = *earlier;
-      moved.passed = std::max(earlier->passed, passed(moved, cell.section, cell.swept));
+      come_to(solid, come_in(moved, solid.grid.h(), cell.section, cell.swept), cell, moved);
+      moved.passed = std::max(earlier->passed, moved.passed);
       moved.come = cell.take_fresh(moved, solid.grid.h());
       fronts.push_back(moved);
     }
@@ -423,7 +462,8 @@ std::vector<Points> Advance::Cell::take_fresh(const Front& front, const double h
 Advance::Cell Advance::follow(const Solid& solid, Front& front) const {
   const auto at = cells_.find(front.cell);
   const Cell not_met;
-  const Cell& cell = at != cells_.end() ? at->second : not_met;
+  const bool is_its = at != cells_.end() && (at->second.label == front.label || ahead_ == Ahead::ends);
+  const Cell& cell = is_its ? at->second : not_met;
   const InPlane in_plane(front.point, front.normal, solid.grid.h());
   Cell followed{.label = front.label, .section = section_of(solid, front, in_plane)};
   for (const std::vector<Polygon>* const pieces : {&cell.pieces, &cell.at_rest})
@@ -432,7 +472,9 @@ Advance::Cell Advance::follow(const Solid& solid, Front& front) const {
       if (as_faces_)
         followed.add_fresh(front, solid.grid.h(), clipped(piece, in_sight_of(solid, front.cell)), 0);
     }
-  front.passed = passed(front, followed.section, followed.swept);
+  followed.whole = weighted(solid, front, followed.section);
+  followed.around = AroundFront(solid, front);
+  come_to(solid, come_in(front, solid.grid.h(), followed.section, followed.swept), followed, front);
   front.come = followed.take_fresh(front, solid.grid.h());
   return followed;
 }

@@ -170,14 +170,10 @@ std::vector<Polygon> CellAtPlane::material() const {
 }
 
 grid::Front CellAtPlane::front(const Section& section, const double passed) const {
-  double filled = 0;
-  for (const Polygon& piece : material())
-    filled += area(piece);
   return {.cell = cell_,
           .ahead = ahead(),
           .point = mean(section.rest),
           .normal = normal(section.rest),
-          .area = area(section.rest) * std::min(1.0, filled / area(section.there)),
           .passed = std::min(most_passed, passed)};
 }
 

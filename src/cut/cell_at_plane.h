@@ -40,9 +40,9 @@ Polygon clipped(const Polygon& polygon, const HalfSpace& side);
 /// The corners of a cell at rest [m].
 std::array<Vec3, 8> rest_of(const grid::Solid& solid, grid::CellId c);
 
-/// What a front has passed of its cell: below `least` it is not worth a copy; more than `most` it has not until the
-/// cell is cut, so that what hangs together never comes apart. Were it .98, the rest would hold the cut back by .035
-/// cubes [1].
+/// What a front has passed of its cell: `least` where it has only opened a vertex there (openings.h); more than `most` it
+/// has not until the cell is cut, so that what hangs together never comes apart. Were it .98, the rest would hold the cut
+/// back by .035 cubes [1].
 constexpr double least_passed = 0.02, most_passed = 0.999;
 
 class CellAtPlane {

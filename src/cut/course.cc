@@ -251,40 +251,18 @@ std::optional<Front> front_ahead(const Solid& solid, const CellId c, const std::
   return std::nullopt;
 }
 
-bool is_along(const Front& front, const std::vector<Polygon>& pieces, const double h) {
+bool is_along(const Front& front, const Plane& plane, const double h) {
   constexpr double turned = 0.2, off = 0.1; // sine of the angle; of a cube
+  return plane.normal.cross(front.normal).norm() < turned &&
+         std::abs(front.normal.dot(plane.point - front.point)) < off * h;
+}
+
+bool is_along(const Front& front, const std::vector<Polygon>& pieces, const double h) {
   Points points;
   for (const Polygon& piece : pieces)
     points.insert(points.end(), piece.begin(), piece.end());
   const std::optional<Course> course = course_of(points, h);
-  return course && course->plane.normal.cross(front.normal).norm() < turned &&
-         std::abs(front.normal.dot(course->plane.point - front.point)) < off * h;
-}
-
-bool opens_early(const Solid& solid, const Front& front, const FrontsOfCells& begun) {
-  constexpr double little = 0.25, whole = 0.9, // of a face: of material, and of all
-    far = 0.5;                                 // of a cell, from which on it is clear that the cut goes on
-  const double square = solid.grid.h() * solid.grid.h();
-  if (front.area >= little * square) {
-    const CellAtPlane cell(solid, front.cell, {front.point, front.normal}, rest_of(solid, front.cell));
-    if (area(cell.section().rest) >= whole * square)
-      return false;
-  }
-  const auto own = solid.grid.edges(front.cell);
-  const auto is_parted = [&](const CellId next, const grid::EdgeId e) {
-    if (!next.valid())
-      return false;
-    const auto at = begun.find(next);
-    const Front* const beside = at != begun.end() ? &at->second : solid.cuts.front(next);
-    const int line = solid.grid.line(next, e);
-    return beside ? beside->passed >= far && (beside->ahead >> line & 1) != 0
-                  : (grid::cuts_of_copies(solid, next).blades >> line & 1) != 0;
-  };
-  for (int face = 0; face < grid::cube::n_faces; ++face)
-    for (const int i : grid::cube::face_lines[face])
-      if ((front.ahead >> i & 1) != 0 && is_parted(solid.grid.neighbour(front.cell, face), own[i]))
-        return true;
-  return false;
+  return course && is_along(front, course->plane, h);
 }
 
 bool fits_in(const Solid& solid, const Front& front, const FrontsOfCells& begun) {
@@ -292,7 +270,8 @@ bool fits_in(const Solid& solid, const Front& front, const FrontsOfCells& begun)
 }
 
 bool is_ahead(const Solid& solid, const Front& front) {
-  return !parts_nodes(solid, front, grid::cut_by(solid, front.cell, front.label));
+  const grid::Segments by_others = front.ahead & grid::cuts_of(solid, front.cell).blades;
+  return !parts_nodes(solid, front, grid::cut_by(solid, front.cell, front.label) | by_others);
 }
 
 std::vector<grid::SkinCut> missed_cuts(const Solid& solid, const Front& front) {

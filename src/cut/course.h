@@ -34,16 +34,11 @@ std::optional<grid::Front> front_ahead(const grid::Solid& solid, grid::CellId c,
 /// The cell and those that share a node with it, as far as faces lead to them.
 std::vector<grid::CellId> cells_around(const grid::Grid& grid, grid::CellId c);
 
-/// Do these pieces [rest frame, m] lie along a front, so that what has swept them moves it on?
+/// Does a plane, or do these pieces [rest frame, m], lie along a front, so that what has swept there moves it on?
+bool is_along(const grid::Front& front, const Plane& plane, double h);
 bool is_along(const grid::Front& front, const std::vector<Polygon>& pieces, double h);
 
 using FrontsOfCells = std::map<grid::CellId, grid::Front>;
-
-/// Does it lie where the plane cuts off a part of its cell, smaller than a section along the grid, beside a cell that is
-/// cut, or that another front (of `begun`, or before) has passed by half? Whole, such a cell closes the cut in the one
-/// beside it over all of the face that they share, back to where that cell begins, however little of the cut is to go
-/// through it: in a plane that leans by 45 degrees the front is then up to .25 cubes behind, and comes on by .45 at once.
-bool opens_early(const grid::Solid& solid, const grid::Front& front, const FrontsOfCells& begun);
 
 /// Can the cell have this front, if others have those of `begun`?
 bool fits_in(const grid::Solid& solid, const grid::Front& front, const FrontsOfCells& begun);

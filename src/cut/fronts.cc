@@ -1,12 +1,14 @@
 #include "cut/fronts.h"
 
 #include "cut/course.h"
+#include "cut/openings.h"
 #include "grid/fronts.h"
 
 #include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <optional>
 
@@ -25,24 +27,25 @@ struct Outline {
   std::vector<HalfSpace> sides;
 };
 
-/// The shape, larger by `more` [m] all around.
-Outline outline_of(const Disc& disc, const double more) {
+/// The shape, larger all around by the lag of fronts in cubes of this edge [m], or not with 0.
+Outline outline_of(const Disc& disc, const double h) {
   constexpr int n = 256;
-  Outline outline{disc.centre, disc.normal, disc.radius + more, {}};
+  Outline outline{disc.centre, disc.normal, disc.radius + grid::most_front_lag * h, {}};
   const Vec3 u = disc.normal.unitOrthogonal(), v = disc.normal.cross(u);
   for (int i = 0; i < n; ++i) {
     const double angle = 2 * std::numbers::pi * i / n;
     const Vec3 out = std::cos(angle) * u + std::sin(angle) * v;
-    outline.sides.push_back({out, out.dot(disc.centre) + disc.radius + more});
+    outline.sides.push_back({out, out.dot(disc.centre) + disc.radius + grid::front_lag(out) * h});
   }
   return outline;
 }
 
-Outline outline_of(const Rectangle& rectangle, const double more) {
+Outline outline_of(const Rectangle& rectangle, const double h) {
   const Vec3 &a = rectangle.first_side, &b = rectangle.second_side;
-  Outline outline{rectangle.centre, a.cross(b).normalized(), 0.5 * (a + b).norm() + 2 * more, {}};
+  Outline outline{rectangle.centre, a.cross(b).normalized(), 0.5 * (a + b).norm() + 2 * grid::most_front_lag * h, {}};
   for (const Vec3& side : {a, Vec3(-a), b, Vec3(-b)})
-    outline.sides.push_back({side.normalized(), side.normalized().dot(rectangle.centre) + 0.5 * side.norm() + more});
+    outline.sides.push_back({side.normalized(),
+                             side.normalized().dot(rectangle.centre) + 0.5 * side.norm() + grid::front_lag(side) * h});
   return outline;
 }
 
@@ -53,7 +56,7 @@ struct Outlines {
 template <class Flat>
 std::optional<Outlines> outlines_of(const Flat& shape, const double h) {
   const Outline own = outline_of(shape, 0);
-  return Outlines{own, outline_of(shape, grid::front_lag(own.normal) * h)};
+  return Outlines{own, outline_of(shape, h)};
 }
 template <class Shape>
 requires(!std::is_same_v<Shape, Disc> && !std::is_same_v<Shape, Rectangle>) std::optional<Outlines>
@@ -106,9 +109,68 @@ bool is_same_plane(const Front& one, const Front& other, const double h) {
   return one.normal.cross(other.normal).norm() < same && std::abs(one.normal.dot(one.point - other.point)) < same * h;
 }
 
-Front with_passed(Front front, const double passed) {
-  front.passed = passed;
-  return front;
+/// What of the plane lies around nodes, weighted [m^2]: all of it, and what the shape with its lag covers.
+struct AroundNode {
+  double all = 0, come = 0;
+  double part() const { return all > 0 ? come / all : 0; }
+};
+using AroundNodes = std::map<grid::NodeId, AroundNode>;
+
+/// Adds a cell's; returns the part of it that is covered, by vertex.
+OfVertices add(const Solid& solid, const CellId c, const CellAtPlane& cell, const Points& x, const Outline& with_lag,
+               AroundNodes& nodes) {
+  const bool is_parted = !solid.cuts.front(c) && solid.complex.copies[solid.complex.first_copy[c]].next.valid();
+  const ToRest to_rest(solid, c, x);
+  OfVertices all{}, come{};
+  for (Polygon piece : cell.material()) {
+    const auto add_to = [&](OfVertices& sums) {
+      Polygon at_rest(piece.size());
+      std::ranges::transform(piece, at_rest.begin(), to_rest);
+      add_integrals(solid, c, at_rest, sums);
+    };
+    add_to(all);
+    if (!is_parted)
+      for (const HalfSpace& side : with_lag.sides)
+        piece = clipped(piece, side);
+    add_to(come);
+  }
+  const auto at = solid.grid.nodes(c);
+  for (int v = 0; v < 8; ++v) {
+    AroundNode& node = nodes[at[v]];
+    node.all += all[v];
+    node.come += come[v];
+    come[v] = all[v] > 0 ? come[v] / all[v] : 0;
+  }
+  return come;
+}
+
+/// By vertex of a cell, by how far the vertices are open.
+OfVertices held_at(const Solid& solid, const CellId c, const AroundNodes& nodes) {
+  OfVertices all{};
+  std::ranges::transform(solid.grid.nodes(c), all.begin(), [&](const grid::NodeId node) {
+    const AroundNode& around = nodes.at(node);
+    return held(around.all, around.part(), solid.grid.h());
+  });
+  return all;
+}
+
+bool opens_a_vertex(const Solid& solid, const CellId c, const AroundNodes& nodes) {
+  return std::ranges::any_of(solid.grid.nodes(c),
+                             [&](const grid::NodeId node) { return nodes.at(node).part() > is_open; });
+}
+
+/// An earlier front, where the shape has come farther; none elsewhere.
+std::optional<Front> moved_on(const Front& earlier, const Front& now) {
+  Front moved = earlier;
+  moved.passed = std::max(now.passed, earlier.passed);
+  bool comes_on = now.passed > earlier.passed;
+  for (int v = 0; v < grid::cube::n_vertices; ++v) {
+    comes_on = comes_on || now.held[v] < earlier.held[v];
+    moved.held[v] = std::min(now.held[v], earlier.held[v]);
+    moved.reached[v] = std::max(now.reached[v], earlier.reached[v]);
+  }
+  moved.come = now.come;
+  return comes_on ? std::optional(moved) : std::nullopt;
 }
 
 } // namespace
@@ -116,44 +178,40 @@ Front with_passed(Front front, const double passed) {
 std::vector<Front> find_fronts(const CutSurface& surface, const Solid& solid, const Points& x, const bool as_faces) {
   const double h = solid.grid.h();
   const auto outlines = std::visit([&](const auto& shape) { return outlines_of(shape, h); }, surface.shape);
-  std::vector<Front> fronts, corners;
   if (!outlines)
-    return fronts;
+    return {};
   const Outline& outline = outlines->with_lag;
+  std::vector<Front> met;
+  AroundNodes nodes;
   for (const auto c : ids<CellId>(solid.grid.n_cells())) {
     const grid::Copy& copy = solid.complex.copies[solid.complex.first_copy[c]];
     const double size = (x[copy.corners[7].value] - x[copy.corners[0].value]).norm();
     if ((x[copy.corners[0].value] - outline.point).norm() > outline.reach + 2 * size)
       continue;
-    const Front* const earlier = solid.cuts.front(c);
-    if (!earlier && (copy.next.valid() || solid.cuts.joined(c)))
-      continue;
     const CellAtPlane cell(solid, c, {outline.point, outline.normal}, grid::corners_of(copy, x));
     if (!cell.is_met())
       continue;
+    const OfVertices reached = add(solid, c, cell, x, outline, nodes);
+    const Front* const earlier = solid.cuts.front(c);
+    if (!earlier && (copy.next.valid() || solid.cuts.joined(c)))
+      continue;
     Front front = front_in(cell, *outlines, as_faces);
-    if (earlier) {
-      if (front.passed > earlier->passed && is_same_plane(front, *earlier, h)) {
-        fronts.push_back(with_passed(*earlier, front.passed));
-        fronts.back().come = front.come;
-      }
-      continue;
-    }
+    front.reached = reached;
     front.label = surface.label;
-    if (front.ahead == 0 || hangs_by_skin(solid, front))
-      continue;
-    if (front.passed >= least_passed)
-      fronts.push_back(front);
-    else
-      corners.push_back(with_passed(front, least_passed));
+    if (earlier ? is_same_plane(front, *earlier, h) : front.ahead != 0 && !hangs_by_skin(solid, front))
+      met.push_back(std::move(front));
   }
-  FrontsOfCells begun;
-  for (const Front& front : fronts)
-    begun.emplace(front.cell, front);
-  for (const Front& corner : corners)
-    if (opens_early(solid, corner, begun))
-      fronts.push_back(corner);
-  std::ranges::sort(fronts, {}, &Front::cell);
+  std::vector<Front> fronts;
+  for (Front& front : met) {
+    front.held = held_at(solid, front.cell, nodes);
+    if (const Front* const earlier = solid.cuts.front(front.cell)) {
+      if (auto moved = moved_on(*earlier, front))
+        fronts.push_back(std::move(*moved));
+    } else if (opens_a_vertex(solid, front.cell, nodes)) {
+      front.passed = std::max(front.passed, least_passed);
+      fronts.push_back(std::move(front));
+    }
+  }
   return fronts;
 }
 

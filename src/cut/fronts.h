@@ -4,8 +4,8 @@
 ///
 /// Of each cell that the shape's plane meets, and that has one copy, though not of what cuts would part (Cuts::joined),
 /// what of the material lies in the plane is clipped with the shape; the part that is left of it is how far the cut has
-/// come. The shape is taken larger by the lag of fronts, as elements are too stiff there. Corners ahead of it are parted
-/// too (opens_early, course.h).
+/// come. The shape is taken larger by the lag of fronts, as elements are too stiff there. Cells are parted once a vertex
+/// of theirs opens (openings.h).
 ///
 /// Only shapes that are flat and have an end: meshes and blades that move leave those of advance.h.
 

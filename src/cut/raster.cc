@@ -24,7 +24,6 @@ int Raster::draw(const std::array<Vec3, 3>& triangle, const double most) {
   const Vec3 lower = a.cwiseMin(b).cwiseMin(c), upper = a.cwiseMax(b).cwiseMax(c);
   int n_new = 0;
   const int first = std::max(0, texel(lower[0])), last = std::min(n - 1, texel(upper[0]) + 1);
-  const auto middle = [](const int i) { return ((i + 0.5) / n - 0.5) * side; };
   for (int j = std::max(0, texel(lower[1])); j <= std::min(n - 1, texel(upper[1]) + 1); ++j) {
     std::array<double, 3> of_row;
     for (int k = 0; k < 3; ++k)
@@ -42,15 +41,20 @@ int Raster::draw(const std::array<Vec3, 3>& triangle, const double most) {
   return n_new;
 }
 
-Raster Raster::grown(const double distance) const {
-  const double radius = distance / side * n;
+Raster Raster::grown(const FunctionRef<double(double, double)> distance, const double most) const {
+  constexpr double texel = side / n;
   Raster result;
-  const int reach = static_cast<int>(std::lround(radius));
+  const int reach = static_cast<int>(std::lround(most / texel));
   for (int dj = -reach; dj <= reach; ++dj) {
-    const long width = std::lround(std::sqrt(std::max(0.0, radius * radius - dj * dj)));
+    std::array<int, 2> width = {-1, -1}; // to either side
+    for (const bool to_right : {false, true})
+      for (int di = 0; di <= reach; ++di)
+        if (const int x = to_right ? di : -di;
+            (di == 0 && dj == 0) || std::hypot(x, dj) <= distance(x, dj) / texel + 0.5)
+          width[to_right] = di;
     for (int j = std::max(0, -dj); j < std::min(n, n - dj); ++j)
-      for (int di = 0; di <= width && rows_[j] != 0; ++di)
-        result.rows_[j + dj] |= rows_[j] << di | rows_[j] >> di;
+      for (int di = -width[0]; di <= width[1] && rows_[j] != 0; ++di)
+        result.rows_[j + dj] |= di >= 0 ? rows_[j] << di : rows_[j] >> -di;
   }
   return result;
 }

@@ -17,8 +17,8 @@ namespace kerf::cut {
 /// Parts on both sides of a cut that are one in a cell.
 struct HeldSplinter {
   grid::CellId cell;
-  grid::Items inner = 0; ///< of the splinter
-  grid::Joined parts;    ///< it, and what holds it
+  grid::Items inner = 0;   ///< of the splinter
+  grid::Joined parts;      ///< it, and what holds it
   std::size_t n_cells = 0; ///< in which the splinter lies
 
   void archive(Archive& a) { a(cell, inner, parts, n_cells); }
@@ -26,9 +26,9 @@ struct HeldSplinter {
 
 /// Of splinters that have a part in one of these cells, near to an interval or where one was held before; none that
 /// reach into a cell where blades still cut (`unsettled`). One that was held stays so, while there is other material
-/// between the same cuts, though vertices that have moved since make it the larger part; one that has come to lie in more
-/// cells hangs together with more by now, and is asked as if it were new. With the corners at `x` [m]: what has moved
-/// away by a quarter of a cube holds nothing.
+/// between the same cuts, though vertices that have moved since make it the larger part; one that has come to lie in
+/// more cells hangs together with more by now, and is asked as if it were new. With the corners at `x` [m]: what has
+/// moved away by a quarter of a cube holds nothing.
 std::vector<HeldSplinter> held_splinters(const grid::Solid& solid, std::span<const grid::CellId> cells,
                                          std::span<const HeldSplinter> held_before,
                                          const std::set<grid::CellId>& unsettled, const Points& x);

@@ -84,13 +84,14 @@ struct Front {
   CellId cell;
   Segments ahead = 0; ///< of the cell's segments those that the plane meets, but not the cut
   Vec3 point = Vec3::Zero(), normal = Vec3::UnitX(); ///< of the plane, rest frame [m], unit
-  double area = 0;                                   ///< of the material in it, in the cell [m^2]
-  double passed = 1;                                 ///< the part of it that the cut has come to, in (0, 1] [1]
+  double passed = 1; ///< the part of its material in the cell that the cut has come to, in (0, 1] [1]
   CutLabel label = 1;
+  std::array<double, 8> reached = {}; ///< by vertex: that part, weighted by its shape function [1]
+  std::array<double, 8> held = {};    ///< by vertex: A / 3 (1 - f) / f of what holds the copies there (fronts.h) [m^2]
   std::vector<Points> come = {}; ///< where the cut has come in the cell, and a little beside it, since the front was
                                  ///< told last: convex polygons, rest frame [m]; for cut::Fronts::as_faces
 
-  void archive(Archive& a) { a(cell, ahead, point, normal, area, passed, label, come); }
+  void archive(Archive& a) { a(cell, ahead, point, normal, passed, label, reached, held, come); }
 };
 
 class Cuts {

@@ -2,7 +2,6 @@
 
 #include "base/sort_unique.h"
 #include "grid/material.h"
-#include "grid/shape.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +11,7 @@ namespace kerf::grid {
 
 namespace {
 
-constexpr double stiffness = 0.6; // c
+constexpr double stiffness = 0.59; // c
 
 /// The vertices at which two copies of a cell do not share a corner.
 std::vector<int> vertices_apart(const Copy& one, const Copy& other) {
@@ -23,49 +22,22 @@ std::vector<int> vertices_apart(const Copy& one, const Copy& other) {
   return apart;
 }
 
-/// Of the vertices where copies are apart: means over the front's plane in its cell of N_v times the sum of their N.
-std::vector<double> shares(const Solid& solid, const Front& front, const std::vector<int>& apart) {
-  constexpr int n = 4; // points along a side
-  const Vec3 middle = (front.point - solid.grid.origin(front.cell)) / solid.grid.h();
-  std::vector<double> sums(apart.size(), 0.0);
-  int n_points = 0;
-  const auto add = [&](const Vec3& xi) {
-    double all = 0;
-    for (const int v : apart)
-      all += shape(v, xi);
-    for (std::size_t i = 0; i < apart.size(); ++i)
-      sums[i] += shape(apart[i], xi) * all;
-    ++n_points;
-  };
-  int steep = 0; // the axis that the plane is steepest to
-  front.normal.cwiseAbs().maxCoeff(&steep);
-  const int u = (steep + 1) % 3, v = (steep + 2) % 3;
-  for (int i = 0; i < n * n; ++i) {
-    Vec3 xi = middle;
-    xi[u] = (i % n + 0.5) / n;
-    xi[v] = (i / n + 0.5) / n;
-    xi[steep] -= front.normal.dot(xi - middle) / front.normal[steep];
-    if (xi[steep] >= 0 && xi[steep] <= 1)
-      add(xi);
-  }
-  if (n_points == 0) // it grazes the cell
-    add(middle);
-  for (double& sum : sums)
-    sum /= n_points;
-  return sums;
-}
+std::array<CornerId, 2> both_of(const Tie& tie) { return {std::min(tie.a, tie.b), std::max(tie.a, tie.b)}; }
+
+/// Is it of skin alone?
+bool is_skin(const Copy& copy) { return copy.nodes == 0; }
 
 /// Of the ties at these vertices.
 std::vector<double> lengths(const Solid& solid, const Front& front, const Copy& one, const Copy& other,
                             const std::vector<int>& apart) {
   const double h = solid.grid.h();
-  if (one.nodes == 0 || other.nodes == 0) // skin alone
+  if (is_skin(one) || is_skin(other))
     // A hollow skin may leave a copy with less than nothing.
     return std::vector<double>(apart.size(), std::max(0.0, std::min(fill(solid, one), fill(solid, other))) * h /
                                                static_cast<double>(apart.size()));
-  std::vector<double> lengths = shares(solid, front, apart);
-  for (double& length : lengths)
-    length *= stiffness * front.area / h * (1 - front.passed) / front.passed;
+  std::vector<double> lengths;
+  for (const int v : apart)
+    lengths.push_back(stiffness * front.held[v] / h);
   return lengths;
 }
 
@@ -78,7 +50,10 @@ bool hang_together(const Parts& parts, const Copy& one, const Copy& other) {
 
 } // namespace
 
-double front_lag(const Vec3& normal) { return 0.25 * std::pow(normal.lpNorm<1>(), 0.25); }
+double front_lag(const Vec3& ahead) {
+  const double along_grid = ahead.array().pow(4).sum() / std::pow(ahead.squaredNorm(), 2);
+  return 0.232 + 0.018 * along_grid * along_grid;
+}
 
 std::vector<std::array<CopyId, 2>> tied_copies(const Solid& solid, const CellComplex& complex,
                                                const std::span<const CellId> cells) {
@@ -99,15 +74,25 @@ std::vector<std::array<CopyId, 2>> tied_copies(const Solid& solid, const CellCom
 std::vector<Tie> ties(const Solid& solid) {
   const auto& copies = solid.complex.copies;
   std::vector<Tie> ties;
+  std::vector<bool> are_shared;             // by the cells around
+  std::map<std::array<CornerId, 2>, int> n; // cells that share the tie of these
   for (const auto& [c, d] : solid.complex.tied) {
     if (solid.crumbs.holds(c))
       continue;
     const Front& front = *solid.cuts.front(copies[c].cell);
     const std::vector<int> apart = vertices_apart(copies[c], copies[d]);
+    const bool is_shared = !is_skin(copies[c]) && !is_skin(copies[d]);
     const std::vector<double> length = lengths(solid, front, copies[c], copies[d], apart);
-    for (std::size_t i = 0; i < apart.size(); ++i)
+    for (std::size_t i = 0; i < apart.size(); ++i) {
       ties.push_back({copies[c].corners[apart[i]], copies[d].corners[apart[i]], length[i]});
+      are_shared.push_back(is_shared);
+      if (is_shared)
+        ++n[both_of(ties.back())];
+    }
   }
+  for (std::size_t i = 0; i < ties.size(); ++i)
+    if (are_shared[i])
+      ties[i].length /= n.at(both_of(ties[i]));
   return ties;
 }
 

@@ -5,23 +5,24 @@
 /// Copies are parted cell by cell, so a cut could only be some whole cubes long. Where it ends inside a cell its copies
 /// are parted all the same, as with phantom nodes (Rabczuk, Zi, Gerstenberger and Wall 2008, A new crack tip element
 /// for the phantom-node method, Int. J. Numer. Meth. Engng 75), and the jump ends at the next cell, which is whole.
-/// What the cut has not come to yet, a part 1 - f of the plane in the cell, is made up for by an elastic layer in all
-/// of it:
+/// What the cut has not come to yet is made up for by springs of no length, one at each vertex at which the copies have
+/// corners of their own, of stiffness
 ///
-///     E = integral of kappa / 2 |jump|^2 dA,     kappa = c E / (1 - nu^2) / h  (1 - f) / f.
+///     c E / (1 - nu^2) / h  A / 3  (1 - f) / f,
 ///
-/// Seen from the front the cell is one spring of stiffness k_0 against opening, and to open by a part f of what the
-/// open cell does, k_0 + k has to be k_0 / f. The compliance of the body then grows linearly with what the cut passes,
-/// and a front that moves on gives and takes no energy at once. The jump is the sum of N_v (x_v - y_v) over the
-/// vertices v at which the copies have corners x_v, y_v of their own. By rows, the layer is a spring of no length at
-/// each of these vertices, of stiffness kappa times the integral of N_v times the sum of their N: where the plane lies
-/// close to nodes, theirs alone hold it.
+/// with A what of the front's plane lies in the cells around the vertex, weighted by its shape function, and f by how
+/// much of it the cut opens the vertex (cut/openings.h). All cells in which copies part there share the spring. Seen from
+/// the front what lies around a vertex is one spring of stiffness k_0 against opening, and to open by a part f of what it
+/// does when it is free, k_0 + k has to be k_0 / f. The compliance of the body then grows linearly with what the cut
+/// passes. Cells are parted as soon as one of their vertices opens, when its spring is stiffer than what it joins: so a
+/// front that moves on gives and takes no energy at once, in a plane that leans too, in which it comes into cells in
+/// which there is little to pass.
 ///
 /// Elements cannot follow the root in which displacement ends at a front, and so are too stiff there, as if the cut
-/// were shorter by a part of a cube. At f = 0 and f = 1 the layer plays no part in that; c is such that it is as much
-/// between: .6 for elements of either kind, any Poisson's ratio, a plane that lies anywhere and a front along the grid,
-/// for which it is the same to .01 to .03 cubes, and to .09 for a front across the diagonals of faces. Who finds fronts
-/// lets the cut go on by that much (front_lag, cut/fronts.h).
+/// were shorter by a part of a cube. At f = 0 and f = 1 the springs play no part in that; c is such that it is as much
+/// between: .59, for elements of either kind, any Poisson's ratio and a plane that lies anywhere. For a front along the
+/// grid it is then the same to .02 cubes, in planes that lean by any angle to .1. Who finds fronts lets the cut go on by
+/// that much (front_lag).
 ///
 /// The lattice has no ties, but counts steps ahead of a front in part (lattice/lines.h); phyxels see what of the plane
 /// has been cut (Front::come).
@@ -42,11 +43,11 @@
 
 namespace kerf::grid {
 
-/// By how much a cut in a plane of this unit normal seems too short to elements [cubes]: .25 along the grid, hardly
-/// more across it, as measured on discs of any tilt.
-double front_lag(const Vec3& normal);
+/// By how much a cut whose front goes on in this direction (of any length) seems too short to elements [cubes]: .25
+/// along the grid, .235 else, as measured on beams and on discs of any tilt.
+double front_lag(const Vec3& ahead);
 /// The most that it can be.
-constexpr double most_front_lag = 0.29;
+constexpr double most_front_lag = 0.25;
 
 /// Between two corners at one node.
 struct Tie {

@@ -269,7 +269,8 @@ class Run {
       tally_.n_fronts += before == fronts_before_.end();
       const bool goes_on = before == fronts_before_.end() || before->second.label != front.label ||
                            front.passed >= before->second.passed;
-      if (!(front.passed > 0 && front.passed <= 1) || !(front.area >= 0) || front.ahead == 0 || !goes_on ||
+      const bool is_held = std::ranges::all_of(front.held, [](const double at) { return at > 0 && std::isfinite(at); });
+      if (!(front.passed > 0 && front.passed <= 1) || !is_held || front.ahead == 0 || !goes_on ||
           !(std::abs(front.normal.norm() - 1) < 1e-9) || !front.point.allFinite())
         throw Violation("the front in cell " + std::to_string(front.cell.value) + " is none");
       now.emplace(front.cell, front);

@@ -186,7 +186,7 @@ std::uint64_t digest(const Subject& subject, const std::uint64_t start) {
   for (const grid::Front& front : subject.solid.cuts.fronts()) {
     sum.add(front.cell.value);
     sum.add(front.ahead);
-    sum.add(Points{front.point, front.normal, Vec3(front.area, front.passed, front.label)});
+    sum.add(Points{front.point, front.normal, Vec3(front.held[0], front.passed, front.label)});
   }
   for (const auto& copy : subject.solid.complex.copies) {
     sum.add(copy.nodes);

@@ -130,7 +130,7 @@ TEST(Crumbs, HangByNoTies) {
   std::set<EdgeId> edges;
   for (const auto c : ids<CellId>(body.grid.n_cells())) {
     const auto nodes = body.grid.nodes(c);
-    Front front{.cell = c, .area = 0.01, .passed = 0.5};
+    Front front{.cell = c, .passed = 0.5};
     for (int line = 0; line < cube::n_lines; ++line)
       for (const int v : cube::line_vertices[line])
         if (nodes[v] == node) {
