@@ -210,6 +210,21 @@ std::optional<Front> front_of(const Solid& solid, const CellAtPlane& cell, const
                                                                                         : std::nullopt;
 }
 
+/// Lie the nodes of what is to be one part in one copy now, and do the cells beside divide the faces to it as it does?
+/// Then skin goes over to that copy, and no corner is joined to another.
+bool gains_skin_alone(const Solid& solid, const Front& front, const grid::Parts& parts, const grid::Part& part) {
+  int n = 0;
+  for (const grid::CopyId c : solid.complex.copies_of(front.cell))
+    n += (solid.complex.copies[c].nodes & part.nodes) != 0;
+  if (n != 1)
+    return false;
+  for (int face = 0; face < grid::cube::n_faces; ++face)
+    if (const CellId next = solid.grid.neighbour(front.cell, face);
+        next.valid() && !divide_alike(parts, grid::parts_of(cuts_with(solid, next, front, {})), face))
+      return false;
+  return true;
+}
+
 } // namespace
 
 std::vector<CellId> cells_around(const grid::Grid& grid, const CellId c) {
@@ -305,7 +320,10 @@ SweepCuts cuts_between_gaping(const Solid& solid, const Front& front, const Poin
   const CellId c = front.cell;
   const grid::CellCuts cuts = grid::cuts_of(solid, c);
   const auto edges = solid.grid.edges(c);
-  for (const grid::Part& part : grid::whole_parts_of(cuts))
+  const grid::Parts parts = grid::whole_parts_of(cuts);
+  for (const grid::Part& part : parts) {
+    if (gains_skin_alone(solid, front, parts, part))
+      continue;
     for (grid::Segments left = front.ahead & ~cuts.blades; left != 0; left &= left - 1) {
       const int segment = std::countr_zero(left);
       const auto& ends = cuts.skeleton().segment[segment].ends;
@@ -323,6 +341,7 @@ SweepCuts cuts_between_gaping(const Solid& solid, const Front& front, const Poin
       };
       between.cuts.push_back({edges[segment], std::lerp(along(ends[0]), along(ends[1]), t), front.normal, front.label});
     }
+  }
   const bool is_any = !between.cuts.empty() || !between.of_skin.empty();
   return is_any && leaves_shreds(solid, c, between) ? SweepCuts() : between;
 }

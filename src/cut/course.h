@@ -56,7 +56,8 @@ std::vector<grid::SkinCut> missed_cuts(const grid::Solid& solid, const grid::Fro
 /// What keeps apart what a front that its blade did not follow has parted, where it is not to part it any more: of the
 /// segments ahead that the blade has left whole, those between copies that have moved apart too far to be one again
 /// (are_near, sides.h), cut where the front's plane crosses them. The crack has run there. None where a shred would
-/// come free (shreds.h): that is joined, however far.
+/// come free (shreds.h): that is joined, however far. None either where no corners are joined, but skin alone goes over
+/// to the side on which the blade has left it.
 SweepCuts cuts_between_gaping(const grid::Solid& solid, const grid::Front& front, const Points& x);
 
 } // namespace kerf::cut

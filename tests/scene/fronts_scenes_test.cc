@@ -48,5 +48,31 @@ TEST(FrontsOfExplicitSteps, AreWhereTheBladeStoppedInSprings) {
   expect_alike("mass-spring", "implicit Euler", 0.01, 4e-4);
 }
 
+/// A bar that sags and swings is cut halfway through by a blade that stops and withdraws. Where it did not go where a
+/// front was ahead of it, what skin lies between goes with the side on which the blade has left it, though the wound
+/// gapes: each line of the skin in a face of the grid is cut once, and no flap is left between two cuts.
+TEST(FrontsOfMovingBodies, LeaveNoFlapOfSkin) {
+  for (const std::string depth : {"0.08", "0.1", "0.05"}) {
+    World world = compose(read_scene_text(support::checkout() + "/params/first.prm",
+                                          {"Blade knife/Positions [m]=0.25, 0, 0.25; 0.25, 0, " + depth +
+                                             "; 0.25, 0, 0.35",
+                                           "Time/End time [s]=1.2", "Images/Every [1]=1000"}));
+    Timings seconds;
+    for (int step = 1; step <= world.n_steps; ++step)
+      advance(world, step, seconds);
+    const grid::Solid& solid = world.bodies[0].solid;
+    int n_cut = 0;
+    for (const auto face : ids<grid::FaceId>(solid.grid.n_faces())) {
+      int n = 0;
+      for (int place = 0; place < 4; ++place)
+        n += solid.cuts.is_cut(grid::SkinSegment::half(face, place));
+      EXPECT_LE(n, 1) << depth;
+      n_cut += n;
+    }
+    EXPECT_GT(n_cut, 10) << depth;
+    EXPECT_EQ(value(world.bodies[0], "pieces"), 1) << depth;
+  }
+}
+
 } // namespace
 } // namespace kerf::scene::fronts_scenes_test
