@@ -210,18 +210,24 @@ std::optional<Front> front_of(const Solid& solid, const CellAtPlane& cell, const
                                                                                         : std::nullopt;
 }
 
-/// Lie the nodes of what is to be one part in one copy now, and do the cells beside divide the faces to it as it does?
-/// Then skin goes over to that copy, and no corner is joined to another.
-bool gains_skin_alone(const Solid& solid, const Front& front, const grid::Parts& parts, const grid::Part& part) {
-  int n = 0;
-  for (const grid::CopyId c : solid.complex.copies_of(front.cell))
-    n += (solid.complex.copies[c].nodes & part.nodes) != 0;
-  if (n != 1)
+/// Lie the nodes of what is to be one part in one copy now, and in the faces between it and those that have the rest of
+/// it, skin alone, no wound that gapes? Then that goes over to it, and no corner is joined to another far away.
+bool gains_skin_alone(const Solid& solid, const CellId c, const grid::Part& part, const Points& x) {
+  grid::CopyId own;
+  for (const grid::CopyId copy : solid.complex.copies_of(c))
+    if ((solid.complex.copies[copy].nodes & part.nodes) != 0) {
+      if (own.valid())
+        return false;
+      own = copy;
+    }
+  if (!own.valid())
     return false;
-  for (int face = 0; face < grid::cube::n_faces; ++face)
-    if (const CellId next = solid.grid.neighbour(front.cell, face);
-        next.valid() && !divide_alike(parts, grid::parts_of(cuts_with(solid, next, front, {})), face))
+  for (const grid::CopyId copy : solid.complex.copies_of(c)) {
+    const grid::Items gained = solid.complex.copies[copy].items() & part.items();
+    if (copy != own && gained != 0 &&
+        (solid.complex.copies[copy].nodes == 0 || !are_near_at(solid, own, copy, gained, x)))
       return false;
+  }
   return true;
 }
 
@@ -320,9 +326,8 @@ SweepCuts cuts_between_gaping(const Solid& solid, const Front& front, const Poin
   const CellId c = front.cell;
   const grid::CellCuts cuts = grid::cuts_of(solid, c);
   const auto edges = solid.grid.edges(c);
-  const grid::Parts parts = grid::whole_parts_of(cuts);
-  for (const grid::Part& part : parts) {
-    if (gains_skin_alone(solid, front, parts, part))
+  for (const grid::Part& part : grid::whole_parts_of(cuts)) {
+    if (gains_skin_alone(solid, c, part, x))
       continue;
     for (grid::Segments left = front.ahead & ~cuts.blades; left != 0; left &= left - 1) {
       const int segment = std::countr_zero(left);

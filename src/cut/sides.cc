@@ -282,4 +282,13 @@ bool are_near(const Solid& solid, const CellId c, const std::array<std::uint8_t,
   return are_near(solid, x, copy(0), copy(1));
 }
 
+bool are_near_at(const Solid& solid, const grid::CopyId a, const grid::CopyId b, const Items items, const Points& x) {
+  for (int face = 0; face < grid::cube::n_faces; ++face)
+    if (grid::detail::in_face(grid::Part::of(items), face) != 0 &&
+        !std::ranges::all_of(grid::cube::face_vertices[face],
+                             [&](const int v) { return are_near(solid, x, a, v, b, v); }))
+      return false;
+  return true;
+}
+
 } // namespace kerf::cut

@@ -47,5 +47,7 @@ std::vector<grid::Joined> near_each_other(const grid::Solid& solid, grid::CellId
 
 /// Are two items of a cell in one copy, or in two whose corners have moved apart by no more than that?
 bool are_near(const grid::Solid& solid, grid::CellId c, const std::array<std::uint8_t, 2>& items, const Points& x);
+/// Have two copies of a cell, at its faces in which some of these items lie?
+bool are_near_at(const grid::Solid& solid, grid::CopyId a, grid::CopyId b, grid::Items items, const Points& x);
 
 } // namespace kerf::cut
