@@ -353,7 +353,7 @@ std::vector<Front> Advance::begin(const Solid& solid, Stand& stand, const Functi
   std::map<CellId, grid::CutLabel> wanted;
   for (const auto& [c, front] : stand.fronts())
     for (int v = 0; v < grid::cube::n_vertices; ++v)
-      if (stand.part(c, v) > is_open)
+      if (stand.part(c, v) > least_part_open)
         stand.around(c).for_each_cell(solid, c, v, [&](const CellId next) { wanted.emplace(next, front.label); });
   for (const auto& [c, label] : wanted)
     if (!stand.front(c) && !touched_.contains(c) && can_begin(solid, c) && !waits(c))

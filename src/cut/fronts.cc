@@ -156,7 +156,7 @@ OfVertices held_at(const Solid& solid, const CellId c, const AroundNodes& nodes)
 
 bool opens_a_vertex(const Solid& solid, const CellId c, const AroundNodes& nodes) {
   return std::ranges::any_of(solid.grid.nodes(c),
-                             [&](const grid::NodeId node) { return nodes.at(node).part() > is_open; });
+                             [&](const grid::NodeId node) { return nodes.at(node).part() > least_part_open; });
 }
 
 /// An earlier front, where the shape has come farther; none elsewhere.

@@ -19,7 +19,7 @@ namespace kerf::cut {
 
 using OfVertices = std::array<double, grid::cube::n_vertices>;
 
-constexpr double is_open = 0.51; ///< F from which on a vertex is worth copies
+constexpr double least_part_open = 0.51; ///< F above which a vertex is worth copies
 
 /// What holds copies at a vertex (grid::Front) [m^2]; of what lies in the plane around it [m^2], of which a little is
 /// taken to lie there always, and F. `h`: edge of the cubes [m].

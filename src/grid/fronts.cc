@@ -51,7 +51,8 @@ bool hang_together(const Parts& parts, const Copy& one, const Copy& other) {
 } // namespace
 
 double front_lag(const Vec3& ahead) {
-  const double along_grid = ahead.array().pow(4).sum() / std::pow(ahead.squaredNorm(), 2);
+  const Vec3 squares = ahead.cwiseAbs2();
+  const double along_grid = squares.squaredNorm() / std::pow(squares.sum(), 2);
   return 0.232 + 0.018 * along_grid * along_grid;
 }
 

@@ -449,8 +449,11 @@ TEST(Advance, GoesOnFromAnArchive) {
   EXPECT_EQ(body.complex.tied, again.complex.tied);
   ASSERT_EQ(body.cuts.fronts().size(), again.cuts.fronts().size());
   for (std::size_t i = 0; i < body.cuts.fronts().size(); ++i) {
-    EXPECT_EQ(body.cuts.fronts()[i].cell, again.cuts.fronts()[i].cell);
-    EXPECT_EQ(body.cuts.fronts()[i].passed, again.cuts.fronts()[i].passed);
+    const grid::Front &one = body.cuts.fronts()[i], &other = again.cuts.fronts()[i];
+    EXPECT_EQ(one.cell, other.cell);
+    EXPECT_EQ(one.passed, other.passed);
+    EXPECT_EQ(one.reached, other.reached);
+    EXPECT_EQ(one.held, other.held);
   }
 }
 

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <numeric>
 #include <sstream>
@@ -261,6 +262,12 @@ class Run {
 
   std::string moved(Random& random) { return is_gentle_ ? move_gently(subject_, random) : move(subject_, random); }
 
+  static bool goes_on_from(const grid::Front& before, const grid::Front& front) {
+    return front.passed >= before.passed &&
+           std::ranges::equal(front.reached, before.reached, std::greater_equal<>()) &&
+           std::ranges::equal(front.held, before.held, std::less_equal<>());
+  }
+
   /// A front has come some part of the way, goes on only, and ties corners of one node.
   void require_sound_fronts() {
     std::map<grid::CellId, grid::Front> now;
@@ -268,7 +275,7 @@ class Run {
       const auto before = fronts_before_.find(front.cell);
       tally_.n_fronts += before == fronts_before_.end();
       const bool goes_on = before == fronts_before_.end() || before->second.label != front.label ||
-                           front.passed >= before->second.passed;
+                           goes_on_from(before->second, front);
       const bool is_held = std::ranges::all_of(front.held, [](const double at) { return at > 0 && std::isfinite(at); });
       if (!(front.passed > 0 && front.passed <= 1) || !is_held || front.ahead == 0 || !goes_on ||
           !(std::abs(front.normal.norm() - 1) < 1e-9) || !front.point.allFinite())
