@@ -6,6 +6,7 @@
 #include "cut/fronts.h"
 #include "cut/shreds.h"
 #include "cut/sides.h"
+#include "cut/target.h"
 #include "grid/parts.h"
 #include "grid/touched.h"
 
@@ -218,6 +219,7 @@ CutChange Cutter::take(Solid& solid, const std::span<const Stroke> strokes, cons
     cuts.cuts = pending_.release(solid);
   if (strokes.empty() || boxes_->moves())
     x_before_ = x; // not after the cut: where corners jump then, the blade meets them on their way
+  places_before_.clear();
   append(cuts, {{}, missed(solid, cuts, x)});
   Added added = add(solid, cuts, x);
   coming.merge(pending_.labels());
@@ -363,11 +365,26 @@ CutChange Cutter::part(Solid& solid, Added added, const std::span<const grid::Fr
   for (const grid::Front& front : fronts)
     cells.push_back(front.cell);
   join(solid, added, x, cells);
+  keep_places(solid, added, cells, x);
   if (added.edges.empty() && added.segments.empty() && cells.empty())
     return {};
   CutChange change = grid::update_complex(solid, added.edges, added.segments, cells);
   grid::inherit(change, x_before_);
   return change;
+}
+
+void Cutter::keep_places(const Solid& solid, const Added& added, std::vector<grid::CellId> cells, const Points& x) {
+  for (const grid::CellId c : grid::touched_cells(solid.grid, added.edges, added.segments))
+    if (solid.cuts.front(c))
+      cells.push_back(c);
+  std::set<grid::CellId> around;
+  for (const grid::CellId c : cells)
+    for (const grid::CellId next : cells_around(solid.grid, c))
+      if (grid::material_of(solid.grid, next) != 0xff)
+        around.insert(next);
+  for (const grid::CellId c : around)
+    if (!places_before_.contains(c))
+      places_before_.emplace(c, SkinNow(solid, c).places(x));
 }
 
 /// Joins what lies on the same sides of all cuts. Adds to `anew` the cells whose copies join, or are parted by nothing
@@ -425,7 +442,7 @@ std::size_t Cutter::n_passed_cells() const {
 Stroke Cutter::stroke(const Solid& solid, const Blade& blade, const double t0, const double t1, const Points& x) const {
   Stroke stroke{blade.label};
   for (const BladePath& path : paths(blade, t0, t1)) {
-    append(stroke.found, cut_edges(path, solid, x_before_, x, blade.label, &*boxes_));
+    append(stroke.found, cut_edges(path, solid, x_before_, x, blade.label, &*boxes_, &places_before_));
     const auto swept = swept_triangles(path);
     stroke.swept.insert(stroke.swept.end(), swept.begin(), swept.end());
   }

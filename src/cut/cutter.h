@@ -88,7 +88,7 @@ class Cutter {
   /// All but the boxes, which are made of the body before its first cut and fitted in each step.
   void archive(Archive& a) {
     a.name("cutter");
-    a(pending_, passed_, advance_, edges_, unsettled_, left_, held_, x_before_, counts_);
+    a(pending_, passed_, advance_, edges_, unsettled_, left_, held_, x_before_, places_before_, counts_);
   }
   /// Memory of what grows with the body [B].
   std::size_t n_bytes() const { return boxes_->n_bytes() + sizeof(Vec3) * x_before_.capacity(); }
@@ -113,6 +113,9 @@ class Cutter {
   /// Takes back the fronts of cells that their blades have come through, and returns these cells; adds what keeps apart
   /// what gapes.
   std::vector<grid::CellId> take_back_fronts(grid::Solid& solid, Added& added, const Points& x);
+  /// Keeps where points of the skin are that may go over to other copies: in cells around these, and those with fronts
+  /// that are cut.
+  void keep_places(const grid::Solid& solid, const Added& added, std::vector<grid::CellId> cells, const Points& x);
   void join(grid::Solid& solid, const Added& added, const Points& x, std::vector<grid::CellId>& anew);
   /// To the way from x_before_ to x, where that is asked for.
   void fit_boxes(bool is_asked, const Points& x);
@@ -132,6 +135,7 @@ class Cutter {
   std::set<LeftCell> left_; // blades hold these cells no more
   std::vector<HeldSplinter> held_;
   Points x_before_;                // where the corners were when the blades were met last [m]
+  SkinPlaces places_before_;       // of points of the skin that have gone over to other copies since [m]
   bool boxes_stand_there_ = false; // fitted to them
   CutCounts counts_;
 };

@@ -73,14 +73,14 @@ SweepCuts cut_edges(const Strip sweep, const grid::Solid& solid, const Points& x
 }
 
 SweepCuts cut_edges(const BladePath& path, const grid::Solid& solid, const Points& x_before, const Points& x,
-                    const grid::CutLabel label, const EdgeBoxes* const boxes) {
-  if (boxes ? !boxes->moves() : x_before == x) { // one method for all edges of a body: they agree on what passes their
+                    const grid::CutLabel label, const EdgeBoxes* const boxes, const SkinPlaces* const places_before) {
+  if ((!places_before || places_before->empty()) && (boxes ? !boxes->moves() : x_before == x)) { // one method for all edges of a body: they agree on what passes their
     std::vector<std::array<Vec3, 3>> strip;      // common node
     for (std::size_t k = 1; k < path.lines.size(); ++k)
       add_strip(path.lines[k - 1], path.lines[k], strip);
     return cut_edges(strip, solid, x, label, boxes);
   }
-  const Target target(solid, x_before, x, boxes);
+  const Target target(solid, x_before, x, boxes, places_before);
   const NearSweep near(patches(path));
   return target.cut(label, {near.reach(), [&](const Box& box) { return near.may_be_in(box); }},
                     [&](const Segment& before, const Segment& now) {

@@ -21,9 +21,13 @@
 #include "cut/edge_boxes.h"
 #include "grid/solid.h"
 
+#include <map>
 #include <span>
 
 namespace kerf::cut {
+
+/// Where all items of some cells are [m], others unspecified (grid/skeleton.h).
+using SkinPlaces = std::map<grid::CellId, std::array<Vec3, grid::skeleton::n_items>>;
 
 struct SweepCuts {
   std::vector<grid::EdgeCut> cuts;               ///< ordered by edge
@@ -42,8 +46,9 @@ void append(SweepCuts& all, const SweepCuts& more);
 SweepCuts cut_edges(std::span<const std::array<Vec3, 3>> sweep, const grid::Solid& solid, const Points& x,
                     grid::CutLabel label, const EdgeBoxes* boxes = nullptr);
 
-/// The edges that a blade cuts on its path through a step in which the corners moved from `x_before` to `x`.
+/// The edges that a blade cuts on its path through a step in which the corners moved from `x_before` to `x`, and points
+/// of the skin from where they are with those, or from `places_before` in cells that are among them.
 SweepCuts cut_edges(const BladePath& path, const grid::Solid& solid, const Points& x_before, const Points& x,
-                    grid::CutLabel label, const EdgeBoxes* boxes = nullptr);
+                    grid::CutLabel label, const EdgeBoxes* boxes = nullptr, const SkinPlaces* places_before = nullptr);
 
 } // namespace kerf::cut

@@ -42,6 +42,14 @@ SweepCuts joined(const std::size_t n, const Fill& fill) {
   return result;
 }
 
+/// Null without.
+const SkinPlaces::mapped_type* places_of(const grid::CellId c, const SkinPlaces* const places) {
+  if (!places)
+    return nullptr;
+  const auto at = places->find(c);
+  return at != places->end() ? &at->second : nullptr;
+}
+
 /// One of those around an edge.
 grid::CellId cell_at(const grid::Grid& grid, const grid::EdgeId edge) {
   const auto around = grid.cells(edge);
@@ -50,8 +58,9 @@ grid::CellId cell_at(const grid::Grid& grid, const grid::EdgeId edge) {
 
 } // namespace
 
-Target::Target(const grid::Solid& solid, const Points& x_before, const Points& x, const EdgeBoxes* boxes)
-  : solid_(solid), x_before_(x_before), x_(x), boxes_(boxes) {
+Target::Target(const grid::Solid& solid, const Points& x_before, const Points& x, const EdgeBoxes* boxes,
+               const SkinPlaces* places_before)
+  : solid_(solid), x_before_(x_before), x_(x), boxes_(boxes), places_before_(places_before) {
   if (!boxes_) // fit() has seen to it
     require_finite(x);
 }
@@ -132,7 +141,7 @@ void Target::judge_later(const grid::EdgeId edge, const grid::CutLabel label, co
     const grid::CellId c = cell_at(solid_.grid, edge);
     const int line = solid_.grid.line(c, edge);
     const SkinNow skin(solid_, c);
-    verdict = judge(skin.segment(line, x_before_), skin.segment(line, x_));
+    verdict = judge(skin.segment(line, x_before_, places_before_), skin.segment(line, x_));
     from = solid_.grid.is_material(solid_.grid.ends(edge)[0]) ? 0 : 1;
     to = solid_.cuts.find_outer(edge)->t;
   } else {
@@ -175,7 +184,7 @@ void Target::judge_skin(const grid::CellId cell, const Nearness* const near, con
     const grid::SkinCut* const earlier = solid_.cuts.find(of_skin);
     if (earlier && earlier->label == label)
       return;
-    const Segment before = skin.segment(segment, x_before_), now = skin.segment(segment, x_);
+    const Segment before = skin.segment(segment, x_before_, places_before_), now = skin.segment(segment, x_);
     if (near && !geometry::overlap(room(before, now), near->reach))
       return;
     const Verdict verdict = judge(before, now);
@@ -212,6 +221,12 @@ Box Target::box_around_copies(const grid::CellId cell) const {
       const Vec3 &before = x_before_[corner.value], &now = x_[corner.value];
       box.lower = box.lower.cwiseMin(before).cwiseMin(now);
       box.upper = box.upper.cwiseMax(before).cwiseMax(now);
+    }
+  if (const auto* const places = places_of(cell, places_before_))
+    for (grid::Items left = grid::cuts_of(solid_, cell).skeleton().items; left != 0; left &= left - 1) {
+      const Vec3& p = (*places)[std::countr_zero(left)];
+      box.lower = box.lower.cwiseMin(p);
+      box.upper = box.upper.cwiseMax(p);
     }
   // What lies between the corners is found but for round-off.
   const Vec3 slack =
@@ -267,10 +282,11 @@ Vec3 pulled_back(const grid::Solid& solid, const Points& x, const grid::EdgeId e
 SkinNow::SkinNow(const grid::Solid& solid, const grid::CellId cell)
   : solid_(solid), cell_(cell), cuts_(grid::cuts_of(solid, cell)), skeleton_(cuts_.skeleton()) {}
 
+/// Of a cell whose skin no blade has cut, the one with what the item hangs on.
 const grid::Copy& SkinNow::copy_with(const int item) const {
   const auto& complex = solid_.complex;
-  return complex
-    .copies[cuts_.blades != 0 ? complex.copy_with(cell_, item) : complex.copy_at(cell_, skeleton_.vertex[item])];
+  const grid::CopyId holder = complex.copy_with(cell_, item);
+  return complex.copies[holder.valid() ? holder : complex.copy_at(cell_, skeleton_.vertex[item])];
 }
 
 /// In coordinates of the cell [1].
@@ -281,6 +297,23 @@ Vec3 SkinNow::local(const int item) const {
 Segment SkinNow::segment(const int segment, const Points& x) const {
   const auto& [a, b] = skeleton_.segment[segment].ends;
   return {place(a, x), place(b, x)};
+}
+
+SkinPlaces::mapped_type SkinNow::places(const Points& x) const {
+  SkinPlaces::mapped_type places;
+  for (grid::Items left = skeleton_.items; left != 0; left &= left - 1) {
+    const int item = std::countr_zero(left);
+    places[item] = place(item, x);
+  }
+  return places;
+}
+
+Segment SkinNow::segment(const int segment, const Points& x, const SkinPlaces* const places) const {
+  const auto* const own = places_of(cell_, places);
+  if (!own)
+    return this->segment(segment, x);
+  const auto& [a, b] = skeleton_.segment[segment].ends;
+  return {(*own)[a], (*own)[b]};
 }
 
 /// The same bits in all cells that know the item: on a line as an edge of the grid ends, in a face by its corners

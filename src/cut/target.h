@@ -85,6 +85,10 @@ class SkinNow {
   }
   /// Between its two items when the corners are at `x` [m]; also of an edge of the skin.
   Segment segment(int segment, const Points& x) const;
+  /// Likewise of all items.
+  SkinPlaces::mapped_type places(const Points& x) const;
+  /// The same, at other places if the cell is among them.
+  Segment segment(int segment, const Points& x, const SkinPlaces* places) const;
   /// The unit normal at rest of a surface that cuts it at t with a current normal.
   Vec3 pulled_back(int segment, double t, const Points& x, const Vec3& normal) const;
 
@@ -106,9 +110,11 @@ class SkinNow {
 
 class Target {
  public:
-  /// Everything must outlive it. `boxes` are fitted to x_before and x, or null: then every edge is judged. Throws
-  /// NumericalError when a corner is not at a finite position.
-  Target(const grid::Solid& solid, const Points& x_before, const Points& x, const EdgeBoxes* boxes);
+  /// Everything must outlive it. `boxes` are fitted to x_before and x, or null: then every edge is judged. Points of
+  /// the skin were at `places_before` where their cells are among them; null if none are. Throws NumericalError when a
+  /// corner is not at a finite position.
+  Target(const grid::Solid& solid, const Points& x_before, const Points& x, const EdgeBoxes* boxes,
+         const SkinPlaces* places_before = nullptr);
 
   /// Cuts every edge and every segment of the skin that `judge` finds crossed an odd number of times. They are judged
   /// in parallel; the result is ordered.
@@ -133,6 +139,7 @@ class Target {
   const Points& x_before_;
   const Points& x_;
   const EdgeBoxes* boxes_;
+  const SkinPlaces* places_before_;
 };
 
 } // namespace kerf::cut
