@@ -295,32 +295,6 @@ bool is_ahead(const Solid& solid, const Front& front) {
   return !parts_nodes(solid, front, grid::cut_by(solid, front.cell, front.label) | by_others);
 }
 
-std::vector<grid::SkinCut> missed_cuts(const Solid& solid, const Front& front) {
-  const grid::CellCuts cuts = grid::cuts_of(solid, front.cell);
-  const grid::Skeleton& skeleton = cuts.skeleton();
-  grid::Segments own = grid::cut_by(solid, front.cell, front.label);
-  const auto is_odd = [&](const int side) {
-    const grid::Skeleton::Side& border = skeleton.side[side];
-    int n = 0;
-    for (int i = 0; i < border.n; ++i)
-      n += static_cast<int>(own >> border.segments[i] & 1);
-    return n % 2 == 1;
-  };
-  std::vector<grid::SkinCut> missed;
-  for (grid::Segments left = skeleton.segments & ~skeleton::lines & ~cuts.blades; left != 0; left &= left - 1) {
-    const int segment = std::countr_zero(left);
-    const auto& [ends, sides] = skeleton.segment[segment];
-    if (!is_odd(sides[0]) || !is_odd(sides[1]))
-      continue;
-    own |= grid::Segments(1) << segment;
-    missed.push_back({.segment = grid::skin_segment(solid.grid, front.cell, segment),
-                      .t = crossing(solid, front, ends),
-                      .normal = front.normal,
-                      .label = front.label});
-  }
-  return parts_nodes(solid, front, own) ? missed : std::vector<grid::SkinCut>();
-}
-
 SweepCuts cuts_between_gaping(const Solid& solid, const Front& front, const Points& x) {
   SweepCuts between;
   const CellId c = front.cell;

@@ -47,12 +47,6 @@ bool fits_in(const grid::Solid& solid, const grid::Front& front, const FrontsOfC
 /// where that goes on otherwise.
 bool is_ahead(const grid::Solid& solid, const grid::Front& front);
 
-/// What a blade has missed of the skin in a cell that it has passed all through. Around each side of the cell's
-/// material the number of meetings is even, unless the blade ends there; but copies that fronts part have their points
-/// of the skin in two places, and one that came to lie in the other copy was not met on its way. A segment between two
-/// sides with odd numbers is cut where the front's plane crosses it. None where the cell does not come apart by that.
-std::vector<grid::SkinCut> missed_cuts(const grid::Solid& solid, const grid::Front& front);
-
 /// What keeps apart what a front that its blade did not follow has parted, where it is not to part it any more: of the
 /// segments ahead that the blade has left whole, those between copies that have moved apart too far to be one again
 /// (are_near, sides.h), cut where the front's plane crosses them. The crack has run there. None where a shred would

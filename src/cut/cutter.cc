@@ -220,36 +220,10 @@ CutChange Cutter::take(Solid& solid, const std::span<const Stroke> strokes, cons
   if (strokes.empty() || boxes_->moves())
     x_before_ = x; // not after the cut: where corners jump then, the blade meets them on their way
   places_before_.clear();
-  append(cuts, {{}, missed(solid, cuts, x)});
   Added added = add(solid, cuts, x);
   coming.merge(pending_.labels());
   added.coming = std::move(coming);
   return part(solid, added, advance_.take(solid, pending_), x);
-}
-
-std::vector<grid::SkinCut> Cutter::missed(const Solid& solid, const SweepCuts& found, const Points& x) const {
-  std::vector<grid::SkinCut> all;
-  for (const grid::Front& front : solid.cuts.fronts()) {
-    const auto edge = std::ranges::find(edges_, front.label, &StandingEdge::label);
-    if (front.passed < most_passed || edge == edges_.end())
-      continue;
-    const auto cuts = missed_cuts(solid, front);
-    if (!cuts.empty() && !is_being_cut(solid, front.cell, found) && !is_near(near_sweep(edge->line), solid, front.cell, x, 0))
-      all.insert(all.end(), cuts.begin(), cuts.end());
-  }
-  return all;
-}
-
-/// By cuts that were found in this step, or that wait.
-bool Cutter::is_being_cut(const Solid& solid, const grid::CellId c, const SweepCuts& found) const {
-  const auto edges = solid.grid.edges(c);
-  return std::ranges::any_of(edges, [&](const EdgeId e) { return pending_.waits(e); }) ||
-         std::ranges::any_of(
-           found.cuts, [&](const EdgeCut& cut) { return std::ranges::find(edges, cut.edge) != edges.end(); }) ||
-         std::ranges::any_of(found.of_skin, [&](const grid::SkinCut& cut) {
-           const auto cells = cells_of(solid.grid, cut.segment);
-           return std::ranges::find(cells, c) != cells.end();
-         });
 }
 
 CutChange Cutter::at_once(Solid& solid, const CutSurface& surface, const Points& x) {

@@ -120,9 +120,6 @@ class Cutter {
   /// To the way from x_before_ to x, where that is asked for.
   void fit_boxes(bool is_asked, const Points& x);
   SweepCuts queue(const grid::Solid& solid, std::span<const Stroke> strokes, const Points& x);
-  /// Of cells that blades have passed all through, are no longer in, and cut no more (missed_cuts, course.h).
-  std::vector<grid::SkinCut> missed(const grid::Solid& solid, const SweepCuts& found, const Points& x) const;
-  bool is_being_cut(const grid::Solid& solid, grid::CellId c, const SweepCuts& found) const;
 
   Release release_;
   Fronts fronts_;
