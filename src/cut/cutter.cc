@@ -335,30 +335,30 @@ std::vector<grid::CellId> Cutter::take_back_fronts(Solid& solid, Added& added, c
 CutChange Cutter::part(Solid& solid, Added added, const std::span<const grid::Front> fronts, const Points& x) {
   for (const grid::Front& front : fronts)
     solid.cuts.set(front);
-  std::vector<grid::CellId> cells = take_back_fronts(solid, added, x);
+  std::vector<grid::CellId> less_apart = take_back_fronts(solid, added, x), cells = less_apart;
   for (const grid::Front& front : fronts)
     cells.push_back(front.cell);
+  const std::size_t n = cells.size();
   join(solid, added, x, cells);
-  keep_places(solid, added, cells, x);
   if (added.edges.empty() && added.segments.empty() && cells.empty())
     return {};
+  less_apart.insert(less_apart.end(), cells.begin() + static_cast<std::ptrdiff_t>(n), cells.end());
+  const SkinPlaces places = places_around(solid, less_apart);
   CutChange change = grid::update_complex(solid, added.edges, added.segments, cells);
   grid::inherit(change, x_before_);
+  for (const auto& [c, before] : places)
+    if (before != SkinNow(solid, c).places(x_before_))
+      places_before_.emplace(c, before);
   return change;
 }
 
-void Cutter::keep_places(const Solid& solid, const Added& added, std::vector<grid::CellId> cells, const Points& x) {
-  for (const grid::CellId c : grid::touched_cells(solid.grid, added.edges, added.segments))
-    if (solid.cuts.front(c))
-      cells.push_back(c);
-  std::set<grid::CellId> around;
+SkinPlaces Cutter::places_around(const Solid& solid, const std::span<const grid::CellId> cells) const {
+  SkinPlaces places;
   for (const grid::CellId c : cells)
     for (const grid::CellId next : cells_around(solid.grid, c))
-      if (grid::material_of(solid.grid, next) != 0xff)
-        around.insert(next);
-  for (const grid::CellId c : around)
-    if (!places_before_.contains(c))
-      places_before_.emplace(c, SkinNow(solid, c).places(x));
+      if (grid::material_of(solid.grid, next) != 0xff && !places.contains(next))
+        places.emplace(next, SkinNow(solid, next).places(x_before_));
+  return places;
 }
 
 /// Joins what lies on the same sides of all cuts. Adds to `anew` the cells whose copies join, or are parted by nothing

@@ -113,9 +113,9 @@ class Cutter {
   /// Takes back the fronts of cells that their blades have come through, and returns these cells; adds what keeps apart
   /// what gapes.
   std::vector<grid::CellId> take_back_fronts(grid::Solid& solid, Added& added, const Points& x);
-  /// Keeps where points of the skin are that may go over to other copies: in cells around these, and those with fronts
-  /// that are cut.
-  void keep_places(const grid::Solid& solid, const Added& added, std::vector<grid::CellId> cells, const Points& x);
+  /// Where points of the skin are that may go over to other copies, around cells whose parts do not stay apart as they
+  /// were.
+  SkinPlaces places_around(const grid::Solid& solid, std::span<const grid::CellId> cells) const;
   void join(grid::Solid& solid, const Added& added, const Points& x, std::vector<grid::CellId>& anew);
   /// To the way from x_before_ to x, where that is asked for.
   void fit_boxes(bool is_asked, const Points& x);

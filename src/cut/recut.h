@@ -26,7 +26,7 @@
 
 namespace kerf::cut {
 
-/// Where all items of some cells are [m], others unspecified (grid/skeleton.h).
+/// Where all items of some cells are [m] (grid/skeleton.h); others are at the origin.
 using SkinPlaces = std::map<grid::CellId, std::array<Vec3, grid::skeleton::n_items>>;
 
 struct SweepCuts {

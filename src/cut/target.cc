@@ -301,6 +301,7 @@ Segment SkinNow::segment(const int segment, const Points& x) const {
 
 SkinPlaces::mapped_type SkinNow::places(const Points& x) const {
   SkinPlaces::mapped_type places;
+  places.fill(Vec3::Zero());
   for (grid::Items left = skeleton_.items; left != 0; left &= left - 1) {
     const int item = std::countr_zero(left);
     places[item] = place(item, x);
