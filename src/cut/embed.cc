@@ -2,12 +2,14 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "geometry/box_tree.h"
 #include "geometry/normals.h"
 #include "geometry/predicates.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <tuple>
@@ -352,6 +354,39 @@ Embedding embed(const geometry::TriangleMesh& mesh, const double h, const Vec3& 
   skin.add(crossings);
   skin.finish();
   return result;
+}
+
+std::size_t n_severed_cells(const geometry::TriangleMesh& mesh, const grid::Solid& solid) {
+  std::optional<geometry::BoxTree> tree; // where it is needed
+  const auto meets_mesh = [&](const std::array<Vec3, 2>& way) {
+    if (!tree) {
+      std::vector<Box> boxes;
+      for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
+        boxes.push_back(geometry::box_around(corners(mesh, i)));
+      tree.emplace(std::move(boxes));
+    }
+    bool meets = false;
+    tree->for_each(geometry::box_around(way), [&](const std::uint32_t i) {
+      meets = meets || geometry::crosses(way[0], way[1], corners(mesh, i));
+    });
+    return meets;
+  };
+  const auto is_severed = [&](const grid::CellId c) {
+    const auto at = solid.grid.nodes(c);
+    for (const grid::CopyId one : solid.complex.copies_of(c))
+      for (grid::CopyId other = solid.complex.copies[one].next; other.valid(); other = solid.complex.copies[other].next)
+        for (int v = 0; v < grid::cube::n_vertices; ++v)
+          for (int w = 0; w < grid::cube::n_vertices; ++w)
+            if ((solid.complex.copies[one].nodes >> v & 1) != 0 && (solid.complex.copies[other].nodes >> w & 1) != 0 &&
+                !meets_mesh({solid.grid.position(at[v]), solid.grid.position(at[w])}))
+              return true;
+    return false;
+  };
+  std::size_t n = 0;
+  for (const auto c : ids<grid::CellId>(solid.grid.n_cells()))
+    if (solid.complex.copies[solid.complex.first_copy[c]].next.valid() && is_severed(c))
+      ++n;
+  return n;
 }
 
 } // namespace kerf::cut

@@ -12,7 +12,8 @@
 /// The normal of a skin cut is the mesh's, averaged over two fifths of a cube edge but not across its sharp edges.
 ///
 /// Limit: what is thinner than an edge and passes between nodes is lost: walls vanish, gaps are filled. Both are
-/// counted, by edges, and not repaired.
+/// counted, by edges, and not repaired. Walls at 45 degrees to the grid may come apart when they are thinner than
+/// sqrt(2) cubes, as nodes side by side in them have no edge between: n_severed_cells().
 
 #include "geometry/triangle_mesh.h"
 #include "grid/solid.h"
@@ -33,5 +34,9 @@ struct Embedding {
 /// the bounding box right on nodes, 0.5 midway. Throws DataError when no node is inside the mesh, ParameterError when h
 /// or the offset is out of range, std::logic_error when the mesh is not closed.
 Embedding embed(const geometry::TriangleMesh& mesh, double h, const Vec3& offset);
+
+/// How many cells of an uncut body part nodes between which the mesh is whole: the straight way from a node of one copy
+/// to one of another does not meet it.
+std::size_t n_severed_cells(const geometry::TriangleMesh& mesh, const grid::Solid& solid);
 
 } // namespace kerf::cut

@@ -6,6 +6,7 @@
 #include "dynamics/constraints.h"
 #include "dynamics/forces.h"
 #include "dynamics/points.h"
+#include "dynamics/sound_steps.h"
 
 #include <Eigen/Eigenvalues>
 
@@ -175,7 +176,7 @@ void StepLimit::require(const State& state, const Loads& loads, const double dt,
   last_ = at(state, loads);
   if (dt > last_)
     throw ParameterError(Complaint{.path = "Time step [s]",
-                                   .value = to_text(dt),
+                                   .value = in_short(dt), // of one that ends with others, whose round-off it has
                                    .rule = scheme_.name + " is stable here up to " + to_text(last_) + " s",
                                    .remedy = "Use a smaller time step or an implicit integrator, or set Beyond the "
                                              "stable step = go on"});

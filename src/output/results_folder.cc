@@ -27,7 +27,9 @@ const std::string frames = "frames/*.png";
 [[noreturn]] void refuse(const fs::path& folder, const std::error_code& error) {
   throw DataError(Complaint{.file = folder.string(),
                             .rule = "the results folder cannot be made: " + error.message(),
-                            .remedy = "Choose another folder with --output, or change its permissions"});
+                            .remedy = error == std::errc::not_a_directory
+                                        ? "Choose another folder with --output: a part of this path is a file"
+                                        : "Choose another folder with --output, or change its permissions"});
 }
 
 struct List {

@@ -365,8 +365,16 @@ void Crumbs::hold(const dynamics::Loads& loads, const double dt, const Motions& 
     reaction.force += force;
     reaction.torque +=
       (motion.spin - start[b].spin) / dt + alpha * motion.spin - pushes[b].torque + motion.x.cross(force);
-    work_of_supports_ += dynamics::kinetic_energy(body, motion) - dynamics::kinetic_energy(body, before) -
-                         body.mass * loads.gravity.dot(motion.x - before.x);
+    // What its energy and what is booked as damped (scene/accounts.cc) leave to explain, less what has pushed it.
+    const auto energy = [&](const RigidMotion& at) {
+      return dynamics::kinetic_energy(body, at) - body.mass * loads.gravity.dot(at.x - start[b].x);
+    };
+    const auto damped = [&](const RigidMotion& end) {
+      return alpha * dt * (dynamics::kinetic_energy(body, start[b]) + dynamics::kinetic_energy(body, end));
+    };
+    const bool is_pushed = !pushes[b].force.isZero(0) || !pushes[b].torque.isZero(0);
+    const double by_pushes = is_pushed ? energy(before) - energy(start[b]) + damped(before) : 0;
+    work_of_supports_ += energy(motion) - energy(start[b]) + damped(motion) - by_pushes;
   }
 }
 

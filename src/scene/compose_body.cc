@@ -208,6 +208,14 @@ std::string describe_start(const Body& body) {
   return what.empty() ? "" : line("warning: body ", body.name, " starts where nothing elastic comes: ", what);
 }
 
+std::string describe_severed(const Body& body, const geometry::TriangleMesh& mesh) {
+  const std::size_t n = cut::n_severed_cells(mesh, body.solid);
+  return n == 0 ? ""
+                : line("warning: body ", body.name, ": in ", n,
+                       " cells the grid parts walls of the mesh that are whole, as they are thinner than 1.4 cubes; smaller "
+                       "cubes keep them, or another 'Lattice offset [1]' may");
+}
+
 } // namespace
 
 Body compose_body(const Section& section, const GravityParameters* gravity, const std::vector<const Section*>& floors,
@@ -273,6 +281,8 @@ Body compose_body(const Section& section, const GravityParameters* gravity, cons
     world.composition.push_back(warning);
   for (const std::string& warning : warn_of_fronts(body, world))
     world.composition.push_back(warning);
+  if (const std::string said = describe_severed(body, mesh); !said.empty())
+    world.composition.push_back(said);
   if (body.physics->crumbs().any())
     world.composition.push_back(describe_crumbs(body));
   if (const std::string said = describe_pieces(body, embedding.n_components - embedding.n_lost_components);

@@ -1,6 +1,7 @@
 #include "scene/compose_output.h"
 
 #include "scene/fields.h"
+#include "scene/text_suggest.h"
 
 #include <algorithm>
 #include <sstream>
@@ -38,9 +39,15 @@ void require_known(const Section& section, const std::vector<std::string>& names
                        [&](const ObservableGroup& group) { return group.name == name; });
   };
   for (auto it = names.begin(); it != names.end(); ++it) {
-    if (!find_observable(*it) && !is_group(*it))
+    if (!find_observable(*it) && !is_group(*it)) {
+      std::vector<std::string> known;
+      for (const Observable& one : body_observables())
+        known.push_back(one.name);
+      const auto meant = nearest(*it, known);
       throw section.complaint("Names", "'" + *it + "' is not an observable",
-                              "The observables and their units are listed by: kerf params");
+                              (meant ? "Did you mean '" + *meant + "'? " : "") +
+                                "The observables and their units are listed by: kerf params");
+    }
     if (std::find(names.begin(), it, *it) != it)
       throw section.complaint("Names", "'" + *it + "' is named twice", "Name it once");
   }

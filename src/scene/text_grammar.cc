@@ -156,10 +156,13 @@ class Checker {
     if (rule.empty() || (it->required && key.value.empty())) // a missing key, told as such
       return;
     const auto word = nearest(key.value, it->words);
-    const std::string example =
-      !it->fallback.empty() && it->check(it->fallback).empty() ? " (default " + it->fallback + ")" : "";
-    throw error(key.origin, path + "/" + key.name, key.value, rule,
-                word ? "Did you mean '" + *word + "'?" : it->text + example);
+    std::string text = it->text;
+    if (!it->fallback.empty() && it->check(it->fallback).empty()) {
+      if (text.ends_with('.')) // which the complaint has
+        text.pop_back();
+      text += (it->required ? " (such as " : " (default ") + it->fallback + ")";
+    }
+    throw error(key.origin, path + "/" + key.name, key.value, rule, word ? "Did you mean '" + *word + "'?" : text);
   }
 
   const std::vector<SectionKind>& grammar_;

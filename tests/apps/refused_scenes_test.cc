@@ -133,7 +133,7 @@ TEST_F(RefusedScene, DisplacementThatIsNoExpression) {
 TEST_F(RefusedScene, ObservablesThatDoNotExistOrComeTwice) {
   std::string scene = cube_scene() + "subsection Observables\n  set Names = volume, volum\nend\n";
   expect_refused(
-    scene, {at(scene, "Names"), "Observables/Names = 'volume, volum'", "'volum' is not an observable", "kerf params"});
+    scene, {at(scene, "Names"), "Observables/Names = 'volume, volum'", "'volum' is not an observable", "Did you mean 'volume'", "kerf params"});
   scene = replaced(scene, "volum\n", "volume\n");
   expect_refused(scene, {at(scene, "Names"), "'volume' is named twice"});
 }

@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "geometry/solid.h"
+#include "grid/complex.h"
 #include "tests/geometry/meshes.h"
 #include "tests/support/checkout.h"
 
@@ -10,6 +11,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <functional>
 #include <iostream>
 #include <random>
@@ -277,6 +279,33 @@ TEST(Embed, BenchmarkPrintsNAndSeconds) {
               << e.solid.cuts.all().size() << " cuts: " << seconds << " s\n";
     EXPECT_EQ(e.n_thin_walls + e.n_thin_gaps, 0u);
   }
+}
+
+/// A plate turned by 45 degrees, thinner and thicker than a face's diagonal; and two plates that pass through the same
+/// cells, which the grid parts rightly.
+TEST(Embed, CountsCellsThatPartAWallOfTheMesh) {
+  const auto turned = [](const double from, const double to) {
+    geometry::TriangleMesh plate = box_mesh(Vec3(-5, -2, from), Vec3(5, 2, to));
+    for (Vec3& v : plate.vertices)
+      v = Vec3(std::sqrt(0.5) * (v[0] + v[2]), v[1], std::sqrt(0.5) * (v[2] - v[0]));
+    return plate;
+  };
+  const auto count = [](const geometry::TriangleMesh& mesh, const Vec3& offset) {
+    grid::Solid solid = embed(mesh, 1, offset).solid;
+    solid.complex = grid::build_complex(solid);
+    return n_severed_cells(mesh, solid);
+  };
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> part(0, 1);
+  std::size_t n_severed = 0;
+  for (int i = 0; i < 20; ++i) {
+    const Vec3 offset(part(random), part(random), part(random));
+    n_severed += count(turned(-0.6, 0.6), offset) > 0;
+    EXPECT_EQ(count(turned(-0.75, 0.75), offset), 0u);
+    EXPECT_EQ(count(together(turned(-2, -0.05), turned(0.05, 2)), offset), 0u);
+  }
+  EXPECT_GT(n_severed, 3u);
+  EXPECT_LT(n_severed, 20u);
 }
 
 } // namespace

@@ -76,6 +76,8 @@ TEST(CrumbsScene, BooksCloseWithDust) {
   EXPECT_EQ(dust.last("crumbs"), 125);
   const auto missing = dust.series("missing energy"), dissipated = dust.series("dissipated energy");
   EXPECT_GT(dissipated.back(), 1);
+  const auto work = dust.series("work of supports");
+  EXPECT_NEAR(work.back(), work[2], 1e-9 * dissipated.back()) << "what is held at rest costs nothing";
   EXPECT_NEAR(missing.back() - missing[2], 0, 2e-3 * dissipated.back()) << "trapezoidal rule of what is dissipated";
   EXPECT_NEAR(dust.last("reaction wall z"), 2 * 8.0 / 5 * 9.81, 0.01 * 8 * 9.81)
     << "of two layers, whose corners it holds";

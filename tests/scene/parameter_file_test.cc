@@ -186,12 +186,12 @@ TEST(ParameterFile, NamesArePlain) {
 
 TEST(ParameterFile, BadValues) {
   expect_complaint(complaint_of("subsection Time\n  set Step [s] = 0\nend\n"), 2, "Time/Step [s]", "0", "must be > 0",
-                   "Time between two states. (default 0.01)");
+                   "Time between two states (default 0.01)");
   expect_complaint(complaint_of("subsection Time\n  set Steps = 1.5\nend\n"), 2, "Time/Steps", "1.5",
                    "is not written as a whole number; must be a whole number >= 1 and <= 1e6", "How many steps.");
   for (const std::string value : {"abc", "1e"})
     expect_complaint(complaint_of("subsection Time\n  set Step [s] = " + value + "\nend\n"), 2, "Time/Step [s]", value,
-                     "is no number; must be > 0", "Time between two states. (default 0.01)");
+                     "is no number; must be > 0", "Time between two states (default 0.01)");
   expect_complaint(complaint_of("subsection Time\n  set Method = Newmarc\nend\n"), 2, "Time/Method", "Newmarc",
                    "must be one of implicit Euler, Newmark", "Did you mean 'Newmark'?");
   expect_complaint(complaint_of("subsection Time\n  set Gravity [m/s^2] = 0, \\\n 1\nend\n"), 2, "Time/Gravity [m/s^2]",
