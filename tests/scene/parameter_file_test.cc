@@ -19,7 +19,7 @@ struct Time {
 
   void describe(Parameters& p) {
     p.number("Step [s]", step, positive, "Time between two states.");
-    p.integer("Steps", n_steps, Range{1, 1e6}, "How many steps.");
+    p.integer("Steps", n_steps, Range{1, 1e6}, "How many steps (default 100)");
     p.choice("Method", method, {"implicit Euler", "Newmark"}, "How time goes on.");
     p.vector("Gravity [m/s^2]", gravity, "World frame.");
   }
@@ -188,7 +188,7 @@ TEST(ParameterFile, BadValues) {
   expect_complaint(complaint_of("subsection Time\n  set Step [s] = 0\nend\n"), 2, "Time/Step [s]", "0", "must be > 0",
                    "Time between two states (default 0.01)");
   expect_complaint(complaint_of("subsection Time\n  set Steps = 1.5\nend\n"), 2, "Time/Steps", "1.5",
-                   "is not written as a whole number; must be a whole number >= 1 and <= 1e6", "How many steps.");
+                   "is not written as a whole number; must be a whole number >= 1 and <= 1e6", "How many steps (default 100)");
   for (const std::string value : {"abc", "1e"})
     expect_complaint(complaint_of("subsection Time\n  set Step [s] = " + value + "\nend\n"), 2, "Time/Step [s]", value,
                      "is no number; must be > 0", "Time between two states (default 0.01)");
@@ -238,7 +238,7 @@ TEST(ParameterFile, BrokenSyntax) {
 TEST(ParameterFile, LinesAreThoseOfTheFile) {
   const auto c =
     complaint_of("# one\r\n\r\nsubsection Time # three\r\n  set \\\r\n    Method \\\r\n = \\\r\n none\r\nend\r\n");
-  expect_complaint(c, 4, "Time/Method", "none", "must be one of", "How time goes on.");
+  expect_complaint(c, 4, "Time/Method", "none", "must be one of", "How time goes on (default implicit Euler)");
 }
 
 TEST(Overrides, WinOverTheFile) {
