@@ -11,7 +11,7 @@ void Relief::settle(const std::span<const std::uint8_t> is_held, dynamics::State
   Loan<Vec3> goals = Loan<Vec3>::with_room(state.x.size());
   model_.goals(state.x, goals);
   for (std::size_t c = 0; c < goals.size(); ++c)
-    if (is_held[c] != 0)
+    if (is_held[c] != 0 || excess_.touched[c] == 0)
       goals[c] = state.x[c];
   model_.riders().settle(goals, model_.lumped_mass(), state.x, state.v);
 }

@@ -1,10 +1,10 @@
 #pragma once
 
-/// After a cut: corners of hardly any mass go to their goals (riders.h). Where there is still more energy than before
-/// the cut, so do all corners of regions that it has touched, again and again: with the regions' motions held, x = g is
-/// where the energy is least, and with positions held these motions are (matching.h), so it falls with each. A way that
-/// lifts pieces that are held by more than it lets out is not taken. The last of these ways ends where the energy is
-/// what it was.
+/// After a cut: those of the corners around it that have hardly any mass go to their goals (riders.h). Where there is
+/// still more energy than before the cut, so do all corners of regions that it has touched, again and again: with the
+/// regions' motions held, x = g is where the energy is least, and with positions held these motions are (matching.h), so
+/// it falls with each. A way that lifts pieces that are held by more than it lets out is not taken. The last of these
+/// ways ends where the energy is what it was.
 
 #include "dynamics/relief.h"
 #include "lattice/matching.h"
