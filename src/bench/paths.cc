@@ -1,4 +1,4 @@
-#include "bench/paths.h"
+#include "bench/path.h"
 
 #include "base/error.h"
 #include "base/interrupt.h"
@@ -10,29 +10,14 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <sstream>
 
 namespace kerf::bench {
 
-namespace {
-
-constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-
-/// What one call of a path takes, as far as it can be counted.
-struct Need {
-  double flops = unknown, bytes = unknown;
-};
-constexpr Need operator+(const Need& a, const Need& b) { return {a.flops + b.flops, a.bytes + b.bytes}; }
-constexpr Need operator*(const double n, const Need& one) { return {n * one.flops, n * one.bytes}; }
-
-/// A cube of 1 m with n nodes across in n + 1 cells, the outer ones half full, that hangs from its upper side; and what
-/// else there is in the body and in the scene.
 std::string cube_scene(const int n, const double dt, const int n_steps, const std::string& body,
-                       const std::string& beside = "") {
+                       const std::string& beside) {
   std::ostringstream text;
   text << "subsection Time\n set Time step [s] = " << dt << "\n set End time [s] = " << dt * n_steps << "\nend\n"
        << "subsection Gravity\n set Acceleration [m/s^2] = 0, 0, -1\nend\n"
@@ -49,45 +34,21 @@ std::unique_ptr<scene::World> world_of(const std::string& text) {
   return std::make_unique<scene::World>(scene::compose(scene::scan_scene_text(text, "a benchmark's scene", {})));
 }
 
-/// Explicit steps that the smallest pieces of a cut cell bear: sound crosses a cube in 20 of them.
-double explicit_step(const int n) { return 0.05 / n / std::sqrt(1e5 / 1000); }
-
-/// A path at one size, ready to be called again and again.
-struct Ready {
-  std::size_t n_items;
-  std::function<void()> call;
-  Need need = {};
-};
-/// Or measured by itself, as a cut that can be made once.
-struct Measured {
-  std::size_t n_items;
-  Sample sample;
-  Need need = {};
-};
-
-/// A kind of body, and the paths that are measured on it.
-struct Path {
-  std::string name, item;
-  std::function<Ready(scene::World& world)> on; ///< one of these two
-  std::function<Measured(int n, const Options& options)> by_itself;
-};
-struct Group {
-  std::function<std::string(int n)> scene;
-  double largest; ///< cells from which on it takes too long
-  std::vector<Path> paths;
-};
-
-dynamics::ElasticModel& model_of(scene::World& world) {
-  return dynamic_cast<dynamics::ElasticModel&>(world.bodies[0].physics->model());
-}
-
-/// Positions off rest by a hundredth of a cube.
-Points stirred(const Points& rest, const double h, const double phase = 1) {
+Points stirred(const Points& rest, const double h, const double phase) {
   Points x = rest;
   for (std::size_t i = 0; i < x.size(); ++i)
     for (int axis = 0; axis < 3; ++axis)
       x[i][axis] += 0.01 * h * std::sin(phase + 7.0 * double(i) + 3.0 * axis);
   return x;
+}
+
+namespace {
+
+/// Explicit steps that the smallest pieces of a cut cell bear: sound crosses a cube in 20 of them.
+double explicit_step(const int n) { return 0.05 / n / std::sqrt(1e5 / 1000); }
+
+dynamics::ElasticModel& model_of(scene::World& world) {
+  return dynamic_cast<dynamics::ElasticModel&>(world.bodies[0].physics->model());
 }
 
 /// One of two such positions after the other: a model may know its answer for the one it met last.
@@ -269,8 +230,9 @@ Measured composing(const int n, const Options& options) {
   return {n_cells, sample, {unknown, bytes}};
 }
 
-/// A blade on its way through such a body: everything that follows a cut, by edges that are cut.
-Measured cutting(const int n, const Options& options, const std::string& body) {
+/// A blade on its way through such a body: these stages of what follows a cut, by edges that are cut.
+Measured cutting(const int n, const Options& options, const std::string& body,
+                 const std::vector<std::string>& wanted = {"cut", "topology", "assemble", "visibility"}) {
   constexpr int n_steps = 10;
   std::ostringstream blade;
   blade << "subsection Blade knife\n set Edge [m] = 0, -1, 0; 0, 1, 0\n set Times [s] = 0, " << n_steps / 60.0
@@ -285,12 +247,15 @@ Measured cutting(const int n, const Options& options, const std::string& body) {
     for (int step = 1; step <= n_steps; ++step)
       scene::advance(*world, step, stages);
     n_edges = world->bodies[0].observables[0].value(world->bodies[0]);
-    seconds.push_back(stages["cut"] + stages["topology"] + stages["assemble"] + stages["visibility"]);
+    double sum = 0;
+    for (const std::string& stage : wanted)
+      sum += stages[stage];
+    seconds.push_back(sum);
   }
   return {static_cast<std::size_t>(n_edges), sample_of(seconds)};
 }
 
-const std::vector<Group>& groups() {
+std::vector<Group> find_groups() {
   constexpr double few = 5.1e4, all = 1e9;
   const auto scene = [](const std::string& body) {
     return [=](const int n) { return cube_scene(n, 1.0 / 60, 1, body); };
@@ -299,7 +264,7 @@ const std::vector<Group>& groups() {
     return
       [=](const int n) { return cube_scene(n, explicit_step(n), 1, body + " set Integrator = symplectic Euler\n"); };
   };
-  static const std::vector<Group> list = {
+  std::vector<Group> list = {
     {scene(""), all, paths_of_elements()},
     {explicit_scene(""),
      all,
@@ -311,6 +276,9 @@ const std::vector<Group>& groups() {
     {scene(" set Backend = lattice\n subsection Lattice\n  set Alpha [1] = 0.5\n end\n"),
      all,
      {step_path("shape matching step", "corners", [](int) { return 1.0 / 60; }, of_element::shape_matching)}},
+    {scene(" set Backend = lattice\n subsection Lattice\n  set Alpha [1] = 0.5\n  set Half width [cells] = 4\n end\n"),
+     all,
+     {step_path("shape matching step, half width 4", "corners", [](int) { return 1.0 / 60; })}},
     {scene(" set Backend = mass-spring\n"),
      all,
      {step_path("implicit step, springs", "corners", [](int) { return 1.0 / 60; })}},
@@ -324,9 +292,22 @@ const std::vector<Group>& groups() {
        [](const int n, const Options& options) { return cutting(n, options, ""); }}}},
     {nullptr,
      few,
-     {{"cutting points, with all that follows", "edges", {}, [](const int n, const Options& options) {
-         return cutting(n, options, " set Backend = pba\n");
+     {{"cutting points, with all that follows",
+       "edges",
+       {},
+       [](const int n, const Options& options) { return cutting(n, options, " set Backend = pba\n"); }},
+      {"visibility of points that are cut", "edges", {}, [](const int n, const Options& options) {
+         return cutting(n, options,
+                        " set Backend = pba\n subsection Visibility\n  set Budget [1] = 1000000\n end\n",
+                        {"visibility"}); // a stage of its own where it has a budget
        }}}}};
+  for (Group& group : groups_beside_steps())
+    list.push_back(std::move(group));
+  return list;
+}
+
+const std::vector<Group>& groups() {
+  static const std::vector<Group> list = find_groups();
   return list;
 }
 

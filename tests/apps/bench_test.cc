@@ -52,9 +52,12 @@ TEST_F(Bench, MeasuresEveryPath) {
     }
   }
   EXPECT_EQ(not_counted,
-            (std::set<std::string>{"multigrid takes an equation", "explicit step, points", "implicit step, springs",
+            (std::set<std::string>{"multigrid takes an equation", "explicit step, points",
+                                   "shape matching step, half width 4", "implicit step, springs",
                                    "implicit step, points", "composing a body", "cutting, with all that follows",
-                                   "cutting points, with all that follows"}));
+                                   "cutting points, with all that follows", "visibility of points that are cut",
+                                   "equilibrium, elements", "six modes, elements", "surface of a body",
+                                   "a frame of run.h5", "an image", "colours of the inside"}));
   const auto all = bench::names_of_paths();
   EXPECT_EQ(names, std::set<std::string>(all.begin(), all.end()));
   const std::string csv = read_text(folder / "out/bench.csv");

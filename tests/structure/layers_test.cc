@@ -51,7 +51,7 @@ const std::vector<Room> rooms = {
    {"base", "geometry", "grid", "cut", "surface", "material", "dynamics", "fem", "lattice", "spring", "pba", "visibility",
     "physics", "gl", "image", "warp", "texture", "render", "output"}},
   {"study", {"base", "material", "output", "reference", "scene"}},
-  {"bench", {"base", "dynamics", "output", "scene"}},
+  {"bench", {"base", "surface", "dynamics", "image", "output", "scene"}},
 };
 
 /// Headers that only some rooms may see.
