@@ -149,7 +149,10 @@ int run(const Arguments& arguments) {
     std::printf("%s holds a complete run: nothing is left to resume\n", parsed.output.c_str());
     return 0;
   }
-  scene::World world = scene::compose(text);
+  scene::World world = [&] {
+    const scene::LongWork composing("Composing the scene", stdout);
+    return scene::compose(text);
+  }();
   for (const std::string& line : world.composition)
     std::printf("%s\n", line.c_str());
   std::fflush(stdout);

@@ -4,11 +4,14 @@
 
 #include "base/interrupt.h"
 #include "base/parallel.h"
+#include "scene/progress.h"
 #include "study/measure.h"
 
 #include <algorithm>
 #include <chrono>
 #include <csignal>
+#include <cstdio>
+#include <memory>
 #include <thread>
 #include <utility>
 
@@ -53,13 +56,15 @@ class Rows {
   struct Running {
     std::size_t k;
     Process process;
+    std::unique_ptr<scene::LongWork> named = {}; ///< while it lasts
   };
 
   bool may_begin() const { return wish_to_end() == 0 && fault_ == 0; }
 
   void begin(const std::size_t k) {
     wait_until_free(arguments_.output / study::row_folder(plan_, k));
-    running_.push_back({k, start(command_of(k), SIGKILL)});
+    running_.push_back({k, start(command_of(k), SIGKILL),
+                        std::make_unique<scene::LongWork>("row " + plan_.rows[k].name, stdout, 30s)});
   }
 
   /// A process of an earlier run that was killed may be about to end.
@@ -97,7 +102,7 @@ class Rows {
   bool take_one_that_ended(const std::function<void(const output::StudyRow&)>& done) {
     for (auto it = running_.begin(); it != running_.end(); ++it)
       if (const int code = exit_code_of(it->process); code >= 0) {
-        Running one = *it;
+        Running one = std::move(*it);
         running_.erase(it);
         take(one, code, last_words(one.process), done);
         return true;

@@ -8,6 +8,7 @@
 #include "base/parameters.h"
 #include "image/file.h"
 #include "scene/compose_interior.h"
+#include "scene/progress.h"
 
 #include <Eigen/Geometry>
 
@@ -80,7 +81,10 @@ int texture(const Arguments& arguments) {
   const SceneArguments parsed = parse_scene_arguments(rest);
   if (options.n_threads > 0)
     set_n_threads(options.n_threads);
-  const scene::LookedInto body = scene::compose_inside(read_text(parsed), options.body);
+  const scene::LookedInto body = [&] {
+    const scene::LongWork preparing("Matching the exemplars", stdout);
+    return scene::compose_inside(read_text(parsed), options.body);
+  }();
   for (const std::string& line : body.composition)
     std::printf("%s\n", line.c_str());
   const texture::Interior& inside = body.interior->inside;

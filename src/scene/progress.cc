@@ -1,6 +1,7 @@
 #include "scene/progress.h"
 
 #include <algorithm>
+#include <utility>
 
 #include <unistd.h>
 
@@ -79,5 +80,17 @@ void Progress::finish() {
     std::fprintf(stream_, "\n");
   open_line_ = false;
 }
+
+LongWork::LongWork(std::string what, std::FILE* const stream, const std::chrono::milliseconds patience)
+  : waiting_([this, what = std::move(what), stream, patience](const std::stop_token& stop) {
+      std::unique_lock lock(mutex_);
+      const auto start = std::chrono::steady_clock::now();
+      for (auto due = start + patience; !stop.stop_requested(); due += patience)
+        if (over_.wait_until(lock, stop, due, [] { return false; }); !stop.stop_requested()) {
+          const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+          std::fprintf(stream, "%s has taken %.0f s so far\n", what.c_str(), seconds.count());
+          std::fflush(stream);
+        }
+    }) {}
 
 } // namespace kerf::scene

@@ -1,7 +1,7 @@
 #pragma once
 
 /// How far a run is: a bar that redraws itself in a terminal, a plain line now and then elsewhere. A step that takes
-/// long is named while it lasts, by a thread that only waits and writes.
+/// long is named while it lasts, by a thread that only waits and writes; so is any other work that has no steps.
 
 #include <chrono>
 #include <condition_variable>
@@ -50,6 +50,18 @@ class Progress {
   std::mutex mutex_; ///< of all that changes after construction
   std::condition_variable_any over_;
   std::jthread waiting_; ///< last: it uses all the others
+};
+
+/// Work that may take long, as long as this is there: "Composing the scene has taken 20 s so far".
+class LongWork {
+ public:
+  /// `what`: begins the line.
+  LongWork(std::string what, std::FILE* stream, std::chrono::milliseconds patience = std::chrono::seconds(10));
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable_any over_;
+  std::jthread waiting_; ///< last: it uses the others
 };
 
 } // namespace kerf::scene

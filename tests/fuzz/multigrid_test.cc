@@ -160,6 +160,9 @@ void judge_cases(const std::uint32_t first, const std::uint32_t end, const int l
 }
 
 TEST(Fuzz, MultigridIsSymmetricAndPositive) { judge_cases(700, 730, 10); }
+TEST(Fuzz, MultigridWithFrontsIsSymmetricAndPositive) {
+  judge_cases(Case::first_seed_with_fronts + 700, Case::first_seed_with_fronts + 715, 5);
+}
 TEST(Fuzz, LongMultigridIsSymmetricAndPositive) { judge_cases(1000, 3000, 1000); }
 
 } // namespace

@@ -71,6 +71,20 @@ TEST(Progress, ALongStepIsNamed) {
   }
 }
 
+/// Named again and again while it lasts, and not at all where it does not last.
+TEST(LongWork, IsNamedWhileItLasts) {
+  const Stream stream(std::tmpfile(), std::fclose);
+  for (const int duration : {0, 200}) {
+    const LongWork work("Composing", stream.get(), std::chrono::milliseconds(20));
+    std::this_thread::sleep_for(std::chrono::milliseconds(duration));
+  }
+  std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  const std::string text = written(stream.get());
+  const auto n = std::count(text.begin(), text.end(), '\n');
+  EXPECT_TRUE(n >= 1 && n <= 10) << text;
+  EXPECT_TRUE(text.starts_with("Composing has taken 0 s so far\n")) << text;
+}
+
 TEST(Progress, ABarThatIsCutShortEndsItsLineOnce) {
   const Stream stream(std::tmpfile(), std::fclose);
   Progress progress(1, 0.1, ProgressStyle::bar, stream.get());
