@@ -190,13 +190,37 @@ void leave(const grid::Solid& solid, const Shred& shred, const NewCuts& new_cuts
       back.add(bound);
 }
 
+void cut(grid::Solid& solid, const EdgeId e, const grid::LaterCut& by) {
+  solid.cuts.add(solid.grid, {e, by.t, by.normal, by.label});
+}
+void cut(grid::Solid& solid, const SkinSegment& segment, const grid::LaterCut& by) {
+  solid.cuts.add({segment, by.t, by.normal, by.label});
+}
+
+/// Whose cuts of what were taken back already.
 template <class Key>
-std::size_t take_back(grid::Cuts& cuts, std::vector<Key>& from, std::vector<Key>& back) {
+using Taken = std::set<std::pair<Key, grid::CutLabel>>;
+
+/// What another blade has met, too, is cut by that one then: it parts the shred from what is beyond both.
+template <class Key>
+std::size_t take_back(grid::Solid& solid, std::vector<Key>& from, std::vector<Key>& back, Taken<Key>& taken) {
   sort_unique(back);
-  if (!back.empty()) {
-    cuts.leave_whole(back);
-    std::erase_if(from, [&](const Key& key) { return std::ranges::binary_search(back, key); });
+  if (back.empty())
+    return 0;
+  for (const Key& key : back)
+    taken.emplace(key, solid.cuts.find(key)->label);
+  solid.cuts.leave_whole(back);
+  std::set<Key> whole;
+  for (const Key& key : back) {
+    const auto met = solid.cuts.later_cuts(key);
+    const auto next = std::ranges::find_if(
+      met, [&](const grid::LaterCut& one) { return !taken.contains({key, one.label}); });
+    if (next == met.end())
+      whole.insert(key);
+    else
+      cut(solid, key, grid::LaterCut(*next));
   }
+  std::erase_if(from, [&](const Key& key) { return whole.contains(key); });
   return back.size();
 }
 
@@ -251,9 +275,13 @@ TakenBack cuts_to_leave(const grid::Solid& solid, const NewCuts& new_cuts) {
 } // namespace
 
 void leave_shreds(grid::Solid& solid, std::vector<EdgeId>& edges, std::vector<SkinSegment>& segments) {
+  Taken<EdgeId> taken_edges;
+  Taken<SkinSegment> taken_segments;
   for (;;) { // what stays may be a shred still, with one beside it
     TakenBack back = cuts_to_leave(solid, {edges, segments});
-    if (take_back(solid.cuts, edges, back.edges) + take_back(solid.cuts, segments, back.segments) == 0)
+    if (take_back(solid, edges, back.edges, taken_edges) +
+          take_back(solid, segments, back.segments, taken_segments) ==
+        0)
       return;
   }
 }

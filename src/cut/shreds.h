@@ -21,8 +21,9 @@
 namespace kerf::cut {
 
 /// Takes back new cuts that part tips and shavings from the body; that they were met is remembered, as of later cuts
-/// (grid/cuts.h), since it tells on which side of them what is around lies. `edges` and `segments`, ascending, are what
-/// `solid.cuts` holds and `solid.complex` does not; what is taken back leaves them.
+/// (grid/cuts.h), since it tells on which side of them what is around lies. What another blade has met in the same step,
+/// too, is then cut by that one. `edges` and `segments`, ascending, are what `solid.cuts` holds and `solid.complex` does
+/// not; what is left whole leaves them.
 void leave_shreds(grid::Solid& solid, std::vector<grid::EdgeId>& edges, std::vector<grid::SkinSegment>& segments);
 
 /// The cuts of a cell, as they are or as they would be.

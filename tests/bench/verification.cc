@@ -211,20 +211,21 @@ void penny_order_table() {
       one.offset[axis] = part(random);
       one.normal[axis] = normal(random);
     }
-  std::printf("\n| cells a radius | of work, volume, energy release rate: mean error [%%] | least and largest [%%] | root mean "
+  std::printf("\n| cells a radius | of opening, volume, work, energy release rate: mean error [%%] | least and largest [%%] | root mean "
               "square [%%] | its order since the row above |\n|---|---|---|---|---|\n");
-  std::array<double, 3> before{};
+  std::array<double, 4> before{};
   int n_before = 0;
   for (const int n : {3, 4, 6, 8}) {
-    std::array<std::vector<double>, 3> errors;
+    std::array<std::vector<double>, 4> errors;
     for (Penny one : places) {
       one.n_over_radius = n;
       const PennyResult r = penny(one, hooke(1, 0.3));
-      errors[0].push_back(percent(r.work / volume));
+      errors[0].push_back(percent(r.opening / volume));
       errors[1].push_back(percent(r.volume / volume));
-      errors[2].push_back(percent(r.release_rate / rate));
+      errors[2].push_back(percent(r.work / volume));
+      errors[3].push_back(percent(r.release_rate / rate));
     }
-    std::array<double, 3> squares{};
+    std::array<double, 4> squares{};
     std::printf("| %d |", n);
     for (const auto& of_one : errors)
       std::printf(" %+.2f", std::accumulate(of_one.begin(), of_one.end(), 0.0) / double(of_one.size()));
@@ -234,12 +235,12 @@ void penny_order_table() {
       std::printf(" %+.2f %+.2f;", *least, *most);
     }
     std::printf(" |");
-    for (int k = 0; k < 3; ++k) {
+    for (int k = 0; k < 4; ++k) {
       squares[k] = std::sqrt(std::inner_product(errors[k].begin(), errors[k].end(), errors[k].begin(), 0.0) / 12);
       std::printf(" %.2f", squares[k]);
     }
     std::printf(" |");
-    for (int k = 0; k < 3 && n_before > 0; ++k)
+    for (int k = 0; k < 4 && n_before > 0; ++k)
       std::printf(" %.1f", std::log(before[k] / squares[k]) / std::log(double(n) / n_before));
     std::printf(" |\n");
     std::fflush(stdout);

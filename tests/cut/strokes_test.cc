@@ -207,6 +207,17 @@ TEST(ThreeBlades, LeaveNoBridgeByATipThatWasLeftWhole) {
   EXPECT_EQ(patient.volumes().size(), 6u);
 }
 
+/// Two blades come through a cube in one step; one passes just below an edge, whose tips stay on the body. Where the
+/// other one has crossed the same segments, it parts them.
+TEST(SeveralBlades, PartWhatTipsOfAnotherStayOn) {
+  const auto cube = unit_mesh(support::checkout() + "/params/meshes/cube.off");
+  ASSERT_TRUE(cube);
+  auto [patient, n_planes, stroking, speed] = make_case(*cube, Tool::blades, 1033);
+  pass_all(patient, stroking.blades, 10);
+  EXPECT_EQ(patient.volumes().size(), 2u);
+  EXPECT_GT(patient.body.cuts.n_left_whole(), 0u);
+}
+
 /// Pieces of as many nodes as a cube has.
 int n_large(const grid::CellComplex& complex) {
   const std::vector<std::uint32_t> piece = grid::corner_pieces(complex);
@@ -283,6 +294,41 @@ TEST_P(Strokes, LeaveThePiecesOfTheBoolean) {
   EXPECT_EQ(counted.n_fewer, 0);
   EXPECT_LE(counted.n_more, counted.n_strokes / 100);
 }
+
+/// Slow, by steps of the size of a cube, and fast: as many pieces, of the same volumes. Where several blades cross,
+/// each cuts what comes first, so that pieces may have a little more or less of each other.
+TEST_P(Strokes, LeaveTheSamePiecesAtAnySpeed) {
+  const auto& [tool, n] = GetParam();
+  const auto solids = unit_solids(folder_of_meshes());
+  int n_bodies = 0, n_other = 0;
+  double most = 0; // [cubes]
+  for (unsigned seed = 1000; seed < 1000 + n / 2; ++seed) {
+    const auto& [name, mesh] = solids[seed % solids.size()];
+    const Case of_seed = make_case(mesh, tool, seed);
+    const double h = of_seed.patient.body.grid.h(), cube = h * h * h;
+    const double least = (of_seed.n_planes > 1 ? 0.5 : tool == Tool::bent_blade ? 0.1 : 1e-3) * cube;
+    std::vector<std::vector<double>> volumes; // by speed
+    for (const double speed : {0.07, 0.9, 10.0}) {
+      Patient patient = of_seed.patient;
+      pass_all(patient, of_seed.stroking.blades, speed);
+      volumes.push_back(patient.volumes());
+    }
+    ++n_bodies;
+    for (const auto& at_speed : volumes) {
+      const bool is_other = has_more(at_speed, volumes[0], least) || has_more(volumes[0], at_speed, least);
+      n_other += is_other;
+      if (is_other)
+        std::cout << name << ", seed " << seed << ": " << n_above(at_speed, least) << " pieces for "
+                  << n_above(volumes[0], least) << '\n';
+      for (std::size_t i = 0; i < at_speed.size() && at_speed.size() == volumes[0].size(); ++i)
+        most = std::max(most, std::abs(at_speed[i] - volumes[0][i]) / cube);
+    }
+  }
+  std::cout << n_bodies << " strokes at three speeds, " << n_other << " with other pieces; volumes differ by at most "
+            << most << " cubes\n";
+  EXPECT_EQ(n_other, 0);
+}
+
 std::string name_of(const testing::TestParamInfo<Series>& series) {
   constexpr std::array names = {"blades", "scissors", "bent_blade"};
   return names[static_cast<std::size_t>(series.param.tool)];
