@@ -25,11 +25,11 @@ inline std::vector<std::filesystem::path> meshes(const std::filesystem::path& fo
   return found;
 }
 
-/// The mesh in the unit cube; nothing where it is not the skin of a solid.
+/// The mesh in the unit cube; nothing where it cannot be read, or is not the skin of a solid.
 inline std::optional<geometry::TriangleMesh> unit_mesh(const std::filesystem::path& path) {
-  geometry::TriangleMesh mesh = geometry::read_mesh(path, 1);
+  geometry::TriangleMesh mesh;
   try {
-    mesh = geometry::require_solid(std::move(mesh), path);
+    mesh = geometry::require_solid(geometry::read_mesh(path, 1), path);
   } catch (const DataError&) {
     return std::nullopt;
   }

@@ -15,6 +15,7 @@
 
 #include <map>
 #include <numeric>
+#include <span>
 #include <vector>
 
 namespace kerf::support {
@@ -65,10 +66,10 @@ class FineMaterial {
     }
   }
 
-  /// The body has been cut: finds the copies that carry the points now.
-  void follow(const grid::Solid& solid, const grid::CutChange& change) {
+  /// The body has been cut, in these cells (ascending): finds the copies that carry the points now.
+  void follow(const grid::Solid& solid, const std::span<const grid::CellId> cells) {
     for (Point& point : points_)
-      if (std::ranges::binary_search(change.cells, point.cell))
+      if (std::ranges::binary_search(cells, point.cell))
         if (const grid::CopyId copy = copy_around(solid, point); copy.valid())
           point.copy = copy;
   }
