@@ -24,8 +24,9 @@ const Label position_label = {"m", "position per corner"};
 const Label velocity_label = {"m/s", "velocity per corner"};
 
 void write_points(const h5::Object& group, const std::string& name, const std::span<const Vec3> points,
-                  const Label& label, const std::string& configuration) {
-  const auto dataset = h5::write_items<double>(group, name, points);
+                  const Label& label, const std::string& configuration,
+                  const h5::Storage storage = h5::Storage::compressed) {
+  const auto dataset = h5::write_items<double>(group, name, points, storage);
   describe(dataset, label);
   h5::set_attribute(dataset, "configuration", configuration);
 }
@@ -84,13 +85,14 @@ void write_colours(const h5::Object& root, const h5::Object& surface, const std:
 }
 
 void write_frame(const h5::Object& frame, const BodyStep& step) {
-  write_points(frame, "position", step.positions, position_label, "current");
+  write_points(frame, "position", step.positions, position_label, "current", h5::Storage::plain);
   if (!step.velocities.empty())
-    write_points(frame, "velocity", step.velocities, velocity_label, "current");
+    write_points(frame, "velocity", step.velocities, velocity_label, "current", h5::Storage::plain);
   for (const auto& field : step.fields) {
     const h5::Layout layout = {h5::Number::float64, field.n_components};
     const auto rows = field.values.size() / field.n_components;
-    const auto dataset = h5::write_rows(frame, "fields/" + field.name, layout, field.values.data(), rows);
+    const auto dataset =
+      h5::write_rows(frame, "fields/" + field.name, layout, field.values.data(), rows, h5::Storage::plain);
     describe(dataset, {field.unit, field.n_components == 6 ? "per corner: xx, yy, zz, xy, yz, xz" : "per corner"});
   }
 }

@@ -77,10 +77,10 @@ Object write_texts(const Object& parent, const std::string& name, const Handle& 
 } // namespace
 
 Object write_rows(const Object& parent, const std::string& name, const Layout& layout, const void* rows,
-                  const std::size_t n_rows) {
+                  const std::size_t n_rows, const Storage storage) {
   const Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
   const Extent extent = {n_rows, layout.n_columns};
-  if (n_rows > 0) {
+  if (n_rows > 0 && storage == Storage::compressed) {
     const auto row_bytes = H5Tget_size(native(layout.number)) * layout.n_columns;
     const Extent chunk = {std::clamp<hsize_t>(chunk_bytes / row_bytes, 1, n_rows), layout.n_columns};
     if (H5Pset_chunk(creation.id(), rank(layout), chunk.data()) < 0 || H5Pset_shuffle(creation.id()) < 0 ||

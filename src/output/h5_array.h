@@ -35,9 +35,13 @@ struct Layout {
   std::size_t n_columns = 1;
 };
 
-/// Creates a dataset with the given rows, chunked, shuffled and compressed.
+/// Positions and velocities of a body that moves are compressed to four fifths and three quarters, by 70 MB/s: as
+/// long as an explicit step takes where each tenth is recorded. They are stored as they are.
+enum class Storage { compressed, plain };
+
+/// Creates a dataset with the given rows; compressed ones are chunked and shuffled, too.
 Object write_rows(const Object& parent, const std::string& name, const Layout& layout, const void* rows,
-                  std::size_t n_rows);
+                  std::size_t n_rows, Storage storage = Storage::compressed);
 
 /// Numbers of any rank, the last index fastest.
 struct Shape {
@@ -88,9 +92,10 @@ std::vector<Row> read_items(const Object& parent, const std::string& name) {
 }
 
 template <class T, class Row>
-Object write_items(const Object& parent, const std::string& name, const std::span<const Row> rows) {
+Object write_items(const Object& parent, const std::string& name, const std::span<const Row> rows,
+                   const Storage storage = Storage::compressed) {
   static_assert(sizeof(Row) % sizeof(T) == 0);
-  return write_rows(parent, name, {number_of<T>, sizeof(Row) / sizeof(T)}, rows.data(), rows.size());
+  return write_rows(parent, name, {number_of<T>, sizeof(Row) / sizeof(T)}, rows.data(), rows.size(), storage);
 }
 
 } // namespace kerf::output::h5
