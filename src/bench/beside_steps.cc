@@ -117,7 +117,7 @@ Measured colours_of_the_inside(const int n, const Options& options) {
   std::vector<double> seconds;
   std::size_t n_samples = 0;
   for (int i = 0; i < std::min(options.n_samples, 3); ++i) {
-    const auto world = world_of(cube_scene(n, dt, 1, body.str(), cut.str()));
+    const auto world = world_of(cube_scene(n, dt, 1, body.str(), cut.str()), (folder.path() / "cut.prm").string());
     Timings stages;
     scene::advance(*world, 1, stages);
     n_samples = world->bodies[0].interior->atlas.colours().size();

@@ -47,7 +47,8 @@ struct Group {
 /// A cube of 1 m around the origin with n nodes across in n + 1 cells, the outer ones half full, that hangs from its
 /// upper side; and what else there is in the body and in the scene.
 std::string cube_scene(int n, double dt, int n_steps, const std::string& body, const std::string& beside = "");
-std::unique_ptr<scene::World> world_of(const std::string& text);
+/// Paths start, and caches lie, at the folder of `file`.
+std::unique_ptr<scene::World> world_of(const std::string& text, const std::string& file = "a benchmark's scene");
 
 /// Positions off rest by a hundredth of a cube.
 Points stirred(const Points& rest, double h, double phase = 1);

@@ -30,8 +30,8 @@ std::string cube_scene(const int n, const double dt, const int n_steps, const st
   return text.str();
 }
 
-std::unique_ptr<scene::World> world_of(const std::string& text) {
-  return std::make_unique<scene::World>(scene::compose(scene::scan_scene_text(text, "a benchmark's scene", {})));
+std::unique_ptr<scene::World> world_of(const std::string& text, const std::string& file) {
+  return std::make_unique<scene::World>(scene::compose(scene::scan_scene_text(text, file, {})));
 }
 
 Points stirred(const Points& rest, const double h, const double phase) {

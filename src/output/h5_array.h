@@ -35,8 +35,8 @@ struct Layout {
   std::size_t n_columns = 1;
 };
 
-/// Positions and velocities of a body that moves are compressed to four fifths and three quarters, by 70 MB/s: as
-/// long as an explicit step takes where each tenth is recorded. They are stored as they are.
+/// Plain: positions and velocities of a body that moves. Compression would leave three quarters of them and more, at
+/// 70 MB/s: as long as explicit steps take where each tenth is recorded.
 enum class Storage { compressed, plain };
 
 /// Creates a dataset with the given rows; compressed ones are chunked and shuffled, too.

@@ -6,9 +6,13 @@
 #include "surface/surface.h"
 #include "tests/support/fine_material.h"
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cmath>
+#include <iostream>
 #include <map>
+#include <string>
 #include <vector>
 
 namespace kerf::cut {
@@ -56,9 +60,41 @@ inline PiecesAndFine pieces_and_fine(const grid::Solid& solid, const support::Fi
   return result;
 }
 
-/// Of ascending volumes.
+/// Of ascending volumes, those above one.
 inline std::ptrdiff_t n_above(const std::vector<double>& volumes, const double least) {
   return volumes.end() - std::upper_bound(volumes.begin(), volumes.end(), least);
 }
+
+/// Of many bodies.
+struct TallyOfPieces {
+  int n_bodies = 0, n_parted = 0, n_crumbs = 0, n_tiny = 0, n_not_free = 0, n_other = 0;
+
+  /// Says where a body has crumbs, or other pieces than the fine material.
+  void add(const PiecesAndFine& pieces, const std::string& name, const unsigned seed) {
+    ++n_bodies;
+    n_parted += n_above(pieces.grid, 1) > 1;
+    n_crumbs += pieces.n_crumbs;
+    n_tiny += pieces.n_tiny;
+    n_not_free += pieces.n_not_free;
+    const bool is_other =
+      n_above(pieces.grid, 10) > n_above(pieces.fine, 8) || n_above(pieces.fine, 10) > n_above(pieces.grid, 8);
+    n_other += is_other;
+    if (pieces.n_crumbs + pieces.n_tiny == 0 && !is_other)
+      return;
+    std::cout << name << ", seed " << seed << ": " << pieces.n_crumbs << " crumbs, " << pieces.n_not_free
+              << " of them not cut free, " << pieces.n_tiny << " too small to tell; pieces [cubes]";
+    for (const auto* volumes : {&pieces.grid, &pieces.fine})
+      for (std::size_t i = 0; i < std::min<std::size_t>(6, volumes->size()); ++i)
+        std::cout << (i == 0 ? " | " : " ") << volumes->rbegin()[i];
+    std::cout << std::endl;
+  }
+  void expect_sound() const {
+    std::cout << n_bodies << " bodies, " << n_parted << " parted; " << n_crumbs << " crumbs, " << n_not_free
+              << " not cut free; " << n_tiny << " too small to tell; other pieces in " << n_other << '\n';
+    EXPECT_GT(n_parted, n_bodies / 2);
+    EXPECT_EQ(n_not_free, 0);
+    EXPECT_LE(n_other, n_bodies / 50); // a slab far thinner than a cube may stay on one side
+  }
+};
 
 } // namespace kerf::cut

@@ -12,7 +12,6 @@
 
 #include <gtest/gtest.h>
 
-#include <iostream>
 #include <sstream>
 
 namespace kerf::scene::swinging_scenes_test {
@@ -104,34 +103,14 @@ TEST_P(SwingingScenes, LeaveNoCrumbThatTheStrokeDidNotCutFree) {
   for (const auto& file : cut::meshes(cut::folder_of_meshes()))
     if (cut::unit_mesh(file))
       files.push_back(file);
-  int n_bodies = 0, n_parted = 0, n_crumbs = 0, n_tiny = 0, n_not_free = 0, n_other = 0;
+  cut::TallyOfPieces tally;
   for (unsigned seed = 0; seed < GetParam(); ++seed) {
     const auto& file = files[seed % files.size()];
     const auto pieces = cut_while_it_swings(file, seed);
-    if (!pieces)
-      continue;
-    ++n_bodies;
-    n_parted += pieces->grid.size() > 1;
-    n_crumbs += pieces->n_crumbs;
-    n_tiny += pieces->n_tiny;
-    n_not_free += pieces->n_not_free;
-    const bool is_other = cut::n_above(pieces->grid, 10) > cut::n_above(pieces->fine, 8) ||
-                          cut::n_above(pieces->fine, 10) > cut::n_above(pieces->grid, 8);
-    n_other += is_other;
-    if (pieces->n_crumbs + pieces->n_tiny == 0 && !is_other)
-      continue;
-    std::cout << file.stem() << ", seed " << seed << ": " << pieces->n_crumbs << " crumbs, " << pieces->n_not_free
-              << " of them not cut free, " << pieces->n_tiny << " too small to tell; pieces [cubes]";
-    for (const auto* volumes : {&pieces->grid, &pieces->fine})
-      for (std::size_t i = 0; i < std::min<std::size_t>(6, volumes->size()); ++i)
-        std::cout << (i == 0 ? " | " : " ") << volumes->rbegin()[i];
-    std::cout << std::endl;
+    if (pieces)
+      tally.add(*pieces, file.stem().string(), seed);
   }
-  std::cout << n_bodies << " bodies, " << n_parted << " parted; " << n_crumbs << " crumbs, " << n_not_free
-            << " not cut free; " << n_tiny << " too small to tell; other pieces in " << n_other << '\n';
-  EXPECT_GT(n_parted, n_bodies / 2);
-  EXPECT_EQ(n_not_free, 0);
-  EXPECT_LE(n_other, n_bodies / 50);
+  tally.expect_sound();
 }
 INSTANTIATE_TEST_SUITE_P(Short, SwingingScenes, testing::Values(8));
 INSTANTIATE_TEST_SUITE_P(Long, SwingingScenes, testing::Values(200));
