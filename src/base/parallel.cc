@@ -6,6 +6,7 @@
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
 #include <tbb/task_arena.h>
 
 #include <dlfcn.h>
@@ -39,6 +40,15 @@ void parallel_ranges(const std::size_t n, const std::size_t worth,
   tbb::parallel_for(
     tbb::blocked_range<std::size_t>(0, n, grain),
     [&](const tbb::blocked_range<std::size_t>& range) { f(range.begin(), range.end()); }, tbb::simple_partitioner());
+}
+
+void beside(const FunctionRef<void()> f, const FunctionRef<void()> g) {
+  if (n_threads() == 1) {
+    f();
+    g();
+    return;
+  }
+  tbb::parallel_invoke([&] { f(); }, [&] { g(); });
 }
 
 namespace {

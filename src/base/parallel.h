@@ -31,6 +31,9 @@ void parallel_for(const std::size_t n, const Function& f, const std::size_t wort
   });
 }
 
+/// Calls both, on two threads where there are. Both may start loops of several threads; neither may wait for the other.
+void beside(FunctionRef<void()> f, FunctionRef<void()> g);
+
 /// Makes one vector the other, in the memory that it has.
 template <class T>
 void copy(const std::vector<T>& from, std::vector<T>& to) {

@@ -1,7 +1,9 @@
 #include "cut/advance.h"
 
 #include "base/function_ref.h"
+#include "base/parallel.h"
 #include "cut/in_plane.h"
+#include "cut/swept_pieces.h"
 #include "grid/fronts.h"
 #include "grid/parts.h"
 #include "grid/shape.h"
@@ -33,30 +35,8 @@ Raster section_of(const Solid& solid, const Front& front, const InPlane& in_plan
   return section;
 }
 
-/// A cell's cube at rest, and so much around it [m].
-Box around(const Solid& solid, const CellId c, const double more) {
-  const Vec3 origin = solid.grid.origin(c);
-  return {origin - Vec3::Constant(more), origin + Vec3::Constant(solid.grid.h() + more)};
-}
-
 /// A little more than the cube, so that what neighbours have of the cut has no seam.
 Box in_sight_of(const Solid& solid, const CellId c) { return around(solid, c, 0.01 * solid.grid.h()); }
-
-/// With what a front in another cell may reach over by its lag.
-Box reach_of(const Solid& solid, const CellId c) { return around(solid, c, grid::most_front_lag * solid.grid.h()); }
-
-bool is_in(const Box& box, const Patch& patch) {
-  const Box around = geometry::box_around(patch);
-  return (around.lower.array() <= box.upper.array()).all() && (box.lower.array() <= around.upper.array()).all();
-}
-
-Polygon clipped(Polygon polygon, const Box& box) {
-  for (int axis = 0; axis < 3; ++axis) {
-    polygon = cut::clipped(polygon, {-Vec3::Unit(axis), -box.lower[axis]});
-    polygon = cut::clipped(polygon, {Vec3::Unit(axis), box.upper[axis]});
-  }
-  return polygon;
-}
 
 /// What of the section is drawn, with its lag.
 Raster come_in(const Front& front, const double h, const Raster& section, const Raster& swept) {
@@ -81,82 +61,10 @@ OfVertices weighted(const Solid& solid, const Front& front, const Raster& part) 
 
 } // namespace
 
-/// What is swept, in the cells that it comes into.
-class Advance::Sweep {
- public:
-  /// `fractions`: of the way from x_before to x, at which the first and the last two points of a patch stand.
-  Sweep(std::vector<Patch> patches, std::vector<std::array<double, 2>> fractions, const Solid& solid,
-        const Points& x_before, const Points& x)
-    : patches_(std::move(patches)),
-      fractions_(std::move(fractions)),
-      solid_(solid),
-      x_before_(x_before),
-      x_(x),
-      near_(patches_) {}
-
-  static Sweep of(const BladePath& path, const Solid& solid, const Points& x_before, const Points& x) {
-    std::vector<std::array<double, 2>> fractions;
-    for (std::size_t k = 1; k < path.lines.size(); ++k)
-      fractions.insert(fractions.end(), path.lines[k].size() - 1, {path.fractions[k - 1], path.fractions[k]});
-    return {patches(path), std::move(fractions), solid, x_before, x};
-  }
-  static Sweep of(const geometry::TriangleMesh& mesh, const Solid& solid, const Points& x) {
-    std::vector<std::array<Vec3, 3>> triangles(mesh.triangles.size());
-    for (std::size_t i = 0; i < triangles.size(); ++i)
-      triangles[i] = corners(mesh, i);
-    return {patches(triangles), std::vector(triangles.size(), std::array{0.0, 0.0}), solid, x, x};
-  }
-
-  bool is_near(const EdgeBoxes::Block& block) const { return near_.may_be_in(block.around_cells()); }
-  bool is_near(const CellId c) const { return near_.may_be_in(box_of(c)); }
-
-  /// Calls f(polygon at rest [m]) for what lies in the reach of the cell.
-  template <class Function>
-  void for_each_piece(const CellId c, const Function& f) const {
-    const ToRest before(solid_, c, x_before_), now(solid_, c, x_);
-    const Box reach = reach_of(solid_, c);
-    std::vector<std::size_t> near;
-    near_.for_each(box_of(c), [&](const std::size_t i) { near.push_back(i); });
-    std::ranges::sort(near);
-    for (const std::size_t i : near) {
-      Patch at_rest;
-      for (std::size_t k = 0; k < at_rest.size(); ++k) {
-        const double t = fractions_[i][k / 2];
-        at_rest[k] = (1 - t) * before(patches_[i][k]) + t * now(patches_[i][k]);
-      }
-      if (!is_in(reach, at_rest))
-        continue;
-      const Polygon piece = clipped({at_rest.begin(), at_rest.end()}, reach);
-      if (area(piece) > 0)
-        f(piece);
-    }
-  }
-
- private:
-  /// Around a cell on its way, with the lag of fronts.
-  Box box_of(const CellId c) const {
-    const grid::Copy& copy = solid_.complex.copies[solid_.complex.first_copy[c]];
-    std::array<Vec3, 16> corners;
-    for (int v = 0; v < 8; ++v) {
-      corners[v] = x_[copy.corners[v].value];
-      corners[8 + v] = x_before_[copy.corners[v].value];
-    }
-    const Box box = geometry::box_around(corners);
-    const Vec3 lag = Vec3::Constant(grid::most_front_lag * (box.upper - box.lower).maxCoeff());
-    return {box.lower - lag, box.upper + lag};
-  }
-
-  std::vector<Patch> patches_;
-  std::vector<std::array<double, 2>> fractions_;
-  const Solid& solid_;
-  const Points &x_before_, &x_;
-  NearSweep near_;
-};
-
 void Advance::sweep(const BladePath& path, const Solid& solid, const Points& x_before, const Points& x,
                     const EdgeBoxes& boxes, const grid::CutLabel label) {
   const bool rests = path.lines.front() == path.lines.back();
-  sweep(Sweep::of(path, solid, x_before, x), solid, boxes, label, rests);
+  sweep(SweptPieces(path, solid, x_before, x), solid, boxes, label, rests);
   for (const CellId c : touched_)
     for (std::vector<Polygon>* const pieces : {&cells_.at(c).pieces, &cells_.at(c).at_rest})
       if (pieces->size() > most_pieces)
@@ -165,18 +73,25 @@ void Advance::sweep(const BladePath& path, const Solid& solid, const Points& x_b
 
 void Advance::sweep(const geometry::TriangleMesh& mesh, const Solid& solid, const Points& x, const EdgeBoxes& boxes,
                     const grid::CutLabel label) {
-  sweep(Sweep::of(mesh, solid, x), solid, boxes, label, false);
+  sweep(SweptPieces(mesh, solid, x), solid, boxes, label, false);
 }
 
-void Advance::sweep(const Sweep& sweep, const Solid& solid, const EdgeBoxes& boxes, const grid::CutLabel label,
+void Advance::sweep(const SweptPieces& sweep, const Solid& solid, const EdgeBoxes& boxes, const grid::CutLabel label,
                     const bool rests) {
+  std::vector<CellId> near;
   for (const std::uint32_t k : boxes.blocks([&](const EdgeBoxes::Block& block) { return sweep.is_near(block); }))
     boxes.for_each_cell(k, [&](const CellId c) {
       const bool is_whole = !solid.complex.copies[solid.complex.first_copy[c]].next.valid(),
                  has_front = ahead_ == Ahead::ends && solid.cuts.front(c) != nullptr;
       if ((is_whole || has_front || cells_.contains(c)) && sweep.is_near(c))
-        sweep.for_each_piece(c, [&](const Polygon& piece) { add(solid, c, piece, label, rests); });
+        near.push_back(c);
     });
+  std::vector<std::vector<Polygon>> pieces(near.size());
+  parallel_for(
+    near.size(), [&](const std::size_t i) { pieces[i] = sweep.in(near[i]); }, 16);
+  for (std::size_t i = 0; i < near.size(); ++i)
+    for (const Polygon& piece : pieces[i])
+      add(solid, near[i], piece, label, rests);
 }
 
 void Advance::add(const Solid& solid, const CellId c, const Polygon& piece, const grid::CutLabel label,
@@ -297,43 +212,68 @@ class Advance::Stand {
   std::map<CellId, bool> parted_;
 };
 
+/// What a cell comes to in which blades have swept.
+struct Advance::Outcome {
+  enum class Of { nothing, forgotten, waiting, begun, moved };
+  Of of = Of::nothing;
+  std::optional<Front> front = {}; ///< that has begun or moved on
+  std::optional<Cell> cell = {};   ///< what follows the front from then on; none: what did
+};
+
+Advance::Outcome Advance::outcome(const Solid& solid, const CellId c, const FunctionRef<bool(CellId)> waits) const {
+  const Cell& cell = cells_.at(c);
+  const Front* const earlier = solid.cuts.front(c);
+  if (earlier ? !is_ahead(solid, *earlier) : !can_begin(solid, c))
+    return {Outcome::Of::forgotten};
+  if (waits(c))
+    return {Outcome::Of::waiting};
+  if (!earlier)
+    return begun(solid, c, cell.label);
+  Front moved = *earlier;
+  if (ahead_ == Ahead::ends) { // of another cut, or of a blade
+    if (!is_along(*earlier, cell.pieces, solid.grid.h()))
+      return {};
+    Cell followed = follow(solid, moved);
+    return {Outcome::Of::moved, std::move(moved), std::move(followed)};
+  }
+  if (!cell.section.any())
+    return {};
+  come_to(solid, come_in(moved, solid.grid.h(), cell.section, cell.swept), cell, moved);
+  return {Outcome::Of::moved, std::move(moved)};
+}
+
+Advance::Outcome Advance::begun(const Solid& solid, const CellId c, const grid::CutLabel label) const {
+  std::optional<Front> front = front_in(solid, c, label);
+  if (!front)
+    return {};
+  Cell cell = follow(solid, *front);
+  return {Outcome::Of::begun, std::move(front), std::move(cell)};
+}
+
 std::vector<Front> Advance::take(const Solid& solid, const PendingCuts& pending) {
   std::vector<CellId> forgotten;
-  std::vector<std::pair<CellId, Cell>> moved_on;
   std::set<CellId> later;
   const auto waits = [&](const CellId c) {
     return std::ranges::any_of(solid.grid.edges(c), [&](const grid::EdgeId e) { return pending.waits(e); });
   };
+  const std::vector<CellId> touched(touched_.begin(), touched_.end());
+  std::vector<Outcome> outcomes(touched.size());
+  parallel_for(touched.size(), [&](const std::size_t i) { outcomes[i] = outcome(solid, touched[i], waits); });
   Stand stand(solid, cells_);
-  const auto look_for = [&](const CellId c, const grid::CutLabel label) {
-    if (auto front = front_in(solid, c, label)) {
-      Cell cell = follow(solid, *front);
-      stand.begin(*front, std::move(cell));
-    }
-  };
-  for (const CellId c : touched_) {
-    Cell& cell = cells_.at(c);
-    const Front* const earlier = solid.cuts.front(c);
-    if (earlier ? !is_ahead(solid, *earlier) : !can_begin(solid, c))
-      forgotten.push_back(c);
-    else if (waits(c))
-      later.insert(c);
-    else if (earlier && ahead_ == Ahead::ends) { // of another cut, or of a blade
-      Front moved = *earlier;
-      if (!is_along(*earlier, cell.pieces, solid.grid.h()))
-        continue;
-      moved_on.emplace_back(c, follow(solid, moved));
-      stand.move(moved);
-    } else if (earlier && cell.section.any()) {
-      Front moved = *earlier;
-      come_to(solid, come_in(moved, solid.grid.h(), cell.section, cell.swept), cell, moved);
-      stand.move(moved);
-    } else if (!earlier) {
-      look_for(c, cell.label);
+  for (std::size_t i = 0; i < touched.size(); ++i) {
+    auto& [of, front, cell] = outcomes[i];
+    if (of == Outcome::Of::forgotten)
+      forgotten.push_back(touched[i]);
+    else if (of == Outcome::Of::waiting)
+      later.insert(touched[i]);
+    else if (of == Outcome::Of::begun)
+      stand.begin(*front, std::move(*cell));
+    else if (of == Outcome::Of::moved) {
+      stand.move(*front);
+      if (cell)
+        cells_.at(touched[i]) = std::move(*cell);
     }
   }
-  for (auto& [c, cell] : moved_on) // others have asked for what is swept around them
-    cells_[c] = std::move(cell);
   std::vector<Front> fronts = begin(solid, stand, waits, later);
   if (!as_faces_ || ahead_ == Ahead::ends)
     move(solid, stand, fronts);
@@ -355,12 +295,19 @@ std::vector<Front> Advance::begin(const Solid& solid, Stand& stand, const Functi
     for (int v = 0; v < grid::cube::n_vertices; ++v)
       if (stand.part(c, v) > least_part_open)
         stand.around(c).for_each_cell(solid, c, v, [&](const CellId next) { wanted.emplace(next, front.label); });
+  std::vector<std::pair<CellId, grid::CutLabel>> others;
   for (const auto& [c, label] : wanted)
-    if (!stand.front(c) && !touched_.contains(c) && can_begin(solid, c) && !waits(c))
-      if (auto front = front_in(solid, c, label)) {
-        Cell cell = follow(solid, *front);
-        stand.begin(*front, std::move(cell));
-      }
+    if (!stand.front(c) && !touched_.contains(c))
+      others.emplace_back(c, label);
+  std::vector<Outcome> outcomes(others.size());
+  parallel_for(others.size(), [&](const std::size_t i) {
+    const auto& [c, label] = others[i];
+    if (can_begin(solid, c) && !waits(c))
+      outcomes[i] = begun(solid, c, label);
+  });
+  for (Outcome& outcome : outcomes)
+    if (outcome.of == Outcome::Of::begun)
+      stand.begin(*outcome.front, std::move(*outcome.cell));
   std::vector<Front> in_order, fronts;
   FrontsOfCells begun;
   for (const auto& [c, label] : wanted)

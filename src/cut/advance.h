@@ -22,7 +22,6 @@
 #include "base/function_ref.h"
 #include "cut/course.h"
 #include "cut/edge_boxes.h"
-#include "cut/near_sweep.h"
 #include "cut/openings.h"
 #include "cut/pending.h"
 #include "cut/raster.h"
@@ -30,6 +29,8 @@
 #include <set>
 
 namespace kerf::cut {
+
+class SweptPieces;
 
 class Advance {
  public:
@@ -51,7 +52,6 @@ class Advance {
   void archive(Archive& a) { a(cells_, touched_, touched_before_); }
 
  private:
-  class Sweep;
   struct Cell {
     grid::CutLabel label = 1;
     std::vector<Polygon> pieces = {}, at_rest = {}; ///< of strips of a blade that moves, and rests, rest frame [m];
@@ -68,13 +68,16 @@ class Advance {
     void archive(Archive& a) { a(label, pieces, at_rest, section, swept, whole, around, fresh, n_fresh); }
   };
 
-  void sweep(const Sweep& sweep, const grid::Solid& solid, const EdgeBoxes& boxes, grid::CutLabel label, bool rests);
+  void sweep(const SweptPieces& sweep, const grid::Solid& solid, const EdgeBoxes& boxes, grid::CutLabel label, bool rests);
   void add(const grid::Solid& solid, grid::CellId c, const Polygon& piece, grid::CutLabel label, bool rests);
   std::optional<grid::Front> front_in(const grid::Solid& solid, grid::CellId c, grid::CutLabel label) const;
   void add_around(const grid::Solid& solid, grid::CellId c, grid::CutLabel label, Points& points) const;
   bool can_begin(const grid::Solid& solid, grid::CellId c) const;
   Cell follow(const grid::Solid& solid, grid::Front& front) const;
   static void come_to(const grid::Solid& solid, const Raster& come, const Cell& cell, grid::Front& front);
+  struct Outcome;
+  Outcome outcome(const grid::Solid& solid, grid::CellId c, FunctionRef<bool(grid::CellId)> waits) const;
+  Outcome begun(const grid::Solid& solid, grid::CellId c, grid::CutLabel label) const;
   class Stand;
   std::vector<grid::Front> begin(const grid::Solid& solid, Stand& stand, FunctionRef<bool(grid::CellId)> waits,
                                  std::set<grid::CellId>& later);

@@ -77,11 +77,21 @@ void Hexahedra::follow(const grid::Solid& solid, const std::span<const grid::Cop
     former_levels_.corners.insert(former_levels_.corners.end(), touched.begin(), touched.end());
     former_levels_.numbers_are_kept &= numbers_of_same == CornersOfSame::kept;
   }
-  ChangeOfBatches change = batch(solid, changed, numbers_of_same);
-  if (numbers_of_same == CornersOfSame::kept)
-    known_.follow(std::move(change), *batching_, incidence_, numbers_, touched);
-  else
-    known_.forget();
+  beside(
+    [&] {
+      ChangeOfBatches change = batch(solid, changed, numbers_of_same);
+      if (numbers_of_same == CornersOfSame::kept)
+        known_.follow(std::move(change), *batching_, incidence_, numbers_, touched);
+      else
+        known_.forget();
+    },
+    [&] { follow_masses_and_penalties(solid, changed, corners); });
+  if (!numbers_.are_all())
+    count();
+}
+
+void Hexahedra::follow_masses_and_penalties(const grid::Solid& solid, const std::span<const grid::CopyId> changed,
+                                            const std::span<const std::uint32_t> corners) {
   sum_mass(corners);
   ghost_penalty_.update( // to which a crumb's copies are as good as full
     solid, changed, [this](const std::size_t copy) { return incidence_.is_used(copy) ? fill(copy) : 1; }, mass_);
@@ -92,8 +102,6 @@ void Hexahedra::follow(const grid::Solid& solid, const std::span<const grid::Cop
   ties_ = ties(solid);
   if (consistent_mass_)
     consistent_mass_->update(solid, changed, mass_, mass_by_corner());
-  if (!numbers_.are_all())
-    count();
 }
 
 /// Enough for a corner is four times an even share of the copies that are tied: an element's stiffness is no larger, in

@@ -119,6 +119,8 @@ class Hexahedra : public dynamics::ElasticModel, public dynamics::StiffnessMatri
   bool shares_diagonal() const { return is_hookean() && !leaves_out_dilatation_; }
   bool is_hookean() const { return frame_ == Frame::fixed || std::holds_alternative<material::Corotational>(law_); }
   void follow(const grid::Solid& solid, std::span<const grid::CopyId> changed, std::span<const std::uint32_t> corners);
+  void follow_masses_and_penalties(const grid::Solid& solid, std::span<const grid::CopyId> changed,
+                                   std::span<const std::uint32_t> corners);
   void sum_mass(std::span<const std::uint32_t> corners);
   void share_mass(const grid::Solid& solid);
   const std::vector<double>& mass_by_corner() const {

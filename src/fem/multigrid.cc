@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 
 namespace kerf::fem {
 
@@ -204,49 +205,40 @@ Coarsening coarsened_finest(const FinestLevel& finest, const FormerLevels& forme
   return coarsened(finest.cells, former.coarse[0].coarsening, {copies, former.corners, finest.incidence, finest.numbers});
 }
 
+/// A coarser level, of so many corners, where that is worth its while.
+template <class Coarsened>
+std::optional<Coarsening> worth_while(const std::size_t n_corners, const Coarsened& coarsened) {
+  constexpr double stands_still = 0.7; // corners over those of the level before
+  if (n_corners <= few)
+    return {};
+  Coarsening coarsening = coarsened();
+  if (double(coarsening.coarse.n_corners) > stands_still * double(n_corners))
+    return {};
+  return coarsening;
+}
+
 } // namespace
 
 Multigrid::Multigrid(FinestLevel finest, const FormerLevels& former) {
-  constexpr double stands_still = 0.7; // corners over those of the level before
   levels_.emplace_back();
-  levels_[0].n_corners = finest.cells.n_corners;
-  levels_[0].batching = finest.batching;
-  levels_[0].elements = std::move(finest.elements);
-  levels_[0].bound = finest.full.bound;
-  levels_[0].lines = lines_of(finest.faces);
-  levels_[0].ties.assign(finest.ties.begin(), finest.ties.end());
-  levels_[0].resize();
-  double h = finest.h;
-  while (levels_.back().n_corners > few) {
-    Level& fine = levels_.back();
-    const std::size_t n = levels_.size();
-    const CellsView cells = n == 1 ? finest.cells : CellsView(cells_of(n - 1));
-    Coarsening coarsening = n == 1 ? coarsened_finest(finest, former) : coarsened(cells);
-    if (double(coarsening.coarse.n_corners) > stands_still * double(fine.n_corners))
-      break;
-    const LevelElements& of_fine = fine.made_of;
-    const FineElements children =
-      n == 1
-        ? FineElements{finest.element, finest.kind, finest.full}
-        : FineElements{[&](const std::uint32_t c) -> const Element& { return of_fine[c]; }, of_fine.kind, of_fine.full};
+  Level& first = levels_[0];
+  first.n_corners = finest.cells.n_corners;
+  first.batching = finest.batching;
+  first.elements = std::move(finest.elements);
+  first.bound = finest.full.bound;
+  std::optional<Coarsening> next;
+  beside([&] { next = worth_while(finest.cells.n_corners, [&] { return coarsened_finest(finest, former); }); },
+         [&] {
+           first.lines = lines_of(finest.faces);
+           first.ties.assign(finest.ties.begin(), finest.ties.end());
+           first.resize();
+         });
+  while (next) { // which cells are coarser is found ahead of what they are made of
+    levels_.back().to_coarse = std::move(*next);
+    const CellsOfLevel& cells = levels_.back().to_coarse.coarse;
     Level coarse;
-    if (former.coarse.size() >= n) {
-      const auto& [before, elements] = former.coarse[n - 1];
-      const CoarseBefore known{n == 1 ? former.same_copy : of_fine.same_as, before.parent, elements};
-      coarse.made_of = coarse_elements(coarsening, children, h, finest.material, &known);
-    } else {
-      coarse.made_of = coarse_elements(coarsening, children, h, finest.material, nullptr);
-    }
-    h *= 2;
-    coarse.lines = coarsened(fine.lines, cells, coarsening);
-    coarse.ties = coarsened(fine.ties, coarsening);
-    coarse.n_corners = coarsening.coarse.n_corners;
-    constexpr std::size_t little = 4; // so few corners that twice the steps are half the work
-    coarse.n_steps = little * coarse.n_corners <= fine.n_corners ? std::min(2 * fine.n_steps, fem::Level::most_steps)
-                                                                 : fine.n_steps;
-    put_batches(h, finest.material, coarsening.coarse, coarse);
-    fine.to_coarse = std::move(coarsening);
-    coarse.resize();
+    beside([&] { next = worth_while(cells.n_corners, [&] { return coarsened(cells); }); },
+           [&] { make(coarse, finest, former); });
     levels_.push_back(std::move(coarse));
   }
   coarsest_ = std::make_unique<Coarsest>(finest.material);
@@ -256,6 +248,34 @@ Multigrid::Multigrid(FinestLevel finest, const FormerLevels& former) {
   cycle_ = std::make_unique<Cycle>(std::move(levels), [this](const Row<float>* const b, Row<float>* const x) {
     coarsest_->solve(levels_.back(), b, x);
   });
+}
+
+/// The level after those that there are.
+void Multigrid::make(Level& coarse, const FinestLevel& finest, const FormerLevels& former) const {
+  const std::size_t n = levels_.size();
+  const Level& fine = levels_.back();
+  const Coarsening& coarsening = fine.to_coarse;
+  const LevelElements& of_fine = fine.made_of;
+  const FineElements children =
+    n == 1
+      ? FineElements{finest.element, finest.kind, finest.full}
+      : FineElements{[&](const std::uint32_t c) -> const Element& { return of_fine[c]; }, of_fine.kind, of_fine.full};
+  const double h = std::ldexp(finest.h, static_cast<int>(n)); // of the coarse cubes
+  if (former.coarse.size() >= n) {
+    const auto& [before, elements] = former.coarse[n - 1];
+    const CoarseBefore known{n == 1 ? former.same_copy : of_fine.same_as, before.parent, elements};
+    coarse.made_of = coarse_elements(coarsening, children, h / 2, finest.material, &known);
+  } else {
+    coarse.made_of = coarse_elements(coarsening, children, h / 2, finest.material, nullptr);
+  }
+  coarse.lines = coarsened(fine.lines, n == 1 ? finest.cells : CellsView(cells_of(n - 1)), coarsening);
+  coarse.ties = coarsened(fine.ties, coarsening);
+  coarse.n_corners = coarsening.coarse.n_corners;
+  constexpr std::size_t little = 4; // so few corners that twice the steps are half the work
+  coarse.n_steps = little * coarse.n_corners <= fine.n_corners ? std::min(2 * fine.n_steps, fem::Level::most_steps)
+                                                               : fine.n_steps;
+  put_batches(h, finest.material, coarsening.coarse, coarse);
+  coarse.resize();
 }
 
 const CellsOfLevel& Multigrid::cells_of(const std::size_t coarse) const { return levels_[coarse - 1].to_coarse.coarse; }

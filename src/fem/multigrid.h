@@ -99,6 +99,7 @@ class Multigrid : public dynamics::Preconditioner {
 
   /// Of a coarse level.
   const CellsOfLevel& cells_of(std::size_t coarse) const;
+  void make(Level& coarse, const FinestLevel& finest, const FormerLevels& former) const;
   static void put_batches(double h, const material::Elastic& material, const CellsOfLevel& cells, Level& coarse);
   void put_rotations();
   void put_coarse_rotations(std::size_t l);

@@ -91,5 +91,27 @@ TEST(Precedence, KnowsHowManyItemsCanBeWorkedOnAtOnce) {
   EXPECT_EQ(alone.width(), 10);
 }
 
+TEST(Beside, CallsBothOnceAndThemWithLoops) {
+  for (const int n_threads : {1, 2, 4}) {
+    std::vector<int> first(1000, 0), second(1000, 0);
+    const auto count = [](std::vector<int>& times) {
+      parallel_for(times.size(), [&](const std::size_t i) { ++times[i]; });
+    };
+    with_threads(n_threads, [&] { beside([&] { count(first); }, [&] { count(second); }); });
+    EXPECT_EQ(first, std::vector<int>(1000, 1));
+    EXPECT_EQ(second, std::vector<int>(1000, 1));
+  }
+}
+
+TEST(Beside, HandsOnTheErrorOfEither) {
+  const auto fail = [] { throw std::runtime_error("no"); };
+  const auto pass = [] {};
+  for (const int n_threads : {1, 4})
+    with_threads(n_threads, [&] {
+      EXPECT_THROW(beside(fail, pass), std::runtime_error);
+      EXPECT_THROW(beside(pass, fail), std::runtime_error);
+    });
+}
+
 } // namespace
 } // namespace kerf::parallel_test
