@@ -238,7 +238,7 @@ Advance::Outcome Advance::outcome(const Solid& solid, const CellId c, const Func
   }
   if (!cell.section.any())
     return {};
-  come_to(solid, come_in(moved, solid.grid.h(), cell.section, cell.swept), cell, moved);
+  come_to(solid, cell, moved);
   return {Outcome::Of::moved, std::move(moved)};
 }
 
@@ -338,7 +338,7 @@ std::vector<Front> Advance::begin(const Solid& solid, Stand& stand, const Functi
 
 /// Of earlier fronts those that have come on, or around which others have.
 void Advance::move(const Solid& solid, Stand& stand, std::vector<Front>& fronts) {
-  constexpr double little = 1e-3;
+  constexpr double little = 1e-3, seen = 0.02; // cubes by which the surface follows
   std::set<CellId> near;
   for (const auto& [c, front] : stand.fronts())
     for (const CellId next : cells_around(solid.grid, c))
@@ -351,7 +351,9 @@ void Advance::move(const Solid& solid, Stand& stand, std::vector<Front>& fronts)
       continue;
     Front moved = *stand.front(c);
     moved.passed = std::max(moved.passed, earlier->passed);
-    bool comes_on = moved.passed > earlier->passed;
+    const auto end = [](const Front& front) { return front.end - front.onward.dot(front.point); };
+    bool comes_on =
+      moved.passed > earlier->passed || std::abs(end(moved) - end(*earlier)) > seen * solid.grid.h();
     const OfVertices held = stand.held(c);
     for (int v = 0; v < grid::cube::n_vertices; ++v) {
       comes_on = comes_on || held[v] < (1 - little) * earlier->held[v];
@@ -363,7 +365,9 @@ void Advance::move(const Solid& solid, Stand& stand, std::vector<Front>& fronts)
 }
 
 /// A front that has come through a part of its cell's section.
-void Advance::come_to(const Solid& solid, const Raster& come, const Cell& cell, Front& front) {
+void Advance::come_to(const Solid& solid, const Cell& cell, Front& front) {
+  const Raster come = come_in(front, solid.grid.h(), cell.section, cell.swept);
+  put_end(cell.section, cell.swept, come, solid.grid.h(), front);
   front.passed = cell.section.any() ? std::min(most_passed, double(come.count()) / cell.section.count()) : 0;
   const OfVertices sums = weighted(solid, front, come);
   for (int v = 0; v < grid::cube::n_vertices; ++v)
@@ -381,7 +385,7 @@ void Advance::tell_where_they_have_come(const Solid& solid, std::vector<Front>& 
   for (auto& [c, cell] : cells_)
     if (const Front* const earlier = solid.cuts.front(c); earlier && cell.n_fresh > 0) {
       Front moved = *earlier;
-      come_to(solid, come_in(moved, solid.grid.h(), cell.section, cell.swept), cell, moved);
+      come_to(solid, cell, moved);
       moved.passed = std::max(earlier->passed, moved.passed);
       moved.come = cell.take_fresh(moved, solid.grid.h());
       fronts.push_back(moved);
@@ -421,7 +425,7 @@ Advance::Cell Advance::follow(const Solid& solid, Front& front) const {
     }
   followed.whole = weighted(solid, front, followed.section);
   followed.around = AroundFront(solid, front);
-  come_to(solid, come_in(front, solid.grid.h(), followed.section, followed.swept), followed, front);
+  come_to(solid, followed, front);
   front.come = followed.take_fresh(front, solid.grid.h());
   return followed;
 }

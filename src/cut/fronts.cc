@@ -1,6 +1,7 @@
 #include "cut/fronts.h"
 
 #include "cut/course.h"
+#include "cut/in_plane.h"
 #include "cut/openings.h"
 #include "grid/fronts.h"
 
@@ -88,17 +89,33 @@ Points come_in(const CellAtPlane::Section& section, const Outline& shape) {
   return come;
 }
 
+Polygon clipped(Polygon piece, const Outline& outline) {
+  for (const HalfSpace& side : outline.sides)
+    piece = clipped(piece, side);
+  return piece;
+}
+
 /// How far the shape has come in the cell; told by where, too.
-Front front_in(const CellAtPlane& cell, const Outlines& outlines, const bool as_faces) {
+Front front_in(const CellAtPlane& cell, const Outlines& outlines, const ToRest& to_rest, const double h,
+               const bool as_faces) {
   double inside = 0, all = 0;
-  for (Polygon piece : cell.material()) {
+  const std::vector<Polygon> material = cell.material();
+  for (const Polygon& piece : material) {
     all += area(piece);
-    for (const HalfSpace& side : outlines.with_lag.sides)
-      piece = clipped(piece, side);
-    inside += area(piece);
+    inside += area(clipped(piece, outlines.with_lag));
   }
   const CellAtPlane::Section section = cell.section();
   Front front = cell.front(section, all > 0 ? inside / all : 0);
+  const InPlane in_plane(front.point, front.normal, h);
+  Raster drawn, come, with_lag;
+  for (const Polygon& piece : material)
+    for (const auto& [part, raster] : {std::pair(piece, &drawn), std::pair(clipped(piece, outlines.own), &come),
+                                       std::pair(clipped(piece, outlines.with_lag), &with_lag)}) {
+      Polygon at_rest(part.size());
+      std::ranges::transform(part, at_rest.begin(), to_rest);
+      draw(at_rest, in_plane, *raster);
+    }
+  put_end(drawn, come, with_lag, h, front);
   if (as_faces)
     front.come = {come_in(section, outlines.own)};
   return front;
@@ -130,8 +147,7 @@ OfVertices add(const Solid& solid, const CellId c, const CellAtPlane& cell, cons
     };
     add_to(all);
     if (!is_parted)
-      for (const HalfSpace& side : with_lag.sides)
-        piece = clipped(piece, side);
+      piece = clipped(piece, with_lag);
     add_to(come);
   }
   const auto at = solid.grid.nodes(c);
@@ -169,6 +185,8 @@ std::optional<Front> moved_on(const Front& earlier, const Front& now) {
     moved.held[v] = std::min(now.held[v], earlier.held[v]);
     moved.reached[v] = std::max(now.reached[v], earlier.reached[v]);
   }
+  moved.onward = now.onward;
+  moved.end = now.end;
   moved.come = now.come;
   return comes_on ? std::optional(moved) : std::nullopt;
 }
@@ -195,7 +213,7 @@ std::vector<Front> find_fronts(const CutSurface& surface, const Solid& solid, co
     const Front* const earlier = solid.cuts.front(c);
     if (!earlier && (copy.next.valid() || solid.cuts.joined(c)))
       continue;
-    Front front = front_in(cell, *outlines, as_faces);
+    Front front = front_in(cell, *outlines, ToRest(solid, c, x), h, as_faces);
     front.reached = reached;
     front.label = surface.label;
     if (earlier ? is_same_plane(front, *earlier, h) : front.ahead != 0 && !hangs_by_skin(solid, front))

@@ -4,6 +4,7 @@
 
 #include "cut/cell_at_plane.h"
 #include "cut/raster.h"
+#include "grid/cuts.h"
 
 namespace kerf::cut {
 
@@ -24,5 +25,10 @@ Polygon hull(const Points& points, const InPlane& in_plane);
 
 /// Returns how many texels are drawn that were not.
 int draw(const Polygon& piece, const InPlane& in_plane, Raster& raster);
+
+/// Sets the line in which a cut ends in its cell (grid::Front): it divides the texels of the section into as many as
+/// the cut has come to and the others, across the way from the middle of these to that of those. Where it has come to
+/// all or none of them, the way is that of the earlier line or, without one, from where it comes with its lag.
+void put_end(const Raster& section, const Raster& come, const Raster& with_lag, double h, grid::Front& front);
 
 } // namespace kerf::cut
