@@ -1,7 +1,6 @@
 #include "cut/fronts.h"
 
 #include "cut/course.h"
-#include "cut/in_plane.h"
 #include "cut/openings.h"
 #include "grid/fronts.h"
 
@@ -95,9 +94,19 @@ Polygon clipped(Polygon piece, const Outline& outline) {
   return piece;
 }
 
+/// The side nearest to the middle of the section is where the cut ends.
+void put_end(const Outline& shape, const Vec3& middle, const ToRest& to_rest, Front& front) {
+  const auto nearest =
+    std::ranges::max_element(shape.sides, {}, [&](const HalfSpace& side) { return side.beyond(middle); });
+  const Vec3 out = to_rest.from * nearest->outward, in_plane = out - out.dot(front.normal) * front.normal;
+  if (in_plane.norm() == 0)
+    return;
+  front.onward = in_plane.normalized();
+  front.end = front.onward.dot(to_rest(middle - nearest->beyond(middle) * nearest->outward));
+}
+
 /// How far the shape has come in the cell; told by where, too.
-Front front_in(const CellAtPlane& cell, const Outlines& outlines, const ToRest& to_rest, const double h,
-               const bool as_faces) {
+Front front_in(const CellAtPlane& cell, const Outlines& outlines, const ToRest& to_rest, const bool as_faces) {
   double inside = 0, all = 0;
   const std::vector<Polygon> material = cell.material();
   for (const Polygon& piece : material) {
@@ -106,16 +115,7 @@ Front front_in(const CellAtPlane& cell, const Outlines& outlines, const ToRest& 
   }
   const CellAtPlane::Section section = cell.section();
   Front front = cell.front(section, all > 0 ? inside / all : 0);
-  const InPlane in_plane(front.point, front.normal, h);
-  Raster drawn, come, with_lag;
-  for (const Polygon& piece : material)
-    for (const auto& [part, raster] : {std::pair(piece, &drawn), std::pair(clipped(piece, outlines.own), &come),
-                                       std::pair(clipped(piece, outlines.with_lag), &with_lag)}) {
-      Polygon at_rest(part.size());
-      std::ranges::transform(part, at_rest.begin(), to_rest);
-      draw(at_rest, in_plane, *raster);
-    }
-  put_end(drawn, come, with_lag, h, front);
+  put_end(outlines.own, mean(section.there), to_rest, front);
   if (as_faces)
     front.come = {come_in(section, outlines.own)};
   return front;
@@ -213,7 +213,7 @@ std::vector<Front> find_fronts(const CutSurface& surface, const Solid& solid, co
     const Front* const earlier = solid.cuts.front(c);
     if (!earlier && (copy.next.valid() || solid.cuts.joined(c)))
       continue;
-    Front front = front_in(cell, *outlines, ToRest(solid, c, x), h, as_faces);
+    Front front = front_in(cell, *outlines, ToRest(solid, c, x), as_faces);
     front.reached = reached;
     front.label = surface.label;
     if (earlier ? is_same_plane(front, *earlier, h) : front.ahead != 0 && !hangs_by_skin(solid, front))

@@ -39,19 +39,22 @@ std::vector<Flat> texels(const Raster& raster) {
   return all;
 }
 
-/// From the middle of a part of the section to that of the rest; none where one of them is empty.
+Flat mean_of(const std::vector<Flat>& points) {
+  Flat sum = Flat::Zero();
+  for (const Flat& p : points)
+    sum += p;
+  return sum / static_cast<double>(points.size());
+}
+
+std::optional<Flat> way(const Flat& from, const Flat& to) {
+  const Flat along = to - from;
+  return along.norm() > texel ? std::optional<Flat>(along.normalized()) : std::nullopt;
+}
+
+/// From the middle of a part of the section to that of all of it; none where they are the same.
 std::optional<Flat> way_on(const std::vector<Flat>& section, const Raster& part) {
-  Flat all = Flat::Zero(), come = Flat::Zero();
-  for (const Flat& p : section)
-    all += p;
   const std::vector<Flat> of_part = texels(part);
-  for (const Flat& p : of_part)
-    come += p;
-  const auto n = static_cast<double>(section.size()), n_come = static_cast<double>(of_part.size());
-  if (n_come == 0 || n_come == n)
-    return {};
-  const Flat way = (all - come) / (n - n_come) - come / n_come;
-  return way.norm() > 0 ? std::optional<Flat>(way.normalized()) : std::nullopt;
+  return of_part.empty() || of_part.size() == section.size() ? std::nullopt : way(mean_of(of_part), mean_of(section));
 }
 
 } // namespace
@@ -60,22 +63,24 @@ void put_end(const Raster& section, const Raster& come, const Raster& with_lag, 
   const InPlane in_plane(front.point, front.normal, h);
   const std::vector<Flat> all = texels(section);
   const Raster come_in = section & come;
-  std::optional<Flat> way = way_on(all, come_in);
-  if (!way && front.onward != Vec3::Zero())
-    way = Flat(h * in_plane.u.dot(front.onward), h * in_plane.v.dot(front.onward));
-  if (!way)
-    way = way_on(all, section & with_lag);
-  if (!way || all.empty())
+  std::optional<Flat> on = way_on(all, come_in);
+  if (!on && front.onward != Vec3::Zero())
+    on = Flat(h * in_plane.u.dot(front.onward), h * in_plane.v.dot(front.onward));
+  if (!on)
+    on = way_on(all, section & with_lag);
+  if (!on && come.any() && section.any())
+    on = way(mean_of(texels(come)), mean_of(all));
+  if (!on || all.empty())
     return;
   std::vector<double> along;
   for (const Flat& p : all)
-    along.push_back(way->dot(p));
+    along.push_back(on->dot(p));
   std::ranges::sort(along);
   const auto n = static_cast<std::size_t>(come_in.count());
   const double end = n == 0              ? along.front()
                      : n == along.size() ? along.back()
                                          : 0.5 * (along[n - 1] + along[n]);
-  front.onward = (h * ((*way)[0] * in_plane.u + (*way)[1] * in_plane.v)).normalized();
+  front.onward = (h * ((*on)[0] * in_plane.u + (*on)[1] * in_plane.v)).normalized();
   front.end = front.onward.dot(front.point) + h * end;
 }
 

@@ -27,8 +27,9 @@ Polygon hull(const Points& points, const InPlane& in_plane);
 int draw(const Polygon& piece, const InPlane& in_plane, Raster& raster);
 
 /// Sets the line in which a cut ends in its cell (grid::Front): it divides the texels of the section into as many as
-/// the cut has come to and the others, across the way from the middle of these to that of those. Where it has come to
-/// all or none of them, the way is that of the earlier line or, without one, from where it comes with its lag.
+/// the cut has come to and the others, across the way from the middle of these on to that of all. Where the cut has
+/// come to all or none of them, the way is that of the earlier line; else the one from what is cut with its lag, or
+/// from what is cut around.
 void put_end(const Raster& section, const Raster& come, const Raster& with_lag, double h, grid::Front& front);
 
 } // namespace kerf::cut

@@ -5,9 +5,8 @@
 #include "grid/cube.h"
 #include "grid/shape.h"
 #include "grid/touched.h"
-#include "surface/below_skin.h"
 #include "surface/border.h"
-#include "surface/front_end.h"
+#include "surface/closing.h"
 #include "surface/places.h"
 #include "surface/surface.h"
 #include "surface/table.h"
@@ -35,7 +34,7 @@ enum class Known { kept, renewed }; ///< what a writer does with a vertex that i
 
 /// Writes the vertices and triangles of cells. What cells share comes from its edge or face alone: the same bits. A
 /// vertex that belongs to several items follows the copy of the lowest: of one alone but in cells with fronts
-/// (grid/fronts.h). There the surface closes at the front (front_end.h), as far as cuts of edges lead into the cell.
+/// (grid/fronts.h). There the surface closes at the front (closing.h).
 class Writer {
  public:
   Writer(const Solid& solid, Surface& surface, SurfaceIndex& index, const Known known)
@@ -289,7 +288,7 @@ class Writer {
         (std::uint64_t(cell_.value) * 24 + static_cast<unsigned>(triangle)) * 3 + place_of(side, part);
       std::uint32_t& id = index_.in_skin.try_emplace(key, unset).first->second;
       if (id == unset || known_ == Known::renewed)
-        set_centre(id, in_skin(triangle), copy);
+        set_centre(id, vertex_in_skin({solid_, cell_, *skeleton_, blades_}, triangle), copy);
       return id;
     }
     const int face = side / 2;
@@ -299,73 +298,11 @@ class Writer {
                                   : block(index_.first_inner_vertex.at(faces_[face]), 10) + place_in_face(face, part);
     std::uint32_t& id = index_.face_vertices[i];
     if (id == unset || known_ == Known::renewed) {
-      const bool closes = cut_sides(side) == 1;
-      set_in_face(id, face, is_full ? in_face(face, closes) : in_polygon(side, closes), copy);
+      const CutAtSkin at{solid_, cell_, *skeleton_, blades_};
+      set_in_face(id, face, is_full ? vertex_in_face(solid_, cell_, face, at.closes_in(side)) : vertex_in_polygon(at, side),
+                  copy);
     }
     return id;
-  }
-
-  int cut_sides(const int side) const {
-    const auto& [n, items, segments] = skeleton_->side[side];
-    return static_cast<int>(std::count_if(segments.begin(), segments.begin() + n,
-                                          [&](const int segment) { return (blades_ >> segment & 1) != 0; }));
-  }
-
-  /// Of cuts in a face of material alone; `closes`: one alone, which ends there.
-  Vec3 in_face(const int face, const bool closes) const {
-    const Vec3 p = grid::face_point(solid_, faces_[face]);
-    return closes ? end_in_face(solid_, cell_, face).value_or(p) : p;
-  }
-
-  /// In a face, beside an arc of the skin.
-  Vec3 in_polygon(const int side, const bool closes) const {
-    const int face = side / 2, arc = side % 2;
-    const Vec3 p = *solid_.cuts.inner_point(faces_[face], arc);
-    const std::optional<Vec3> end = closes ? end_in_face(solid_, cell_, face) : std::nullopt;
-    if (!end)
-      return p;
-    const grid::SkinArc& of_skin = grid::skin_arcs(face, grid::material_of(solid_.grid, cell_)).arcs[arc];
-    const auto at = [&](const int item) { return grid::item_point(solid_, cell_, item); };
-    return on_the_way(p, *end,
-                      part_before_line(p, *end, at(skeleton::on_line(of_skin.lines[0])), at(skeleton::on_arc(face, arc)),
-                                       at(skeleton::on_line(of_skin.lines[1])), cube::face_axis(face)));
-  }
-
-  /// Of the cuts in a cell with skin.
-  Vec3 below_skin() const {
-    const Vec3 p = *solid_.cuts.inner_point(cell_);
-    const bool closes = skeleton_->reachable(skeleton_->items & -skeleton_->items, blades_) == skeleton_->items;
-    const std::optional<Vec3> end = closes ? end_in_cell(solid_, cell_) : std::nullopt;
-    if (!end)
-      return p;
-    double part = 1;
-    for (grid::Sides left = skeleton_->sides >> skeleton::first_triangle; left != 0; left &= left - 1) {
-      const auto& items = skeleton_->side[skeleton::first_triangle + std::countr_zero(left)].items;
-      const auto at = [&](const int k) { return grid::item_point(solid_, cell_, items[k]); };
-      part = std::min(part, part_before(p, *end, {at(0), at(1), at(2)}));
-    }
-    return on_the_way(p, *end, part);
-  }
-
-  static Vec3 on_the_way(const Vec3& from, const Vec3& to, const double part) {
-    constexpr double inside = 0.9;
-    return part >= 1 ? to : Vec3(from + inside * part * (to - from));
-  }
-
-  /// In a triangle of the skin. One cut alone of its sides has its vertex halfway through.
-  Vec3 in_skin(const int triangle) const {
-    const Vec3 p = *solid_.cuts.inner_point(cell_, triangle);
-    const grid::Front* const front = solid_.cuts.front(cell_);
-    const int side = skeleton::first_triangle + triangle;
-    if (!front || front->onward == Vec3::Zero() || cut_sides(side) != 1)
-      return p;
-    const auto& [n, items, segments] = skeleton_->side[side];
-    const int cut = *std::find_if(segments.begin(), segments.begin() + n,
-                                  [&](const int segment) { return (blades_ >> segment & 1) != 0; });
-    const Vec3 from = grid::segment_point(solid_, cell_, *skeleton_, cut), way = 2 * (p - from);
-    const double along = front->onward.dot(way);
-    constexpr double least = 0.02; // of the way
-    return along > 0 ? Vec3(from + std::clamp((front->end - front->onward.dot(from)) / along, least, 1 - least) * way) : p;
   }
 
   /// Of the first item of a side that is in a part.
@@ -413,7 +350,9 @@ class Writer {
     const int first = std::countr_zero(border);
     std::uint32_t& id = first == std::countr_zero(blades_) ? centre_of(copy, lowest) : centre_of(lowest, first);
     if (id == unset || known_ == Known::renewed)
-      set_centre(id, border == blades_ ? below_skin() : vertex_of_border(solid_, cell_, border), copy);
+      set_centre(id, border == blades_ ? vertex_below_skin({solid_, cell_, *skeleton_, blades_})
+                                      : vertex_of_border(solid_, cell_, border),
+                 copy);
     return id;
   }
 
@@ -473,7 +412,7 @@ class Writer {
     std::uint32_t& id = index_.face_vertices[first + place_in_face(v.index, v.side)];
     if (is_wanted(id, place)) {
       const bool closes = std::popcount(cut_lines_ & cube::lines_of_face[v.index]) == 1;
-      set_in_face(id, v.index, in_face(v.index, closes), copy_at_[v.side]);
+      set_in_face(id, v.index, vertex_in_face(solid_, cell_, v.index, closes), copy_at_[v.side]);
     }
     return in_cell_[place] = id;
   }
@@ -482,8 +421,8 @@ class Writer {
     const CopyId copy = copy_at_[v.side];
     std::uint32_t& id = centre_of(copy, v.side);
     if (is_wanted(id, 72 + v.side)) {
-      const bool closes = cube::reachable(0, cut_lines_, 0xff) == 0xff;
-      set_centre(id, closes ? end_in_cell(solid_, cell_).value_or(grid::cell_point(solid_, cell_)) : grid::cell_point(solid_, cell_), copy);
+      const bool closes = cube::reachable(0, cut_lines_) == 0xff;
+      set_centre(id, vertex_in_cell(solid_, cell_, closes), copy);
     }
     return id;
   }
