@@ -457,46 +457,53 @@ TEST(Advance, GoesOnFromAnArchive) {
   }
 }
 
-/// After any step, while a wound gapes, fronts are taken back and corners snap together: the same bytes after the next
-/// one.
-TEST(Advance, GoesOnFromAnArchiveOfAnyStep) {
+/// After every step, where blades turn and cross what others have cut, while the body swings: the same bytes.
+TEST(Advance, GoesOnFromArchivesOfEveryStep) {
   support::Random random(43);
-  int n_joined = 0, n_steps = 0;
-  for (int i = 0; i < 12; ++i) {
-    const double height = uniform(random, 4, 5), turn = uniform(random, 2.5, 6.5), step = uniform(random, 0.3, 0.7);
-    const Vec3 at_turn(turn, 5, height);
-    const Blade blade = {"blade",
-                         {-20 * Vec3::UnitY(), 20 * Vec3::UnitY()},
-                         {{0, at_turn - (turn + 2) * Vec3::UnitX()},
-                          {turn + 2, at_turn},
-                          {turn + 4, at_turn + 2 * Vec3(1, 0, uniform(random, -1.5, 1.5))}}};
-    Body body = block();
-    Cutter cutter(1, Release::queued, Fronts::inside_cells);
-    cutter.begin(body, grid::rest_positions(body));
+  const auto bytes = [](Cutter& of, Body& its) {
+    Archive archive;
+    archive(its, of);
+    return archive.bytes();
+  };
+  int n_joined = 0, n_fronts = 0;
+  for (int i = 0; i < 40; ++i) {
+    const Body whole = i % 2 == 0 ? block()
+                                  : support::with_copies(support::with_placed_skin(
+                                      support::ball(3.6, 1, support::random_offset(random))));
+    const Vec3 middle = i % 2 == 0 ? Vec3(5, 5, 5) : Vec3(0, 0, 0);
+    std::vector<Blade> blades;
+    for (int k = 0; k < 3; ++k) {
+      blades.push_back(random_stroke(random, 4.5));
+      blades.back().label = static_cast<grid::CutLabel>(k + 1);
+      for (KeyFrame& key : blades.back().key_frames)
+        key.position += middle;
+    }
+    const double speed = uniform(random, 0.02, 0.1), height = uniform(random, 0, 0.4);
     const auto cut = [&](Cutter& by, Body& of, const double t) {
-      const Points x = gaping(of, std::min(t - 2, turn), height, 0.15, 0.02 * std::sin(3 * t) * Vec3(1, 1, 1));
-      const grid::CutChange change = by.step(of, std::span(&blade, 1), t, t + step, x);
+      const Points x = swung(of, height, t);
+      const grid::CutChange change = by.step(of, blades, t, t + speed, x);
       surface::place(of, change, {});
       return change.lapsed.size();
     };
-    const auto bytes = [](Cutter& of, Body& its) {
-      Archive archive;
-      archive(its, of);
-      return archive.bytes();
-    };
-    for (double t = 0; t < turn + 4; t += step, ++n_steps) {
-      Archive back(bytes(cutter, body), "a test");
-      Body again = block();
-      Cutter resumed(1, Release::queued, Fronts::inside_cells);
+    Body body = whole, again = whole;
+    Cutter cutter(3, Release::queued, Fronts::inside_cells), resumed = cutter;
+    cutter.begin(body, swung(body, height, 0));
+    resumed.begin(again, swung(again, height, 0));
+    for (double t = 0; t < 1; t += speed) {
+      Archive back(bytes(resumed, again), "a test");
+      again = whole;
+      resumed = Cutter(3, Release::queued, Fronts::inside_cells);
       resumed.begin(again, grid::rest_positions(again));
       back(again, resumed);
       n_joined += static_cast<int>(cut(cutter, body, t));
       cut(resumed, again, t);
       ASSERT_TRUE(bytes(cutter, body) == bytes(resumed, again)) << i << " " << t;
     }
+    n_fronts += static_cast<int>(body.cuts.fronts().size());
   }
-  EXPECT_GT(n_joined, 20);
-  EXPECT_GT(n_steps, 150);
+  EXPECT_GT(n_joined, 100);
+  EXPECT_GT(n_fronts, 100);
+  std::cout << n_joined << " corners joined, " << n_fronts << " fronts\n";
 }
 
 } // namespace
