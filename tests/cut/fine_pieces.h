@@ -25,10 +25,21 @@ struct PiecesAndFine {
   int n_not_free = 0;             ///< crumbs that the stroke did not cut free
 };
 
-/// A crumb is free if most of it lies in fine pieces that lie mostly in it.
+/// A crumb is free if most of it lies in fine pieces that lie mostly in it. Between pieces of more than a cube a tenth of
+/// the links that the grid has parted may hold: where points go over to other copies, blades miss some, which lie strewn
+/// over the whole cut.
 inline PiecesAndFine pieces_and_fine(const grid::Solid& solid, const support::FineMaterial& fine) {
-  const auto of_point = fine.pieces();
+  constexpr double strewn = 0.1, least = 1e-3; // cubes below which nothing is called a crumb
   const grid::Pieces of_copy = grid::pieces(solid.complex);
+  const double cube = std::pow(solid.grid.h(), 3);
+  const auto volumes = surface::piece_volumes(surface::build_surface(solid), solid.complex);
+  const auto are_apart = [&](const std::uint32_t i, const std::uint32_t j) {
+    const std::uint32_t p = of_copy.piece[fine.copy(i)], q = of_copy.piece[fine.copy(j)];
+    return p != q && volumes[p] > cube && volumes[q] > cube;
+  };
+  const bool has_strewn_links = fine.part_held(are_apart) < strewn;
+  const auto of_point = fine.pieces(
+    [&](const std::uint32_t i, const std::uint32_t j) { return has_strewn_links && are_apart(i, j); });
   std::map<std::uint32_t, std::size_t> n_of_fine;
   const double bulk = 10 / fine.volume();
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> n_common; // by piece of the grid, fine piece
@@ -43,13 +54,11 @@ inline PiecesAndFine pieces_and_fine(const grid::Solid& solid, const support::Fi
       n_free[pair.first] += n;
   }
   PiecesAndFine result;
-  const double cube = std::pow(solid.grid.h(), 3);
-  const auto volumes = surface::piece_volumes(surface::build_surface(solid), solid.complex);
   for (std::size_t k = 0; k < volumes.size(); ++k) {
     result.grid.push_back(volumes[k] / cube);
     if (volumes[k] > cube)
       continue;
-    const bool is_tiny = n_points[k] < 2;
+    const bool is_tiny = n_points[k] < 2 || volumes[k] < least * cube;
     (is_tiny ? result.n_tiny : result.n_crumbs) += 1;
     result.n_not_free += !is_tiny && 2 * n_free[k] <= n_points[k];
   }

@@ -45,6 +45,7 @@ class FineMaterial {
         if (const auto second = place.find(next); second != place.end())
           links_.push_back({first, second->second});
       }
+    all_links_ = links_;
   }
 
   std::size_t size() const { return points_.size(); }
@@ -74,8 +75,21 @@ class FineMaterial {
           point.copy = copy;
   }
 
-  /// Points that links hold together have the same number: the lowest of them.
-  std::vector<std::uint32_t> pieces() const {
+  /// Of the links for which between(point, point) holds, the part that is not cut.
+  template <class Between>
+  double part_held(const Between& between) const {
+    const auto n = [&](const std::vector<std::array<std::uint32_t, 2>>& links) {
+      return static_cast<double>(
+        std::ranges::count_if(links, [&](const auto& link) { return between(link[0], link[1]); }));
+    };
+    const double all = n(all_links_);
+    return all > 0 ? n(links_) / all : 0;
+  }
+
+  /// Points that links hold together have the same number: the lowest of them. Links for which without(point, point)
+  /// holds are left out.
+  template <class Without>
+  std::vector<std::uint32_t> pieces(const Without& without) const {
     std::vector<std::uint32_t> name(points_.size());
     std::iota(name.begin(), name.end(), 0u);
     const auto find = [&](std::uint32_t i) {
@@ -84,6 +98,8 @@ class FineMaterial {
       return i;
     };
     for (const auto& [a, b] : links_) {
+      if (without(a, b))
+        continue;
       const std::uint32_t p = find(a), q = find(b);
       name[std::max(p, q)] = std::min(p, q);
     }
@@ -134,7 +150,7 @@ class FineMaterial {
 
   int n_;
   std::vector<Point> points_;
-  std::vector<std::array<std::uint32_t, 2>> links_; // that hold
+  std::vector<std::array<std::uint32_t, 2>> links_, all_links_; // that hold; that held before any cut
 };
 
 } // namespace kerf::support
