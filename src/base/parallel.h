@@ -1,6 +1,7 @@
 #pragma once
 
-/// Loops over independent items. Each item writes only its own results, so any number of threads gives the same bits.
+/// Loops over independent items, and work side by side. Each writes only its own results, so any number of threads gives
+/// the same bits.
 
 #include "base/function_ref.h"
 
@@ -31,7 +32,8 @@ void parallel_for(const std::size_t n, const Function& f, const std::size_t wort
   });
 }
 
-/// Calls both, on two threads where there are. Both may start loops of several threads; neither may wait for the other.
+/// Calls both, on two threads where there are. Both may start loops of several threads; neither may wait for the
+/// other, nor hold a lock across a loop, as its thread may take up the other one there.
 void beside(FunctionRef<void()> f, FunctionRef<void()> g);
 
 /// Makes one vector the other, in the memory that it has.

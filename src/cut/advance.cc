@@ -350,6 +350,7 @@ void Advance::move(const Solid& solid, Stand& stand, std::vector<Front>& fronts)
         (at->second.label != earlier->label && ahead_ == Ahead::goes_on) || !is_ahead(solid, *earlier))
       continue;
     Front moved = *stand.front(c);
+    keep_farther_end(*earlier, moved);
     moved.passed = std::max(moved.passed, earlier->passed);
     const auto end = [](const Front& front) { return front.end - front.onward.dot(front.point); };
     bool comes_on =
@@ -386,6 +387,7 @@ void Advance::tell_where_they_have_come(const Solid& solid, std::vector<Front>& 
     if (const Front* const earlier = solid.cuts.front(c); earlier && cell.n_fresh > 0) {
       Front moved = *earlier;
       come_to(solid, cell, moved);
+      keep_farther_end(*earlier, moved);
       moved.passed = std::max(earlier->passed, moved.passed);
       moved.come = cell.take_fresh(moved, solid.grid.h());
       fronts.push_back(moved);

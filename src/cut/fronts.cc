@@ -1,6 +1,7 @@
 #include "cut/fronts.h"
 
 #include "cut/course.h"
+#include "cut/in_plane.h"
 #include "cut/openings.h"
 #include "grid/fronts.h"
 
@@ -98,10 +99,10 @@ Polygon clipped(Polygon piece, const Outline& outline) {
 void put_end(const Outline& shape, const Vec3& middle, const ToRest& to_rest, Front& front) {
   const auto nearest =
     std::ranges::max_element(shape.sides, {}, [&](const HalfSpace& side) { return side.beyond(middle); });
-  const Vec3 out = to_rest.from * nearest->outward, in_plane = out - out.dot(front.normal) * front.normal;
-  if (in_plane.norm() == 0)
+  const Vec3 along = to_rest.from * shape.normal.cross(nearest->outward), across = along.cross(front.normal);
+  if (across.norm() == 0)
     return;
-  front.onward = in_plane.normalized();
+  front.onward = (across.dot(to_rest.from * nearest->outward) > 0 ? 1 : -1) * across.normalized();
   front.end = front.onward.dot(to_rest(middle - nearest->beyond(middle) * nearest->outward));
 }
 
@@ -177,7 +178,10 @@ bool opens_a_vertex(const Solid& solid, const CellId c, const AroundNodes& nodes
 
 /// An earlier front, where the shape has come farther; none elsewhere.
 std::optional<Front> moved_on(const Front& earlier, const Front& now) {
-  Front moved = earlier;
+  Front farther = now, moved = earlier;
+  keep_farther_end(earlier, farther);
+  moved.onward = farther.onward;
+  moved.end = farther.end;
   moved.passed = std::max(now.passed, earlier.passed);
   bool comes_on = now.passed > earlier.passed;
   for (int v = 0; v < grid::cube::n_vertices; ++v) {
@@ -185,8 +189,6 @@ std::optional<Front> moved_on(const Front& earlier, const Front& now) {
     moved.held[v] = std::min(now.held[v], earlier.held[v]);
     moved.reached[v] = std::max(now.reached[v], earlier.reached[v]);
   }
-  moved.onward = now.onward;
-  moved.end = now.end;
   moved.come = now.come;
   return comes_on ? std::optional(moved) : std::nullopt;
 }

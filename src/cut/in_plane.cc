@@ -84,4 +84,11 @@ void put_end(const Raster& section, const Raster& come, const Raster& with_lag, 
   front.end = front.onward.dot(front.point) + h * end;
 }
 
+void keep_farther_end(const grid::Front& earlier, grid::Front& moved) {
+  if (earlier.onward == Vec3::Zero() || (moved.passed >= earlier.passed && moved.onward != Vec3::Zero()))
+    return;
+  moved.onward = earlier.onward;
+  moved.end = earlier.end;
+}
+
 } // namespace kerf::cut

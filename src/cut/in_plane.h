@@ -28,8 +28,11 @@ int draw(const Polygon& piece, const InPlane& in_plane, Raster& raster);
 
 /// Sets the line in which a cut ends in its cell (grid::Front): it divides the texels of the section into as many as
 /// the cut has come to and the others, across the way from the middle of these on to that of all. Where the cut has
-/// come to all or none of them, the way is that of the earlier line; else the one from what is cut with its lag, or
-/// from what is cut around.
+/// come to all or none of them, or that way is shorter than a texel, it is that of the earlier line; else the one from
+/// what is cut with its lag, or from what is cut around. Where none is known the front stays as it is.
 void put_end(const Raster& section, const Raster& come, const Raster& with_lag, double h, grid::Front& front);
+
+/// Where what moves a front now has come less far than it had come before, it ends where it did.
+void keep_farther_end(const grid::Front& earlier, grid::Front& moved);
 
 } // namespace kerf::cut

@@ -104,7 +104,7 @@ CellComplex build_complex(const Solid& solid);
 struct CutChange {
   std::vector<EdgeId> edges;         ///< that are cut now
   std::vector<SkinSegment> segments; ///< of the skin, that are cut now
-  std::vector<CellId> cells;         ///< around them, and with fronts that are new; ascending
+  std::vector<CellId> cells; ///< around them, and whose fronts are new, have moved or are taken back; ascending
   std::size_t n_copies_before = 0, n_corners_before = 0;
   std::vector<CopyId> copies;    ///< new, or divided, or joined, or with other items or corners than before; ascending
   std::vector<CopyId> reshaped;  ///< these, and all whose material has another shape: those in the cells; ascending

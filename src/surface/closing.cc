@@ -55,21 +55,30 @@ std::optional<Crossed> crossed(const Solid& solid, const Front& front, const Cel
 
 bool is_told(const Front* const front) { return front && front->onward != Vec3::Zero(); }
 
-/// In a face of the cell, where the front's plane and end cross it; the nearest point of the plane there where the end
-/// lies beyond the face. None without a front in either cell of the face, or where the plane does not cross it.
-std::optional<Vec3> end_in_face(const Solid& solid, const CellId c, const int face) {
+/// Is what is cut there part of the front's cut, and not of another one?
+bool is_of(const Front& front, const Vec3& cut, const double h) {
+  constexpr double near = 0.2; // cubes, as blades turn
+  return std::abs(front.normal.dot(cut - front.point)) < near * h;
+}
+
+/// In a face of the cell into which one cut leads, where the front's plane and end cross it; the nearest point of the
+/// plane there where the end lies beyond the face. None without a front of that cut in either cell of the face, or where
+/// the plane does not cross it.
+std::optional<Vec3> end_in_face(const Solid& solid, const CellId c, const int face, const Vec3& cut) {
   for (const CellId of : solid.grid.cells(solid.grid.faces(c)[face]))
-    if (const Front* const front = of.valid() ? solid.cuts.front(of) : nullptr; is_told(front))
+    if (const Front* const front = of.valid() ? solid.cuts.front(of) : nullptr;
+        is_told(front) && is_of(*front, cut, solid.grid.h()))
       if (const auto found = crossed(solid, *front, c, face))
         return found->at(std::clamp(found->end, inside, 1 - inside));
   return {};
 }
 
 /// In the middle of the front's end in the cell; without one there, where the plane comes nearest to it. None without a
-/// front.
-std::optional<Vec3> end_in_cell(const Solid& solid, const CellId c) {
+/// front, or where some of these cuts are not its own.
+std::optional<Vec3> end_in_cell(const Solid& solid, const CellId c, const Points& cuts) {
   const Front* const front = solid.cuts.front(c);
-  if (!is_told(front))
+  if (!is_told(front) ||
+      !std::ranges::all_of(cuts, [&](const Vec3& cut) { return is_of(*front, cut, solid.grid.h()); }))
     return {};
   Vec3 on_end = Vec3::Zero(), all = Vec3::Zero(), nearest = front->point;
   int n_on_end = 0, n = 0;
@@ -104,15 +113,27 @@ Vec3 below_skin(const Vec3& from, const Vec3& to, const PartBefore& part_before)
   return from + 0.9 * part_before(Vec3(from + further)) * further;
 }
 
+/// Where these lines of a cell are cut.
+Points cuts_of_lines(const Solid& solid, const CellId c, const unsigned lines) {
+  Points cuts;
+  const auto edges = solid.grid.edges(c);
+  for (unsigned left = lines; left != 0; left &= left - 1)
+    if (solid.cuts.find(edges[std::countr_zero(left)]))
+      cuts.push_back(grid::edge_point(solid, edges[std::countr_zero(left)]));
+  return cuts;
+}
+
 } // namespace
 
 Vec3 vertex_in_face(const Solid& solid, const CellId c, const int face, const bool closes) {
-  const std::optional<Vec3> end = closes ? end_in_face(solid, c, face) : std::nullopt;
+  const Points cuts = closes ? cuts_of_lines(solid, c, cube::lines_of_face[face]) : Points();
+  const std::optional<Vec3> end = cuts.size() == 1 ? end_in_face(solid, c, face, cuts[0]) : std::nullopt;
   return end ? *end : grid::face_point(solid, solid.grid.faces(c)[face]);
 }
 
 Vec3 vertex_in_cell(const Solid& solid, const CellId c, const bool closes) {
-  const std::optional<Vec3> end = closes ? end_in_cell(solid, c) : std::nullopt;
+  const bool ends = closes && is_told(solid.cuts.front(c));
+  const std::optional<Vec3> end = ends ? end_in_cell(solid, c, cuts_of_lines(solid, c, 0xfff)) : std::nullopt;
   return end ? *end : grid::cell_point(solid, c);
 }
 
@@ -121,10 +142,16 @@ bool CutAtSkin::closes_in(const int side) const {
   return std::count_if(segments.begin(), segments.begin() + n, [&](const int segment) { return is_cut(segment); }) == 1;
 }
 
+int CutAtSkin::cut_of(const int side) const {
+  const auto& [n, items, segments] = skeleton.side[side];
+  return *std::find_if(segments.begin(), segments.begin() + n, [&](const int segment) { return is_cut(segment); });
+}
+
 Vec3 vertex_in_polygon(const CutAtSkin& at, const int side) {
   const int face = side / 2, arc = side % 2;
   const Vec3 p = *at.solid.cuts.inner_point(at.solid.grid.faces(at.cell)[face], arc);
-  const std::optional<Vec3> end = at.closes_in(side) ? end_in_face(at.solid, at.cell, face) : std::nullopt;
+  const std::optional<Vec3> end =
+    at.closes_in(side) ? end_in_face(at.solid, at.cell, face, at.point(at.cut_of(side))) : std::nullopt;
   if (!end)
     return p;
   const grid::SkinArc& of_skin = grid::skin_arcs(face, grid::material_of(at.solid.grid, at.cell)).arcs[arc];
@@ -139,7 +166,10 @@ Vec3 vertex_below_skin(const CutAtSkin& at) {
   const Vec3 p = *at.solid.cuts.inner_point(at.cell);
   const grid::Items all = at.skeleton.items;
   const bool closes = at.skeleton.reachable(all & -all, at.blades) == all;
-  const std::optional<Vec3> end = closes ? end_in_cell(at.solid, at.cell) : std::nullopt;
+  Points cuts;
+  for (grid::Segments left = closes ? at.blades : 0; left != 0; left &= left - 1)
+    cuts.push_back(at.point(std::countr_zero(left)));
+  const std::optional<Vec3> end = closes ? end_in_cell(at.solid, at.cell, cuts) : std::nullopt;
   if (!end)
     return p;
   return below_skin(p, *end, [&](const Vec3& to) {
@@ -160,10 +190,9 @@ Vec3 vertex_in_skin(const CutAtSkin& at, const int triangle) {
   const int side = skeleton::first_triangle + triangle;
   if (!is_told(front) || !at.closes_in(side))
     return p;
-  const auto& [n, items, segments] = at.skeleton.side[side];
-  const int cut =
-    *std::find_if(segments.begin(), segments.begin() + n, [&](const int segment) { return at.is_cut(segment); });
-  const Vec3 from = grid::segment_point(at.solid, at.cell, at.skeleton, cut), way = 2 * (p - from);
+  const Vec3 from = at.point(at.cut_of(side)), way = 2 * (p - from);
+  if (!is_of(*front, from, at.solid.grid.h()))
+    return p;
   const double along = front->onward.dot(way);
   if (along <= 0)
     return p;

@@ -1,9 +1,9 @@
 #pragma once
 
 /// Where the vertices that cuts have in faces and cells are drawn: where grid::Cuts has them, but for those at which the
-/// surface closes in a cell with a front (grid::Front). These lie where that ends, as far as cuts of edges lead into
-/// the cell: of a cell that the front has come into, but not to an edge, nothing is drawn. Material and elements know
-/// nothing of it: both sides of the cut share such a vertex, so it encloses no volume.
+/// surface closes in a cell with a front (grid::Front), or in a face beside one. These lie where that ends, as far as
+/// cuts of edges lead into the cell: of a cell that the front has come into, but not to an edge, nothing is drawn.
+/// Material and elements know nothing of it: both sides of the cut share such a vertex, so it encloses no volume.
 
 #include "grid/skeleton.h"
 #include "grid/solid.h"
@@ -22,8 +22,10 @@ struct CutAtSkin {
   grid::Segments blades;
 
   bool is_cut(const int segment) const { return (blades >> segment & 1) != 0; }
+  Vec3 point(const int segment) const { return grid::segment_point(solid, cell, skeleton, segment); }
   /// Does one cut alone lead into the side?
   bool closes_in(int side) const;
+  int cut_of(int side) const; ///< the first segment that is
 };
 /// In a face, beside an arc of the skin.
 Vec3 vertex_in_polygon(const CutAtSkin& at, int side);

@@ -30,7 +30,7 @@ void reserve(Surface& surface, const std::size_t n_cut_edges) {
   surface.weights.values.reserve(static_cast<std::size_t>(entries_per_vertex * static_cast<double>(n)));
 }
 
-/// The cells whose part of the surface an update writes: those whose material or corners are others.
+/// The cells whose part of the surface an update writes: those whose material, corners or front are others.
 std::vector<CellId> cells_of(const grid::CutChange& change, const CellComplex& complex) {
   std::vector<CellId> cells;
   for (const CopyId c : change.reshaped)

@@ -69,7 +69,7 @@ Surface build_surface(const grid::Solid& solid);
 Surface build_surface(const grid::Solid& solid, SurfaceIndex& index);
 
 /// Brings surface and index up to date with a cut whose vertices have been placed; of earlier ones they know. The cost
-/// depends on the new edges alone.
+/// depends on the new edges and fronts alone.
 void update_surface(const grid::Solid& solid, const grid::CutChange& change, Surface& surface, SurfaceIndex& index);
 
 /// x_surface = W x_corners [m].

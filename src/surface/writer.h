@@ -34,7 +34,7 @@ enum class Known { kept, renewed }; ///< what a writer does with a vertex that i
 
 /// Writes the vertices and triangles of cells. What cells share comes from its edge or face alone: the same bits. A
 /// vertex that belongs to several items follows the copy of the lowest: of one alone but in cells with fronts
-/// (grid/fronts.h). There the surface closes at the front (closing.h).
+/// (grid/fronts.h). There, and beside them, it closes at the front (closing.h).
 class Writer {
  public:
   Writer(const Solid& solid, Surface& surface, SurfaceIndex& index, const Known known)
