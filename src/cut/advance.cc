@@ -338,7 +338,7 @@ std::vector<Front> Advance::begin(const Solid& solid, Stand& stand, const Functi
 
 /// Of earlier fronts those that have come on, or around which others have.
 void Advance::move(const Solid& solid, Stand& stand, std::vector<Front>& fronts) {
-  constexpr double little = 1e-3, seen = 0.02; // cubes by which the surface follows
+  constexpr double little = 1e-3;
   std::set<CellId> near;
   for (const auto& [c, front] : stand.fronts())
     for (const CellId next : cells_around(solid.grid, c))
@@ -350,11 +350,9 @@ void Advance::move(const Solid& solid, Stand& stand, std::vector<Front>& fronts)
         (at->second.label != earlier->label && ahead_ == Ahead::goes_on) || !is_ahead(solid, *earlier))
       continue;
     Front moved = *stand.front(c);
-    keep_farther_end(*earlier, moved);
+    const bool ends_farther = !keep_farther_end(*earlier, solid.grid.h(), moved);
     moved.passed = std::max(moved.passed, earlier->passed);
-    const auto end = [](const Front& front) { return front.end - front.onward.dot(front.point); };
-    bool comes_on =
-      moved.passed > earlier->passed || std::abs(end(moved) - end(*earlier)) > seen * solid.grid.h();
+    bool comes_on = moved.passed > earlier->passed || ends_farther;
     const OfVertices held = stand.held(c);
     for (int v = 0; v < grid::cube::n_vertices; ++v) {
       comes_on = comes_on || held[v] < (1 - little) * earlier->held[v];
@@ -366,9 +364,10 @@ void Advance::move(const Solid& solid, Stand& stand, std::vector<Front>& fronts)
 }
 
 /// A front that has come through a part of its cell's section.
-void Advance::come_to(const Solid& solid, const Cell& cell, Front& front) {
+void Advance::come_to(const Solid& solid, const Cell& cell, Front& front) const {
   const Raster come = come_in(front, solid.grid.h(), cell.section, cell.swept);
-  put_end(cell.section, cell.swept, come, solid.grid.h(), front);
+  if (!as_faces_)
+    put_end(cell.section, cell.swept, come, solid.grid.h(), front);
   front.passed = cell.section.any() ? std::min(most_passed, double(come.count()) / cell.section.count()) : 0;
   const OfVertices sums = weighted(solid, front, come);
   for (int v = 0; v < grid::cube::n_vertices; ++v)
@@ -387,7 +386,6 @@ void Advance::tell_where_they_have_come(const Solid& solid, std::vector<Front>& 
     if (const Front* const earlier = solid.cuts.front(c); earlier && cell.n_fresh > 0) {
       Front moved = *earlier;
       come_to(solid, cell, moved);
-      keep_farther_end(*earlier, moved);
       moved.passed = std::max(earlier->passed, moved.passed);
       moved.come = cell.take_fresh(moved, solid.grid.h());
       fronts.push_back(moved);

@@ -74,7 +74,7 @@ class Advance {
   void add_around(const grid::Solid& solid, grid::CellId c, grid::CutLabel label, Points& points) const;
   bool can_begin(const grid::Solid& solid, grid::CellId c) const;
   Cell follow(const grid::Solid& solid, grid::Front& front) const;
-  static void come_to(const grid::Solid& solid, const Cell& cell, grid::Front& front);
+  void come_to(const grid::Solid& solid, const Cell& cell, grid::Front& front) const;
   struct Outcome;
   Outcome outcome(const grid::Solid& solid, grid::CellId c, FunctionRef<bool(grid::CellId)> waits) const;
   Outcome begun(const grid::Solid& solid, grid::CellId c, grid::CutLabel label) const;

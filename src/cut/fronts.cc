@@ -116,9 +116,10 @@ Front front_in(const CellAtPlane& cell, const Outlines& outlines, const ToRest& 
   }
   const CellAtPlane::Section section = cell.section();
   Front front = cell.front(section, all > 0 ? inside / all : 0);
-  put_end(outlines.own, mean(section.there), to_rest, front);
   if (as_faces)
     front.come = {come_in(section, outlines.own)};
+  else
+    put_end(outlines.own, mean(section.there), to_rest, front);
   return front;
 }
 
@@ -177,9 +178,9 @@ bool opens_a_vertex(const Solid& solid, const CellId c, const AroundNodes& nodes
 }
 
 /// An earlier front, where the shape has come farther; none elsewhere.
-std::optional<Front> moved_on(const Front& earlier, const Front& now) {
+std::optional<Front> moved_on(const Front& earlier, const Front& now, const double h) {
   Front farther = now, moved = earlier;
-  keep_farther_end(earlier, farther);
+  keep_farther_end(earlier, h, farther);
   moved.onward = farther.onward;
   moved.end = farther.end;
   moved.passed = std::max(now.passed, earlier.passed);
@@ -225,7 +226,7 @@ std::vector<Front> find_fronts(const CutSurface& surface, const Solid& solid, co
   for (Front& front : met) {
     front.held = held_at(solid, front.cell, nodes);
     if (const Front* const earlier = solid.cuts.front(front.cell)) {
-      if (auto moved = moved_on(*earlier, front))
+      if (auto moved = moved_on(*earlier, front, h))
         fronts.push_back(std::move(*moved));
     } else if (opens_a_vertex(solid, front.cell, nodes)) {
       front.passed = std::max(front.passed, least_passed);

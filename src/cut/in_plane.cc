@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 namespace kerf::cut {
@@ -84,11 +85,17 @@ void put_end(const Raster& section, const Raster& come, const Raster& with_lag, 
   front.end = front.onward.dot(front.point) + h * end;
 }
 
-void keep_farther_end(const grid::Front& earlier, grid::Front& moved) {
-  if (earlier.onward == Vec3::Zero() || (moved.passed >= earlier.passed && moved.onward != Vec3::Zero()))
-    return;
+bool keep_farther_end(const grid::Front& earlier, const double h, grid::Front& moved) {
+  constexpr double hardly = 0.1; // cubes
+  if (earlier.onward == Vec3::Zero())
+    return moved.onward == Vec3::Zero();
+  const auto end = [](const grid::Front& front) { return front.end - front.onward.dot(front.point); };
+  const bool is_farther = moved.passed >= earlier.passed && moved.onward != Vec3::Zero();
+  if (is_farther && std::abs(end(moved) - end(earlier)) > hardly * h)
+    return false;
   moved.onward = earlier.onward;
   moved.end = earlier.end;
+  return true;
 }
 
 } // namespace kerf::cut

@@ -32,7 +32,8 @@ int draw(const Polygon& piece, const InPlane& in_plane, Raster& raster);
 /// what is cut with its lag, or from what is cut around. Where none is known the front stays as it is.
 void put_end(const Raster& section, const Raster& come, const Raster& with_lag, double h, grid::Front& front);
 
-/// Where what moves a front now has come less far than it had come before, it ends where it did.
-void keep_farther_end(const grid::Front& earlier, grid::Front& moved);
+/// Where what moves a front now has come less far than it had come before, or hardly farther, it ends where it did:
+/// what is seen of a cut is made anew each time that its end moves. True: it stays.
+bool keep_farther_end(const grid::Front& earlier, double h, grid::Front& moved);
 
 } // namespace kerf::cut

@@ -60,7 +60,7 @@ TEST(FrontEnd, IsDrawnWhereABladeIs) {
       if (x < 1.5 || cutting.cutter.n_waiting() > 0)
         continue;
       for (const Vec3& p : drawn(cutting.surface, Vec3::UnitZ()).end)
-        EXPECT_NEAR(p[0], x, std::abs(p[1] - 5) < 4 ? 0.06 : 0.12) << step;
+        EXPECT_NEAR(p[0], x, std::abs(p[1] - 5) < 4 ? 0.13 : 0.2) << step;
       ++n;
     }
     EXPECT_GT(n, 3);
@@ -112,6 +112,85 @@ TEST(FrontEnd, EnclosesNothing) {
     expect_alike(with, without);
     expect_as_built(with);
   }
+}
+
+/// What comes less far into a cell later takes nothing back.
+TEST(FrontEnd, StaysWhereTheFarthestCutHasCome) {
+  const auto expect_end = [](const Cutting& cutting, const double x) {
+    const Drawn cut = drawn(cutting.surface, Vec3::UnitZ());
+    ASSERT_GT(cut.end.size(), 15u);
+    for (const Vec3& p : cut.end)
+      EXPECT_NEAR(p[0], x, std::abs(p[1] - 5) < 4 ? 0.03 : 0.1);
+  };
+  for (const double less : {4.1, 4.35, 4.55}) {
+    Cutting cutting(block(), Fronts::inside_cells);
+    cutting.cut(rectangle_to(4.6));
+    cutting.cut(rectangle_to(less));
+    expect_end(cutting, 4.6);
+    expect_as_built(cutting);
+    const Blade blade = {"blade", {Vec3(0, -20, 0), Vec3(0, 20, 0)}, {{0, Vec3(-2, 0, 5.4)}, {1, Vec3(less, 0, 5.4)}}};
+    for (int k = 0; k < 20; ++k)
+      cutting.step(blade, k / 20.0, (k + 1) / 20.0);
+    expect_end(cutting, 4.6);
+    expect_as_built(cutting);
+  }
+}
+
+/// In a body that is sheared where it is cut, the circle is there.
+TEST(FrontEnd, OfDiscsIsTheirCircleWhereBodiesAreSheared) {
+  support::Random random(8);
+  double sum = 0;
+  constexpr int n = 20;
+  for (int i = 0; i < n; ++i) {
+    Mat3 F = Mat3::Identity();
+    F(0, 1) = support::uniform(random, -0.4, 0.4);
+    F(2, 0) = support::uniform(random, -0.4, 0.4);
+    const Disc disc{F * Vec3(5, 5, 5) + 0.5 * support::random_vector(random), support::random_direction(random),
+                    support::uniform(random, 2.2, 3)};
+    Cutting cutting(block(), Fronts::inside_cells);
+    Points x = grid::rest_positions(cutting.body);
+    for (Vec3& p : x)
+      p = F * p;
+    cutting.follow(cutting.cutter.at_once(cutting.body, {"cut", disc, 1}, x));
+    const Drawn cut = drawn(cutting.surface, F.transpose() * disc.normal);
+    ASSERT_GT(cut.end.size(), 30u);
+    double squares = 0;
+    for (const Vec3& p : cut.end) {
+      const Vec3 d = F * p - disc.centre;
+      squares += std::pow((d - d.dot(disc.normal) * disc.normal).norm() - disc.radius, 2);
+    }
+    sum += std::sqrt(squares / static_cast<double>(cut.end.size())) / n;
+  }
+  EXPECT_LT(sum, 0.06);
+  std::cout << "off by " << sum << " cubes\n";
+}
+
+/// Two discs that cross: what is drawn of each stays near its own plane, but in cells that both divide. (1.2 % of the
+/// vertices were off it while any front beside a face was taken for that of the cut which leads there.)
+TEST(FrontEnd, IsThatOfItsOwnCut) {
+  support::Random random(9);
+  std::size_t n = 0, n_off = 0;
+  for (int i = 0; i < 30; ++i) {
+    Cutting cutting(block(), Fronts::inside_cells);
+    std::vector<Disc> discs;
+    for (int k = 0; k < 2; ++k) {
+      discs.push_back({Vec3(5, 5, 5) + support::random_vector(random), support::random_direction(random),
+                       support::uniform(random, 1.5, 3)});
+      cutting.follow(cutting.cutter.at_once(cutting.body,
+                                            {"cut", discs.back(), static_cast<grid::CutLabel>(k + 1)},
+                                            grid::rest_positions(cutting.body)));
+    }
+    expect_as_built(cutting);
+    for (std::size_t t = 0; t < cutting.surface.triangles.size(); ++t)
+      if (const grid::CutLabel label = cutting.surface.labels[t]; label != grid::skin_label)
+        for (const std::uint32_t v : cutting.surface.triangles[t]) {
+          const Disc& disc = discs[label - 1];
+          ++n;
+          n_off += std::abs(disc.normal.dot(cutting.surface.rest[v] - disc.centre)) > 0.3;
+        }
+  }
+  std::cout << n_off << " of " << n << '\n';
+  EXPECT_LT(double(n_off), 0.0105 * double(n));
 }
 
 } // namespace

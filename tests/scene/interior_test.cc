@@ -94,7 +94,7 @@ TEST_F(InteriorScene, SamplesAreAboutAsManyAsExpected) {
   std::printf("%.0f samples on both sides of a cut, %.0f of them still in use, %.0f expected\n", n, n_now, expected);
   EXPECT_GT(n_now, expected);
   EXPECT_LT(n_now, 1.5 * expected); // triangles at the rim are smaller
-  EXPECT_LT(n, 2 * expected);
+  EXPECT_LT(n, 2.5 * expected); // and each time that its front moves on within a cell
 }
 
 TEST_F(InteriorScene, IsInTheRunFile) {
