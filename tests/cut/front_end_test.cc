@@ -34,6 +34,16 @@ Drawn drawn(const surface::Surface& surface, const Vec3& normal) {
   return result;
 }
 
+/// How far points lie off a disc's circle, in its plane (root mean square).
+double off_circle(const Points& points, const Disc& disc) {
+  double squares = 0;
+  for (const Vec3& p : points) {
+    const Vec3 d = p - disc.centre;
+    squares += std::pow((d - d.dot(disc.normal) * disc.normal).norm() - disc.radius, 2);
+  }
+  return std::sqrt(squares / static_cast<double>(points.size()));
+}
+
 /// Up to x from the side x = 0, in the plane z = 5.4.
 Rectangle rectangle_to(const double x) { return {Vec3(0.5 * x, 5, 5.4), Vec3(x, 0, 0), Vec3(0, 40, 0)}; }
 
@@ -81,12 +91,7 @@ TEST(FrontEnd, OfDiscsIsTheirCircle) {
     cutting.cut(disc);
     const Drawn cut = drawn(cutting.surface, disc.normal);
     ASSERT_GT(cut.end.size(), 30u);
-    double squares = 0;
-    for (const Vec3& p : cut.end) {
-      const Vec3 d = p - disc.centre;
-      squares += std::pow((d - d.dot(disc.normal) * disc.normal).norm() - disc.radius, 2);
-    }
-    const double off = std::sqrt(squares / static_cast<double>(cut.end.size()));
+    const double off = off_circle(cut.end, disc);
     EXPECT_LT(off, 0.25) << i;
     EXPECT_NEAR(cut.area / (std::numbers::pi * disc.radius * disc.radius), 1, 0.02) << i;
     sum += off / n;
@@ -154,12 +159,10 @@ TEST(FrontEnd, OfDiscsIsTheirCircleWhereBodiesAreSheared) {
     cutting.follow(cutting.cutter.at_once(cutting.body, {"cut", disc, 1}, x));
     const Drawn cut = drawn(cutting.surface, F.transpose() * disc.normal);
     ASSERT_GT(cut.end.size(), 30u);
-    double squares = 0;
-    for (const Vec3& p : cut.end) {
-      const Vec3 d = F * p - disc.centre;
-      squares += std::pow((d - d.dot(disc.normal) * disc.normal).norm() - disc.radius, 2);
-    }
-    sum += std::sqrt(squares / static_cast<double>(cut.end.size())) / n;
+    Points there;
+    for (const Vec3& p : cut.end)
+      there.push_back(F * p);
+    sum += off_circle(there, disc) / n;
   }
   EXPECT_LT(sum, 0.06);
   std::cout << "off by " << sum << " cubes\n";
