@@ -152,12 +152,12 @@ void take_up_left_ones(Solid& solid, const PendingCuts& pending, std::vector<Edg
 
 /// Is something of a group in several copies?
 bool joins_copies(const Solid& solid, const grid::CellId c, const std::vector<grid::Joined>& groups) {
-  const auto copies = solid.complex.copies_of(c);
   return std::ranges::any_of(groups, [&](const grid::Joined& group) {
-    std::size_t n = 0;
-    for (const grid::CopyId copy : copies)
-      n += (solid.complex.copies[copy].items() & group.items) != 0;
-    return n > 1;
+    const grid::CopyId first = copy_of(solid, c, group.items & -group.items);
+    for (grid::Items left = group.items; left != 0; left &= left - 1)
+      if (copy_of(solid, c, left & -left) != first)
+        return true;
+    return false;
   });
 }
 

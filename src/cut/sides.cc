@@ -1,5 +1,7 @@
 #include "cut/sides.h"
 
+#include "cut/dents.h"
+
 #include <algorithm>
 #include <bit>
 #include <map>
@@ -139,16 +141,6 @@ class CellCrossings {
   std::array<std::vector<Crossing>, skeleton::n_segments> crossings_;
 };
 
-/// The copy of a cell that holds these items.
-grid::CopyId copy_of(const Solid& solid, const CellId c, const Items items) {
-  const auto& complex = solid.complex;
-  for (const grid::CopyId copy : complex.copies_of(c))
-    if ((complex.copies[copy].items() & items) != 0)
-      return copy;
-  // Of one that does not know its skin yet.
-  return complex.copy_at(c, grid::cuts_of(solid, c).skeleton().vertex[std::countr_zero(items)]);
-}
-
 bool are_near(const Solid& solid, const Points& x, const grid::CopyId a, const int v, const grid::CopyId b,
               const int w) {
   constexpr double near = 0.25;
@@ -187,6 +179,15 @@ Intervals near_each_other(const Solid& solid, const CellId c, const Joined& grou
 
 } // namespace
 
+grid::CopyId copy_of(const Solid& solid, const CellId c, const Items items) {
+  const auto& complex = solid.complex;
+  for (const grid::CopyId copy : complex.copies_of(c))
+    if ((complex.copies[copy].items() & items) != 0)
+      return copy;
+  // Of one that does not know its skin yet.
+  return complex.copy_at(c, grid::cuts_of(solid, c).skeleton().vertex[std::countr_zero(items)]);
+}
+
 std::vector<Joined> all_by_sides(const Solid& solid, const CellId c) {
   const grid::CellCuts cuts = grid::without_joined(grid::cuts_of(solid, c));
   const grid::Parts parts = grid::parts_of(cuts);
@@ -219,14 +220,15 @@ std::vector<Joined> all_by_sides(const Solid& solid, const CellId c) {
 
 std::vector<Joined> on_same_sides(const Solid& solid, const CellId c) {
   std::vector<Joined> groups = all_by_sides(solid, c);
-  if (groups.empty())
-    return groups;
-  const grid::Parts parts = grid::parts_of(grid::without_joined(grid::cuts_of(solid, c)));
-  std::erase_if(groups, [&](const Joined& group) {
-    return group.items == 0 || (group.intervals == 0 && std::ranges::any_of(parts, [&](const grid::Part& part) {
-                                  return part.items() == group.items;
-                                }));
-  });
+  if (!groups.empty()) {
+    const grid::Parts parts = grid::parts_of(grid::without_joined(grid::cuts_of(solid, c)));
+    std::erase_if(groups, [&](const Joined& group) {
+      return group.items == 0 || (group.intervals == 0 && std::ranges::any_of(parts, [&](const grid::Part& part) {
+                                    return part.items() == group.items;
+                                  }));
+    });
+  }
+  std::ranges::copy(dents(solid, c, groups), std::back_inserter(groups));
   return groups;
 }
 

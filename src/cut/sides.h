@@ -26,6 +26,9 @@ inline bool are_glued_across(const grid::Part& part, const grid::Part& beyond, c
   return face % 2 == 1 ? grid::are_glued(part, beyond, face / 2) : grid::are_glued(beyond, part, face / 2);
 }
 
+/// The copy of a cell that holds some of these items.
+grid::CopyId copy_of(const grid::Solid& solid, grid::CellId c, grid::Items items);
+
 /// What of a cell lies on the same sides: all of it, and intervals beside no part of theirs. None where nothing is said.
 std::vector<grid::Joined> all_by_sides(const grid::Solid& solid, grid::CellId c);
 

@@ -1,6 +1,6 @@
 #include "surface/border.h"
 
-#include "base/convex_polygon.h"
+#include "surface/sight.h"
 
 #include <Eigen/Geometry>
 
@@ -50,40 +50,17 @@ Pieces pieces_of_border(const grid::Solid& solid, const View& view, const grid::
   return is_flat ? pieces : Pieces();
 }
 
-using Kernel = ConvexPolygon<most_pieces + 4 + 6>;
-
-/// What a plane through p has in the cell.
-Kernel within(const View& view, const Vec3& p, const Vec3& normal, const double h) {
-  const Vec3 u = normal.unitOrthogonal() * 2 * h, v = normal.cross(u);
-  Kernel polygon;
-  for (const Vec3& corner : {Vec3(p + u + v), Vec3(p - u + v), Vec3(p - u - v), Vec3(p + u - v)})
-    polygon.push_back(corner);
-  const double margin = grid::min_edge_parameter * h;
-  for (const int axis : {0, 1, 2}) {
-    polygon = clipped(polygon, Vec3::Unit(axis), view.lower[axis] + margin);
-    polygon = clipped(polygon, -Vec3::Unit(axis), -view.upper[axis] + margin);
-  }
-  return polygon;
-}
-
 /// In the middle of all points of the plane in the cell from where the pieces are seen; p where it is one of them.
 std::optional<Vec3> point_that_sees(const View& view, const Pieces& pieces, const Vec3& p, const Vec3& normal,
                                     const double h) {
   constexpr double round_off = 1e-12, least = 1e-6; // of h
-  const auto height = [](const Vec3& q, const Plane& piece) { return piece.normal.dot(q - piece.point); };
-  if (std::ranges::all_of(pieces, [&](const Plane& piece) { return height(p, piece) >= -round_off * h; }))
+  const auto is_seen = [&](const Vec3& q, const double from) {
+    return std::ranges::all_of(pieces, [&](const Plane& piece) { return height(q, piece) >= from * h; });
+  };
+  if (is_seen(p, -round_off))
     return p;
-  Kernel kernel = within(view, p, normal, h);
-  for (const Plane& piece : pieces)
-    kernel = clipped(kernel, piece.normal, piece.normal.dot(piece.point));
-  if (kernel.n < 3)
-    return {};
-  Vec3 middle = Vec3::Zero();
-  for (std::size_t i = 0; i < kernel.n; ++i)
-    middle += kernel.vertices[i] / double(kernel.n);
-  if (std::ranges::any_of(pieces, [&](const Plane& piece) { return height(middle, piece) < least * h; }))
-    return {};
-  return middle;
+  const auto middle = middle_of({pieces.begin(), pieces.end()}, view.lower, view.upper, {{p, normal}});
+  return middle && is_seen(*middle, least) ? middle : std::nullopt;
 }
 
 Vec3 normal_of(const grid::Solid& solid, const View& view) {
@@ -95,6 +72,10 @@ Vec3 normal_of(const grid::Solid& solid, const View& view) {
 std::optional<Vec3> point_that_sees_border(const grid::Solid& solid, const View& view, const Vec3& p) {
   const Vec3 normal = normal_of(solid, view);
   return point_that_sees(view, pieces_of_border(solid, view, view.now.blades, p, normal), p, normal, solid.grid.h());
+}
+
+bool is_in_plane(const grid::Solid& solid, const View& view, const Vec3& p) {
+  return !pieces_of_border(solid, view, view.now.blades, p, normal_of(solid, view)).empty();
 }
 
 grid::Segments border_of(const grid::Skeleton& skeleton, const grid::Segments cut, const int segment) {

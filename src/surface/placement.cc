@@ -4,7 +4,8 @@
 #include "grid/touched.h"
 #include "surface/below_skin.h"
 #include "surface/border.h"
-#include "surface/fold.h"
+#include "surface/in_triangle.h"
+#include "surface/sight.h"
 #include "surface/site.h"
 
 #include <Eigen/Geometry>
@@ -29,6 +30,7 @@ using grid::Solid;
 namespace {
 
 constexpr int no_axis = -1;
+constexpr double in_plane = 1e-9; // of h
 
 class Placer {
  public:
@@ -148,10 +150,10 @@ class Placer {
     const auto n_parts = [&](const grid::Segments cut) { return std::max(1, std::popcount(cut & of)); };
     const Site site =
       make_site_of_blades(view, of, in_face(face), {1, n_parts(view.old_blades), n_parts(view.now.blades)});
-    const Vec3 middle = middle_of(view, side);
+    const Vec3 middle = middle_of(solid_, view, side);
     const Vec3* const before = solid_.cuts.inner_point(f, arc);
     const Vec3 p = place_in(site, cube::face_axis(face), before ? *before : middle,
-                            0.5 * (mean_point_of(view, of) + middle));
+                            0.5 * (mean_point_of(solid_, view, of) + middle));
     const grid::SkinArc& of_skin = grid::skin_arcs(face, view.now.material).arcs[arc];
     const auto at = [&](const int item) { return grid::item_point(solid_, view.cell, item); };
     const auto part = [&](const Vec3& from) {
@@ -160,85 +162,49 @@ class Placer {
     };
     const Vec3 from = site.locked.empty() ? between_cuts(site, p, part) : *before;
     const Vec3 q = hold_below_skin(from, p, part(from));
-    const bool folds = !is_on_planes(view, of, q) && is_folded(solid_, view, side, q);
-    is_held_ |= folds;
-    solid_.cuts.set_inner_point(f, arc, folds ? at(skeleton::on_arc(face, arc)) : q);
+    const auto seeing = see(
+      site, q, [&] { return is_in_plane_on_both_sides(view, face, q); },
+      [&](const std::vector<Plane>& in_planes) { return seeing_border(solid_, view, side, q, in_planes); });
+    solid_.cuts.set_inner_point(f, arc, seeing);
     count_held();
   }
 
-  /// Do all cuts of some segments lie in one plane, with p in it? Then what they leave of a face has the same area
-  /// wherever in the plane its vertex lies, and giving way is no help.
-  bool is_on_planes(const View& view, const grid::Segments of, const Vec3& p) const {
-    constexpr double round_off = 1e-9; // of h
-    bool result = true;
-    for_each_bit(view.now.blades & of, [&](const int segment) {
-      const Plane& plane = cut_plane(solid_, view, segment).plane;
-      result = result && std::abs(plane.normal.dot(p - plane.point)) <= round_off * solid_.grid.h();
-    });
-    return result;
+  /// A vertex at q, or near it where the material around it is seen (sight.h): within the plane of all cuts, or of those
+  /// that it may not leave; else anywhere, but where all cuts around lie in one plane. What these leave is the same
+  /// wherever in it the vertex lies.
+  template <class IsFlat, class Seeing>
+  Vec3 see(const Site& site, const Vec3& q, const IsFlat& is_flat, const Seeing& seeing) {
+    Planes all = site.locked;
+    for (const Plane& plane : site.open)
+      all.push_back(plane);
+    for (const Planes& planes : {all, site.locked})
+      if (const auto plane = common_plane(planes, q, in_plane * solid_.grid.h()))
+        if (const auto p = seeing({*plane}))
+          return *p;
+    if (is_flat())
+      return q;
+    const Vec3 p = seeing({}).value_or(q);
+    is_held_ |= p != q;
+    return p;
   }
 
-  /// On the skin itself: halfway between two cuts of its sides, and so on the rim. A cut of the third side meets it
-  /// there, where the rim crosses that cut's plane. One cut alone goes on in its plane; so does the first of those of
-  /// different labels that do not meet in the triangle.
+  /// Do all cuts of the two cells at a face lie in one plane, with p?
+  bool is_in_plane_on_both_sides(const View& view, const int face, const Vec3& p) const {
+    const CellId next = solid_.grid.neighbour(view.cell, face);
+    return is_in_plane(view, p) && (!next.valid() || is_in_plane(look_at(solid_, next), p));
+  }
+  bool is_in_plane(const View& view, const Vec3& p) const {
+    Planes planes;
+    for_each_bit(view.now.blades,
+                 [&](const int segment) { planes.push_back(cut_plane(solid_, view, segment).plane); });
+    return common_plane(planes, p, in_plane * solid_.grid.h()).has_value();
+  }
+
   void place_triangle(const View& view, const int triangle) {
-    const Skeleton::Side& side = view.now.skeleton().side[skeleton::first_triangle + triangle];
-    const grid::Segments of = border(side), now = view.now.blades & of, old = view.old_blades & of;
-    if (now == old)
-      return;
-    const grid::Segments first = old != 0 ? old & -old : now & -now,
-                         pair = of_one_label(view, std::popcount(old) == 2 ? old : now);
-    const auto plane = [&](const grid::Segments cuts) { return cut_plane(solid_, view, std::countr_zero(cuts)).plane; };
-    Vec3 p;
-    if (pair != 0) {
-      p = now == pair ? mean_point_of(view, pair) : on_rim(view, pair, now & ~pair);
-    } else if (std::popcount(old) == 2) {
-      return;
-    } else {
-      p = 0.5 * (mean_point_of(view, first) +
-                 end_of_cut(view, side, first).value_or(middle_of(view, skeleton::first_triangle + triangle)));
-      if (now != first) {
-        const auto at = [&](const int k) { return grid::item_point(solid_, view.cell, side.items[k]); };
-        p = meeting_in({at(0), at(1), at(2)}, plane(first), plane(now & ~first)).value_or(p);
-      }
+    if (const auto p = point_in_triangle(solid_, view, triangle)) {
+      solid_.cuts.set_inner_point(view.cell, triangle, *p);
+      ++counts_.n_placed;
     }
-    solid_.cuts.set_inner_point(view.cell, triangle, p);
-    ++counts_.n_placed;
-  }
-
-  /// The first two of some cuts that have the same label; none where all differ.
-  grid::Segments of_one_label(const View& view, const grid::Segments cuts) const {
-    const auto label = [&](const grid::Segments cut) { return cut_plane(solid_, view, std::countr_zero(cut)).label; };
-    for (grid::Segments left = cuts; left != 0; left &= left - 1)
-      for (grid::Segments others = left & (left - 1); others != 0; others &= others - 1)
-        if (label(left) == label(others))
-          return (left & -left) | (others & -others);
-    return 0;
-  }
-
-  /// Where the plane of the only cut of a triangle's sides leaves it.
-  std::optional<Vec3> end_of_cut(const View& view, const Skeleton::Side& side, const grid::Segments cut) const {
-    const Plane plane = cut_plane(solid_, view, std::countr_zero(cut)).plane;
-    const auto i = std::ranges::find(side.segments, std::countr_zero(cut)) - side.segments.begin();
-    const auto at = [&](const std::ptrdiff_t k) { return grid::item_point(solid_, view.cell, side.items[k % 3]); };
-    const Vec3 opposite = at(i + 2);
-    const double height = plane.normal.dot(opposite - plane.point);
-    for (const Vec3& end : {at(i), at(i + 1)})
-      if (const double of_end = plane.normal.dot(end - plane.point); (of_end > 0) != (height > 0))
-        return opposite + height / (height - of_end) * (end - opposite);
-    return {};
-  }
-
-  /// On the rim between two cuts, nearest to the plane of a third one.
-  Vec3 on_rim(const View& view, const grid::Segments two, const grid::Segments third) const {
-    const auto at = [&](const grid::Segments segments) {
-      return cut_plane(solid_, view, std::countr_zero(segments)).plane;
-    };
-    const Vec3 p = at(two).point, q = at(two & (two - 1)).point;
-    const Plane plane = at(third);
-    const double a = plane.normal.dot(p - plane.point), b = plane.normal.dot(q - plane.point);
-    constexpr double inside = 1e-3; // of the rim's length
-    return p + (a == b ? 0.5 : std::clamp(a / (a - b), inside, 1 - inside)) * (q - p);
   }
 
   /// In a cell with skin.
@@ -252,7 +218,7 @@ class Placer {
     const Site site = make_site_of_blades(view, ~grid::Segments(0), Directions(),
                                           {n_parts(0), n_parts(view.old_blades), n_parts(view.now.blades)});
     const Vec3* const before = solid_.cuts.inner_point(c);
-    const Vec3 middle = 0.5 * (mean_point_of(view, ~grid::Segments(0)) + mean_node(view)),
+    const Vec3 middle = 0.5 * (mean_point_of(solid_, view, ~grid::Segments(0)) + mean_node(view)),
                p = place_in(site, no_axis, before ? *before : middle, middle);
     const auto part = [&](const Vec3& from) {
       double result = 1;
@@ -265,35 +231,21 @@ class Placer {
     };
     const Vec3 from = site.locked.empty() ? between_cuts(site, p, part) : *before,
                q = hold_below_skin(from, p, part(from));
-    solid_.cuts.set_inner_point(c, point_that_sees_border(solid_, view, q).value_or(q));
-    if (is_folded(solid_, view)) {
-      is_held_ = true;
-      solid_.cuts.set_inner_point(c, grid::cell_point(solid_, c));
-    }
+    if (surface::is_in_plane(solid_, view, q))
+      solid_.cuts.set_inner_point(c, point_that_sees_border(solid_, view, q).value_or(q));
+    else
+      solid_.cuts.set_inner_point(c, see(
+                                       site, q, [] { return false; },
+                                       [&](const std::vector<Plane>& in_planes) {
+                                         return seeing_skin(solid_, view, q, in_planes);
+                                       }));
     count_held();
-  }
-
-  Vec3 middle_of(const View& view, const int side) const {
-    const Skeleton::Side& of = view.now.skeleton().side[side];
-    Vec3 sum = Vec3::Zero();
-    for (int i = 0; i < of.n; ++i)
-      sum += grid::item_point(solid_, view.cell, of.items[i]);
-    return sum / of.n;
   }
 
   Vec3 mean_node(const View& view) const {
     Vec3 sum = Vec3::Zero();
     for_each_bit(view.now.material, [&](const int v) { sum += grid::item_point(solid_, view.cell, v); });
     return sum / std::popcount(view.now.material);
-  }
-
-  /// Of the blades' cuts among some segments.
-  Vec3 mean_point_of(const View& view, const grid::Segments of) const {
-    Vec3 sum = Vec3::Zero();
-    for_each_bit(view.now.blades & of, [&](const int segment) {
-      sum += grid::segment_point(solid_, view.cell, view.now.skeleton(), segment);
-    });
-    return sum / std::popcount(view.now.blades & of);
   }
 
   /// Where the way to a vertex begins, a `part` of which the skin leaves: in the middle of the cuts; where these have

@@ -157,6 +157,14 @@ Moves moves_to_planes(const Vec3& p, const Planes& planes, const Directions& all
   return moves;
 }
 
+std::optional<Plane> common_plane(const Planes& planes, const Vec3& p, const double near) {
+  constexpr double same = 1e-9; // sine of the angle between two
+  for (const Plane& plane : planes)
+    if (std::abs(plane.normal.dot(p - plane.point)) > near || plane.normal.cross(planes[0].normal).norm() > same)
+      return {};
+  return planes.empty() ? std::nullopt : std::optional<Plane>({p, planes[0].normal});
+}
+
 std::optional<Vec3> meeting_in(const std::array<Vec3, 3>& triangle, const Plane& a, const Plane& b) {
   const Vec3 u = triangle[1] - triangle[0], v = triangle[2] - triangle[0];
   const Eigen::Matrix2d along{{a.normal.dot(u), a.normal.dot(v)}, {b.normal.dot(u), b.normal.dot(v)}};

@@ -74,6 +74,9 @@ Directions free_directions(const Planes& planes, const Directions& allowed, doub
 /// as many independent ones as there are, then to ever fewer, the weakest left out first. Never empty.
 Moves moves_to_planes(const Vec3& p, const Planes& planes, const Directions& allowed, double threshold);
 
+/// The plane that some planes all are, if p lies in it to within `near`; none where they differ, or there are none.
+std::optional<Plane> common_plane(const Planes& planes, const Vec3& p, double near);
+
 /// Where two planes meet in a triangle; none where they do not, or nearer than a thousandth of it to a side.
 std::optional<Vec3> meeting_in(const std::array<Vec3, 3>& triangle, const Plane& a, const Plane& b);
 

@@ -50,4 +50,20 @@ CutPlane cut_plane(const grid::Solid& solid, const View& view, const int segment
   return {{grid::segment_point(solid, view.cell, view.now.skeleton(), segment), cut.normal}, cut.label};
 }
 
+Vec3 middle_of(const grid::Solid& solid, const View& view, const int side) {
+  const grid::Skeleton::Side& of = view.now.skeleton().side[side];
+  Vec3 sum = Vec3::Zero();
+  for (int i = 0; i < of.n; ++i)
+    sum += grid::item_point(solid, view.cell, of.items[i]);
+  return sum / of.n;
+}
+
+Vec3 mean_point_of(const grid::Solid& solid, const View& view, const grid::Segments of) {
+  Vec3 sum = Vec3::Zero();
+  for_each_bit(view.now.blades & of, [&](const int segment) {
+    sum += grid::segment_point(solid, view.cell, view.now.skeleton(), segment);
+  });
+  return sum / std::popcount(view.now.blades & of);
+}
+
 } // namespace kerf::surface

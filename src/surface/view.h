@@ -40,4 +40,9 @@ struct CutPlane {
 };
 CutPlane cut_plane(const grid::Solid& solid, const View& view, int segment);
 
+/// The mean of a side's items [m].
+Vec3 middle_of(const grid::Solid& solid, const View& view, int side);
+/// Of the blades' cuts among some segments [m].
+Vec3 mean_point_of(const grid::Solid& solid, const View& view, grid::Segments of);
+
 } // namespace kerf::surface

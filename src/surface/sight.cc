@@ -1,0 +1,120 @@
+#include "surface/sight.h"
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+
+#include <algorithm>
+
+namespace kerf::surface {
+
+namespace {
+
+namespace cube = grid::cube;
+namespace skeleton = grid::skeleton;
+
+constexpr double round_off = 1e-12; // of h
+
+/// Where three planes meet; none where that is nowhere, or round-off says where.
+std::optional<Vec3> corner(const Plane& a, const Plane& b, const Plane& c) {
+  constexpr double least = 1e-9;
+  Mat3 normals;
+  normals << a.normal, b.normal, c.normal;
+  if (std::abs(normals.determinant()) < least)
+    return {};
+  return normals.transpose().inverse() *
+         Vec3(a.normal.dot(a.point), b.normal.dot(b.point), c.normal.dot(c.point));
+}
+
+/// Above the plane through a with this normal, of any length; nothing where that has none.
+void add(std::vector<Plane>& half_spaces, const Vec3& a, const Vec3& normal, const double length) {
+  if (normal.norm() > round_off * length)
+    half_spaces.push_back({a, normal.normalized()});
+}
+
+/// What is within all sides of a polygon in a face.
+std::vector<Plane> within_border(const grid::Solid& solid, const View& view, const int side) {
+  const auto& [n, items, segments] = view.now.skeleton().side[side];
+  const Vec3 outward = Vec3::Unit(cube::face_axis(side / 2)) * (side / 2 % 2 == 1 ? 1 : -1);
+  std::vector<Plane> half_spaces;
+  for (int i = 0; i < n; ++i) {
+    const Vec3 a = grid::item_point(solid, view.cell, items[i]),
+               b = grid::item_point(solid, view.cell, items[(i + 1) % n]);
+    add(half_spaces, a, outward.cross(b - a), solid.grid.h());
+  }
+  return half_spaces;
+}
+
+std::vector<Plane> below_skin(const grid::Solid& solid, const View& view) {
+  std::vector<Plane> half_spaces;
+  for_each_bit(view.now.skeleton().sides >> skeleton::first_triangle, [&](const int triangle) {
+    const auto& items = view.now.skeleton().side[skeleton::first_triangle + triangle].items;
+    const auto at = [&](const int k) { return grid::item_point(solid, view.cell, items[k]); };
+    add(half_spaces, at(0), (at(2) - at(0)).cross(at(1) - at(0)), solid.grid.h() * solid.grid.h());
+  });
+  return half_spaces;
+}
+
+bool are_above(const std::vector<Plane>& half_spaces, const Vec3& p, const double least) {
+  return std::ranges::all_of(half_spaces, [&](const Plane& of) { return height(p, of) >= least; });
+}
+
+/// p where it is above all; else on the way there from the middle of what is.
+std::optional<Vec3> towards(const View& view, const std::vector<Plane>& half_spaces,
+                            const std::vector<Plane>& in_planes, const Vec3& p) {
+  constexpr double inside = 0.9;
+  if (are_above(half_spaces, p, 0))
+    return p;
+  const auto middle = middle_of(half_spaces, view.lower, view.upper, in_planes);
+  if (!middle)
+    return {};
+  double part = 1;
+  for (const Plane& of : half_spaces)
+    if (const double fall = height(*middle, of) - height(p, of); fall > 0)
+      part = std::min(part, inside * std::max(height(*middle, of), 0.0) / fall);
+  return *middle + part * (p - *middle);
+}
+
+} // namespace
+
+double height(const Vec3& p, const Plane& half_space) { return half_space.normal.dot(p - half_space.point); }
+
+std::optional<Vec3> middle_of(std::vector<Plane> half_spaces, const Vec3& lower, const Vec3& upper,
+                              const std::vector<Plane>& in_planes) {
+  const double h = upper[0] - lower[0], margin = grid::min_edge_parameter * h;
+  for (const int axis : {0, 1, 2})
+    if (std::ranges::none_of(in_planes, [&](const Plane& of) { return std::abs(of.normal[axis]) == 1; })) {
+      half_spaces.push_back({lower + margin * Vec3::Ones(), Vec3::Unit(axis)});
+      half_spaces.push_back({upper - margin * Vec3::Ones(), -Vec3::Unit(axis)});
+    }
+  Vec3 sum = Vec3::Zero();
+  int n = 0;
+  std::array<Plane, 3> three;
+  std::ranges::copy(in_planes, three.begin());
+  const auto choose = [&](const auto& self, const std::size_t k, const std::size_t first) -> void {
+    if (k < three.size()) {
+      for (std::size_t i = first; i < half_spaces.size(); ++i) {
+        three[k] = half_spaces[i];
+        self(self, k + 1, i + 1);
+      }
+    } else if (const auto p = corner(three[0], three[1], three[2]); p && are_above(half_spaces, *p, -round_off * h)) {
+      sum += *p;
+      ++n;
+    }
+  };
+  choose(choose, in_planes.size(), 0);
+  return n == 0 ? std::nullopt : std::optional<Vec3>(sum / n);
+}
+
+std::optional<Vec3> seeing_border(const grid::Solid& solid, const View& view, const int side, const Vec3& p,
+                                  std::vector<Plane> in_planes) {
+  const int face = side / 2;
+  in_planes.push_back({face % 2 == 0 ? view.lower : view.upper, Vec3::Unit(cube::face_axis(face))});
+  return towards(view, within_border(solid, view, side), in_planes, p);
+}
+
+std::optional<Vec3> seeing_skin(const grid::Solid& solid, const View& view, const Vec3& p,
+                                const std::vector<Plane>& in_planes) {
+  return towards(view, below_skin(solid, view), in_planes, p);
+}
+
+} // namespace kerf::surface

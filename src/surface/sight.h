@@ -1,0 +1,31 @@
+#pragma once
+
+/// From where a vertex of cuts sees what is around it in its cell. The material between cuts is made of tetrahedra on
+/// the cell's vertex and those in its sides (grid/material.h). Where these see all of the skin, and of the borders of
+/// their faces, from within, each has a volume that is not negative. Under a jagged skin a quadric's minimum may not.
+
+#include "base/vec.h"
+#include "surface/view.h"
+
+#include <optional>
+#include <vector>
+
+namespace kerf::surface {
+
+/// A half-space: what lies above its plane.
+double height(const Vec3& p, const Plane& half_space);
+
+/// In the middle of all points that half-spaces have in common in a box and in up to two planes: the mean of the corners
+/// of what they leave. None where they leave nothing. With n half-spaces in m planes it takes n^(4 - m) steps.
+std::optional<Vec3> middle_of(std::vector<Plane> half_spaces, const Vec3& lower, const Vec3& upper,
+                              const std::vector<Plane>& in_planes);
+
+/// From where a side of the cell's skeleton that lies in a face sees its whole border, within that face and at most one
+/// other plane through p: p, or as far as that from the middle of all such points towards p. None where there is none.
+std::optional<Vec3> seeing_border(const grid::Solid& solid, const View& view, int side, const Vec3& p,
+                                  std::vector<Plane> in_planes);
+/// From where the cell sees all of its skin, within up to two planes through p: p, or as far as that.
+std::optional<Vec3> seeing_skin(const grid::Solid& solid, const View& view, const Vec3& p,
+                                const std::vector<Plane>& in_planes);
+
+} // namespace kerf::surface
