@@ -2,10 +2,9 @@
 
 /// What a cut would part from the body, and the grid cannot show: it stays where it hangs.
 ///
-/// Tips are points of the skin that bound at most 1e-3 of a cube, or no material: where a blade passes along the skin,
-/// or where a point of it lies on a blade's other side than its neighbours, as the skin is hollow there, or dented
-/// beside a sharp edge. They stay with all their neighbours across the blade, unless something beside them lies on the
-/// same side of all cuts, in a cell of theirs or across a face of it (sides.h): then they hang on that.
+/// Tips are points of the skin that bound at most 1e-3 of a cube: where a blade passes along the skin. They stay with all
+/// their neighbours across the blade, unless something beside them lies on the same side of all cuts, in a cell of theirs
+/// or across a face of it (sides.h), or around them (dents.h): then they hang on that.
 ///
 /// Shavings are a few nodes, or points of the skin, between cuts of one blade on opposite sides, with less material
 /// than a cube: where a blade comes back through a body that has moved, beside where it was before. The grid has nodes

@@ -32,7 +32,6 @@ std::vector<double> lengths(const Solid& solid, const Front& front, const Copy& 
                             const std::vector<int>& apart) {
   const double h = solid.grid.h();
   if (is_skin(one) || is_skin(other))
-    // A hollow skin may leave a copy with less than nothing.
     return std::vector<double>(apart.size(), std::max(0.0, std::min(fill(solid, one), fill(solid, other))) * h /
                                                static_cast<double>(apart.size()));
   std::vector<double> lengths;

@@ -44,17 +44,6 @@ Integrals integrals_of(const grid::Solid& solid, const grid::Copy& copy) {
   return integrals;
 }
 
-/// A corner may have less than nothing of a copy whose skin is hollow (grid/material.h): this part of what each other one
-/// has keeps the copy's mass; none where no corner has any.
-double kept_part(const std::array<double, 8>& of_corners) {
-  double sum = 0, positive = 0;
-  for (const double one : of_corners) {
-    sum += one;
-    positive += std::max(one, 0.0);
-  }
-  return sum <= 0 ? 0 : sum / positive;
-}
-
 /// Bits of those vertices of `nodes` that are the fewest edges away from `corner`.
 unsigned nearest(const unsigned nodes, const int corner) {
   for (int distance = 0; distance <= 3; ++distance) {
@@ -80,7 +69,6 @@ CopyShares shares_of(const grid::Solid& solid, const grid::Copy& copy) {
   for (int a = 0; a < 8; ++a)
     for (int v = 0; v < 8; ++v)
       total[a] += integrals[v][a];
-  const double part = kept_part(total);
   for (int a = 0; a < 8; ++a) {
     const unsigned owners = nearest(copy.nodes, a);
     double of_owners = 0, least = 1;
@@ -90,9 +78,9 @@ CopyShares shares_of(const grid::Solid& solid, const grid::Copy& copy) {
         least = std::min(least, integrals[v][a]);
       }
     for (int v = 0; v < 8; ++v)
-      if ((owners >> v & 1) != 0) // even parts where a hollow skin leaves a node less than nothing
+      if ((owners >> v & 1) != 0) // even parts where the cell's vertex does not see all of a node's
         shares[v][a] =
-          part * std::max(total[a], 0.0) * (least > 0 ? integrals[v][a] / of_owners : 1.0 / std::popcount(owners));
+          std::max(total[a], 0.0) * (least > 0 ? integrals[v][a] / of_owners : 1.0 / std::popcount(owners));
   }
   return shares;
 }
@@ -143,9 +131,8 @@ std::vector<Share> material_shares(const grid::Solid& solid, const double densit
       continue;
     const grid::Copy& copy = solid.complex.copies[c];
     const auto integrals = integrals_of(solid, copy).elsewhere;
-    const double part = kept_part(integrals);
     for (int a = 0; a < 8; ++a)
-      shares.push_back({node, copy.corners[a], scale * std::max(part * integrals[a], least_share)});
+      shares.push_back({node, copy.corners[a], scale * std::max(integrals[a], least_share)});
   }
   for (const auto c : ids<grid::CopyId>(solid.complex.n_copies())) {
     const grid::Copy& copy = solid.complex.copies[c];

@@ -32,7 +32,7 @@ void split(const Tetrahedron& t, const double volume, const double size, std::ve
   split(upper, 0.5 * volume, size, parts);
 }
 
-/// Tetrahedra between cuts and skin may be negative (grid/material.h): the others are scaled to the copy's volume.
+/// Some tetrahedra may be negative, though not their sum (grid/material.h): the others are scaled to that.
 void split_material(const grid::Solid& solid, const grid::Copy& copy, const double size, std::vector<Crumb>& parts) {
   double sum = 0, positive = 0;
   grid::for_each_tetrahedron(solid, copy, [&](const Tetrahedron& t, int) {

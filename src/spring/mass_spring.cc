@@ -47,7 +47,7 @@ MassSpring::MassSpring(const grid::Solid& solid, const MassSpringOptions& option
   parallel_for(
     fill.size(),
     [&](const std::size_t c) {
-      constexpr double least = 1e-12; // of skin alone, that may lack a little (surface/fold.h)
+      constexpr double least = 1e-12; // of skin alone, that bounds hardly any
       fill[c] = solid.crumbs.holds(grid::CopyId(c))
                   ? 0
                   : std::max(least, grid::fill(solid, solid.complex.copies[grid::CopyId(c)]));

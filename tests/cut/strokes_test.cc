@@ -5,6 +5,7 @@
 
 #include "cut/scissors.h"
 #include "tests/cut/boolean.h"
+#include "tests/cut/least_material.h"
 #include "tests/cut/patient.h"
 #include "tests/cut/unit_solids.h"
 
@@ -26,6 +27,7 @@ geometry::TriangleMesh skin_of(const Patient& patient) {
 struct Counted {
   int n_strokes = 0, n_pieces = 0, n_fewer = 0, n_more = 0;
   int n_unknown = 0; ///< the grid's skin intersects itself
+  LeastMaterial least;
 };
 
 auto n_above(const std::vector<double>& volumes, const double least) {
@@ -164,6 +166,7 @@ void stroke(const geometry::TriangleMesh& mesh, const std::string& name, const T
     return;
   const geometry::TriangleMesh skin = skin_of(patient);
   pass_all(patient, stroking.blades, speed);
+  counted.least.look_at(patient.body);
   const double cube = h * h * h, least = (n_planes > 1 ? 0.5 : tool == Tool::bent_blade ? 0.1 : 1e-3) * cube;
   const auto ours = patient.volumes();
   const auto theirs = stroking.leaves(skin);
@@ -293,6 +296,9 @@ TEST_P(Strokes, LeaveThePiecesOfTheBoolean) {
   EXPECT_GT(counted.n_pieces, (tool == Tool::blades ? 2 : 1.5) * counted.n_strokes);
   EXPECT_EQ(counted.n_fewer, 0);
   EXPECT_LE(counted.n_more, counted.n_strokes / 100);
+  std::cout << counted.least << '\n';
+  EXPECT_GT(counted.least.of_copies, -round_off);
+  EXPECT_GT(counted.least.at_corners, -round_off);
 }
 
 /// Slow, by steps of the size of a cube, and fast: the same pieces. Where several blades cross, each segment is cut by

@@ -166,10 +166,11 @@ TEST(Moments, OfNextToNothingMakeNoStiffElements) {
   EXPECT_GT(n_outside, 500);
 }
 
-/// Moments of what lies under a bent skin may have negative squares, elements do not.
+/// Under a jagged skin that planes have cut: moments are those of material, and no element gains energy.
 TEST(Moments, MakeElementsThatNeverGainEnergy) {
   support::Random random(4);
-  int n_folded = 0, n_under_skin = 0;
+  int n_under_skin = 0;
+  double least = 0;
   for (int i = 0; i < 240; ++i) {
     const Vec3 offset = 0.5 * (support::random_direction(random) + Vec3::Ones());
     auto body = support::embedded(geometry::sphere_mesh(0.4, Vec3::Constant(0.5), 1), 0.15, offset);
@@ -184,23 +185,15 @@ TEST(Moments, MakeElementsThatNeverGainEnergy) {
         continue;
       ++n_under_skin;
       const Moments m = material_moments(body, copy);
-      const Moments positive = without_negative_squares(m);
-      EXPECT_DOUBLE_EQ(positive[0], m[0]);
-      EXPECT_GT(least_square(positive), -1e-15);
+      least = std::min(least, least_square(m));
       EXPECT_LT(stiffness_by_volume(m), most_by_volume);
-      if (least_square(m) > -1e-10)
-        continue;
-      ++n_folded;
-      for (const Strain strain : {Strain::trilinear, Strain::enhanced}) {
-        const Matrix24 K = stiffness(make_element(m, 1, unit, {.strain = strain}), unit);
-        EXPECT_GT(support::spectrum(K)[0], -1e-14);
-        const Products mass = consistent_mass(m, 1);
-        EXPECT_GT(support::spectrum(mass)[0], -1e-15);
-      }
+      for (const Strain strain : {Strain::trilinear, Strain::enhanced})
+        EXPECT_GT(support::spectrum(stiffness(make_element(m, 1, unit, {.strain = strain}), unit))[0], -1e-14);
+      EXPECT_GT(support::spectrum(consistent_mass(m, 1))[0], -1e-15);
     }
   }
   EXPECT_GT(n_under_skin, 4000);
-  EXPECT_GT(n_folded, 5);
+  EXPECT_GT(least, -1e-14);
 }
 
 } // namespace

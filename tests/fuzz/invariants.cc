@@ -25,10 +25,6 @@ using grid::NodeId;
 namespace {
 
 constexpr double tolerance = 1e-12; // of the body's volume, and of h^3 for masses
-/// Where the skin is so hollow that a cell's vertex does not see it from within, tetrahedra of skin that is cut off are
-/// counted negative (grid/material.h). So far is known what that may come to at a corner of a copy [h^3].
-constexpr double hollow = 0.1;
-
 using Labels = std::vector<std::uint32_t>;
 using Links = std::vector<std::array<std::uint32_t, 2>>;
 
@@ -383,7 +379,7 @@ CellVolumes require_sound_volumes(const grid::Solid& solid, const CellId cell, T
                                [&](const grid::Tetrahedron& t, int) { add_mass(t, mass); });
     const double least = *std::min_element(mass.begin(), mass.end());
     tally.least_mass = std::min(tally.least_mass, least);
-    if (!(least > -hollow))
+    if (!(least > -tolerance))
       complain("a copy of cell " + std::to_string(cell.value) + " has the mass " + number(least) + " h^3 at a corner");
     volumes.of_copies.push_back(std::accumulate(mass.begin(), mass.end(), 0.0));
     tally.least_fill = std::min(tally.least_fill, volumes.of_copies.back());

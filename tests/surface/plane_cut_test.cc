@@ -107,13 +107,11 @@ double volume_below_in(const Surface& surface, const Plane& plane) {
   return six_volumes / 6;
 }
 
-/// Any body: what is below the plane is what the plane leaves of the surface that the body had, but for hollow points
-/// of the skin that no material lies behind (cut/shreds.h), which the Cutter leaves whole.
+/// Any body: what is below the plane is what the plane leaves of the surface that the body had.
 TEST(PlaneCut, OfAnyBodyGivesWhatLiesBelow) {
   Random random(38);
   const Body liver = support::embedded(support::liver_mesh(), 0.012, Vec3::Constant(0.4));
   double worst = 0;
-  int n_exact = 0;
   constexpr int n = 60;
   for (int i = 0; i < n; ++i) {
     Body body =
@@ -123,13 +121,10 @@ TEST(PlaneCut, OfAnyBodyGivesWhatLiesBelow) {
     const Plane plane{normal, normal.dot(through) + 0.1 * body.grid.h()};
     const double exact = volume_below_in(build_surface(support::with_copies(body)), plane);
     support::cut_through(body, support::cuts_of_plane(body, plane));
-    const double error = std::abs(support::volume_below(body, plane) - exact) / std::pow(body.grid.h(), 3);
-    worst = std::max(worst, error);
-    n_exact += error < 1e-9;
+    worst = std::max(worst, std::abs(support::volume_below(body, plane) - exact) / std::pow(body.grid.h(), 3));
   }
-  std::cout << n_exact << " of " << n << " exact, the others within " << worst << " h^3\n";
-  EXPECT_GE(n_exact, n * 9 / 10);
-  EXPECT_LT(worst, 0.02);
+  std::cout << n << " planes, worst error of a side " << worst << " h^3\n";
+  EXPECT_LT(worst, 1e-9);
 }
 
 /// In steps of two edges a cell: the skin at once, edges as they are released.
