@@ -62,7 +62,7 @@ struct Complex {
 
 /// Colours of revealed triangles, finer than the triangles: triangle t has (n + 1)(n + 2) / 2 samples from first[t] on,
 /// n = parts[t], at the points a + i/n (b - a) + j/n (c - a) of the triangle a, b, c, i slower than j. Samples are only
-/// ever appended.
+/// ever appended, so those of earlier surfaces stay as they are.
 struct Colours {
   std::vector<std::uint32_t> first;                 ///< per triangle; 2^32 - 1 without samples
   std::vector<std::uint16_t> parts;                 ///< per triangle; 0 without samples

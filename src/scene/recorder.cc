@@ -76,14 +76,6 @@ output::Surface to_record(const surface::Surface& surface) {
   return {surface.triangles, surface.labels, surface.rest, surface.weights};
 }
 
-/// The samples from `first` on, which the file does not have yet.
-output::Colours to_record(const texture::Atlas& atlas, const std::size_t first) {
-  const auto from = [&](const auto& rows) {
-    return std::decay_t<decltype(rows)>(rows.begin() + std::min(first, rows.size()), rows.end());
-  };
-  return {atlas.first(), atlas.parts(), from(atlas.colours()), from(atlas.slopes())};
-}
-
 /// What every step of a body's surface file brings.
 std::vector<output::Field> announced_of(const Body& body, const std::vector<std::string>& names) {
   std::vector<output::Field> fields = announced(body, names);
@@ -406,9 +398,8 @@ void Recorder::append_step(const World& world, const int step, const Timings& se
       body_step.complex = &of_body.complex;
       body_step.surface = &of_body.surface;
       if (body.interior) {
-        of_body.colours = to_record(body.interior->atlas, bodies_[b].n_samples_written);
+        of_body.colours = bodies_[b].samples.append(body.interior->atlas);
         body_step.colours = &of_body.colours;
-        bodies_[b].n_samples_written = body.interior->atlas.colours().size();
       }
       bodies_[b].complex_written = body.n_recuts;
     }

@@ -15,6 +15,7 @@
 #include "output/results_folder.h"
 #include "output/run_file.h"
 #include "output/surface_file.h"
+#include "scene/recorded_samples.h"
 #include "scene/world.h"
 
 #include <chrono>
@@ -81,11 +82,11 @@ class Recorder {
  private:
   struct BodyFiles {
     int complex_written = -1, surface_written = -1; ///< Body::n_recuts of what the files hold last
-    std::size_t n_samples_written = 0;              ///< of the atlas of what is inside
+    RecordedSamples samples;                        ///< of what is inside
     std::optional<output::SurfaceFile> surface_file;
     std::optional<double> surface_ends; ///< what the surface file held when it was opened [s]
 
-    void archive(Archive& a) { a(complex_written, surface_written, n_samples_written); }
+    void archive(Archive& a) { a(complex_written, surface_written, samples); }
   };
   using Clock = std::chrono::steady_clock;
 

@@ -129,19 +129,29 @@ std::size_t Atlas::n_coarse() const {
   return n;
 }
 
-/// Samples for what is new, which is returned; not yet their colours.
+/// A triangle has no samples any more, if it had some.
+void Atlas::give_back(const std::size_t t) {
+  if (first_[t] == none)
+    return;
+  places_.give_back(first_[t], n_samples(parts_[t]));
+  first_[t] = none;
+  parts_[t] = 0;
+  fill_of_[t] = 0;
+}
+
+/// Samples for what is new, which is returned; not yet their colours. A triangle with as many as before keeps its places;
+/// all others that had some give theirs back first.
 std::vector<std::size_t> Atlas::lay_out(const SurfaceView& surface, const Paint& paint) {
   const std::size_t n = surface.triangles.size();
   first_.resize(n, none);
   parts_.resize(n, 0);
+  fill_of_.resize(n, 0);
   filled_.resize(n);
   labels_.resize(n, 0);
   std::vector<std::size_t> fresh;
-  std::size_t end = colours_.size();
   for (std::size_t t = 0; t < n; ++t) {
     if (surface.labels[t] == 0 && !paint.skin) {
-      first_[t] = none; // it may have been revealed before: later cuts can give a triangle at a rim to the skin
-      parts_[t] = 0;
+      give_back(t); // it may have been revealed before: later cuts can give a triangle at a rim to the skin
       continue;
     }
     const Triangle& v = surface.triangles[t];
@@ -150,16 +160,24 @@ std::vector<std::size_t> Atlas::lay_out(const SurfaceView& surface, const Paint&
         before[1] == surface.rest[v[1]] && before[2] == surface.rest[v[2]])
       continue;
     const Corners corners = {surface.rest[v[0]], surface.rest[v[1]], surface.rest[v[2]]};
-    first_[t] = static_cast<std::uint32_t>(end);
-    parts_[t] = static_cast<std::uint16_t>(std::min(parts_for(square_side(corners), resolution_), double(max_parts)));
+    const auto n_parts =
+      static_cast<std::uint16_t>(std::min(parts_for(square_side(corners), resolution_), double(max_parts)));
+    if (parts_[t] != n_parts)
+      give_back(t);
+    parts_[t] = n_parts;
     filled_[t] = corners;
     labels_[t] = surface.labels[t];
-    end += n_samples(parts_[t]);
     fresh.push_back(t);
   }
-  colours_.resize(end);
+  n_fills_ += fresh.empty() ? 0 : 1;
+  for (const std::size_t t : fresh) {
+    if (first_[t] == none)
+      first_[t] = static_cast<std::uint32_t>(places_.take(n_samples(parts_[t])));
+    fill_of_[t] = n_fills_;
+  }
+  colours_.resize(places_.end());
   if (paint.relief != 0)
-    slopes_.resize(end, {0, 0});
+    slopes_.resize(places_.end(), {0, 0});
   return fresh;
 }
 

@@ -68,6 +68,13 @@ double processor_seconds(const Function& f) {
   return static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
 }
 
+std::size_t n_samples_of_last_fill(const texture::Atlas& atlas) {
+  std::size_t n = 0;
+  for (std::size_t t = 0; t < atlas.first().size(); ++t)
+    n += atlas.fill_of()[t] == atlas.n_fills() ? texture::n_samples(atlas.parts()[t]) : 0;
+  return n;
+}
+
 std::vector<Frame> revealing_frames(World& world) {
   const Body& body = world.bodies.front();
   const BodyInterior& interior = *body.interior;
@@ -81,14 +88,14 @@ std::vector<Frame> revealing_frames(World& world) {
     });
   };
   for (int step = 1; step <= world.n_steps; ++step) {
-    const std::size_t before = interior.atlas.colours().size();
+    const std::uint32_t before = interior.atlas.n_fills();
     Timings timings;
     const double seconds = processor_seconds([&] { advance(world, step, timings); });
-    if (interior.atlas.colours().size() == before)
+    if (interior.atlas.n_fills() == before)
       continue;
     if (!frames.empty())
       time_colour();
-    frames.push_back({step, interior.atlas.colours().size() - before, 0, seconds});
+    frames.push_back({step, n_samples_of_last_fill(interior.atlas), 0, seconds});
     revealed = body.surface;
   }
   time_colour();
