@@ -231,14 +231,10 @@ class Placer {
     };
     const Vec3 from = site.locked.empty() ? between_cuts(site, p, part) : *before,
                q = hold_below_skin(from, p, part(from));
-    if (surface::is_in_plane(solid_, view, q))
-      solid_.cuts.set_inner_point(c, point_that_sees_border(solid_, view, q).value_or(q));
-    else
-      solid_.cuts.set_inner_point(c, see(
-                                       site, q, [] { return false; },
-                                       [&](const std::vector<Plane>& in_planes) {
-                                         return seeing_skin(solid_, view, q, in_planes);
-                                       }));
+    const auto seeing = [&](const std::vector<Plane>& in_planes) { return seeing_skin(solid_, view, q, in_planes); };
+    solid_.cuts.set_inner_point(c, surface::is_in_plane(solid_, view, q)
+                                     ? point_that_sees_border(solid_, view, q).value_or(q)
+                                     : see(site, q, [&] { return is_in_plane(view, q); }, seeing));
     count_held();
   }
 

@@ -158,7 +158,7 @@ Moves moves_to_planes(const Vec3& p, const Planes& planes, const Directions& all
 }
 
 std::optional<Plane> common_plane(const Planes& planes, const Vec3& p, const double near) {
-  constexpr double same = 1e-9; // sine of the angle between two
+  constexpr double same = 1e-6; // sine of the angle between two: of a slow blade normals are known no better
   for (const Plane& plane : planes)
     if (std::abs(plane.normal.dot(p - plane.point)) > near || plane.normal.cross(planes[0].normal).norm() > same)
       return {};

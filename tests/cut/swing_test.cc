@@ -51,7 +51,13 @@ Blade saw(const Vec3& middle, const Frame& frame) {
 std::optional<PiecesAndFine> sawn(const geometry::TriangleMesh& mesh, const unsigned seed) {
   Random random(seed);
   const double h = 1 / uniform(random, 7, 10);
-  Patient patient(support::embedded(mesh, h, random_offset(random)));
+  std::optional<Patient> whole;
+  try {
+    whole.emplace(support::embedded(mesh, h, random_offset(random)));
+  } catch (const DataError&) { // it is thinner than a cube
+    return std::nullopt;
+  }
+  Patient& patient = *whole;
   if (grid::n_pieces(patient.body.complex) != 1)
     return std::nullopt;
   support::FineMaterial fine(patient.body, 6);
