@@ -5,8 +5,10 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 namespace kerf::cut {
 
@@ -16,29 +18,37 @@ using grid::Items;
 using grid::Joined;
 using grid::MaterialPiece;
 
+constexpr double round_off = 1e-12; // of a cube, and of its sides
+
 struct PartByPieces {
-  Items items;
+  grid::Part part;
   std::vector<MaterialPiece> pieces;
   double volume = 0;
+
+  Items items() const { return part.items(); }
 };
 
-/// What bounds a part against the cut: the triangles cut - side - cell's vertex of its pieces. Those at segments that are
-/// not cut cancel.
+/// What bounds a part against the cut: the triangles cut - side - cell's vertex of its pieces. Those at segments that
+/// are not cut cancel.
 struct Opening {
-  Vec3 area = Vec3::Zero(); ///< outward, where the part has material below it [1]
-  Vec3 middle = Vec3::Zero();
+  Vec3 inward; ///< unit; for a dent towards where the cut leaves it
+  Vec3 middle; ///< in coordinates of the cell [1]
 };
-Opening opening_of(const PartByPieces& part) {
+
+/// None where that has no area.
+std::optional<Opening> opening_of(const PartByPieces& dent) {
   const auto area = [](const grid::Tetrahedron& t) -> Vec3 { return 0.5 * (t[2] - t[1]).cross(t[3] - t[1]); };
-  Opening opening;
-  for (const auto& [t, vertex] : part.pieces)
-    opening.area += area(t);
-  for (const auto& [t, vertex] : part.pieces)
-    opening.middle += area(t).dot(opening.area) / opening.area.squaredNorm() * (t[1] + t[2] + t[3]) / 3;
-  return opening;
+  Vec3 all = Vec3::Zero(), middle = Vec3::Zero();
+  for (const auto& [t, vertex] : dent.pieces)
+    all += area(t);
+  if (!(all.norm() > round_off))
+    return {};
+  for (const auto& [t, vertex] : dent.pieces)
+    middle += area(t).dot(all) / all.squaredNorm() * (t[1] + t[2] + t[3]) / 3;
+  return Opening{all.normalized(), middle}; // outward of a part with positive volume, and so inward of a dent
 }
 
-/// How often the border of a part against the cut goes around p, counter-clockwise seen against the normal.
+/// How often the border of a part against the cut goes around p, counter-clockwise seen from where the normal points.
 int turns(const PartByPieces& part, const Vec3& p, const Vec3& normal) {
   double angle = 0;
   for (const auto& [t, vertex] : part.pieces) {
@@ -48,37 +58,48 @@ int turns(const PartByPieces& part, const Vec3& p, const Vec3& normal) {
   return static_cast<int>(std::lround(angle / (2 * std::numbers::pi)));
 }
 
+/// Has a part anything where a dent lies, seen from the cut? What is beyond the cut has not.
+bool is_beside(const PartByPieces& part, const Opening& opening) {
+  return std::ranges::any_of(part.pieces, [&](const MaterialPiece& piece) {
+    return opening.inward.dot(piece.tetrahedron[0] - opening.middle) > round_off;
+  });
+}
+
 } // namespace
 
-std::vector<Joined> dents(const grid::Solid& solid, const grid::CellId c, const std::vector<Joined>& known) {
-  constexpr double round_off = 1e-14; // of a cube
-  std::vector<Joined> result;
+std::vector<Dent> dents(const grid::Solid& solid, const grid::CellId c, const std::vector<Joined>& known) {
+  std::vector<Dent> result;
   const grid::CellCuts cuts = grid::without_joined(grid::cuts_of(solid, c));
   if (!cuts.is_cut_at_skin())
     return result;
   const grid::Parts parts = grid::parts_of(cuts);
-  if (parts.n < 2)
+  if (parts.n < 2 || std::ranges::all_of(parts, [](const grid::Part& part) { return part.nodes != 0; }))
     return result;
   std::vector<PartByPieces> all;
   for (const grid::Part& part : parts) {
-    all.push_back({part.items(), grid::pieces_of(solid, c, part.items())});
+    all.push_back({part, grid::pieces_of(solid, c, part.items())});
     for (const MaterialPiece& piece : all.back().pieces)
       all.back().volume += grid::volume(piece.tetrahedron);
   }
+  const auto is_filled = [&](const Joined& group) {
+    double sum = 0;
+    for (const PartByPieces& part : all)
+      sum += (part.items() & group.items) != 0 ? part.volume : 0;
+    return sum >= -round_off;
+  };
   for (const PartByPieces& dent : all) {
-    if (dent.volume >= -round_off ||
-        std::ranges::any_of(known, [&](const Joined& group) { return (group.items & dent.items) != 0 && group.items != dent.items; }))
+    if (dent.part.nodes != 0 || dent.volume >= -round_off || std::ranges::any_of(known, [&](const Joined& group) {
+          return (group.items & dent.items()) != 0 && is_filled(group);
+        }))
       continue;
-    const auto [area, middle] = opening_of(dent);
-    const auto around = std::ranges::find_if(
-      all, [&](const PartByPieces& part) { return part.volume > 0 && turns(part, middle, area.normalized()) < 0; });
-    if (around == all.end())
+    const auto opening = opening_of(dent);
+    if (!opening)
       continue;
-    const auto same = std::ranges::find_if(result, [&](const Joined& group) { return (group.items & around->items) != 0; });
-    if (same != result.end())
-      same->items |= dent.items;
-    else
-      result.push_back({around->items | dent.items, 0});
+    const auto around = std::ranges::find_if(all, [&](const PartByPieces& part) {
+      return part.volume > 0 && turns(part, opening->middle, opening->inward) < 0 && is_beside(part, *opening);
+    });
+    if (around != all.end())
+      result.push_back({dent.items(), around->items()});
   }
   return result;
 }

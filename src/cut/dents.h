@@ -1,16 +1,24 @@
 #pragma once
 
-/// Where a cut opens a dent of the skin from behind. In the cut's surface a part of a cell then has a border with a hole,
-/// and the skin of the dent, which closes the hole, hangs on the part by no segment. By segments it is a part of its
-/// own, on the same side, and bounds what is missing from the one around it: less than nothing. Both are one.
+/// Where a cut passes below the skin, but above the bottom of a dent in it: what lies around the dent below the cut has
+/// a border with a hole then, and the dent's skin, which closes the hole, hangs on it by no segment. By segments that
+/// skin is a part of its own, of which the volume against the cut is negative: what is missing from the part around it.
+/// Both are one.
 
 #include "grid/parts.h"
 #include "grid/solid.h"
 
 namespace kerf::cut {
 
-/// Of a cell in which blades have cut: each part that bounds less than nothing, with the one whose border goes around its
-/// own. Parts that `known` joins with others are passed over.
-std::vector<grid::Joined> dents(const grid::Solid& solid, grid::CellId c, const std::vector<grid::Joined>& known);
+/// Items of a cell.
+struct Dent {
+  grid::Items skin, around;
+
+  grid::Joined joined() const { return {skin | around, 0}; }
+};
+
+/// Of a cell in which blades have cut: each part without a node whose volume is negative, and the one whose border goes
+/// around its own on the same side of the cut. Passed over are those that `known` joins with enough to be positive.
+std::vector<Dent> dents(const grid::Solid& solid, grid::CellId c, const std::vector<grid::Joined>& known);
 
 } // namespace kerf::cut

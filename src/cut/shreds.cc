@@ -1,6 +1,7 @@
 #include "cut/shreds.h"
 
 #include "base/sort_unique.h"
+#include "cut/dents.h"
 #include "cut/sides.h"
 #include "grid/material.h"
 #include "grid/touched.h"
@@ -233,7 +234,7 @@ bool is_held_across_faces(const grid::Solid& solid, const Shred& shred, const Ce
     if (!next.valid())
       continue;
     const auto known = shred.items.find(next);
-    for (const grid::Joined& group : on_same_sides(solid, next)) {
+    for (const grid::Joined& group : by_sides(solid, next)) {
       const grid::Part its{0, 0, group.intervals};
       if ((known == shred.items.end() || (group.items & ~known->second) != 0) &&
           are_glued_across(mine, its, face))
@@ -243,14 +244,20 @@ bool is_held_across_faces(const grid::Solid& solid, const Shred& shred, const Ce
   return false;
 }
 
-/// Does it lie on the same side of all cuts as something beside it? Then it hangs on that.
+/// Does it lie on the same side of all cuts as something beside it, or as a dent in something? Then it hangs on that.
 bool is_on_same_sides(const grid::Solid& solid, const Shred& shred) {
   return std::ranges::any_of(shred.items, [&](const auto& of_cell) {
     const auto& [c, items] = of_cell;
-    return std::ranges::any_of(on_same_sides(solid, c), [&, cell = c, known = items](const grid::Joined& group) {
-      return (group.items & known) != 0 &&
-             ((group.items & ~known) != 0 || is_held_across_faces(solid, shred, cell, group.intervals));
-    });
+    const std::vector<grid::Joined> groups = by_sides(solid, c);
+    return std::ranges::any_of(groups,
+                               [&, cell = c, known = items](const grid::Joined& group) {
+                                 return (group.items & known) != 0 &&
+                                        ((group.items & ~known) != 0 ||
+                                         is_held_across_faces(solid, shred, cell, group.intervals));
+                               }) ||
+           std::ranges::any_of(dents(solid, c, groups), [known = items](const Dent& dent) {
+             return (dent.skin & known) != 0 && (dent.around & ~known) != 0;
+           });
   });
 }
 

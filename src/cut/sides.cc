@@ -218,7 +218,7 @@ std::vector<Joined> all_by_sides(const Solid& solid, const CellId c) {
   return groups;
 }
 
-std::vector<Joined> on_same_sides(const Solid& solid, const CellId c) {
+std::vector<Joined> by_sides(const Solid& solid, const CellId c) {
   std::vector<Joined> groups = all_by_sides(solid, c);
   if (!groups.empty()) {
     const grid::Parts parts = grid::parts_of(grid::without_joined(grid::cuts_of(solid, c)));
@@ -228,12 +228,18 @@ std::vector<Joined> on_same_sides(const Solid& solid, const CellId c) {
                                   }));
     });
   }
-  std::ranges::copy(dents(solid, c, groups), std::back_inserter(groups));
+  return groups;
+}
+
+std::vector<Joined> on_same_sides(const Solid& solid, const CellId c) {
+  std::vector<Joined> groups = by_sides(solid, c);
+  for (const Dent& dent : dents(solid, c, groups))
+    groups.push_back(dent.joined());
   return groups;
 }
 
 std::vector<Joined> without_cuts(const Solid& solid, const CellId c, const Segments cuts) {
-  const std::vector<Joined> settled = on_same_sides(solid, c);
+  const std::vector<Joined> settled = by_sides(solid, c);
   std::vector<Joined> groups;
   for (const grid::Part& part : whole_parts_of(grid::without(grid::cuts_of(solid, c), cuts))) {
     Joined& group = groups.emplace_back(Joined{part.items(), part.intervals});
@@ -241,6 +247,8 @@ std::vector<Joined> without_cuts(const Solid& solid, const CellId c, const Segme
       if ((side.items & group.items) != 0)
         group.intervals |= side.intervals;
   }
+  for (const Dent& dent : dents(solid, c, settled))
+    groups.push_back(dent.joined());
   return groups;
 }
 

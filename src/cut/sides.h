@@ -29,13 +29,17 @@ inline bool are_glued_across(const grid::Part& part, const grid::Part& beyond, c
 /// The copy of a cell that holds some of these items.
 grid::CopyId copy_of(const grid::Solid& solid, grid::CellId c, grid::Items items);
 
-/// What of a cell lies on the same sides: all of it, and intervals beside no part of theirs. None where nothing is said.
+/// What of a cell lies on the same sides: all of it, and intervals beside no part of theirs. None where nothing
+/// is said.
 std::vector<grid::Joined> all_by_sides(const grid::Solid& solid, grid::CellId c);
 
 /// Of these groups those of two or more parts, or of one with intervals.
+std::vector<grid::Joined> by_sides(const grid::Solid& solid, grid::CellId c);
+/// The same, and dents with what is around them (dents.h): what is one in a cell.
 std::vector<grid::Joined> on_same_sides(const grid::Solid& solid, grid::CellId c);
 
-/// What hangs together in a cell without some of its cuts, with the intervals that belong to it by on_same_sides().
+/// What hangs together in a cell without some of its cuts, with the intervals that belong to it by by_sides(); and
+/// dents with what is around them.
 std::vector<grid::Joined> without_cuts(const grid::Solid& solid, grid::CellId c, grid::Segments cuts);
 
 /// Of these groups what is one copy still, by copies: cuts that wait join nothing that was parted before they came.

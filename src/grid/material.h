@@ -27,7 +27,8 @@ struct MaterialPiece {
 /// The material of a part of a cell in which blades have cut at the skin: of each of its items, for each segment from
 /// there and each side at that the tetrahedron item - cut - vertex in the side - vertex in the cell. Together they fill
 /// what the part's surface bounds, and so the parts the cell as it was. Volumes are signed: where the cell's vertex does
-/// not see a side from within (surface/sight.h), some are negative, but not their sum.
+/// not see a side from within (surface/sight.h), some are negative; their sum is so for the skin of a dent alone, which is
+/// one with the part around it (cut/dents.h).
 std::vector<MaterialPiece> pieces_of(const Solid& solid, CellId c, Items items);
 
 /// Calls f(tetrahedron, vertex) for all material of a copy.

@@ -74,7 +74,7 @@ std::optional<Vec3> point_that_sees_border(const grid::Solid& solid, const View&
   return point_that_sees(view, pieces_of_border(solid, view, view.now.blades, p, normal), p, normal, solid.grid.h());
 }
 
-bool is_in_plane(const grid::Solid& solid, const View& view, const Vec3& p) {
+bool border_is_in_plane(const grid::Solid& solid, const View& view, const Vec3& p) {
   return !pieces_of_border(solid, view, view.now.blades, p, normal_of(solid, view)).empty();
 }
 

@@ -11,13 +11,13 @@
 
 namespace kerf::surface {
 
-/// Where is_in_plane(): a point from where the whole border is seen, p or in the middle of all such points. None where no
-/// point sees it.
+/// Where border_is_in_plane(): a point from where the whole border is seen, p or in the middle of all such points. None
+/// where no point sees it.
 std::optional<Vec3> point_that_sees_border(const grid::Solid& solid, const View& view, const Vec3& p);
 
 /// Do all cuts of the cell, and the vertices in its sides, lie in one plane with p? Then what the cut leaves on its
 /// sides is the same for any point of it, whatever that sees.
-bool is_in_plane(const grid::Solid& solid, const View& view, const Vec3& p);
+bool border_is_in_plane(const grid::Solid& solid, const View& view, const Vec3& p);
 
 /// The cut segments whose cuts lie on the same border as that of `segment`: a thin part of the body leaves two.
 grid::Segments border_of(const grid::Skeleton& skeleton, grid::Segments cut, int segment);

@@ -163,7 +163,7 @@ class Placer {
     const Vec3 from = site.locked.empty() ? between_cuts(site, p, part) : *before;
     const Vec3 q = hold_below_skin(from, p, part(from));
     const auto seeing = see(
-      site, q, [&] { return is_in_plane_on_both_sides(view, face, q); },
+      site, q, [&] { return are_in_plane_on_both_sides(view, face, q); },
       [&](const std::vector<Plane>& in_planes) { return seeing_border(solid_, view, side, q, in_planes); });
     solid_.cuts.set_inner_point(f, arc, seeing);
     count_held();
@@ -189,11 +189,11 @@ class Placer {
   }
 
   /// Do all cuts of the two cells at a face lie in one plane, with p?
-  bool is_in_plane_on_both_sides(const View& view, const int face, const Vec3& p) const {
+  bool are_in_plane_on_both_sides(const View& view, const int face, const Vec3& p) const {
     const CellId next = solid_.grid.neighbour(view.cell, face);
-    return is_in_plane(view, p) && (!next.valid() || is_in_plane(look_at(solid_, next), p));
+    return cuts_are_in_plane(view, p) && (!next.valid() || cuts_are_in_plane(look_at(solid_, next), p));
   }
-  bool is_in_plane(const View& view, const Vec3& p) const {
+  bool cuts_are_in_plane(const View& view, const Vec3& p) const {
     Planes planes;
     for_each_bit(view.now.blades,
                  [&](const int segment) { planes.push_back(cut_plane(solid_, view, segment).plane); });
@@ -232,9 +232,9 @@ class Placer {
     const Vec3 from = site.locked.empty() ? between_cuts(site, p, part) : *before,
                q = hold_below_skin(from, p, part(from));
     const auto seeing = [&](const std::vector<Plane>& in_planes) { return seeing_skin(solid_, view, q, in_planes); };
-    solid_.cuts.set_inner_point(c, surface::is_in_plane(solid_, view, q)
+    solid_.cuts.set_inner_point(c, border_is_in_plane(solid_, view, q)
                                      ? point_that_sees_border(solid_, view, q).value_or(q)
-                                     : see(site, q, [&] { return is_in_plane(view, q); }, seeing));
+                                     : see(site, q, [&] { return cuts_are_in_plane(view, q); }, seeing));
     count_held();
   }
 

@@ -62,7 +62,7 @@ bool are_above(const std::vector<Plane>& half_spaces, const Vec3& p, const doubl
 std::optional<Vec3> towards(const View& view, const std::vector<Plane>& half_spaces,
                             const std::vector<Plane>& in_planes, const Vec3& p) {
   constexpr double inside = 0.9;
-  if (are_above(half_spaces, p, 0))
+  if (are_above(half_spaces, p, -round_off * (view.upper[0] - view.lower[0])))
     return p;
   const auto middle = middle_of(half_spaces, view.lower, view.upper, in_planes);
   if (!middle)

@@ -12,11 +12,12 @@
 
 namespace kerf::surface {
 
-/// A half-space: what lies above its plane.
+/// Of p above the plane of a half-space, which is what lies above it.
 double height(const Vec3& p, const Plane& half_space);
 
-/// In the middle of all points that half-spaces have in common in a box and in up to two planes: the mean of the corners
-/// of what they leave. None where they leave nothing. With n half-spaces in m planes it takes n^(4 - m) steps.
+/// In the middle of all points that half-spaces have in common in a box and in up to two planes: the mean of the
+/// corners of what they leave, each as often as three planes meet in it. None where they leave nothing. With n half-
+/// spaces in m planes it takes n^(4 - m) steps: a cell has at most 30.
 std::optional<Vec3> middle_of(std::vector<Plane> half_spaces, const Vec3& lower, const Vec3& upper,
                               const std::vector<Plane>& in_planes);
 

@@ -1,5 +1,5 @@
-/// Planes and blades that open dents of a jagged skin from behind: what lies on one side of a cut around a dent, and the
-/// skin of the dent, are one, so that no copy bounds less than nothing.
+/// Planes and blades that open dents of a jagged skin from behind: what lies on one side of a cut around a dent, and
+/// the skin of the dent, are one, so that no copy bounds less than nothing.
 
 #include "cut/dents.h"
 #include "tests/cut/least_material.h"
@@ -37,9 +37,10 @@ TEST(Dents, AreOneWithWhatIsAroundThem) {
       support::cut_through(body, support::cuts_of_plane(body, plane));
       least.look_at(body);
       for (const auto c : ids<grid::CellId>(body.grid.n_cells()))
-        for (const grid::Joined& group : dents(body, c, {})) { // as segments alone part the cell
+        for (const Dent& dent : dents(body, c, {})) { // as segments alone part the cell
           ++n;
-          EXPECT_TRUE(is_on_one_side(body, c, group.items, plane)) << name << ", " << seed << ", cell " << c.value;
+          EXPECT_TRUE(is_on_one_side(body, c, dent.joined().items, plane))
+            << name << ", " << seed << ", cell " << c.value;
         }
     }
   std::cout << n << " dents; " << least << '\n';

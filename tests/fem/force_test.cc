@@ -281,7 +281,7 @@ TEST(Mass, OfVolumeFractionsIsTheOctants) {
 }
 
 /// A velocity field linear in X has twice its kinetic energy in p^T M p, exact for every shape of the material that is
-/// not folded (surface/fold.h), and rows sum to the lumped mass.
+/// not folded (fem/moments.h), and rows sum to the lumped mass.
 TEST(Mass, ConsistentOneIntegratesLinearFields) {
   Draw draw(70);
   Body body = make_block({2, 2, 2}, 0.2, draw, {0.2, 0.8});

@@ -333,7 +333,7 @@ class Run {
   /// The ledger was kept up to date in the cells around new cuts alone.
   void require_untouched_elsewhere() const {
     for (const auto c : ids<grid::CellId>(subject_.grid().n_cells()))
-      if (require_sound_volumes(subject_.solid, c, tally_) != subject_.volumes[c])
+      if (require_sound_volumes(subject_.solid, c) != subject_.volumes[c])
         throw Violation("cell " + std::to_string(c.value) + " changed without a cut");
   }
 

@@ -364,7 +364,7 @@ void require_sound_weights(const grid::Solid& solid, const surface::Surface& sur
 
 double CellVolumes::sum() const { return std::accumulate(of_copies.begin(), of_copies.end(), 0.0); }
 
-CellVolumes require_sound_volumes(const grid::Solid& solid, const CellId cell, Tally& tally) {
+CellVolumes require_sound_volumes(const grid::Solid& solid, const CellId cell) {
   CellVolumes volumes;
   for (int v = 0; v < cube::n_vertices; ++v)
     for (const auto& t : grid::octant(solid, cell, v)) {
@@ -377,14 +377,22 @@ CellVolumes require_sound_volumes(const grid::Solid& solid, const CellId cell, T
     std::array<double, 8> mass{};
     grid::for_each_tetrahedron(solid, solid.complex.copies[c],
                                [&](const grid::Tetrahedron& t, int) { add_mass(t, mass); });
-    const double least = *std::min_element(mass.begin(), mass.end());
-    tally.least_mass = std::min(tally.least_mass, least);
-    if (!(least > -tolerance))
-      complain("a copy of cell " + std::to_string(cell.value) + " has the mass " + number(least) + " h^3 at a corner");
+    volumes.least_mass = std::min(volumes.least_mass, *std::min_element(mass.begin(), mass.end()));
     volumes.of_copies.push_back(std::accumulate(mass.begin(), mass.end(), 0.0));
-    tally.least_fill = std::min(tally.least_fill, volumes.of_copies.back());
   }
   return volumes;
+}
+
+void require_material(const Subject& subject, const std::span<const CellId> cells, Tally& tally) {
+  for (const CellId cell : cells) {
+    const CellVolumes& volumes = subject.volumes[cell];
+    tally.least_mass = std::min(tally.least_mass, volumes.least_mass);
+    for (const double of_copy : volumes.of_copies)
+      tally.least_fill = std::min(tally.least_fill, of_copy);
+    if (!(volumes.least_mass > -tolerance))
+      complain("a copy of cell " + std::to_string(cell.value) + " has the mass " + number(volumes.least_mass) +
+               " h^3 at a corner");
+  }
 }
 
 void require_kept_volumes(const Subject& subject, Tally& tally) {

@@ -40,9 +40,11 @@ void require_closed(const surface::Surface& surface);
 /// Rows of W sum to 1 and take rest positions to rest positions.
 void require_sound_weights(const grid::Solid& solid, const surface::Surface& surface);
 
-/// Volumes in a cell. The octants of all its vertices have positive tetrahedra; below a hollow
-/// skin a tetrahedron may be turned over, and a copy have a negative mass at a corner, no further than is known.
-CellVolumes require_sound_volumes(const grid::Solid& solid, grid::CellId cell, Tally& tally);
+/// Volumes in a cell. The octants of all its vertices have positive tetrahedra.
+CellVolumes require_sound_volumes(const grid::Solid& solid, grid::CellId cell);
+
+/// No copy of these cells has less than nothing at a corner, where the Cutter has cut.
+void require_material(const Subject& subject, std::span<const grid::CellId> cells, Tally& tally);
 
 /// The tetrahedra of each piece enclose what its triangles enclose, and the pieces together the volume of the uncut
 /// body.

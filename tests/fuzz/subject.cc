@@ -87,7 +87,7 @@ void follow_cut(Subject& subject, const grid::Solid& before, const grid::CutChan
   grid::update_pieces(solid, change, subject.pieces);
 
   for (const CellId c : change.cells)
-    subject.volumes[c] = require_sound_volumes(solid, c, tally);
+    subject.volumes[c] = require_sound_volumes(solid, c);
   require_kept_cells(subject, change.cells, tally);
   require_sound(subject, tally);
   require_inherited(corner_masses(before, keeping), corner_masses(solid, keeping), parents, together, tally);
@@ -144,7 +144,7 @@ Subject make_subject(const Specimen& specimen, Tally& tally) {
   subject.pieces = grid::pieces(subject.solid.complex);
   subject.volume = surface::enclosed_volume(subject.surface.rest, subject.surface.triangles);
   for (const CellId c : ids<CellId>(subject.grid().n_cells())) {
-    subject.volumes.push_back(require_sound_volumes(subject.solid, c, tally));
+    subject.volumes.push_back(require_sound_volumes(subject.solid, c));
     subject.first_volumes.push_back(subject.volumes[c].sum());
   }
   require_sound(subject, tally);
@@ -156,15 +156,17 @@ void cut(Subject& subject, const std::function<grid::CutChange(Subject&)>& make,
   const grid::CutChange change = make(subject);
   if (change.any())
     follow_cut(subject, before, change, tally);
+  require_material(subject, change.cells, tally);
   require_pieces_as_found(subject);
 }
 
 void cut(Subject& subject, const grid::histories::Step& step, Tally& tally) {
-  const auto make = [&](Subject& of) {
-    grid::histories::apply(step, of.solid);
-    return grid::update_complex(of.solid, step.edges(), step.segments());
-  };
-  cut(subject, make, tally);
+  const grid::Solid before = subject.solid;
+  grid::histories::apply(step, subject.solid);
+  const grid::CutChange change = grid::update_complex(subject.solid, step.edges(), step.segments());
+  if (change.any())
+    follow_cut(subject, before, change, tally);
+  require_pieces_as_found(subject);
 }
 
 std::uint64_t digest(const Subject& subject, const std::uint64_t start) {

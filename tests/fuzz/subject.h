@@ -47,6 +47,7 @@ struct Tally {
 struct CellVolumes {
   std::array<double, 8> of_octants{}; ///< by vertex
   std::vector<double> of_copies;      ///< in the order of CellComplex::copies_of
+  double least_mass = 1;              ///< of a copy at one of its corners
 
   double sum() const;
   bool operator==(const CellVolumes&) const = default;
