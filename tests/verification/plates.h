@@ -59,9 +59,12 @@ struct EdgeCrack {
   double along = 0.5, across = 0.5; ///< of a cube [1]
   int n = 20;
 };
-/// How far the front lies too far, as the work of the tension tells it [cubes]. Elements of extended inertia are those
-/// of explicit steps.
-double front_error(const EdgeCrack& crack, fem::Strain strain, fem::Inertia inertia = fem::Inertia::lumped);
+struct EdgeCrackResult {
+  double front_error = 0; ///< how far the front lies too far, as the work of the tension tells it [cubes]
+  double intensity = 0;   ///< the stress intensity by energy release, over that by which the work grows with the crack
+};
+/// Elements of extended inertia are those of explicit steps.
+EdgeCrackResult edge_crack(const EdgeCrack& crack, fem::Strain strain, fem::Inertia inertia = fem::Inertia::lumped);
 
 /// Condition numbers [1] of the stiffness of a small clamped block whose outer layers of cells, on two sides, are
 /// filled
