@@ -77,7 +77,7 @@ std::vector<Dent> dents(const grid::Solid& solid, const grid::CellId c, const st
     return result;
   std::vector<PartByPieces> all;
   for (const grid::Part& part : parts) {
-    all.push_back({part, grid::pieces_of(solid, c, part.items())});
+    all.push_back({part, grid::pieces_of(solid, c, part.items(), grid::VerticesOfCuts::amid_cuts)});
     for (const MaterialPiece& piece : all.back().pieces)
       all.back().volume += grid::volume(piece.tetrahedron);
   }

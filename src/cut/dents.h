@@ -18,7 +18,8 @@ struct Dent {
 };
 
 /// Of a cell in which blades have cut: each part without a node whose volume is negative, and the one whose border goes
-/// around its own on the same side of the cut. Passed over are those that `known` joins with enough to be positive.
+/// around its own on the same side of the cut; as the cuts alone tell, wherever their vertices are. Passed over are
+/// those that `known` joins with enough to be positive.
 std::vector<Dent> dents(const grid::Solid& solid, grid::CellId c, const std::vector<grid::Joined>& known);
 
 } // namespace kerf::cut

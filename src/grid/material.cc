@@ -107,9 +107,10 @@ namespace {
 /// off may not turn a thin tetrahedron over.
 class LocalSkeleton {
  public:
-  LocalSkeleton(const Solid& solid, const CellId c)
+  LocalSkeleton(const Solid& solid, const CellId c, const VerticesOfCuts vertices)
     : solid_(solid),
       cell_(c),
+      vertices_(vertices),
       skeleton_(skeleton_of(material_of(solid.grid, c))),
       blades_(cuts_of_copies(solid, c).blades),
       divisions_(solid, c),
@@ -134,6 +135,8 @@ class LocalSkeleton {
   }
 
   Vec3 in_side(const int side) const {
+    if (vertices_ == VerticesOfCuts::amid_cuts)
+      return middle_of(side);
     if (side < skeleton::first_triangle) {
       const FaceId f = faces_[side / 2];
       if (skeleton_.side[side].n == 4 && (skeleton_.items >> skeleton::on_arc(side / 2, 0) & 1) == 0)
@@ -147,7 +150,7 @@ class LocalSkeleton {
 
   Vec3 centre() const {
     const Vec3* const p = solid_.cuts.inner_point(cell_);
-    if (p)
+    if (p && vertices_ == VerticesOfCuts::placed)
       return local(*p);
     return blades_ != 0 ? mean_cut(blades_) : local(cell_point(solid_, cell_));
   }
@@ -196,6 +199,7 @@ class LocalSkeleton {
 
   const Solid& solid_;
   CellId cell_;
+  VerticesOfCuts vertices_;
   const Skeleton& skeleton_;
   Segments blades_;
   Divisions divisions_;
@@ -206,8 +210,9 @@ class LocalSkeleton {
 
 } // namespace
 
-std::vector<MaterialPiece> pieces_of(const Solid& solid, const CellId c, const Items items) {
-  const LocalSkeleton cell(solid, c);
+std::vector<MaterialPiece> pieces_of(const Solid& solid, const CellId c, const Items items,
+                                     const VerticesOfCuts vertices) {
+  const LocalSkeleton cell(solid, c, vertices);
   const Skeleton& skeleton = cell.skeleton();
   const Vec3 centre = cell.centre();
   std::vector<MaterialPiece> pieces;

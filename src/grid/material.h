@@ -24,12 +24,17 @@ struct MaterialPiece {
   int vertex;
 };
 
+/// Where the vertices of cuts are taken to be: where they have been placed, or in the middle of the cuts around them,
+/// which those alone tell.
+enum class VerticesOfCuts { placed, amid_cuts };
+
 /// The material of a part of a cell in which blades have cut at the skin: of each of its items, for each segment from
 /// there and each side at that the tetrahedron item - cut - vertex in the side - vertex in the cell. Together they fill
 /// what the part's surface bounds, and so the parts the cell as it was. Volumes are signed: where the cell's vertex does
 /// not see a side from within (surface/sight.h), some are negative; their sum is so for the skin of a dent alone, which is
 /// one with the part around it (cut/dents.h).
-std::vector<MaterialPiece> pieces_of(const Solid& solid, CellId c, Items items);
+std::vector<MaterialPiece> pieces_of(const Solid& solid, CellId c, Items items,
+                                     VerticesOfCuts vertices = VerticesOfCuts::placed);
 
 /// Calls f(tetrahedron, vertex) for all material of a copy.
 template <class Function>
