@@ -4,7 +4,6 @@
 #include <Eigen/LU>
 
 #include <algorithm>
-#include <bit>
 
 namespace kerf::surface {
 
@@ -59,21 +58,15 @@ bool are_above(const std::vector<Plane>& half_spaces, const Vec3& p, const doubl
   return std::ranges::all_of(half_spaces, [&](const Plane& of) { return height(p, of) >= least; });
 }
 
-/// Is a point of the skin a part of the cell by itself? A vertex right there would leave nothing of it.
-bool has_point_alone(const View& view) {
-  return std::ranges::any_of(
-    grid::parts_of(view.now), [](const grid::Part& part) { return part.nodes == 0 && std::has_single_bit(part.skin); });
-}
-
 /// p where it is above all; else on the way there from the middle of what is.
 std::optional<Vec3> towards(const View& view, const std::vector<Plane>& half_spaces,
                             const std::vector<Plane>& in_planes, const Vec3& p) {
-  constexpr double inside = 0.9, apart = 1e-6; // of h: a point of the skin itself sees all that meets there
+  constexpr double inside = 0.9;
   const double h = view.upper[0] - view.lower[0];
   if (are_above(half_spaces, p, -round_off * h))
     return p;
   const auto middle = middle_of(half_spaces, view.lower, view.upper, in_planes);
-  if (!middle || (has_point_alone(view) && !are_above(half_spaces, *middle, apart * h)))
+  if (!middle)
     return {};
   double part = 1;
   for (const Plane& of : half_spaces)
