@@ -15,13 +15,6 @@ Plane plane_of(const Solid& solid, const View& view, const grid::Segments cuts) 
   return cut_plane(solid, view, std::countr_zero(cuts)).plane;
 }
 
-grid::Segments border_of(const Skeleton::Side& side) {
-  grid::Segments segments = 0;
-  for (int i = 0; i < side.n; ++i)
-    segments |= grid::Segments(1) << side.segments[i];
-  return segments;
-}
-
 /// The first two of some cuts that have the same label; none where all differ.
 grid::Segments of_one_label(const Solid& solid, const View& view, const grid::Segments cuts) {
   const auto label = [&](const grid::Segments cut) { return cut_plane(solid, view, std::countr_zero(cut)).label; };
@@ -59,7 +52,7 @@ Vec3 on_rim(const Solid& solid, const View& view, const grid::Segments two, cons
 
 std::optional<Vec3> point_in_triangle(const Solid& solid, const View& view, const int triangle) {
   const Skeleton::Side& side = view.now.skeleton().side[skeleton::first_triangle + triangle];
-  const grid::Segments of = border_of(side), now = view.now.blades & of, old = view.old_blades & of;
+  const grid::Segments of = border(side), now = view.now.blades & of, old = view.old_blades & of;
   if (now == old)
     return {};
   const grid::Segments first = old != 0 ? old & -old : now & -now,

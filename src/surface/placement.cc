@@ -134,13 +134,6 @@ class Placer {
     }
   }
 
-  static grid::Segments border(const Skeleton::Side& side) {
-    grid::Segments segments = 0;
-    for (int i = 0; i < side.n; ++i)
-      segments |= grid::Segments(1) << side.segments[i];
-    return segments;
-  }
-
   /// Of the material beside an arc of the skin, in a face.
   void place_polygon(const View& view, const int side, const FaceId f) {
     const int face = side / 2, arc = side % 2;

@@ -50,6 +50,13 @@ CutPlane cut_plane(const grid::Solid& solid, const View& view, const int segment
   return {{grid::segment_point(solid, view.cell, view.now.skeleton(), segment), cut.normal}, cut.label};
 }
 
+grid::Segments border(const grid::Skeleton::Side& side) {
+  grid::Segments segments = 0;
+  for (int i = 0; i < side.n; ++i)
+    segments |= grid::Segments(1) << side.segments[i];
+  return segments;
+}
+
 Vec3 middle_of(const grid::Solid& solid, const View& view, const int side) {
   const grid::Skeleton::Side& of = view.now.skeleton().side[side];
   Vec3 sum = Vec3::Zero();

@@ -40,6 +40,9 @@ struct CutPlane {
 };
 CutPlane cut_plane(const grid::Solid& solid, const View& view, int segment);
 
+/// The segments that bound a side.
+grid::Segments border(const grid::Skeleton::Side& side);
+
 /// The mean of a side's items [m].
 Vec3 middle_of(const grid::Solid& solid, const View& view, int side);
 /// Of the blades' cuts among some segments [m].
