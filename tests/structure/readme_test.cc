@@ -50,6 +50,7 @@ void expect_links(const fs::path& page) {
 TEST(Readme, LinksLeadSomewhere) {
   expect_links(root / "README.md");
   expect_links(root / "results" / "README.md");
+  expect_links(root / "results" / "limits.md");
 }
 
 /// Every section of the results that the README names by its heading is there.
