@@ -366,8 +366,7 @@ void Advance::move(const Solid& solid, Stand& stand, std::vector<Front>& fronts)
 /// A front that has come through a part of its cell's section.
 void Advance::come_to(const Solid& solid, const Cell& cell, Front& front) const {
   const Raster come = come_in(front, solid.grid.h(), cell.section, cell.swept);
-  if (!as_faces_)
-    put_end(cell.section, cell.swept, come, solid.grid.h(), front);
+  put_end(cell.section, cell.swept, come, solid.grid.h(), front);
   front.passed = cell.section.any() ? std::min(most_passed, double(come.count()) / cell.section.count()) : 0;
   const OfVertices sums = weighted(solid, front, come);
   for (int v = 0; v < grid::cube::n_vertices; ++v)
@@ -386,6 +385,7 @@ void Advance::tell_where_they_have_come(const Solid& solid, std::vector<Front>& 
     if (const Front* const earlier = solid.cuts.front(c); earlier && cell.n_fresh > 0) {
       Front moved = *earlier;
       come_to(solid, cell, moved);
+      keep_farther_end(*earlier, solid.grid.h(), moved);
       moved.passed = std::max(earlier->passed, moved.passed);
       moved.come = cell.take_fresh(moved, solid.grid.h());
       fronts.push_back(moved);

@@ -116,10 +116,9 @@ Front front_in(const CellAtPlane& cell, const Outlines& outlines, const ToRest& 
   }
   const CellAtPlane::Section section = cell.section();
   Front front = cell.front(section, all > 0 ? inside / all : 0);
+  put_end(outlines.own, mean(section.there), to_rest, front);
   if (as_faces)
     front.come = {come_in(section, outlines.own)};
-  else
-    put_end(outlines.own, mean(section.there), to_rest, front);
   return front;
 }
 

@@ -88,8 +88,7 @@ struct Front {
   CutLabel label = 1;
   std::array<double, 8> reached = {}; ///< by vertex: that part, weighted by its shape function [1]
   std::array<double, 8> held = {};    ///< by vertex: A / 3 (1 - f) / f of what holds the copies there (fronts.h) [m^2]
-  Vec3 onward = Vec3::Zero(); ///< unit, in the plane: the way on from where the cut ends; zero where that is not known, or
-                              ///< not told: by cut::Fronts::as_faces
+  Vec3 onward = Vec3::Zero(); ///< unit, in the plane: the way on from where the cut ends; zero where that is not known
   double end = 0; ///< onward . p of the line in which it ends, without the lag of fronts [m]
   std::vector<Points> come = {}; ///< where the cut has come in the cell, and a little beside it, since the front was
                                  ///< told last: convex polygons, rest frame [m]; for cut::Fronts::as_faces

@@ -25,7 +25,7 @@
 /// that much (front_lag).
 ///
 /// The lattice has no ties, but counts steps ahead of a front in part (lattice/lines.h); phyxels see what of the plane
-/// has been cut (Front::come).
+/// has been cut (Front::come), with a lag of their own (pba::front_lag).
 ///
 /// A front is provisional: when its blade has come between the cell's nodes, the cell is parted as that has cut it
 /// (complex.h), and copies may be joined again. Those that have moved apart too far for that stay apart, if that leaves no

@@ -47,6 +47,12 @@ void check_support(const Vec3& p, const double support, const PointGrid& grid, c
 
 } // namespace
 
+double front_lag(const Phyxels& phyxels) {
+  constexpr double distances = 0.4;
+  const double volume = std::accumulate(phyxels.volume.begin(), phyxels.volume.end(), 0.0);
+  return distances * std::cbrt(volume / static_cast<double>(phyxels.size()));
+}
+
 std::vector<double> voronoi_volumes(const Points& points, const std::vector<Crumb>& parts) {
   const PointGrid grid(points, mean_spacing(points));
   std::vector<std::uint32_t> nearest(parts.size());

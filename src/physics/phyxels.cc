@@ -1,6 +1,7 @@
 #include "physics/phyxels.h"
 
 #include "base/union_find.h"
+#include "cut/in_plane.h"
 #include "dynamics/relief.h"
 #include "grid/locate.h"
 #include "physics/carry_all.h"
@@ -25,11 +26,16 @@ bool looks_for_ways_around(const std::string& criterion) {
 
 enum class Part { skin, cuts };
 
-/// The corners of each face in one order: both sides of a cut are one face.
-std::vector<visibility::Face> faces_of(const surface::Surface& surface, const Part part) {
+/// The corners of each face in one order: both sides of a cut are one face. Where a cut ends in a cell, its front has
+/// them.
+std::vector<visibility::Face> faces_of(const CutBody& body, const Part part) {
+  const surface::Surface& surface = body.surface;
   std::vector<visibility::Face> faces;
   for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
     if ((surface.labels[t] == 0) != (part == Part::skin))
+      continue;
+    const grid::Front* const front = body.solid.cuts.front(body.solid.complex.copies[surface.copies[t]].cell);
+    if (front && front->label == surface.labels[t])
       continue;
     visibility::Face& face = faces.emplace_back();
     for (int k = 0; k < 3; ++k)
@@ -39,14 +45,25 @@ std::vector<visibility::Face> faces_of(const surface::Surface& surface, const Pa
   return faces;
 }
 
+/// What a cut has come to, and as far on as it seems too short to phyxels [m].
+Points with_lag(const Points& come, const grid::Front& front, const double h, const double lag) {
+  Points both = come;
+  for (const Vec3& p : come)
+    both.push_back(p + lag * front.onward);
+  return cut::hull(both, cut::InPlane(front.point, front.normal, h));
+}
+
 /// Of cuts that end inside cells, in these.
-std::vector<visibility::Face> faces_of_fronts(const grid::Solid& solid, const std::vector<grid::CellId>& cells) {
+std::vector<visibility::Face> faces_of_fronts(const grid::Solid& solid, const std::vector<grid::CellId>& cells,
+                                              const double lag) {
   std::vector<visibility::Face> faces;
   for (const grid::CellId c : cells)
     if (const grid::Front* const front = solid.cuts.front(c))
-      for (const Points& polygon : front->come)
+      for (const Points& come : front->come) {
+        const Points polygon = with_lag(come, *front, solid.grid.h(), lag);
         for (std::size_t i = 2; i < polygon.size(); ++i)
           faces.push_back({polygon[0], polygon[i - 1], polygon[i]});
+      }
   return faces;
 }
 
@@ -129,8 +146,8 @@ dynamics::StepReport Phyxels::step(dynamics::State& state, const dynamics::Loads
   return report;
 }
 
-void Phyxels::begin_to_look(const surface::Surface& surface) {
-  const std::vector<Face> skin = faces_of(surface, Part::skin);
+void Phyxels::begin_to_look(const CutBody& body) {
+  const std::vector<Face> skin = faces_of(body, Part::skin);
   sights_.emplace(visibility::make_criterion(options_.visibility.choice, skin));
   const auto& neighbours = model_.neighbours();
   sights_->watch(visibility::PairId(0), pairs_of(rest(), rest(), neighbours.pairs, neighbours.support));
@@ -219,9 +236,9 @@ void Phyxels::follow_crumbs(const CutBody& body, const std::function<Motion()>& 
 
 void Phyxels::follow_cut(const CutBody& body, const grid::CutChange& change, dynamics::State& state) {
   if (!sights_)
-    begin_to_look(body.surface);
-  add_faces(faces_of(body.surface, Part::cuts));
-  add_faces(faces_of_fronts(body.solid, change.cells));
+    begin_to_look(body);
+  add_faces(faces_of(body, Part::cuts));
+  add_faces(faces_of_fronts(body.solid, change.cells, pba::front_lag(model_.phyxels())));
   find_pieces(body);
   const Vec3 had = momentum(model_.lumped_mass(), crumbs_, state);
   const std::vector<std::uint8_t> carried = crumbs_.carried();

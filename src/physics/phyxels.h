@@ -13,9 +13,10 @@
 /// that exists before the first cut.
 ///
 /// The faces are those of the surface that cuts have revealed, in the rest configuration, each once; where a later cut
-/// moves a vertex, the moved faces come beside the earlier ones. Where a disc or a rectangle ends inside a cell, what
-/// it has come to is a face too (Front, grid/cuts.h). Criteria that look for ways around a cut see the skin too; to
-/// extended visibility it tells which part of a disk is in the body.
+/// moves a vertex, the moved faces come beside the earlier ones. Where a cut ends inside a cell, what it has come to is a
+/// face there in place of them (Front, grid/cuts.h), longer by what a cut seems too short to phyxels (pba::front_lag).
+/// Criteria that look for ways around a cut see the skin too; to extended visibility it tells which part of a disk is in
+/// the body.
 
 #include "pba/corners.h"
 #include "pba/model.h"
@@ -83,7 +84,7 @@ class Phyxels : public Physics {
   static Made make(const CutBody& body, const PhyxelsOptions& options);
   Phyxels(const CutBody& body, const PhyxelsOptions& options, StepperMaker make_stepper, Made made);
 
-  void begin_to_look(const surface::Surface& surface);
+  void begin_to_look(const CutBody& body);
   /// Those that are new come between the pairs.
   void add_faces(const std::vector<Face>& faces);
   void find_pieces(const CutBody& body);

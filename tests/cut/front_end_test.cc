@@ -49,19 +49,24 @@ Rectangle rectangle_to(const double x) { return {Vec3(0.5 * x, 5, 5.4), Vec3(x, 
 
 /// At the skin vertices keep clear of it.
 TEST(FrontEnd, IsDrawnWhereARectangleEnds) {
-  for (double x = 3.03; x < 6; x += 0.0725) {
-    Cutting cutting(block(), Fronts::inside_cells);
-    cutting.cut(rectangle_to(x));
-    const Drawn cut = drawn(cutting.surface, Vec3::UnitZ());
-    ASSERT_GT(cut.end.size(), 15u);
-    for (const Vec3& p : cut.end)
-      EXPECT_NEAR(p[0], x, std::abs(p[1] - 5) < 4 ? 0.03 : 0.1) << x;
-  }
+  for (const Fronts fronts : {Fronts::inside_cells, Fronts::as_faces})
+    for (double x = 3.03; x < 6; x += 0.0725) {
+      Cutting cutting(block(), fronts);
+      cutting.cut(rectangle_to(x));
+      const Drawn cut = drawn(cutting.surface, Vec3::UnitZ());
+      ASSERT_GT(cut.end.size(), 15u);
+      for (const Vec3& p : cut.end)
+        EXPECT_NEAR(p[0], x, std::abs(p[1] - 5) < 4 ? 0.03 : 0.1) << x;
+    }
 }
 
-TEST(FrontEnd, IsDrawnWhereABladeIs) {
+class DrawnEnds : public testing::TestWithParam<Fronts> {};
+INSTANTIATE_TEST_SUITE_P(FrontEnd, DrawnEnds, testing::Values(Fronts::inside_cells, Fronts::as_faces),
+                         [](const auto& info) { return info.param == Fronts::as_faces ? "as_faces" : "inside_cells"; });
+
+TEST_P(DrawnEnds, AreWhereABladeIs) {
   for (const double step : {0.07, 0.3, 0.9}) {
-    Cutting cutting(block(), Fronts::inside_cells);
+    Cutting cutting(block(), GetParam());
     const Blade blade = {"blade", {Vec3(0, -20, 0), Vec3(0, 20, 0)}, {{0, Vec3(-2, 0, 5.4)}, {100, Vec3(98, 0, 5.4)}}};
     int n = 0;
     for (double t = 0; t < 9; t += step) {

@@ -168,8 +168,9 @@ struct SlitBlock {
     const auto now = physics.model().weights();
     return {now.begin(), now.end()};
   }
-  /// The weights that the two triangles of the slit up to x = end would leave.
-  std::vector<double> weights_at(const double end) {
+  /// The weights that the two triangles of the slit up to x = end would leave, longer by the lag of fronts.
+  std::vector<double> weights_at(const double slit_end) {
+    const double end = slit_end + pba::front_lag(physics.model().phyxels());
     visibility::PairSights sights(visibility::make_criterion(options().visibility.choice, skin));
     const auto& [pairs, supports] = std::tie(physics.model().neighbours().pairs, physics.model().neighbours().support);
     std::vector<visibility::Pair> watched;
