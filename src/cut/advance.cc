@@ -39,10 +39,10 @@ Raster section_of(const Solid& solid, const Front& front, const InPlane& in_plan
 Box in_sight_of(const Solid& solid, const CellId c) { return around(solid, c, 0.01 * solid.grid.h()); }
 
 /// What of the section is drawn, with its lag.
-Raster come_in(const Front& front, const double h, const Raster& section, const Raster& swept) {
+Raster come_in(const Front& front, const Fronts fronts, const double h, const Raster& section, const Raster& swept) {
   const InPlane in_plane(front.point, front.normal, h);
-  const auto lag = [&](const double x, const double y) { return grid::front_lag(x * in_plane.u + y * in_plane.v); };
-  return section & swept.grown(lag, grid::most_front_lag);
+  const auto further = [&](const double x, const double y) { return lag(fronts, x * in_plane.u + y * in_plane.v); };
+  return section & swept.grown(further, most_lag(fronts));
 }
 
 /// Over the texels of a part of a front's plane.
@@ -64,7 +64,7 @@ OfVertices weighted(const Solid& solid, const Front& front, const Raster& part) 
 void Advance::sweep(const BladePath& path, const Solid& solid, const Points& x_before, const Points& x,
                     const EdgeBoxes& boxes, const grid::CutLabel label) {
   const bool rests = path.lines.front() == path.lines.back();
-  sweep(SweptPieces(path, solid, x_before, x), solid, boxes, label, rests);
+  sweep(SweptPieces(path, solid, x_before, x, most_lag(fronts_)), solid, boxes, label, rests);
   for (const CellId c : touched_)
     for (std::vector<Polygon>* const pieces : {&cells_.at(c).pieces, &cells_.at(c).at_rest})
       if (pieces->size() > most_pieces)
@@ -73,7 +73,7 @@ void Advance::sweep(const BladePath& path, const Solid& solid, const Points& x_b
 
 void Advance::sweep(const geometry::TriangleMesh& mesh, const Solid& solid, const Points& x, const EdgeBoxes& boxes,
                     const grid::CutLabel label) {
-  sweep(SweptPieces(mesh, solid, x), solid, boxes, label, false);
+  sweep(SweptPieces(mesh, solid, x, most_lag(fronts_)), solid, boxes, label, false);
 }
 
 void Advance::sweep(const SweptPieces& sweep, const Solid& solid, const EdgeBoxes& boxes, const grid::CutLabel label,
@@ -110,7 +110,7 @@ void Advance::add(const Solid& solid, const CellId c, const Polygon& piece, cons
   if (moves_front) {
     const InPlane in_plane(front->point, front->normal, solid.grid.h());
     const int n_new = draw(piece, in_plane, cell.swept);
-    if (as_faces_)
+    if (tell_faces())
       cell.add_fresh(*front, solid.grid.h(), clipped(piece, in_sight_of(solid, c)), n_new);
   } else {
     (rests ? cell.at_rest : cell.pieces).push_back(piece);
@@ -275,11 +275,11 @@ std::vector<Front> Advance::take(const Solid& solid, const PendingCuts& pending)
     }
   }
   std::vector<Front> fronts = begin(solid, stand, waits, later);
-  if (!as_faces_ || ahead_ == Ahead::ends)
+  if (!tell_faces() || ahead_ == Ahead::ends)
     move(solid, stand, fronts);
   for (const CellId c : forgotten)
     cells_.erase(c);
-  if (as_faces_)
+  if (tell_faces())
     tell_where_they_have_come(solid, fronts);
   touched_before_ = std::move(touched_);
   touched_ = std::move(later);
@@ -365,7 +365,7 @@ void Advance::move(const Solid& solid, Stand& stand, std::vector<Front>& fronts)
 
 /// A front that has come through a part of its cell's section.
 void Advance::come_to(const Solid& solid, const Cell& cell, Front& front) const {
-  const Raster come = come_in(front, solid.grid.h(), cell.section, cell.swept);
+  const Raster come = come_in(front, fronts_, solid.grid.h(), cell.section, cell.swept);
   put_end(cell.section, cell.swept, come, solid.grid.h(), front);
   front.passed = cell.section.any() ? std::min(most_passed, double(come.count()) / cell.section.count()) : 0;
   const OfVertices sums = weighted(solid, front, come);
@@ -420,7 +420,7 @@ Advance::Cell Advance::follow(const Solid& solid, Front& front) const {
   for (const std::vector<Polygon>* const pieces : {&cell.pieces, &cell.at_rest})
     for (const Polygon& piece : *pieces) {
       draw(piece, in_plane, followed.swept);
-      if (as_faces_)
+      if (tell_faces())
         followed.add_fresh(front, solid.grid.h(), clipped(piece, in_sight_of(solid, front.cell)), 0);
     }
   followed.whole = weighted(solid, front, followed.section);

@@ -8,7 +8,7 @@
 /// move no fronts that surfaces have left which cut at once.
 ///
 /// What the blade sweeps is drawn onto a raster in that plane, where a point that is passed twice counts once; what
-/// leaves the plane by a quarter of a cube does not count. As elements are too stiff at a front, what is drawn is taken
+/// leaves the plane by a quarter of a cube does not count. As physics are too stiff at a front, what is drawn is taken
 /// larger by the lag of fronts, and so reaches on into the next cells. The part of the section of plane and material
 /// that it covers is how far the cut has come. Cells are parted once a vertex of theirs opens (openings.h), into some
 /// of which the front has not come by then. Where it has come, without that lag, is told as the hull of what has been
@@ -22,6 +22,7 @@
 #include "base/function_ref.h"
 #include "cut/course.h"
 #include "cut/edge_boxes.h"
+#include "cut/fronts.h"
 #include "cut/openings.h"
 #include "cut/pending.h"
 #include "cut/raster.h"
@@ -34,8 +35,7 @@ class SweptPieces;
 
 class Advance {
  public:
-  /// As faces: fronts tell where blades have come (grid::Front::come).
-  explicit Advance(const bool as_faces, const Ahead ahead = Ahead::goes_on) : as_faces_(as_faces), ahead_(ahead) {}
+  explicit Advance(const Fronts fronts, const Ahead ahead = Ahead::goes_on) : fronts_(fronts), ahead_(ahead) {}
 
   /// What a blade sweeps while the corners go from x_before to x [m], to which `boxes` are fitted.
   void sweep(const BladePath& path, const grid::Solid& solid, const Points& x_before, const Points& x,
@@ -84,7 +84,9 @@ class Advance {
   void move(const grid::Solid& solid, Stand& stand, std::vector<grid::Front>& fronts);
   void tell_where_they_have_come(const grid::Solid& solid, std::vector<grid::Front>& fronts);
 
-  bool as_faces_;
+  bool tell_faces() const { return fronts_ == Fronts::of_points; }
+
+  Fronts fronts_;
   Ahead ahead_;
   std::map<grid::CellId, Cell> cells_;
   std::set<grid::CellId> touched_, touched_before_; // in which blades have swept since fronts were taken; before that

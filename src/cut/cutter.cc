@@ -167,7 +167,7 @@ Cutter::Cutter(const std::size_t n_labels, const Release release, const Fronts f
   : release_(release),
     fronts_(fronts),
     passed_(n_labels),
-    advance_(fronts == Fronts::as_faces),
+    advance_(fronts),
     counts_{.n_cut_edges = std::vector<std::size_t>(n_labels, 0), .between = std::vector<double>(n_labels, 0)} {}
 
 void Cutter::begin(const Solid& solid, const Points& x) {
@@ -231,14 +231,14 @@ CutChange Cutter::at_once(Solid& solid, const CutSurface& surface, const Points&
   boxes_stand_there_ = false;
   const SweepCuts found = cut_edges(surface, solid, x, &*boxes_);
   counts_.n_double_crossings += found.n_double_crossings;
-  Advance at_once(fronts_ == Fronts::as_faces, Ahead::ends);
+  Advance at_once(fronts_, Ahead::ends);
   const auto* const mesh = std::get_if<geometry::TriangleMesh>(&surface.shape);
   if (mesh && fronts_ != Fronts::at_faces && geometry::has_border(*mesh))
     at_once.sweep(*mesh, solid, x, *boxes_, surface.label);
   const Added added = add(solid, found, x);
   std::vector<grid::Front> fronts = at_once.take(solid, pending_);
   if (!mesh && fronts_ != Fronts::at_faces)
-    fronts = find_fronts(surface, solid, x, fronts_ == Fronts::as_faces);
+    fronts = find_fronts(surface, solid, x, fronts_);
   return part(solid, added, fronts, x);
 }
 

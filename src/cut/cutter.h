@@ -15,6 +15,7 @@
 
 #include "cut/advance.h"
 #include "cut/cut_surface.h"
+#include "cut/fronts.h"
 #include "cut/passage.h"
 #include "cut/passed.h"
 #include "cut/pending.h"
@@ -47,13 +48,6 @@ struct CutCounts {
 /// What blades meet in a step: two edges of a cell at most are cut in it, the rest waits (pending.h); or all are. The
 /// skin is always cut at once.
 enum class Release { queued, at_once };
-
-/// Where cuts may end (fronts.h, advance.h).
-enum class Fronts {
-  at_faces,     ///< with the last cell that they part
-  inside_cells, ///< wherever they do (grid/fronts.h)
-  as_faces      ///< likewise, and each front tells where its cut has come (grid::Front::come)
-};
 
 class Cutter {
  public:

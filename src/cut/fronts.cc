@@ -28,25 +28,25 @@ struct Outline {
   std::vector<HalfSpace> sides;
 };
 
-/// The shape, larger all around by the lag of fronts in cubes of this edge [m], or not with 0.
-Outline outline_of(const Disc& disc, const double h) {
+/// The shape, larger all around by the lag of these fronts in cubes of this edge [m], or not with 0.
+Outline outline_of(const Disc& disc, const Fronts fronts, const double h) {
   constexpr int n = 256;
-  Outline outline{disc.centre, disc.normal, disc.radius + grid::most_front_lag * h, {}};
+  Outline outline{disc.centre, disc.normal, disc.radius + most_lag(fronts) * h, {}};
   const Vec3 u = disc.normal.unitOrthogonal(), v = disc.normal.cross(u);
   for (int i = 0; i < n; ++i) {
     const double angle = 2 * std::numbers::pi * i / n;
     const Vec3 out = std::cos(angle) * u + std::sin(angle) * v;
-    outline.sides.push_back({out, out.dot(disc.centre) + disc.radius + grid::front_lag(out) * h});
+    outline.sides.push_back({out, out.dot(disc.centre) + disc.radius + lag(fronts, out) * h});
   }
   return outline;
 }
 
-Outline outline_of(const Rectangle& rectangle, const double h) {
+Outline outline_of(const Rectangle& rectangle, const Fronts fronts, const double h) {
   const Vec3 &a = rectangle.first_side, &b = rectangle.second_side;
-  Outline outline{rectangle.centre, a.cross(b).normalized(), 0.5 * (a + b).norm() + 2 * grid::most_front_lag * h, {}};
+  Outline outline{rectangle.centre, a.cross(b).normalized(), 0.5 * (a + b).norm() + 2 * most_lag(fronts) * h, {}};
   for (const Vec3& side : {a, Vec3(-a), b, Vec3(-b)})
     outline.sides.push_back({side.normalized(),
-                             side.normalized().dot(rectangle.centre) + 0.5 * side.norm() + grid::front_lag(side) * h});
+                             side.normalized().dot(rectangle.centre) + 0.5 * side.norm() + lag(fronts, side) * h});
   return outline;
 }
 
@@ -55,13 +55,12 @@ struct Outlines {
   Outline own, with_lag;
 };
 template <class Flat>
-std::optional<Outlines> outlines_of(const Flat& shape, const double h) {
-  const Outline own = outline_of(shape, 0);
-  return Outlines{own, outline_of(shape, h)};
+std::optional<Outlines> outlines_of(const Flat& shape, const Fronts fronts, const double h) {
+  return Outlines{outline_of(shape, fronts, 0), outline_of(shape, fronts, h)};
 }
 template <class Shape>
 requires(!std::is_same_v<Shape, Disc> && !std::is_same_v<Shape, Rectangle>) std::optional<Outlines>
-  outlines_of(const Shape&, double) {
+  outlines_of(const Shape&, Fronts, double) {
   return std::nullopt;
 }
 
@@ -107,7 +106,7 @@ void put_end(const Outline& shape, const Vec3& middle, const ToRest& to_rest, Fr
 }
 
 /// How far the shape has come in the cell; told by where, too.
-Front front_in(const CellAtPlane& cell, const Outlines& outlines, const ToRest& to_rest, const bool as_faces) {
+Front front_in(const CellAtPlane& cell, const Outlines& outlines, const ToRest& to_rest, const Fronts fronts) {
   double inside = 0, all = 0;
   const std::vector<Polygon> material = cell.material();
   for (const Polygon& piece : material) {
@@ -117,7 +116,7 @@ Front front_in(const CellAtPlane& cell, const Outlines& outlines, const ToRest& 
   const CellAtPlane::Section section = cell.section();
   Front front = cell.front(section, all > 0 ? inside / all : 0);
   put_end(outlines.own, mean(section.there), to_rest, front);
-  if (as_faces)
+  if (fronts == Fronts::of_points)
     front.come = {come_in(section, outlines.own)};
   return front;
 }
@@ -195,9 +194,16 @@ std::optional<Front> moved_on(const Front& earlier, const Front& now, const doub
 
 } // namespace
 
-std::vector<Front> find_fronts(const CutSurface& surface, const Solid& solid, const Points& x, const bool as_faces) {
+double lag(const Fronts fronts, const Vec3& ahead) {
+  return grid::front_lag(ahead) * (fronts == Fronts::of_springs ? grid::lag_of_springs : 1);
+}
+double most_lag(const Fronts fronts) {
+  return grid::most_front_lag * (fronts == Fronts::of_springs ? grid::lag_of_springs : 1);
+}
+
+std::vector<Front> find_fronts(const CutSurface& surface, const Solid& solid, const Points& x, const Fronts fronts) {
   const double h = solid.grid.h();
-  const auto outlines = std::visit([&](const auto& shape) { return outlines_of(shape, h); }, surface.shape);
+  const auto outlines = std::visit([&](const auto& shape) { return outlines_of(shape, fronts, h); }, surface.shape);
   if (!outlines)
     return {};
   const Outline& outline = outlines->with_lag;
@@ -215,24 +221,24 @@ std::vector<Front> find_fronts(const CutSurface& surface, const Solid& solid, co
     const Front* const earlier = solid.cuts.front(c);
     if (!earlier && (copy.next.valid() || solid.cuts.joined(c)))
       continue;
-    Front front = front_in(cell, *outlines, ToRest(solid, c, x), as_faces);
+    Front front = front_in(cell, *outlines, ToRest(solid, c, x), fronts);
     front.reached = reached;
     front.label = surface.label;
     if (earlier ? is_same_plane(front, *earlier, h) : front.ahead != 0 && !hangs_by_skin(solid, front))
       met.push_back(std::move(front));
   }
-  std::vector<Front> fronts;
+  std::vector<Front> found;
   for (Front& front : met) {
     front.held = held_at(solid, front.cell, nodes);
     if (const Front* const earlier = solid.cuts.front(front.cell)) {
       if (auto moved = moved_on(*earlier, front, h))
-        fronts.push_back(std::move(*moved));
+        found.push_back(std::move(*moved));
     } else if (opens_a_vertex(solid, front.cell, nodes)) {
       front.passed = std::max(front.passed, least_passed);
-      fronts.push_back(std::move(front));
+      found.push_back(std::move(front));
     }
   }
-  return fronts;
+  return found;
 }
 
 } // namespace kerf::cut

@@ -46,20 +46,28 @@ Polygon clipped(Polygon polygon, const Box& box) {
   return polygon;
 }
 
-SweptPieces::SweptPieces(const BladePath& path, const Solid& solid, const Points& x_before, const Points& x)
-  : solid_(solid), x_before_(x_before), x_(x), patches_(patches(path)), fractions_(fractions_of(path)), near_(patches_) {}
+SweptPieces::SweptPieces(const BladePath& path, const Solid& solid, const Points& x_before, const Points& x,
+                         const double lag)
+  : solid_(solid),
+    x_before_(x_before),
+    x_(x),
+    patches_(patches(path)),
+    fractions_(fractions_of(path)),
+    near_(patches_),
+    lag_(lag) {}
 
-SweptPieces::SweptPieces(const geometry::TriangleMesh& mesh, const Solid& solid, const Points& x)
+SweptPieces::SweptPieces(const geometry::TriangleMesh& mesh, const Solid& solid, const Points& x, const double lag)
   : solid_(solid),
     x_before_(x),
     x_(x),
     patches_(patches_of(mesh)),
     fractions_(mesh.triangles.size(), {0, 0}),
-    near_(patches_) {}
+    near_(patches_),
+    lag_(lag) {}
 
 std::vector<Polygon> SweptPieces::in(const CellId c) const {
   const ToRest before(solid_, c, x_before_), now(solid_, c, x_);
-  const Box reach = around(solid_, c, grid::most_front_lag * solid_.grid.h());
+  const Box reach = around(solid_, c, lag_ * solid_.grid.h());
   std::vector<std::size_t> near;
   near_.for_each(box_of(c), [&](const std::size_t i) { near.push_back(i); });
   std::ranges::sort(near);
@@ -88,7 +96,7 @@ Box SweptPieces::box_of(const CellId c) const {
     corners[8 + v] = x_before_[copy.corners[v].value];
   }
   const Box box = geometry::box_around(corners);
-  const Vec3 lag = Vec3::Constant(grid::most_front_lag * (box.upper - box.lower).maxCoeff());
+  const Vec3 lag = Vec3::Constant(lag_ * (box.upper - box.lower).maxCoeff());
   return {box.lower - lag, box.upper + lag};
 }
 

@@ -17,10 +17,10 @@ Polygon clipped(Polygon polygon, const Box& box);
 
 class SweptPieces {
  public:
-  /// While the corners go from x_before to x [m].
-  SweptPieces(const BladePath& path, const grid::Solid& solid, const Points& x_before, const Points& x);
+  /// While the corners go from x_before to x [m]; `lag`: the most of fronts [cubes].
+  SweptPieces(const BladePath& path, const grid::Solid& solid, const Points& x_before, const Points& x, double lag);
   /// What a mesh cuts at once, with the corners at x.
-  SweptPieces(const geometry::TriangleMesh& mesh, const grid::Solid& solid, const Points& x);
+  SweptPieces(const geometry::TriangleMesh& mesh, const grid::Solid& solid, const Points& x, double lag);
 
   bool is_near(const EdgeBoxes::Block& block) const { return near_.may_be_in(block.around_cells()); }
   bool is_near(const grid::CellId c) const { return near_.may_be_in(box_of(c)); }
@@ -37,6 +37,7 @@ class SweptPieces {
   std::vector<std::array<double, 2>> fractions_; // of the way from x_before to x, at which the first and the last two
                                                  // points of a patch stand
   NearSweep near_;
+  double lag_;
 };
 
 } // namespace kerf::cut

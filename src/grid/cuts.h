@@ -91,7 +91,7 @@ struct Front {
   Vec3 onward = Vec3::Zero(); ///< unit, in the plane: the way on from where the cut ends; zero where that is not known
   double end = 0; ///< onward . p of the line in which it ends, without the lag of fronts [m]
   std::vector<Points> come = {}; ///< where the cut has come in the cell, and a little beside it, since the front was
-                                 ///< told last: convex polygons, rest frame [m]; for cut::Fronts::as_faces
+                                 ///< told last: convex polygons, rest frame [m]; for cut::Fronts::of_points
 
   void archive(Archive& a) { a(cell, ahead, point, normal, passed, label, reached, held, onward, end, come); }
 };

@@ -48,6 +48,8 @@ namespace kerf::grid {
 double front_lag(const Vec3& ahead);
 /// The most that it can be.
 constexpr double most_front_lag = 0.25;
+/// To springs, and to lattices, times that: measured on openings of penny-shaped cuts, 2.3 and 2, and of an edge crack, 2.
+constexpr double lag_of_springs = 2;
 
 /// Between two corners at one node.
 struct Tie {

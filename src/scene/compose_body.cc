@@ -246,7 +246,9 @@ Body compose_body(const Section& section, const GravityParameters* gravity, cons
     body.n_modes = read_if_written<dynamics::ModalParameters>(section, "Modal").n_modes;
   body.fronts = compose_crack_fronts(section, parameters.cube_edge, parameters.backend);
   if (const std::size_t n_cuts = world.blades.size() + world.cut_surfaces.size(); n_cuts > 0) {
-    const auto fronts = parameters.backend == "pba" ? cut::Fronts::as_faces : cut::Fronts::inside_cells;
+    const auto fronts = parameters.backend == "fem"   ? cut::Fronts::of_elements
+                        : parameters.backend == "pba" ? cut::Fronts::of_points
+                                                      : cut::Fronts::of_springs;
     body.cutter = std::make_unique<cut::Cutter>(n_cuts, cut::Release::queued, fronts);
   }
   start(body, mesh, physics_maker(section, parameters, world.time_step), world.setup_seconds);

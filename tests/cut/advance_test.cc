@@ -21,14 +21,14 @@ Blade along_x(const double y0 = -20, const double y1 = 20) {
 /// A blade that stops anywhere leaves the fronts that a rectangle up to there leaves.
 TEST(Advance, LeavesTheFrontsOfARectangle) {
   for (const double speed : {0.05, 0.3, 2.0}) {
-    Cutting moving(block(), Fronts::inside_cells);
+    Cutting moving(block(), Fronts::of_elements);
     double t = 0;
     for (int k = 0; t < 9; ++k, t += speed) {
       moving.step(along_x(), t, t + speed);
       const double end = t + speed - 2;
       if (end < 0.8 || std::abs(end - std::round(end)) < 1e-9 || moving.cutter.n_waiting() > 0)
         continue; // right at a node round-off decides
-      Cutting at_once(block(), Fronts::inside_cells);
+      Cutting at_once(block(), Fronts::of_elements);
       at_once.cut(Rectangle{Vec3(0.5 * end, 5, 5.4), Vec3(end, 0, 0), Vec3(0, 40, 0)});
       ASSERT_EQ(moving.body.complex.tied.size(), at_once.body.complex.tied.size()) << speed << " " << end;
       for (const auto& [a, b] : at_once.body.complex.tied) {
@@ -57,9 +57,9 @@ TEST(Advance, GoesOnWhereAnotherBladeHasStopped) {
               .edge = {Vec3(0, 0, -0.15), Vec3(0, 0, 0.15)},
               .key_frames = {{1, at(across)}, {2, at(across) + 20 * Vec3::UnitY()}},
               .label = 3}};
-      Cutting moving(block(), Fronts::inside_cells), at_once(block(), Fronts::inside_cells);
+      Cutting moving(block(), Fronts::of_elements), at_once(block(), Fronts::of_elements);
       const auto expect_fronts_up_to = [&](const double x) {
-        at_once = Cutting(block(), Fronts::inside_cells);
+        at_once = Cutting(block(), Fronts::of_elements);
         at_once.cut(Rectangle{0.5 * at(x) + Vec3(0, 5, 2.7), Vec3(x, 0, 0), Vec3(0, 40, 0)});
         EXPECT_EQ(moving.body.complex.tied.size(), at_once.body.complex.tied.size()) << stop << " " << x;
         for (const auto& [a, b] : at_once.body.complex.tied) {
@@ -89,7 +89,7 @@ TEST(Advance, LeavesThemWhicheverWayItComes) {
           const auto place = [&](const double s) {
             return Vec3((is_down ? 10 - s : s) * along + 5.4 * normal + 5 * edge);
           };
-          Cutting moving(block(), Fronts::inside_cells);
+          Cutting moving(block(), Fronts::of_elements);
           const Blade blade = {"blade", {-20 * edge, 20 * edge}, {{0, place(-2)}, {end + 2, place(end)}}};
           double t = 0;
           for (; t < end + 2; t += step)
@@ -97,7 +97,7 @@ TEST(Advance, LeavesThemWhicheverWayItComes) {
           for (int k = 0; k < 4; ++k, t += step)
             moving.step(blade, t, t + step);
           ASSERT_EQ(moving.cutter.n_waiting(), 0u);
-          Cutting at_once(block(), Fronts::inside_cells);
+          Cutting at_once(block(), Fronts::of_elements);
           at_once.cut(Rectangle{0.5 * (place(-2) + place(end)), place(end) - place(-2), 40 * edge});
           EXPECT_EQ(moving.body.complex.tied.size(), at_once.body.complex.tied.size())
             << axis << is_down << " " << end << " " << step;
@@ -138,7 +138,7 @@ TEST(Advance, LeavesThemWhereABodyGivesWayUnderABladeThatRests) {
     const double height = support::uniform(random, 4.2, 4.8), end = support::uniform(random, 4.1, 6.9);
     const auto place = [&](const double s) { return Vec3(s, 5, height + 0.06 * (s - end)); };
     const Vec3 edge = Vec3::UnitY() + tilt * Vec3::UnitZ();
-    Cutting moving(block(), Fronts::inside_cells);
+    Cutting moving(block(), Fronts::of_elements);
     const Blade blade = {"blade", {-20 * edge, 20 * edge}, {{0, place(-2)}, {1, place(end)}}};
     moving.step(blade, 0, 1);
     n_waited += moving.cutter.n_waiting() > 0;
@@ -147,7 +147,7 @@ TEST(Advance, LeavesThemWhereABodyGivesWayUnderABladeThatRests) {
       moving.step(blade, k, k + 1, gaping(moving.body, end, height, 0.3 * part, part * Vec3(0.6, 0, 0.2)));
     }
     ASSERT_EQ(moving.cutter.n_waiting(), 0u);
-    Cutting at_once(block(), Fronts::inside_cells);
+    Cutting at_once(block(), Fronts::of_elements);
     const double before = end - 0.03; // cells that the front has only just come to are not asked for
     at_once.cut(Rectangle{0.5 * (place(-2) + place(before)), place(before) - place(-2), 40 * edge});
     n_lacking += moving.body.complex.tied.size() < at_once.body.complex.tied.size();
@@ -167,7 +167,7 @@ TEST(Advance, JoinsNothingThatGapes) {
   for (int i = 0; i < 80; ++i) {
     const double height = uniform(random, 4, 5), turn = uniform(random, 2.5, 6.5), slope = uniform(random, -1.5, 1.5);
     const Vec3 edge = Vec3::UnitY() + uniform(random, -0.2, 0.2) * Vec3::UnitZ();
-    Cutting moving(block(), Fronts::inside_cells);
+    Cutting moving(block(), Fronts::of_elements);
     const Vec3 at_turn(turn, 5, height);
     const Blade blade = {"blade",
                          {-20 * edge, 20 * edge},
@@ -248,7 +248,7 @@ TEST(Advance, LeavesThePiecesMassAndSurfaceAsTheyWere) {
     const bool swings = i % 2 == 1;
     const Body whole =
       support::with_copies(support::with_placed_skin(support::ball(3 + 0.05 * i, 1, support::random_offset(random))));
-    Cutting with(whole, Fronts::inside_cells), without(whole, Fronts::at_faces);
+    Cutting with(whole, Fronts::of_elements), without(whole, Fronts::at_faces);
     double time = 0;
     for (int stroke = 0; stroke < 2; ++stroke) {
       const Blade blade = random_stroke(random, 4);
@@ -290,7 +290,7 @@ TEST(Advance, LeavesACompletedCutAsItIsWithoutFronts) {
   for (int i = 0; i < n_bodies; ++i) {
     const Body whole =
       support::with_copies(support::with_placed_skin(support::ball(3 + 0.05 * i, 1, support::random_offset(random))));
-    Cutting with(whole, Fronts::inside_cells), without(whole, Fronts::at_faces);
+    Cutting with(whole, Fronts::of_elements), without(whole, Fronts::at_faces);
     const Blade blade = winding(random);
     const double height = i % 2 == 0 ? 0 : 0.3;
     const int n_steps = std::array{7, 17, 40}[i % 3];
@@ -341,7 +341,7 @@ TEST(Advance, DoesNotDependOnSteps) {
   for (int i = 0; i < 20; ++i) {
     const Body whole =
       support::with_copies(support::with_placed_skin(support::ball(4, 1, support::random_offset(random))));
-    Cutting slow(whole, Fronts::inside_cells), fast(whole, Fronts::inside_cells);
+    Cutting slow(whole, Fronts::of_elements), fast(whole, Fronts::of_elements);
     Blade blade = random_stroke(random, 4);
     for (KeyFrame& frame : blade.key_frames)
       frame.rotation = Vec3::Zero();
@@ -383,7 +383,7 @@ TEST(Advance, LeavesFrontsWhereABladeTurns) {
       blade.key_frames.push_back(
         {k / 60.0, start + radius * (std::sin(angle) * towards + (1 - std::cos(angle)) * up), Vec3::Zero()});
     }
-    Cutting by_blade(block(), Fronts::inside_cells), by_mesh(block(), Fronts::inside_cells);
+    Cutting by_blade(block(), Fronts::of_elements), by_mesh(block(), Fronts::of_elements);
     const int n_steps = std::array{3, 11, 60}[i % 3];
     for (int k = 0; k < n_steps || by_blade.cutter.n_waiting() > 0; ++k)
       by_blade.step(blade, std::min(1.0, double(k) / n_steps), std::min(1.0, double(k + 1) / n_steps));

@@ -14,7 +14,7 @@ TEST(CutterArchive, IsGoneOnFrom) {
   const Points x = grid::rest_positions(whole);
   const Blade blade{"blade", {Vec3(0, -20, 0), Vec3(0, 20, 0)}, {{0, Vec3(-6, 0, 0.37)}, {1, Vec3(6, 0, 0.37)}}};
   Body body = whole, again = whole;
-  Cutter cutter(1, Release::queued, Fronts::inside_cells), resumed(1, Release::queued, Fronts::inside_cells);
+  Cutter cutter(1, Release::queued, Fronts::of_elements), resumed(1, Release::queued, Fronts::of_elements);
   cutter.begin(body, x);
   resumed.begin(again, x);
   const auto step = [&](Cutter& by, Body& of, const int k) {
@@ -71,13 +71,13 @@ TEST(CutterArchive, IsGoneOnFromAfterEveryStep) {
       return change.lapsed.size();
     };
     Body body = whole, again = whole;
-    Cutter cutter(3, Release::queued, Fronts::inside_cells), resumed = cutter;
+    Cutter cutter(3, Release::queued, Fronts::of_elements), resumed = cutter;
     cutter.begin(body, swung(body, height, 0));
     resumed.begin(again, swung(again, height, 0));
     for (double t = 0; t < 1; t += speed) {
       Archive back(bytes(resumed, again), "a test");
       again = whole;
-      resumed = Cutter(3, Release::queued, Fronts::inside_cells);
+      resumed = Cutter(3, Release::queued, Fronts::of_elements);
       resumed.begin(again, grid::rest_positions(again));
       back(again, resumed);
       n_joined += static_cast<int>(cut(cutter, body, t));

@@ -296,7 +296,7 @@ TEST(AtSkin, WhatASmallAngleJoinsIsAsBuilt) {
     const double angle = (i % 3 + 1) * 10 * std::numbers::pi / 180;
     const Body body =
       support::with_copies(i % 2 ? box_body(random) : support::ball(0.4, h, support::random_offset(random)));
-    Cutting cutting(body, i < 2 ? Fronts::at_faces : Fronts::inside_cells);
+    Cutting cutting(body, i < 2 ? Fronts::at_faces : Fronts::of_elements);
     const Vec3 through =
       0.5 * (body.grid.position(grid::NodeId(0u)) + body.grid.position(grid::NodeId(body.grid.n_nodes() - 1)));
     const Vec3 n = random_direction(random), along = n.unitOrthogonal();

@@ -12,6 +12,7 @@
 #include <cmath>
 #include <iostream>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -67,6 +68,14 @@ inline PiecesAndFine pieces_and_fine(const grid::Solid& solid, const support::Fi
   std::sort(result.grid.begin(), result.grid.end());
   std::sort(result.fine.begin(), result.fine.end());
   return result;
+}
+
+/// `judged` says of a body what fine points, so many along a cube's edge, find. A crumb that is not free by them is
+/// judged by twice as many: it may have but a few of them.
+template <class Judged>
+std::optional<PiecesAndFine> judged_finely(const int n, const Judged& judged) {
+  std::optional<PiecesAndFine> pieces = judged(n);
+  return pieces && pieces->n_not_free > 0 ? judged(2 * n) : pieces;
 }
 
 /// Of ascending volumes, those above one.

@@ -49,7 +49,7 @@ Rectangle rectangle_to(const double x) { return {Vec3(0.5 * x, 5, 5.4), Vec3(x, 
 
 /// At the skin vertices keep clear of it.
 TEST(FrontEnd, IsDrawnWhereARectangleEnds) {
-  for (const Fronts fronts : {Fronts::inside_cells, Fronts::as_faces})
+  for (const Fronts fronts : {Fronts::of_elements, Fronts::of_points})
     for (double x = 3.03; x < 6; x += 0.0725) {
       Cutting cutting(block(), fronts);
       cutting.cut(rectangle_to(x));
@@ -61,8 +61,8 @@ TEST(FrontEnd, IsDrawnWhereARectangleEnds) {
 }
 
 class DrawnEnds : public testing::TestWithParam<Fronts> {};
-INSTANTIATE_TEST_SUITE_P(FrontEnd, DrawnEnds, testing::Values(Fronts::inside_cells, Fronts::as_faces),
-                         [](const auto& info) { return info.param == Fronts::as_faces ? "as_faces" : "inside_cells"; });
+INSTANTIATE_TEST_SUITE_P(FrontEnd, DrawnEnds, testing::Values(Fronts::of_elements, Fronts::of_points),
+                         [](const auto& info) { return info.param == Fronts::of_points ? "of_points" : "of_elements"; });
 
 TEST_P(DrawnEnds, AreWhereABladeIs) {
   for (const double step : {0.07, 0.3, 0.9}) {
@@ -92,7 +92,7 @@ TEST(FrontEnd, OfDiscsIsTheirCircle) {
   for (int i = 0; i < n; ++i) {
     const Disc disc{Vec3(5, 5, 5) + 0.5 * support::random_vector(random), support::random_direction(random),
                     support::uniform(random, 2.2, 3.4)};
-    Cutting cutting(block(), Fronts::inside_cells);
+    Cutting cutting(block(), Fronts::of_elements);
     cutting.cut(disc);
     const Drawn cut = drawn(cutting.surface, disc.normal);
     ASSERT_GT(cut.end.size(), 30u);
@@ -110,7 +110,7 @@ TEST(FrontEnd, EnclosesNothing) {
   support::Random random(6);
   for (int i = 0; i < 20; ++i) {
     const Body ball = support::with_copies(support::with_placed_skin(support::ball(3.5, 1, support::random_offset(random))));
-    Cutting with(ball, Fronts::inside_cells), without(ball, Fronts::at_faces);
+    Cutting with(ball, Fronts::of_elements), without(ball, Fronts::at_faces);
     const Vec3 n = support::random_direction(random), along = n.unitOrthogonal();
     const Blade blade = {"blade",
                          {-9 * n.cross(along), 9 * n.cross(along)},
@@ -133,7 +133,7 @@ TEST(FrontEnd, StaysWhereTheFarthestCutHasCome) {
       EXPECT_NEAR(p[0], x, std::abs(p[1] - 5) < 4 ? 0.03 : 0.1);
   };
   for (const double less : {4.1, 4.35, 4.55}) {
-    Cutting cutting(block(), Fronts::inside_cells);
+    Cutting cutting(block(), Fronts::of_elements);
     cutting.cut(rectangle_to(4.6));
     cutting.cut(rectangle_to(less));
     expect_end(cutting, 4.6);
@@ -157,7 +157,7 @@ TEST(FrontEnd, OfDiscsIsTheirCircleWhereBodiesAreSheared) {
     F(2, 0) = support::uniform(random, -0.4, 0.4);
     const Disc disc{F * Vec3(5, 5, 5) + 0.5 * support::random_vector(random), support::random_direction(random),
                     support::uniform(random, 2.2, 3)};
-    Cutting cutting(block(), Fronts::inside_cells);
+    Cutting cutting(block(), Fronts::of_elements);
     Points x = grid::rest_positions(cutting.body);
     for (Vec3& p : x)
       p = F * p;
@@ -179,7 +179,7 @@ TEST(FrontEnd, IsThatOfItsOwnCut) {
   support::Random random(9);
   std::size_t n = 0, n_off = 0;
   for (int i = 0; i < 30; ++i) {
-    Cutting cutting(block(), Fronts::inside_cells);
+    Cutting cutting(block(), Fronts::of_elements);
     std::vector<Disc> discs;
     for (int k = 0; k < 2; ++k) {
       discs.push_back({Vec3(5, 5, 5) + support::random_vector(random), support::random_direction(random),

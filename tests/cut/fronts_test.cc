@@ -25,7 +25,7 @@ Shape random_shape(support::Random& random, const Vec3& middle, const double siz
 /// come, with its lag.
 TEST(Fronts, ArePassedAsFarAsTheCutHasCome) {
   for (double x = 4.01; x < 6; x += 0.13) {
-    Cutting cutting(block(), Fronts::inside_cells);
+    Cutting cutting(block(), Fronts::of_elements);
     cutting.cut(Rectangle{Vec3(0.5 * x, 5, 5.4), Vec3(x, 0, 0), Vec3(0, 20, 0)});
     const double end = x + grid::front_lag(Vec3::UnitX());
     int n = 0;
@@ -54,7 +54,7 @@ TEST(Fronts, LieMidwayThroughABox) {
     const auto n_corners = [&](const double end) {
       const auto mesh = geometry::box_mesh(Vec3::Zero(), size * Vec3(12, 2, 10));
       const Body bar = support::with_copies(support::embedded(mesh, size, Vec3::Constant(0.5)));
-      Cutting cutting(bar, Fronts::inside_cells);
+      Cutting cutting(bar, Fronts::of_elements);
       cutting.cut(Rectangle{size * Vec3(0, 1, 5), size * Vec3(2 * end, 0, 0), size * Vec3(0, 6, 0)});
       expect_as_built(cutting);
       return cutting.body.complex.n_corners();
@@ -73,7 +73,7 @@ TEST(Fronts, ArePassedByTheirMaterial) {
     const Body bar = support::with_copies(
       support::embedded(geometry::box_mesh(Vec3::Zero(), Vec3(5 + thickness, 3, 3)), 1, Vec3::Zero()));
     for (double ligament = 0.05; ligament < thickness; ligament += 0.11) {
-      Cutting cutting(bar, Fronts::inside_cells);
+      Cutting cutting(bar, Fronts::of_elements);
       const double end = 5 + thickness - ligament;
       cutting.cut(Rectangle{Vec3(0.5 * end, 1.5, 1.4), Vec3(end, 0, 0), Vec3(0, 20, 0)});
       int n = 0;
@@ -87,7 +87,7 @@ TEST(Fronts, ArePassedByTheirMaterial) {
       EXPECT_EQ(grid::n_pieces(cutting.body.complex), 1u);
     }
     for (const double beyond : {0.01, 0.3, 0.6}) {
-      Cutting cutting(bar, Fronts::inside_cells);
+      Cutting cutting(bar, Fronts::of_elements);
       const double end = 5 + thickness + beyond;
       cutting.cut(Rectangle{Vec3(0.5 * end, 1.5, 1.4), Vec3(end + 0.1, 0, 0), Vec3(0, 20, 0)});
       EXPECT_EQ(grid::n_pieces(cutting.body.complex), 2u) << thickness << ' ' << beyond;
@@ -105,7 +105,7 @@ TEST(Fronts, LeaveThePiecesMassAndSurfaceAsTheyWere) {
                                   : support::with_copies(support::with_placed_skin(
                                       support::ball(3 + 0.05 * i, 1, support::random_offset(random))));
     const Vec3 middle = i % 3 == 0 ? Vec3(5, 5, 5) : Vec3(0, 0, 0);
-    Cutting with(whole, Fronts::inside_cells), without(whole, Fronts::at_faces);
+    Cutting with(whole, Fronts::of_elements), without(whole, Fronts::at_faces);
     for (int k = 0; k < 3; ++k) {
       const Shape shape = random_shape(random, middle, 5);
       with.cut(shape);
@@ -121,7 +121,7 @@ TEST(Fronts, LeaveThePiecesMassAndSurfaceAsTheyWere) {
 
 /// A disc that grows: cells are passed as by the last disc at once, and what it has come through is tied no more.
 TEST(Fronts, MoveOnAsTheCutGrows) {
-  Cutting growing(block(), Fronts::inside_cells), at_once(block(), Fronts::inside_cells);
+  Cutting growing(block(), Fronts::of_elements), at_once(block(), Fronts::of_elements);
   const Vec3 normal = Vec3(0.2, 0.1, 1).normalized();
   for (const double radius : {2.0, 2.15, 2.3, 2.45, 2.6, 2.75, 2.9})
     growing.cut(Disc{Vec3(5.1, 4.9, 5.2), normal, radius});
@@ -146,7 +146,7 @@ TEST(Fronts, OfAFlatMeshAreThoseOfADisc) {
   for (int i = 0; i < 40; ++i) {
     const Vec3 middle = Vec3::Constant(5) + 0.7 * support::random_vector(random), n = support::random_direction(random);
     const double radius = support::uniform(random, 1.5, 3.8);
-    Cutting by_disc(block(), Fronts::inside_cells), by_mesh(block(), Fronts::inside_cells);
+    Cutting by_disc(block(), Fronts::of_elements), by_mesh(block(), Fronts::of_elements);
     by_disc.cut(Disc{middle, n, radius});
     by_mesh.cut(support::cap(middle, n, 0, radius, i % 2 == 0 ? 1 : 30));
     for (const grid::Front& front : by_disc.body.cuts.fronts()) {
@@ -172,13 +172,13 @@ TEST(Fronts, OfCurvedMeshesLeaveThePiecesMassAndSurfaceAsTheyWere) {
   for (int i = 0; i < 40; ++i) {
     const Vec3 middle = Vec3::Constant(5) + 0.7 * support::random_vector(random), n = support::random_direction(random);
     const double radius = support::uniform(random, 3, 12), reach = support::uniform(random, 1.5, std::min(3.8, radius));
-    Cutting with(block(), Fronts::inside_cells), without(block(), Fronts::at_faces);
+    Cutting with(block(), Fronts::of_elements), without(block(), Fronts::at_faces);
     with.cut(support::cap(middle, n, radius, reach, 20));
     without.cut(support::cap(middle, n, radius, reach, 20));
     SCOPED_TRACE(i);
     expect_alike(with, without);
     expect_as_built(with);
-    Cutting flat(block(), Fronts::inside_cells);
+    Cutting flat(block(), Fronts::of_elements);
     flat.cut(support::cap(middle, n, 0, reach, 20));
     n_fronts += with.body.cuts.fronts().size();
     n_flat += flat.body.cuts.fronts().size();

@@ -48,7 +48,7 @@ struct Patient {
   }
 
   Cutter cutter(const grid::CutLabel label, const Release release = Release::queued) const {
-    Cutter cutter(label, release, Fronts::inside_cells);
+    Cutter cutter(label, release, Fronts::of_elements);
     cutter.begin(body, x);
     return cutter;
   }

@@ -162,7 +162,7 @@ TEST_P(SlowBlades, LeaveTheCutsOfTheirPlanes) {
       const Patient whole(support::embedded(mesh, h, random_offset(random)));
       const auto passed = [&](const double speed) {
         Patient patient = whole;
-        Cutter cutter(1, Release::queued, Fronts::inside_cells);
+        Cutter cutter(1, Release::queued, Fronts::of_elements);
         cutter.begin(patient.body, patient.x);
         const int n = std::max(1, static_cast<int>(2.4 / (speed * h)));
         for (int k = 0; k <= n + 1 || cutter.n_waiting() > 0; ++k)

@@ -48,7 +48,7 @@ Blade saw(const Vec3& middle, const Frame& frame) {
   return blade;
 }
 
-std::optional<PiecesAndFine> sawn(const geometry::TriangleMesh& mesh, const unsigned seed) {
+std::optional<PiecesAndFine> sawn(const geometry::TriangleMesh& mesh, const unsigned seed, const int n_fine) {
   Random random(seed);
   const double h = 1 / uniform(random, 7, 10);
   std::optional<Patient> whole;
@@ -60,7 +60,7 @@ std::optional<PiecesAndFine> sawn(const geometry::TriangleMesh& mesh, const unsi
   Patient& patient = *whole;
   if (grid::n_pieces(patient.body.complex) != 1)
     return std::nullopt;
-  support::FineMaterial fine(patient.body, 6);
+  support::FineMaterial fine(patient.body, n_fine);
   const Swing swing = random_swing(random, h);
   const Vec3 through = Vec3::Constant(0.5) + 0.15 * random_direction(random);
   const Blade blade = saw(through, across(random_direction(random), 0));
@@ -88,7 +88,7 @@ TEST_P(Swings, LeaveNoCrumbThatTheStrokeDidNotCutFree) {
   TallyOfPieces tally;
   for (unsigned seed = 0; seed < GetParam(); ++seed) {
     const auto& [name, mesh] = solids[seed % solids.size()];
-    const auto pieces = sawn(mesh, seed);
+    const auto pieces = judged_finely(6, [&](const int n_fine) { return sawn(mesh, seed, n_fine); });
     if (pieces)
       tally.add(*pieces, name, seed);
   }

@@ -411,19 +411,19 @@ TEST(Multigrid, HalvesKnowNothingOfEachOther) {
 /// together.
 TEST(Multigrid, KnowsTies) {
   std::array<int, 2> counts{};
-  for (const cut::Fronts fronts : {cut::Fronts::at_faces, cut::Fronts::inside_cells}) {
+  for (const cut::Fronts fronts : {cut::Fronts::at_faces, cut::Fronts::of_elements}) {
     Draw draw(345);
     Body body = make_block({16, 16, 16}, 0.05, draw, {0.3, 0.7});
     cut::Cutter cutter(1, cut::Release::queued, fronts);
     cutter.begin(body, body.rest());
     const cut::Disc disc{Vec3(0.72, 0.23, 0.52), Vec3(0.1, 0.2, 1).normalized(), 0.22};
     surface::place(body, cutter.at_once(body, {"cut", disc, 1}, body.rest()), {});
-    EXPECT_EQ(fronts == cut::Fronts::inside_cells, body.complex.tied.size() > 30);
+    EXPECT_EQ(fronts == cut::Fronts::of_elements, body.complex.tied.size() > 30);
     Hexahedra model(body, {.material = rubber(0.3)});
     Equation equation(model, clamped_below(body, 0.3), body.rest(), 36);
     const auto report = solve(equation, 346);
     EXPECT_TRUE(report.converged);
-    counts[fronts == cut::Fronts::inside_cells] = report.n_iterations;
+    counts[fronts == cut::Fronts::of_elements] = report.n_iterations;
   }
   RecordProperty("iterations", std::to_string(counts[0]) + ' ' + std::to_string(counts[1]));
   EXPECT_LE(counts[1], counts[0] + 3) << counts[0];

@@ -17,7 +17,7 @@ namespace {
 /// A block with a disc in it whose front lies inside cells.
 support::Body cracked(const double radius) {
   support::Body body = support::with_copies(support::with_placed_skin(support::block({6, 6, 6})));
-  cut::Cutter cutter(1, cut::Release::queued, cut::Fronts::inside_cells);
+  cut::Cutter cutter(1, cut::Release::queued, cut::Fronts::of_elements);
   cutter.begin(body, grid::rest_positions(body));
   const cut::Disc disc{Vec3(3.6, 3.4, 3.3), Vec3(0.1, 0.2, 1).normalized(), radius};
   surface::place(body, cutter.at_once(body, {"cut", disc, 1}, grid::rest_positions(body)), {});
@@ -72,7 +72,7 @@ TEST(Ties, PullByTheGradientOfTheirEnergy) {
 /// number.
 TEST(Ties, OfACrumbAreNone) {
   support::Body body = support::with_copies(support::with_placed_skin(support::block({12, 6, 6})));
-  cut::Cutter cutter(2, cut::Release::queued, cut::Fronts::inside_cells);
+  cut::Cutter cutter(2, cut::Release::queued, cut::Fronts::of_elements);
   const Points rest = grid::rest_positions(body);
   cutter.begin(body, rest);
   surface::place(body, cutter.at_once(body, {"through", cut::Disc{Vec3(6.4, 3, 3), Vec3::UnitX(), 100}, 1}, rest), {});
@@ -202,7 +202,7 @@ TEST(Ties, AreNotLoadedBeyondWhatTheyHold) {
 /// A cut that comes through the cells of its front leaves no ties there.
 TEST(Ties, GoWithTheCut) {
   support::Body body = cracked(1.9);
-  cut::Cutter cutter(1, cut::Release::queued, cut::Fronts::inside_cells);
+  cut::Cutter cutter(1, cut::Release::queued, cut::Fronts::of_elements);
   cutter.begin(body, grid::rest_positions(body));
   const cut::Plane plane{Vec3(3.6, 3.4, 3.3), Vec3(0.1, 0.2, 1).normalized()};
   cutter.at_once(body, {"cut", plane, 1}, grid::rest_positions(body));

@@ -87,7 +87,7 @@ TEST(Update, IsBuildingAnewBitByBit) {
 TEST(Update, OfAFrontIsBuildingAnewBitByBit) {
   Draw draw(91);
   Body body = make_block({6, 6, 6}, 0.2, draw, {0.3, 0.7});
-  cut::Cutter cutter(1, cut::Release::queued, cut::Fronts::inside_cells);
+  cut::Cutter cutter(1, cut::Release::queued, cut::Fronts::of_elements);
   cutter.begin(body, body.rest());
   const HexahedraOptions options{.material = rubber, .strain = Strain::enhanced, .inertia = Inertia::extended};
   Hexahedra model = make_model(body, options);

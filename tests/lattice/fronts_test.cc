@@ -17,7 +17,7 @@ constexpr double h = 0.1, dt = 0.01, arm = 5 * h, length = 18 * h;
 cut::Cutting bar() {
   const auto mesh = geometry::box_mesh(Vec3::Zero(), Vec3(length, 2 * h, 2 * arm));
   return cut::Cutting(support::with_copies(support::embedded(mesh, h, Vec3::Constant(0.5))),
-                      cut::Fronts::inside_cells);
+                      cut::Fronts::of_springs);
 }
 
 /// Split midway from x = 0 to `front` cubes beyond an arm's height.
@@ -68,7 +68,7 @@ double length_of_arms(const cut::Cutting& cutting, const int w) {
 }
 
 /// A front that moves on lets the arms be longer, by as much wherever it lies in its cell; as it comes into one, with
-/// its lag a quarter before it, and as that is cut.
+/// its lag half a cube before it, and as that is cut.
 TEST(Fronts, MoveOnEvenly) {
   for (const int w : {2, 3}) {
     constexpr int n = 10;

@@ -152,7 +152,7 @@ double difference(const std::span<const double> a, const std::span<const double>
 
 /// A block whose phyxels see a cut in the plane z = .23 that comes from x = 0.
 struct SlitBlock {
-  GrowingCut block{whole_block(), cut::Fronts::as_faces};
+  GrowingCut block{whole_block(), cut::Fronts::of_points};
   std::vector<visibility::Face> skin = skin_of(block);
   Phyxels physics{block.seen(), options(), verlet};
   dynamics::State state = state_at_rest(physics);

@@ -64,7 +64,8 @@ std::vector<grid::CellId> cells_with_cuts(const grid::Solid& solid) {
 }
 
 /// Nothing where the grid's body is not in one piece, hangs on nothing, or a step is refused.
-std::optional<PiecesAndFine> cut_while_it_swings(const std::filesystem::path& mesh_file, const unsigned seed) {
+std::optional<PiecesAndFine> cut_while_it_swings(const std::filesystem::path& mesh_file, const unsigned seed,
+                                                 const int n_fine) {
   Random random(seed);
   const geometry::TriangleMesh mesh = geometry::read_mesh(mesh_file, 1);
   std::optional<World> world;
@@ -76,7 +77,7 @@ std::optional<PiecesAndFine> cut_while_it_swings(const std::filesystem::path& me
   Body& body = world->bodies[0];
   if (grid::n_pieces(body.solid.complex) != 1)
     return std::nullopt;
-  support::FineMaterial fine(body.solid, 5);
+  support::FineMaterial fine(body.solid, n_fine);
   Timings seconds;
   try {
     for (int k = 0; k < world->n_steps || body.cutter->n_waiting() > 0; ++k) {
@@ -106,7 +107,8 @@ TEST_P(SwingingScenes, LeaveNoCrumbThatTheStrokeDidNotCutFree) {
   cut::TallyOfPieces tally;
   for (unsigned seed = 0; seed < GetParam(); ++seed) {
     const auto& file = files[seed % files.size()];
-    const auto pieces = cut_while_it_swings(file, seed);
+    const auto pieces =
+      cut::judged_finely(5, [&](const int n_fine) { return cut_while_it_swings(file, seed, n_fine); });
     if (pieces)
       tally.add(*pieces, file.stem().string(), seed);
   }

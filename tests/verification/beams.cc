@@ -265,7 +265,7 @@ Tractions pull(const DoubleCantilever& beam) {
 
 BeamResult double_cantilever(const DoubleCantilever& beam, const BeamModel& model) {
   const double h = beam.arm / beam.n_over_arm, b = 2 * h, c = length_of_cut(beam);
-  SplitArms arms = split_arms(beam, by_rectangle(beam, cut::Fronts::inside_cells), pull(beam), model);
+  SplitArms arms = split_arms(beam, by_rectangle(beam, cut::Fronts::of_elements), pull(beam), model);
   const fem::LineFront front{Vec3(c, 0, beam.arm), Vec3(c, b, beam.arm), Vec3::UnitX()};
   const double G = fem::energy_release_rate(arms.built.body, *arms.built.model, deformed(arms.built.body, arms.u), front,
                                             {0.5 * beam.a, 0.9 * beam.a});
@@ -286,7 +286,7 @@ double work(const SplitArms& arms, const DoubleCantilever& beam) {
 } // namespace
 
 BeamResult work_on_double_cantilever(const DoubleCantilever& beam, const BeamModel& model) {
-  SplitArms arms = split_arms(beam, by_rectangle(beam, cut::Fronts::inside_cells), pull(beam), model);
+  SplitArms arms = split_arms(beam, by_rectangle(beam, cut::Fronts::of_elements), pull(beam), model);
   arms.result.value = work(arms, beam);
   return arms.result;
 }
@@ -296,7 +296,7 @@ BeamResult double_cantilever_by_work(const DoubleCantilever& beam, const BeamMod
   const auto of = [&](const int n_more) {
     DoubleCantilever other = beam;
     other.front += n_more;
-    return split_arms(other, by_rectangle(other, cut::Fronts::inside_cells), pull(other), model);
+    return split_arms(other, by_rectangle(other, cut::Fronts::of_elements), pull(other), model);
   };
   SplitArms longer = of(beam.n_over_arm);
   const double grown = work(longer, beam) - work(of(-beam.n_over_arm), beam);
@@ -313,7 +313,7 @@ BeamResult blade_over_rectangle(const DoubleCantilever& beam, const int n_steps,
   SplitArms arms = split_arms(
     beam, [&](Body& body) { cut_with_blade(body, blade, n_steps); }, pull(beam), model);
   arms.result.value =
-    work(arms, beam) / work(split_arms(beam, by_rectangle(beam, cut::Fronts::inside_cells), pull(beam), model), beam);
+    work(arms, beam) / work(split_arms(beam, by_rectangle(beam, cut::Fronts::of_elements), pull(beam), model), beam);
   return arms.result;
 }
 

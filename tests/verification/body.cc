@@ -107,7 +107,7 @@ void cut_at_once(Body& body, const cut::Shape& shape, const cut::Fronts fronts) 
 }
 
 void cut_with_blade(Body& body, const cut::Blade& blade, const int n_steps) {
-  cut::Cutter cutter(1, cut::Release::queued, cut::Fronts::inside_cells);
+  cut::Cutter cutter(1, cut::Release::queued, cut::Fronts::of_elements);
   cutter.begin(body, body.rest());
   for (int k = 0; k < n_steps || cutter.n_waiting() > 0; ++k)
     surface::place(body,

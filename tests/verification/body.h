@@ -35,7 +35,7 @@ Body ball(double radius, double h, const Vec3& offset);
 void cut(Body& body, const support::Plane& plane, const std::function<bool(const Vec3& crossing)>& is_cut);
 
 /// Cuts the body with a surface, as scenes do for elements.
-void cut_at_once(Body& body, const cut::Shape& shape, cut::Fronts fronts = cut::Fronts::inside_cells);
+void cut_at_once(Body& body, const cut::Shape& shape, cut::Fronts fronts = cut::Fronts::of_elements);
 
 /// Cuts the body with a blade, from 0 s to 1 s in so many steps, as scenes do for elements.
 void cut_with_blade(Body& body, const cut::Blade& blade, int n_steps);

@@ -105,7 +105,7 @@ TEST(PennyShapedCut, OfABentMeshEndsInsideCells) {
                         .half_width = 2,
                         .offset = 0.5 * (Vec3::Ones() + support::random_vector(random)),
                         .normal = support::random_direction(random)};
-    const double work = work_of_cap(problem, 1.5, cut::Fronts::inside_cells, hooke(1, 0.3));
+    const double work = work_of_cap(problem, 1.5, cut::Fronts::of_elements, hooke(1, 0.3));
     sum += work;
     least = std::min(least, work);
     most = std::max(most, work);
@@ -182,7 +182,7 @@ TEST_P(FineGrid, TellsWhatABentMeshOpensBy) {
       const Penny problem{.n_over_radius = double(n_over_radius),
                           .half_width = 2,
                           .offset = 0.5 * (Vec3::Ones() + support::random_vector(random))};
-      const double work = work_of_cap(problem, 1.5, cut::Fronts::inside_cells, hooke(1, 0.3));
+      const double work = work_of_cap(problem, 1.5, cut::Fronts::of_elements, hooke(1, 0.3));
       sum += work;
       least = std::min(least, work);
       most = std::max(most, work);
