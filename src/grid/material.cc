@@ -208,6 +208,13 @@ class LocalSkeleton {
   std::array<Vec3, skeleton::n_items> items_;
 };
 
+/// Integral over a tetrahedron of a product of three functions that are linear in it and not negative at its vertices,
+/// over its volume: products of barycentric coordinates integrate to 3! times the factorials of the exponents over 6!.
+double mean_product(const Eigen::Array4d& f, const Eigen::Array4d& g, const Eigen::Array4d& h) {
+  const double F = f.sum(), G = g.sum(), H = h.sum();
+  return (F * G * H + F * (g * h).sum() + G * (f * h).sum() + H * (f * g).sum() + 2 * (f * g * h).sum()) / 120;
+}
+
 } // namespace
 
 std::vector<MaterialPiece> pieces_of(const Solid& solid, const CellId c, const Items items,
@@ -237,6 +244,19 @@ std::vector<MaterialPiece> pieces_of(const Solid& solid, const CellId c, const I
 }
 
 double volume(const Tetrahedron& t) { return (t[1] - t[0]).dot((t[2] - t[0]).cross(t[3] - t[0])) / 6; }
+
+std::array<double, 8> shape_integrals(const Tetrahedron& t) {
+  const double size = volume(t);
+  std::array<std::array<Eigen::Array4d, 2>, 3> factor; // by axis and by the side of the cube
+  for (int axis = 0; axis < 3; ++axis) {
+    factor[axis][1] = Eigen::Array4d(t[0][axis], t[1][axis], t[2][axis], t[3][axis]).max(0).min(1);
+    factor[axis][0] = 1 - factor[axis][1];
+  }
+  std::array<double, 8> integrals;
+  for (int a = 0; a < 8; ++a)
+    integrals[a] = size * mean_product(factor[0][a & 1], factor[1][a >> 1 & 1], factor[2][a >> 2 & 1]);
+  return integrals;
+}
 
 double fill(const Solid& solid, const Copy& copy) {
   if (copy.nodes == 0xff)

@@ -43,6 +43,8 @@ void for_each_tetrahedron(const Solid& solid, const Copy& copy, const Function& 
 /// Volume of a tetrahedron with these vertices, positive where the last three turn counter-clockwise seen from outside
 /// [1].
 double volume(const Tetrahedron& t);
+/// Integrals of N_0 .. N_7 over a tetrahedron in the unit cube [1].
+std::array<double, 8> shape_integrals(const Tetrahedron& t);
 /// The material's part of a copy's cube; 1 where it holds all nodes [1].
 double fill(const Solid& solid, const Copy& copy);
 

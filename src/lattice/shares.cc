@@ -1,10 +1,9 @@
 #include "lattice/shares.h"
 
 #include "grid/followed.h"
+#include "grid/material.h"
 
 #include "base/parallel.h"
-
-#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <bit>
@@ -15,13 +14,6 @@ namespace {
 
 /// Of a cube: a piece of skin without volume has corners too, and they are to move with its node.
 constexpr double least_share = 1e-12;
-
-/// Integral over a tetrahedron of a product of three functions that are linear in it and not negative at its vertices,
-/// over its volume: products of barycentric coordinates integrate to 3! times the factorials of the exponents over 6!.
-double mean_product(const Eigen::Array4d& f, const Eigen::Array4d& g, const Eigen::Array4d& h) {
-  const double F = f.sum(), G = g.sum(), H = h.sum();
-  return (F * G * H + F * (g * h).sum() + G * (f * h).sum() + H * (f * g).sum() + 2 * (f * g * h).sum()) / 120;
-}
 
 /// By the vertex of a node, and of a corner.
 using CopyShares = std::array<std::array<double, 8>, 8>;
@@ -37,7 +29,7 @@ Integrals integrals_of(const grid::Solid& solid, const grid::Copy& copy) {
   Integrals integrals;
   grid::for_each_tetrahedron(solid, copy, [&](const grid::Tetrahedron& t, const int vertex) {
     auto& sum = copy.nodes >> vertex & 1 ? integrals.at_nodes[vertex] : integrals.elsewhere;
-    const auto of_tetrahedron = shape_integrals(t);
+    const auto of_tetrahedron = grid::shape_integrals(t);
     for (int a = 0; a < 8; ++a)
       sum[a] += of_tetrahedron[a];
   });
@@ -101,19 +93,6 @@ std::vector<Share> merged(std::vector<Share> shares) {
 }
 
 } // namespace
-
-std::array<double, 8> shape_integrals(const grid::Tetrahedron& t) {
-  const double volume = (t[1] - t[0]).dot((t[2] - t[0]).cross(t[3] - t[0])) / 6;
-  std::array<std::array<Eigen::Array4d, 2>, 3> factor; // by axis and by the side of the cube
-  for (int axis = 0; axis < 3; ++axis) {
-    factor[axis][1] = Eigen::Array4d(t[0][axis], t[1][axis], t[2][axis], t[3][axis]).max(0).min(1);
-    factor[axis][0] = 1 - factor[axis][1];
-  }
-  std::array<double, 8> integrals;
-  for (int a = 0; a < 8; ++a)
-    integrals[a] = volume * mean_product(factor[0][a & 1], factor[1][a >> 1 & 1], factor[2][a >> 2 & 1]);
-  return integrals;
-}
 
 std::vector<Share> material_shares(const grid::Solid& solid, const double density) {
   std::vector<CopyShares> of_copy(solid.complex.n_copies());

@@ -12,7 +12,7 @@
 /// The integrals are sums of positive terms: the share of a far corner in a sliver is accurate however small it is
 /// (moments of a cell would cancel).
 
-#include "grid/material.h"
+#include "grid/solid.h"
 
 #include <vector>
 
@@ -23,9 +23,6 @@ struct Share {
   grid::CornerId corner;
   double mass; ///< [kg]
 };
-
-/// Integrals of N_0 .. N_7 over a tetrahedron in the unit cube [1].
-std::array<double, 8> shape_integrals(const grid::Tetrahedron& t);
 
 /// Of all but crumbs. Sorted by node, then by corner; each pair once; each mass positive.
 std::vector<Share> material_shares(const grid::Solid& solid, double density);

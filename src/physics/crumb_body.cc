@@ -1,7 +1,6 @@
 #include "physics/crumb_body.h"
 
 #include "grid/material.h"
-#include "lattice/shares.h"
 #include "material/polar.h"
 
 #include <Eigen/Eigenvalues>
@@ -61,7 +60,7 @@ Material material_of(const grid::Solid& solid, const grid::Crumb& crumb) {
       material.parts[corner.value] += least_volume;
     grid::for_each_tetrahedron(solid, copy, [&](const grid::Tetrahedron& t, int) {
       material.spread.add(t, from);
-      const auto integrals = lattice::shape_integrals(t);
+      const auto integrals = grid::shape_integrals(t);
       for (int a = 0; a < 8; ++a)
         material.parts[copy.corners[a].value] += integrals[a];
     });

@@ -1,6 +1,7 @@
 #include "surface/placement.h"
 
 #include "grid/cube.h"
+#include "grid/material.h"
 #include "grid/touched.h"
 #include "surface/below_skin.h"
 #include "surface/border.h"
@@ -157,14 +158,19 @@ class Placer {
     const Vec3 q = hold_below_skin(from, p, part(from));
     const auto seeing = see(
       site, q, [&] { return are_in_plane_on_both_sides(view, face, q); },
-      [&](const std::vector<Plane>& in_planes) { return seeing_border(solid_, view, side, q, in_planes); });
+      [&](const std::vector<Plane>& in_planes) {
+        const auto sees = seeing_border(solid_, view, side, q, in_planes);
+        return in_planes.empty() && sees
+                 ? nearest(q, *sees, [&](const Vec3& to) { return parts_have_areas(solid_, view, side, to); })
+                 : sees;
+      });
     solid_.cuts.set_inner_point(f, arc, seeing);
     count_held();
   }
 
   /// A vertex at q, or near it where the material around it is seen (sight.h): within the plane of all cuts, or of those
-  /// that it may not leave; else anywhere, but where all cuts around lie in one plane. What these leave is the same
-  /// wherever in it the vertex lies.
+  /// that it may not leave; else, but where all cuts around lie in one plane, along what they bend along or about, or
+  /// anywhere. What cuts in one plane leave is the same wherever in it the vertex lies.
   template <class IsFlat, class Seeing>
   Vec3 see(const Site& site, const Vec3& q, const IsFlat& is_flat, const Seeing& seeing) {
     Planes all = site.locked;
@@ -176,9 +182,17 @@ class Placer {
           return *p;
     if (is_flat())
       return q;
-    const Vec3 p = seeing({}).value_or(q);
-    is_held_ |= p != q;
-    return p;
+    const Fixed fixed = fixed_directions(all, site.inside, threshold_);
+    for (int n = std::min(fixed.n, site.inside.n - 1); n >= 0; --n) { // along a bend, or else the sheet, or else anywhere
+      std::vector<Plane> in_planes;
+      for (int k = 0; k < n; ++k)
+        in_planes.push_back({q, fixed.of.vectors.col(k)});
+      if (const auto p = seeing(in_planes)) {
+        is_held_ |= *p != q;
+        return *p;
+      }
+    }
+    return q;
   }
 
   /// Do all cuts of the two cells at a face lie in one plane, with p?
@@ -224,11 +238,39 @@ class Placer {
     };
     const Vec3 from = site.locked.empty() ? between_cuts(site, p, part) : *before,
                q = hold_below_skin(from, p, part(from));
-    const auto seeing = [&](const std::vector<Plane>& in_planes) { return seeing_skin(solid_, view, q, in_planes); };
+    const auto seeing = [&](const std::vector<Plane>& in_planes) {
+      const auto p = seeing_skin(solid_, view, q, in_planes);
+      return in_planes.empty() && p ? nearest(q, *p, [&](const Vec3& to) { return has_material(view, to); }) : p;
+    };
     solid_.cuts.set_inner_point(c, border_is_in_plane(solid_, view, q)
                                      ? point_that_sees_border(solid_, view, q).value_or(q)
                                      : see(site, q, [&] { return cuts_are_in_plane(view, q); }, seeing));
     count_held();
+  }
+
+  /// On the way from p to what sees all around it, in fifths of it, the first point that is good enough.
+  template <class IsGood>
+  static Vec3 nearest(const Vec3& p, const Vec3& seeing, const IsGood& is_good) {
+    constexpr int n = 5;
+    for (int k = 0; k < n; ++k)
+      if (const Vec3 q = p + double(k) / n * (seeing - p); is_good(q))
+        return q;
+    return seeing;
+  }
+  /// Has no part of the cell less than no material, in all and at each corner, with a vertex at p?
+  bool has_material(const View& view, const Vec3& p) {
+    constexpr double round_off = 1e-15; // of a cube
+    solid_.cuts.set_inner_point(view.cell, p);
+    const auto parts = grid::parts_of(grid::cuts_of(solid_, view.cell));
+    return std::ranges::all_of(parts, [&](const grid::Part& part) {
+      std::array<double, 8> sums{};
+      for (const auto& [t, vertex] : grid::pieces_of(solid_, view.cell, part.items())) {
+        const auto integrals = grid::shape_integrals(t);
+        for (int v = 0; v < 8; ++v)
+          sums[v] += integrals[v];
+      }
+      return *std::ranges::min_element(sums) > -round_off;
+    });
   }
 
   Vec3 mean_node(const View& view) const {

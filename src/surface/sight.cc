@@ -113,6 +113,31 @@ std::optional<Vec3> seeing_border(const grid::Solid& solid, const View& view, co
   return towards(view, within_border(solid, view, side), in_planes, p);
 }
 
+bool parts_have_areas(const grid::Solid& solid, const View& view, const int side, const Vec3& p) {
+  const auto& [n, items, segments] = view.now.skeleton().side[side];
+  const Vec3 outward = Vec3::Unit(cube::face_axis(side / 2)) * (side / 2 % 2 == 1 ? 1 : -1);
+  Points border; // from one of its cuts on
+  std::vector<std::size_t> cuts;
+  int first = 0;
+  while (first < n && (view.now.blades >> segments[first] & 1) == 0)
+    ++first;
+  for (int i = first; i <= first + n; ++i) {
+    if (const int segment = segments[i % n]; (view.now.blades >> segment & 1) != 0) {
+      cuts.push_back(border.size());
+      border.push_back(grid::segment_point(solid, view.cell, view.now.skeleton(), segment));
+    }
+    border.push_back(grid::item_point(solid, view.cell, items[(i + 1) % n]));
+  }
+  for (std::size_t k = 0; k + 1 < cuts.size(); ++k) {
+    double twice = 0;
+    for (std::size_t i = cuts[k]; i < cuts[k + 1]; ++i)
+      twice += outward.dot((border[i] - p).cross(border[i + 1] - p));
+    if (twice < -round_off * solid.grid.h() * solid.grid.h())
+      return false;
+  }
+  return true;
+}
+
 std::optional<Vec3> seeing_skin(const grid::Solid& solid, const View& view, const Vec3& p,
                                 const std::vector<Plane>& in_planes) {
   return towards(view, below_skin(solid, view), in_planes, p);

@@ -25,6 +25,9 @@ std::optional<Vec3> middle_of(std::vector<Plane> half_spaces, const Vec3& lower,
 /// other plane through p: p, or as far as that from the middle of all such points towards p. None where there is none.
 std::optional<Vec3> seeing_border(const grid::Solid& solid, const View& view, int side, const Vec3& p,
                                   std::vector<Plane> in_planes);
+/// Does no part of such a side, between two cuts that follow each other on its border, have less than no area, with a
+/// vertex at p?
+bool parts_have_areas(const grid::Solid& solid, const View& view, int side, const Vec3& p);
 /// From where the cell sees all of its skin, within up to two planes through p: p, or as far as that.
 std::optional<Vec3> seeing_skin(const grid::Solid& solid, const View& view, const Vec3& p,
                                 const std::vector<Plane>& in_planes);

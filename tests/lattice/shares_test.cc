@@ -83,9 +83,9 @@ TEST(Shares, FarCornersOfSliversAreExact) {
   for (const double a : {1.0, 1e-3, 1e-9}) {
     const grid::Tetrahedron t = {Vec3(0, 0, 0), Vec3(a, 0, 0), Vec3(0, a, 0), Vec3(0, 0, a)};
     // the integral of x y z over it is a^6 / 720
-    EXPECT_NEAR(shape_integrals(t)[7] / (std::pow(a, 6) / 720), 1, 1e-13);
+    EXPECT_NEAR(grid::shape_integrals(t)[7] / (std::pow(a, 6) / 720), 1, 1e-13);
     double sum = 0;
-    for (const double integral : shape_integrals(t))
+    for (const double integral : grid::shape_integrals(t))
       sum += integral;
     EXPECT_NEAR(sum / (a * a * a / 6), 1, 1e-13);
   }
