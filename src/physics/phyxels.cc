@@ -1,7 +1,6 @@
 #include "physics/phyxels.h"
 
 #include "base/union_find.h"
-#include "cut/in_plane.h"
 #include "dynamics/relief.h"
 #include "grid/locate.h"
 #include "physics/carry_all.h"
@@ -11,6 +10,7 @@
 #include <algorithm>
 #include <limits>
 #include <map>
+#include <numeric>
 
 namespace kerf::physics {
 
@@ -45,24 +45,25 @@ std::vector<visibility::Face> faces_of(const CutBody& body, const Part part) {
   return faces;
 }
 
-/// What a cut has come to, and as far on as it seems too short to phyxels [m].
-Points with_lag(const Points& come, const grid::Front& front, const double h, const double lag) {
-  Points both = come;
-  for (const Vec3& p : come)
-    both.push_back(p + lag * front.onward);
-  return cut::hull(both, cut::InPlane(front.point, front.normal, h));
-}
-
-/// Of cuts that end inside cells, in these.
+/// Of cuts that end inside cells, in these: what they have come to, and what that sweeps as far on as it seems too short
+/// to phyxels [m].
 std::vector<visibility::Face> faces_of_fronts(const grid::Solid& solid, const std::vector<grid::CellId>& cells,
                                               const double lag) {
   std::vector<visibility::Face> faces;
   for (const grid::CellId c : cells)
     if (const grid::Front* const front = solid.cuts.front(c))
       for (const Points& come : front->come) {
-        const Points polygon = with_lag(come, *front, solid.grid.h(), lag);
-        for (std::size_t i = 2; i < polygon.size(); ++i)
-          faces.push_back({polygon[0], polygon[i - 1], polygon[i]});
+        for (std::size_t i = 2; i < come.size(); ++i)
+          faces.push_back({come[0], come[i - 1], come[i]});
+        const Vec3 on = lag * front->onward,
+                   middle = std::accumulate(come.begin(), come.end(), Vec3(Vec3::Zero())) / double(come.size());
+        for (std::size_t i = 0; i < come.size(); ++i) {
+          const Vec3 &a = come[i], &b = come[(i + 1) % come.size()], across = front->normal.cross(b - a);
+          if (across.dot(a - middle) * across.dot(on) > 0) { // the way on leads out here
+            faces.push_back({a, b, b + on});
+            faces.push_back({a, b + on, a + on});
+          }
+        }
       }
   return faces;
 }

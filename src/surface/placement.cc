@@ -156,23 +156,22 @@ class Placer {
     };
     const Vec3 from = site.locked.empty() ? between_cuts(site, p, part) : *before;
     const Vec3 q = hold_below_skin(from, p, part(from));
+    const CellId next = solid_.grid.neighbour(view.cell, face);
     const auto seeing = see(
       site, q, [&] { return are_in_plane_on_both_sides(view, face, q); },
-      [&](const std::vector<Plane>& in_planes) {
-        const auto sees = seeing_border(solid_, view, side, q, in_planes);
-        return in_planes.empty() && sees
-                 ? nearest(q, *sees, [&](const Vec3& to) { return parts_have_areas(solid_, view, side, to); })
-                 : sees;
-      });
+      [&] { return is_sheet(view) && (!next.valid() || is_sheet(look_at(solid_, next))); },
+      [&](const Vec3& at) { return parts_have_areas(solid_, view, side, at); },
+      [&](const std::vector<Plane>& in_planes) { return seeing_border(solid_, view, side, q, in_planes); });
     solid_.cuts.set_inner_point(f, arc, seeing);
     count_held();
   }
 
   /// A vertex at q, or near it where the material around it is seen (sight.h): within the plane of all cuts, or of those
-  /// that it may not leave; else, but where all cuts around lie in one plane, along what they bend along or about, or
-  /// anywhere. What cuts in one plane leave is the same wherever in it the vertex lies.
-  template <class IsFlat, class Seeing>
-  Vec3 see(const Site& site, const Vec3& q, const IsFlat& is_flat, const Seeing& seeing) {
+  /// that it may not leave; else, but where all cuts around lie in one plane, along their bend or sheet, or off that;
+  /// of one sheet as little as is good enough. What cuts in one plane leave is the same wherever in it the vertex lies.
+  template <class IsFlat, class IsSheet, class IsGood, class Seeing>
+  Vec3 see(const Site& site, const Vec3& q, const IsFlat& is_flat, const IsSheet& is_sheet, const IsGood& is_good,
+           const Seeing& seeing) {
     Planes all = site.locked;
     for (const Plane& plane : site.open)
       all.push_back(plane);
@@ -183,16 +182,19 @@ class Placer {
     if (is_flat())
       return q;
     const Fixed fixed = fixed_directions(all, site.inside, threshold_);
-    for (int n = std::min(fixed.n, site.inside.n - 1); n >= 0; --n) { // along a bend, or else the sheet, or else anywhere
+    for (int n = std::min(fixed.n, site.inside.n - 1); n > 0; --n) { // along a bend, or else the sheet
       std::vector<Plane> in_planes;
       for (int k = 0; k < n; ++k)
         in_planes.push_back({q, fixed.of.vectors.col(k)});
-      if (const auto p = seeing(in_planes)) {
+      if (const auto p = seeing(in_planes); p && is_good(*p)) {
         is_held_ |= *p != q;
         return *p;
       }
     }
-    return q;
+    const auto p = seeing({});
+    const Vec3 found = !p ? q : is_sheet() ? nearest(q, *p, is_good) : *p;
+    is_held_ |= found != q;
+    return found;
   }
 
   /// Do all cuts of the two cells at a face lie in one plane, with p?
@@ -205,6 +207,20 @@ class Placer {
     for_each_bit(view.now.blades,
                  [&](const int segment) { planes.push_back(cut_plane(solid_, view, segment).plane); });
     return common_plane(planes, p, in_plane * solid_.grid.h()).has_value();
+  }
+
+  /// Are all cuts of the cell of one label, and hardly bent?
+  bool is_sheet(const View& view) const {
+    constexpr double least = 0.5; // cosine of the angle between two
+    std::optional<CutPlane> first;
+    bool result = true;
+    for_each_bit(view.now.blades, [&](const int segment) {
+      const CutPlane cut = cut_plane(solid_, view, segment);
+      if (!first)
+        first = cut;
+      result = result && cut.label == first->label && std::abs(cut.plane.normal.dot(first->plane.normal)) > least;
+    });
+    return result;
   }
 
   void place_triangle(const View& view, const int triangle) {
@@ -238,13 +254,12 @@ class Placer {
     };
     const Vec3 from = site.locked.empty() ? between_cuts(site, p, part) : *before,
                q = hold_below_skin(from, p, part(from));
-    const auto seeing = [&](const std::vector<Plane>& in_planes) {
-      const auto p = seeing_skin(solid_, view, q, in_planes);
-      return in_planes.empty() && p ? nearest(q, *p, [&](const Vec3& to) { return has_material(view, to); }) : p;
-    };
+    const auto seeing = [&](const std::vector<Plane>& in_planes) { return seeing_skin(solid_, view, q, in_planes); };
+    const auto is_good = [&](const Vec3& at) { return has_material(view, at); };
     solid_.cuts.set_inner_point(c, border_is_in_plane(solid_, view, q)
                                      ? point_that_sees_border(solid_, view, q).value_or(q)
-                                     : see(site, q, [&] { return cuts_are_in_plane(view, q); }, seeing));
+                                     : see(site, q, [&] { return cuts_are_in_plane(view, q); },
+                                           [&] { return is_sheet(view); }, is_good, seeing));
     count_held();
   }
 
@@ -257,9 +272,9 @@ class Placer {
         return q;
     return seeing;
   }
-  /// Has no part of the cell less than no material, in all and at each corner, with a vertex at p?
+  /// Has each part of the cell some material, in all and at each corner, with a vertex at p?
   bool has_material(const View& view, const Vec3& p) {
-    constexpr double round_off = 1e-15; // of a cube
+    constexpr double least = 1e-12; // of a cube
     solid_.cuts.set_inner_point(view.cell, p);
     const auto parts = grid::parts_of(grid::cuts_of(solid_, view.cell));
     return std::ranges::all_of(parts, [&](const grid::Part& part) {
@@ -269,7 +284,7 @@ class Placer {
         for (int v = 0; v < 8; ++v)
           sums[v] += integrals[v];
       }
-      return *std::ranges::min_element(sums) > -round_off;
+      return *std::ranges::min_element(sums) > least;
     });
   }
 
