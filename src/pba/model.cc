@@ -91,14 +91,20 @@ void PhyxelModel::update(const std::span<const Sight> sights) {
     many_phyxels);
 }
 
-void PhyxelModel::link(const std::span<const Link> links, const Points& x) {
+Deformed PhyxelModel::deformed(const Points& x) const {
+  Deformed all;
+  deformation(x, all.F);
+  std::ranges::transform(fits_, std::back_inserter(all.known), &Fit::determinant);
+  return all;
+}
+
+void PhyxelModel::link(const std::span<const Link> links, const Points& x, const Deformed& before) {
   if (links.empty() && links_.pairs.empty())
     return;
   std::vector<Link> sorted(links.begin(), links.end());
   std::sort(sorted.begin(), sorted.end(), [](const Link& a, const Link& b) { return a.pair < b.pair; });
-  std::vector<Mat3> F;
-  deformation(x, F);
   const auto size = [&](const std::uint32_t i) { return reference_[i] > 0 ? phyxels_.volume[i] / reference_[i] : 0.0; };
+  constexpr double hardly = 1e-6; // counts where both know nothing
   std::vector<Pair> pairs;
   std::vector<double> weights;
   Points offsets;
@@ -106,11 +112,15 @@ void PhyxelModel::link(const std::span<const Link> links, const Points& x) {
     const auto [i, j] = pair;
     const double weight = std::min(1.0, area / (length * (size(i) + size(j))));
     const auto known = std::lower_bound(links_.pairs.begin(), links_.pairs.end(), pair);
-    const auto before = static_cast<std::size_t>(known - links_.pairs.begin());
+    const auto earlier = static_cast<std::size_t>(known - links_.pairs.begin());
     const bool is_new = known == links_.pairs.end() || *known != pair;
-    const Vec3 way = x[j] - x[i];
-    offsets.push_back(is_new ? Vec3(0.5 * (undone(F[i], way) + undone(F[j], way))) : link_offsets_[before]);
-    weights.push_back(is_new ? weight : std::min(weight, link_weights_[before]));
+    const auto at_rest = [&, i = i, j = j] {
+      const Vec3 way = x[j] - x[i];
+      const double of_i = before.known[i] + hardly, of_j = before.known[j] + hardly;
+      return Vec3((of_i * undone(before.F[i], way) + of_j * undone(before.F[j], way)) / (of_i + of_j));
+    };
+    offsets.push_back(is_new ? at_rest() : link_offsets_[earlier]);
+    weights.push_back(is_new ? weight : std::min(weight, link_weights_[earlier]));
     pairs.push_back(pair);
   }
   links_ = neighbours_of(std::move(pairs), phyxels_.size());

@@ -57,6 +57,12 @@ struct ModelOptions {
   }
 };
 
+/// Deformation gradients, and how much of each is known (Fit::determinant).
+struct Deformed {
+  std::vector<Mat3> F;
+  std::vector<double> known;
+};
+
 class PhyxelModel : public dynamics::ElasticModel {
  public:
   /// Nothing is in sight but neighbours. Throws ParameterError for an option out of its range.
@@ -66,9 +72,12 @@ class PhyxelModel : public dynamics::ElasticModel {
 
   /// What stands between the phyxels now: one sight for each of neighbours().pairs. Only what changed is made anew.
   void update(std::span<const Sight> sights);
-  /// These links and no others count as bonds now, new ones unstrained at x. Those that did before keep their offsets,
-  /// and their weights where these would grow.
-  void link(std::span<const Link> links, const Points& x);
+  Deformed deformed(const Points& x) const;
+  /// These links and no others count as bonds now, new ones unstrained at x: of their ends the one that knows more of its
+  /// gradient counts more. `before`: of x, as all was in sight before what makes links necessary; a phyxel that has just
+  /// lost its last bond knows no more how it is turned. Links that did before keep their offsets, and their weights
+  /// where these would grow.
+  void link(std::span<const Link> links, const Points& x, const Deformed& before);
   /// Leaves the mass of these (1) to whoever carries them; their sights must be none.
   void carry(std::span<const std::uint8_t> carried);
 

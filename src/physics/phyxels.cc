@@ -205,8 +205,9 @@ void Phyxels::build_map(const CutBody& body) {
   parted = sights_of_phyxels_;
   pba::part(model_.neighbours().pairs, phyxel_pieces_, phyxel_pieces_, parted);
   leave_out_crumbs(model_.neighbours().pairs, parted);
+  const pba::Deformed before = model_.deformed(now_);
   model_.update(parted);
-  model_.link(missing_links(body), now_);
+  model_.link(missing_links(body), now_, before);
   is_stale_ = false;
 }
 

@@ -135,7 +135,7 @@ TEST(Links, AreAsStiffAsTheMaterialAlongThem) {
   const Vec3 along(1e-4, 0, 0), across(0, 1e-4, 0);
   EXPECT_LT(energy(along), 1e-20);
   const Link link{{60, 64 + 12}, 0.4, 0.002};
-  model.link({&link, 1}, points);
+  model.link({&link, 1}, points, model.deformed(points));
   for (const Vec3& step : {along, across}) {
     const double spring = 2 * energy(step) / step.squaredNorm(), expected = 2e4 * link.area / link.length;
     EXPECT_GT(spring, 0.25 * expected) << "gradients take up some of it";
@@ -147,7 +147,7 @@ TEST(Links, AreAsStiffAsTheMaterialAlongThem) {
   for (const Vec3& f : forces)
     sum += f;
   EXPECT_LT(sum.norm(), 1e-12);
-  model.link({}, points);
+  model.link({}, points, model.deformed(points));
   EXPECT_LT(energy(along), 1e-20);
 }
 
@@ -163,14 +163,35 @@ TEST(Links, BringNoEnergy) {
     x[i] += F * Vec3(0.5, 0.1, 0);
   const double before = model.energy(x);
   const Link link{{60, 64 + 12}, 0.4, 0.002};
-  model.link({&link, 1}, x);
+  model.link({&link, 1}, x, model.deformed(x));
   EXPECT_NEAR(model.energy(x), before, 1e-9 * before);
   for (std::size_t i = 64; i < x.size(); ++i)
     x[i] += 0.1 * F.col(0);
   const double after = model.energy(x);
   EXPECT_GT(after, before + 0.01);
-  model.link({&link, 1}, x);
+  model.link({&link, 1}, x, model.deformed(x));
   EXPECT_EQ(model.energy(x), after) << "it is strained as it was";
+}
+
+/// Nor does one to a phyxel that has just lost all of its bonds, in a body that is turned.
+TEST(Links, BringNoEnergyToAPhyxelAlone) {
+  Draw draw(10);
+  const Points points = two_lumps(draw);
+  PhyxelModel model(make_phyxels(points, 0.064, 20), {.density = 1000, .youngs_modulus = 2e4, .poissons_ratio = 0.3}, {});
+  const Points x = mapped(points, draw.rotation(), draw.vector());
+  const Deformed before = model.deformed(x);
+  std::vector<Sight> sights = clear_sights(points, points, model.neighbours().pairs);
+  Link link{{60, 60}, 0.1, 0.002};
+  for (std::size_t p = 0; p < sights.size(); ++p)
+    for (const auto& [alone, other] : {std::pair(0, 1), std::pair(1, 0)})
+      if (const Pair& pair = model.neighbours().pairs[p]; pair[alone] == 60) {
+        sights[p].factor = 0;
+        link.pair = {std::min(60u, pair[other]), std::max(60u, pair[other])};
+      }
+  ASSERT_NE(link.pair[0], link.pair[1]);
+  model.update(sights);
+  model.link({&link, 1}, x, before);
+  EXPECT_LT(model.energy(x), 1e-12);
 }
 
 } // namespace
