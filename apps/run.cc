@@ -4,6 +4,7 @@
 #include "scene_arguments.h"
 
 #include "base/parallel.h"
+#include "dynamics/sound_steps.h"
 #include "scene/compose.h"
 #include "scene/crack_report.h"
 #include "scene/inputs.h"
@@ -36,7 +37,8 @@ void print_body(const scene::Body& body, const scene::Watch& watch) {
       body.n_divided);
   const auto now = [&](const char* name) { return scene::find_observable(name)->value(body); };
   constexpr double much = 0.1; // symplectic Euler takes and gives back as much, near its stable step
-  if (const double part = now("energy gained") / (now("elastic energy") + now("kinetic energy")); part > much)
+  const double gained = now("energy gained"), part = gained / (now("elastic energy") + now("kinetic energy"));
+  if (part > much && gained > dynamics::noise_of_steps(body.physics->model(), body.state.x))
     std::printf("  warning: the integrator has gained %.0f %% of the body's kinetic and elastic energy, step by step: "
                 "use a smaller time step, or an integrator that gains none\n",
                 100 * part);

@@ -61,7 +61,7 @@ void check_shape(const Disc& disc) {
 }
 
 void check_shape(const Rectangle& rectangle) {
-  constexpr double right = 1e-6; // cosine
+  constexpr double right = 1e-4; // cosine: sides are written with some digits
   const Vec3 &a = rectangle.first_side, &b = rectangle.second_side;
   require_place(rectangle.centre);
   require_length(a.stableNorm(), "First side [m]");

@@ -108,16 +108,6 @@ double unseen(const MassSums& sums, const double dt) {
   return mass > 0 ? 1e-12 * std::max(0.0, sums.second_moment - sums.moment.squaredNorm() / mass) / (dt * dt) : 0;
 }
 
-/// Of the elastic energy, by what it costs to grow by a thousandth [J].
-double noise_of_energy(const ForceModel& model, const Points& x) {
-  Loan<Vec3> grown(x);
-  for (Vec3& p : *grown)
-    p *= 1.001;
-  return 1e-8 * std::abs(model.energy(grown) - model.energy(x));
-}
-
-constexpr double many = 1e4; // steps whose round-off may add up
-
 /// The particle that leaves free motion most.
 std::size_t most_thrown(const State& before, const State& after) {
   std::size_t most = 0;
@@ -194,6 +184,15 @@ void require_finite(const State& state, const MassSums& sums) {
 
 } // namespace
 
+double noise_of_energy(const ForceModel& model, const Points& x) {
+  Loan<Vec3> grown(x);
+  for (Vec3& p : *grown)
+    p *= 1.001;
+  return 1e-8 * std::abs(model.energy(grown) - model.energy(x));
+}
+
+double noise_of_steps(const ForceModel& model, const Points& x) { return 1e4 * noise_of_energy(model, x); }
+
 std::string in_short(const double value) {
   std::array<char, 32> text;
   std::snprintf(text.data(), text.size(), "%.3g", value);
@@ -245,7 +244,7 @@ void SoundSteps::add_checked(const State& state, const Loads& loads, const doubl
   double& sum = after.numbers[energy_gained];
   sum = std::max(0.0, sum + change.gained);
   if (change.gained > 0 && !(sum <= options_.most_sum * change.inner + shift) &&
-      sum > many * noise_of_energy(model_, after.x))
+      sum > noise_of_steps(model_, after.x))
     throw StepError("the integrator has gained " + per_cent(sum / change.inner) +
                       " of the body's kinetic and elastic energy, step by step: the motion is no more the body's",
                     most_thrown(state, after));

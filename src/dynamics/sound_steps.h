@@ -75,6 +75,10 @@ class ElasticEnergies {
   std::array<Known, 2> known_; ///< the later asked for comes first
 };
 
+/// Round-off of the elastic energy, by what it costs to grow by a thousandth [J]; and of many steps together.
+double noise_of_energy(const ForceModel& model, const Points& x);
+double noise_of_steps(const ForceModel& model, const Points& x);
+
 class SoundSteps : public Stepper {
  public:
   /// The model must outlive the stepper, and stay as it is: after a cut both are made again.

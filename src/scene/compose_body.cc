@@ -216,6 +216,18 @@ std::string describe_severed(const Body& body, const geometry::TriangleMesh& mes
                        "cubes keep them, or another 'Lattice offset [1]' may");
 }
 
+/// Of a grid that holds much less or more than the mesh.
+std::string describe_volume(const Body& body) {
+  constexpr double much = 0.03;
+  const double more = body.first_volume / body.mesh_volume - 1;
+  if (std::abs(more) < much)
+    return "";
+  return line("warning: body ", body.name, ": the grid has ", std::round(1000 * std::abs(more)) / 10, " % ",
+              more < 0 ? "less" : "more", " volume than the mesh: ", body.n_thin_walls,
+              " of its edges pass through walls that are thinner than a cube and are lost, ", body.n_thin_gaps,
+              " through gaps that are filled. Smaller cubes keep them");
+}
+
 } // namespace
 
 Body compose_body(const Section& section, const GravityParameters* gravity, const std::vector<const Section*>& floors,
@@ -272,7 +284,7 @@ Body compose_body(const Section& section, const GravityParameters* gravity, cons
   world.composition.push_back(line("body ", body.name, ": ", describe_physics(section, parameters, body), ", ",
                                    n_supports, " supports, ",
                                    body.regions.size() + body.load_makers.size() - n_supports, " loads"));
-  for (const std::string& said : {describe_statics(body), describe_start(body)})
+  for (const std::string& said : {describe_statics(body), describe_start(body), describe_volume(body)})
     if (!said.empty())
       world.composition.push_back(said);
   for (const std::string& said : describe_supports(body))

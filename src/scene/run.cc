@@ -28,7 +28,8 @@ void on(const World& world, const Body& body, const int step, const double time,
     action();
   } catch (const dynamics::StepError& error) {
     throw NumericalError(place() + error.what() + ". It shows most at " + particle_at(body, error.particle()) +
-                         ". Use a smaller time step, or smaller loads");
+                         ". Use a smaller time step, smaller loads or, of an implicit integrator, more Newton iterations "
+                         "('Newton iterations [1]', 'Line search')");
   } catch (const NumericalError& error) {
     throw NumericalError(place() + error.what());
   } catch (const ParameterError& error) {
