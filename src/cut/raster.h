@@ -12,7 +12,8 @@ namespace kerf::cut {
 class Raster {
  public:
   static constexpr int n = 64;
-  static constexpr double side = 2.75; ///< in cubes; more than a cube's space diagonal and twice the largest lag
+  static constexpr double side = 2.5; ///< in cubes; more than a cube's space diagonal and twice the lag of elements (the
+                                     ///< corners of the largest sections miss a part of that of springs)
 
   /// Sets the texels whose middles lie in a triangle, where the third coordinate is at most `most` away from 0; of
   /// coordinates in cubes, from the middle. Returns how many of them were not set.

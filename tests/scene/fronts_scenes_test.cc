@@ -29,11 +29,13 @@ double sag(const std::string& backend, const std::string& integrator, const doub
   return bar.last("largest displacement");
 }
 
-/// To within what a front is ahead of where it is for explicit steps, in the cell that the blade enters at .125 m and
-/// passes at .075 m.
-void expect_alike(const std::string& backend, const std::string& at_rest, const double dt_at_rest, const double dt) {
+/// To within what a front is ahead of where it is for explicit steps, in the cell that the front, with its lag, enters at
+/// .125 m and passes at .075 m.
+void expect_alike(const std::string& backend, const std::string& at_rest, const double dt_at_rest, const double dt,
+                  const double lag) {
   double before = 0;
-  for (const auto& [end, tolerance] : {std::pair{0.119, 0.05}, {0.098, 0.005}}) {
+  for (const auto& [front, tolerance] : {std::pair{0.1065, 0.05}, {0.0855, 0.005}}) {
+    const double end = front + lag * 0.05;
     const double explicitly = sag(backend, "velocity Verlet", dt, end),
                  reference = sag(backend, at_rest, dt_at_rest, end);
     std::printf("%s, blade down to %.3f m: %.5f m, at rest %.5f m\n", backend.c_str(), end, explicitly, reference);
@@ -43,9 +45,9 @@ void expect_alike(const std::string& backend, const std::string& at_rest, const 
   }
 }
 
-TEST(FrontsOfExplicitSteps, AreWhereTheBladeStoppedInElements) { expect_alike("fem", "quasi-static", 0.05, 4e-4); }
+TEST(FrontsOfExplicitSteps, AreWhereTheBladeStoppedInElements) { expect_alike("fem", "quasi-static", 0.05, 4e-4, 0.25); }
 TEST(FrontsOfExplicitSteps, AreWhereTheBladeStoppedInSprings) {
-  expect_alike("mass-spring", "implicit Euler", 0.01, 4e-4);
+  expect_alike("mass-spring", "implicit Euler", 0.01, 4e-4, 0.5);
 }
 
 /// A bar that sags and swings is cut halfway through by a blade that stops and withdraws. Where it did not go where a
