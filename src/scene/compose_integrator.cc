@@ -44,12 +44,13 @@ Stepper implicit_euler(ElasticModel& model, const dynamics::NewtonParameters& pa
   return std::make_unique<dynamics::ImplicitEuler>(model, options);
 }
 
-/// The same for one that takes no energy: what cannot be mended is a step of implicit Euler.
-physics::StepperMaker sound_or_implicit_euler(const physics::StepperMaker& make) {
+/// Watched as `options` say; what cannot be mended is a step of implicit Euler with these parameters.
+physics::StepperMaker sound_or_implicit_euler(const physics::StepperMaker& make, const dynamics::SoundOptions& options,
+                                              const dynamics::NewtonParameters& parameters) {
   return [=](ElasticModel& model, const PiecesOfParticles& pieces) -> Stepper {
     auto last_resort = std::make_unique<dynamics::SoundSteps>(
-      model, dynamics::Pieces(pieces()), implicit_euler(model, dynamics::NewtonParameters(), pieces), dissipative);
-    return std::make_unique<dynamics::SoundSteps>(model, dynamics::Pieces(pieces()), make(model, pieces), conservative,
+      model, dynamics::Pieces(pieces()), implicit_euler(model, parameters, pieces), dissipative);
+    return std::make_unique<dynamics::SoundSteps>(model, dynamics::Pieces(pieces()), make(model, pieces), options,
                                                   std::move(last_resort));
   };
 }
@@ -121,8 +122,10 @@ Integrator with_adaptive_step(const Section& body, const Implicit& implicit) {
   if (!body.find("Adaptive step")) {
     Integrator divided = implicit.integrator;
     constexpr int of_implicit_euler = 1;
-    divided.make = implicit.order == of_implicit_euler ? sound(implicit.integrator.make, dissipative)
-                                                       : sound_or_implicit_euler(implicit.integrator.make);
+    divided.make =
+      implicit.order == of_implicit_euler // one correction a step may not do where a few points hold a body
+        ? sound_or_implicit_euler(implicit.integrator.make, dissipative, dynamics::converged_newton())
+        : sound_or_implicit_euler(implicit.integrator.make, conservative, {});
     return divided;
   }
   const auto parameters = read_if_written<dynamics::AdaptiveParameters>(body, "Adaptive step");
