@@ -1,13 +1,14 @@
 #include "surface/placement.h"
 
+#include "base/sort_unique.h"
 #include "grid/cube.h"
-#include "grid/material.h"
 #include "grid/touched.h"
 #include "surface/below_skin.h"
 #include "surface/border.h"
 #include "surface/in_triangle.h"
 #include "surface/sight.h"
 #include "surface/site.h"
+#include "surface/unfold.h"
 
 #include <Eigen/Geometry>
 
@@ -31,7 +32,6 @@ using grid::Solid;
 namespace {
 
 constexpr int no_axis = -1;
-constexpr double in_plane = 1e-9; // of h
 
 class Placer {
  public:
@@ -40,6 +40,7 @@ class Placer {
       join_(placement.sharp_angle * std::numbers::pi / 180),
       threshold_(std::tan(0.5 * placement.sharp_angle * std::numbers::pi / 180)) {}
 
+  /// At what is cut and not settled.
   PlacementCounts run() {
     std::vector<EdgeId> edges;
     for (const grid::EdgeCut& cut : solid_.cuts.new_cuts())
@@ -47,10 +48,11 @@ class Placer {
     std::vector<grid::SkinSegment> segments;
     for (const grid::SkinCut& cut : solid_.cuts.new_skin_cuts())
       segments.push_back(cut.segment);
-    return run(grid::touched_cells(solid_.grid, edges, segments));
+    std::vector<CellId> cells = grid::touched_cells(solid_.grid, edges, segments);
+    return run(cells);
   }
-  /// `cells` ascending: all around new cuts.
-  PlacementCounts run(const std::span<const CellId> cells) {
+  /// `cells` ascending: all around new cuts, or with fronts. Adds those beside them whose vertices it had to move.
+  PlacementCounts run(std::vector<CellId>& cells) {
     for (const CellId c : cells) {
       const View view = look_at(solid_, c);
       const auto faces = solid_.grid.faces(c);
@@ -67,6 +69,7 @@ class Placer {
         count_held();
       }
     }
+    unfold(solid_, cells);
     solid_.cuts.settle();
     return counts_;
   }
@@ -158,7 +161,7 @@ class Placer {
     const Vec3 q = hold_below_skin(from, p, part(from));
     const CellId next = solid_.grid.neighbour(view.cell, face);
     const auto seeing = see(
-      site, q, [&] { return are_in_plane_on_both_sides(view, face, q); },
+      site, q, [&] { return cuts_are_in_plane(solid_, view, face, q); },
       [&] { return is_sheet(view) && (!next.valid() || is_sheet(look_at(solid_, next))); },
       [&](const Vec3& at) { return parts_have_areas(solid_, view, side, at); },
       [&](const std::vector<Plane>& in_planes) { return seeing_border(solid_, view, side, q, in_planes); });
@@ -195,18 +198,6 @@ class Placer {
     const Vec3 found = !p ? q : is_sheet() ? nearest(q, *p, is_good) : *p;
     is_held_ |= found != q;
     return found;
-  }
-
-  /// Do all cuts of the two cells at a face lie in one plane, with p?
-  bool are_in_plane_on_both_sides(const View& view, const int face, const Vec3& p) const {
-    const CellId next = solid_.grid.neighbour(view.cell, face);
-    return cuts_are_in_plane(view, p) && (!next.valid() || cuts_are_in_plane(look_at(solid_, next), p));
-  }
-  bool cuts_are_in_plane(const View& view, const Vec3& p) const {
-    Planes planes;
-    for_each_bit(view.now.blades,
-                 [&](const int segment) { planes.push_back(cut_plane(solid_, view, segment).plane); });
-    return common_plane(planes, p, in_plane * solid_.grid.h()).has_value();
   }
 
   /// Are all cuts of the cell of one label, and hardly bent?
@@ -254,11 +245,12 @@ class Placer {
     };
     const Vec3 from = site.locked.empty() ? between_cuts(site, p, part) : *before,
                q = hold_below_skin(from, p, part(from));
+    constexpr double least = 1e-12; // of a cube
     const auto seeing = [&](const std::vector<Plane>& in_planes) { return seeing_skin(solid_, view, q, in_planes); };
-    const auto is_good = [&](const Vec3& at) { return has_material(view, at); };
+    const auto is_good = [&](const Vec3& at) { return least_material(solid_, view, at) > least; };
     solid_.cuts.set_inner_point(c, border_is_in_plane(solid_, view, q)
                                      ? point_that_sees_border(solid_, view, q).value_or(q)
-                                     : see(site, q, [&] { return cuts_are_in_plane(view, q); },
+                                     : see(site, q, [&] { return cuts_are_in_plane(solid_, view, q); },
                                            [&] { return is_sheet(view); }, is_good, seeing));
     count_held();
   }
@@ -272,22 +264,6 @@ class Placer {
         return q;
     return seeing;
   }
-  /// Has each part of the cell some material, in all and at each corner, with a vertex at p?
-  bool has_material(const View& view, const Vec3& p) {
-    constexpr double least = 1e-12; // of a cube
-    solid_.cuts.set_inner_point(view.cell, p);
-    const auto parts = grid::parts_of(grid::cuts_of(solid_, view.cell));
-    return std::ranges::all_of(parts, [&](const grid::Part& part) {
-      std::array<double, 8> sums{};
-      for (const auto& [t, vertex] : grid::pieces_of(solid_, view.cell, part.items())) {
-        const auto integrals = grid::shape_integrals(t);
-        for (int v = 0; v < 8; ++v)
-          sums[v] += integrals[v];
-      }
-      return *std::ranges::min_element(sums) > least;
-    });
-  }
-
   Vec3 mean_node(const View& view) const {
     Vec3 sum = Vec3::Zero();
     for_each_bit(view.now.material, [&](const int v) { sum += grid::item_point(solid_, view.cell, v); });
@@ -487,8 +463,16 @@ class Placer {
 
 PlacementCounts place(Solid& solid, const Placement& placement) { return Placer(solid, placement).run(); }
 
-PlacementCounts place(Solid& solid, const grid::CutChange& change, const Placement& placement) {
-  return Placer(solid, placement).run(change.cells);
+PlacementCounts place(Solid& solid, grid::CutChange& change, const Placement& placement) {
+  const std::size_t n = change.cells.size();
+  const PlacementCounts counts = Placer(solid, placement).run(change.cells);
+  if (change.cells.size() > n) {
+    for (const CellId cell : change.cells)
+      for (const grid::CopyId c : solid.complex.copies_of(cell))
+        change.reshaped.push_back(c);
+    sort_unique(change.reshaped);
+  }
+  return counts;
 }
 
 } // namespace kerf::surface

@@ -43,7 +43,11 @@ struct PlacementCounts {
 /// Places the vertices in all faces and cells that are newly cut, or whose skin is newly parted beside a cut; then all
 /// cuts are settled.
 PlacementCounts place(grid::Solid& solid, const Placement& placement);
-/// The same where it is known what has been cut since.
-PlacementCounts place(grid::Solid& solid, const grid::CutChange& change, const Placement& placement);
+/// The same where it is known what has been cut since. Cells beside it whose vertices it had to move as well, since a
+/// part would have had less than no material else, join the change.
+PlacementCounts place(grid::Solid& solid, grid::CutChange& change, const Placement& placement);
+inline PlacementCounts place(grid::Solid& solid, grid::CutChange&& change, const Placement& placement) {
+  return place(solid, change, placement);
+}
 
 } // namespace kerf::surface

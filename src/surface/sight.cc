@@ -1,5 +1,7 @@
 #include "surface/sight.h"
 
+#include "grid/material.h"
+
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
@@ -141,6 +143,38 @@ bool parts_have_areas(const grid::Solid& solid, const View& view, const int side
 std::optional<Vec3> seeing_skin(const grid::Solid& solid, const View& view, const Vec3& p,
                                 const std::vector<Plane>& in_planes) {
   return towards(view, below_skin(solid, view), in_planes, p);
+}
+
+double least_material(grid::Solid& solid, const View& view, const Vec3& p) {
+  solid.cuts.set_inner_point(view.cell, p);
+  double least = 1;
+  const auto look_at_parts = [&](const grid::CellCuts& cuts) {
+    for (const grid::Part& part : grid::parts_of(cuts)) {
+      std::array<double, 8> sums{};
+      for (const auto& [t, vertex] : grid::pieces_of(solid, view.cell, part.items())) {
+        const auto integrals = grid::shape_integrals(t);
+        for (int v = 0; v < 8; ++v)
+          sums[v] += integrals[v];
+      }
+      least = std::min(least, *std::ranges::min_element(sums));
+    }
+  };
+  look_at_parts(grid::cuts_of(solid, view.cell));
+  if (solid.cuts.front(view.cell) != nullptr)
+    look_at_parts(grid::cuts_of_copies(solid, view.cell));
+  return least;
+}
+
+bool all_is_seen(const grid::Solid& solid, const View& view) {
+  const double least = -round_off * solid.grid.h();
+  if (const Vec3* const p = solid.cuts.inner_point(view.cell); p && !are_above(below_skin(solid, view), *p, least))
+    return false;
+  for (int side = 0; side < skeleton::first_triangle; ++side)
+    if ((view.now.skeleton().sides >> side & 1) != 0)
+      if (const Vec3* const p = solid.cuts.inner_point(solid.grid.faces(view.cell)[side / 2], side % 2);
+          p && !are_above(within_border(solid, view, side), *p, least))
+        return false;
+  return true;
 }
 
 } // namespace kerf::surface

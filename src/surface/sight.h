@@ -31,5 +31,10 @@ bool parts_have_areas(const grid::Solid& solid, const View& view, int side, cons
 /// From where the cell sees all of its skin, within up to two planes through p: p, or as far as that.
 std::optional<Vec3> seeing_skin(const grid::Solid& solid, const View& view, const Vec3& p,
                                 const std::vector<Plane>& in_planes);
+/// The least that a part of the cell, or what a front parts, has at a corner with the cell's vertex at p, where this
+/// leaves it [h^3].
+double least_material(grid::Solid& solid, const View& view, const Vec3& p);
+/// Do the cell's vertex and those in its faces see all that they should?
+bool all_is_seen(const grid::Solid& solid, const View& view);
 
 } // namespace kerf::surface

@@ -50,6 +50,18 @@ CutPlane cut_plane(const grid::Solid& solid, const View& view, const int segment
   return {{grid::segment_point(solid, view.cell, view.now.skeleton(), segment), cut.normal}, cut.label};
 }
 
+bool cuts_are_in_plane(const grid::Solid& solid, const View& view, const Vec3& p) {
+  Planes planes;
+  for_each_bit(view.now.blades,
+               [&](const int segment) { planes.push_back(cut_plane(solid, view, segment).plane); });
+  return common_plane(planes, p, in_plane * solid.grid.h()).has_value();
+}
+
+bool cuts_are_in_plane(const grid::Solid& solid, const View& view, const int face, const Vec3& p) {
+  const grid::CellId next = solid.grid.neighbour(view.cell, face);
+  return cuts_are_in_plane(solid, view, p) && (!next.valid() || cuts_are_in_plane(solid, look_at(solid, next), p));
+}
+
 grid::Segments border(const grid::Skeleton::Side& side) {
   grid::Segments segments = 0;
   for (int i = 0; i < side.n; ++i)

@@ -128,7 +128,7 @@ Tally cut_through(const int n, const Motion motion) {
       else
         boxes.move_on(body.cutter.stands_at(), body.x);
     });
-    const auto change =
+    auto change =
       timed(s[cut_], [&] { return body.cutter.step(solid, std::span(&blade, 1), step - 1, step, body.x); });
     s[fit] += fitting;
     s[cut_] -= fitting;

@@ -66,7 +66,7 @@ TEST(CutterArchive, IsGoneOnFromAfterEveryStep) {
     const double speed = support::uniform(random, 0.02, 0.1), height = support::uniform(random, 0, 0.4);
     const auto cut = [&](Cutter& by, Body& of, const double t) {
       const Points x = swung(of, height, t);
-      const grid::CutChange change = by.step(of, blades, t, t + speed, x);
+      grid::CutChange change = by.step(of, blades, t, t + speed, x);
       surface::place(of, change, {});
       return change.lapsed.size();
     };

@@ -32,7 +32,8 @@ struct Cutting {
     follow(change);
     return change;
   }
-  void follow(const grid::CutChange& change) {
+  void follow(grid::CutChange&& change) { follow(change); }
+  void follow(grid::CutChange& change) {
     surface::place(body, change, {});
     surface::update_surface(body, change, surface, index);
     grid::update_pieces(body, change, pieces);

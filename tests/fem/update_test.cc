@@ -94,7 +94,7 @@ TEST(Update, OfAFrontIsBuildingAnewBitByBit) {
   std::size_t n_tied = 0;
   for (double radius = 0.2; radius < 0.6; radius += 0.017) {
     const cut::Disc disc{Vec3(0.53, 0.48, 0.51), Vec3(0.1, 0.2, 1).normalized(), radius};
-    const grid::CutChange change = cutter.at_once(body, {"disc", disc, 1}, body.rest());
+    grid::CutChange change = cutter.at_once(body, {"disc", disc, 1}, body.rest());
     surface::place(body, change, {});
     model.update(body, change.reshaped);
     const Points x = disturbed(body, draw);

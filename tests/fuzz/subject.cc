@@ -70,14 +70,14 @@ void require_as_built(const Subject& subject) {
 }
 
 /// Lets all else follow what has become of the solid that was `before`.
-void follow_cut(Subject& subject, const grid::Solid& before, const grid::CutChange& change, Tally& tally) {
+void follow_cut(Subject& subject, const grid::Solid& before, grid::CutChange& change, Tally& tally) {
   grid::Solid& solid = subject.solid;
-  const auto keeping = cells_that_keep_mass(before.complex, change.cells);
   tally.n_cut_edges += solid.cuts.all().size() - before.cuts.all().size();
   tally.n_below_skin += solid.cuts.n_cut_twice() - before.cuts.n_cut_twice();
   tally.n_of_skin += solid.cuts.skin_cuts().size() - before.cuts.skin_cuts().size();
 
   const auto placed = surface::place(solid, change, {});
+  const auto keeping = cells_that_keep_mass(before.complex, change.cells);
   const auto parents = all_parents(change);
   require_sound_change(before.complex, solid.complex, change);
   const UnionFind together = require_sound_parents(before.complex, solid.complex, parents);
@@ -153,7 +153,7 @@ Subject make_subject(const Specimen& specimen, Tally& tally) {
 
 void cut(Subject& subject, const std::function<grid::CutChange(Subject&)>& make, Tally& tally) {
   const grid::Solid before = subject.solid;
-  const grid::CutChange change = make(subject);
+  grid::CutChange change = make(subject);
   if (change.any())
     follow_cut(subject, before, change, tally);
   require_material(subject, change.cells, tally);
@@ -163,7 +163,7 @@ void cut(Subject& subject, const std::function<grid::CutChange(Subject&)>& make,
 void cut(Subject& subject, const grid::histories::Step& step, Tally& tally) {
   const grid::Solid before = subject.solid;
   grid::histories::apply(step, subject.solid);
-  const grid::CutChange change = grid::update_complex(subject.solid, step.edges(), step.segments());
+  grid::CutChange change = grid::update_complex(subject.solid, step.edges(), step.segments());
   if (change.any())
     follow_cut(subject, before, change, tally);
   require_pieces_as_found(subject);

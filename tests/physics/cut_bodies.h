@@ -39,7 +39,7 @@ struct GrowingCut {
   }
 
  private:
-  grid::CutChange follow(const grid::CutChange& change, Physics& physics, dynamics::State& state) {
+  grid::CutChange follow(grid::CutChange change, Physics& physics, dynamics::State& state) {
     surface::place(body, change, {});
     surface::update_surface(body, change, surface, index);
     physics.follow_cut(seen(), change, state);

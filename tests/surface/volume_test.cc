@@ -112,7 +112,7 @@ double worst_inheritance(Body& body, const cut::SweepCuts& cuts) {
   const auto before = corner_masses(body);
   cut::Cutter cutter(9);
   cutter.begin(body, grid::rest_positions(body));
-  const auto change = cutter.cut(body, cuts);
+  auto change = cutter.cut(body, cuts);
   place(body, change, {});
   const auto after = corner_masses(body);
   std::vector<double> inherited(after.begin(), after.begin() + static_cast<std::ptrdiff_t>(before.size()));
