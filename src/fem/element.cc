@@ -81,9 +81,8 @@ Element make_element(const Moments& moments, const double h, const material::Ela
   const Moments positive = without_negative_squares(moments);
   fill_mass(element, positive, material.density * h * h * h);
 
-  // Affine motions meet exact forces where the mean gradient is that of the material as it is. Where that is none, an
-  // element would be stiff without bound, for hardly any mass.
-  const Centred as_it_lies = centred(are_in_cube(moments) ? moments : positive);
+  // Affine motions meet exact forces where the mean gradient is that of the material as it is.
+  const Centred as_it_lies = centred(moments);
   element.centroid = as_it_lies.centroid;
   const std::array<Vec3, 8> gradients = mean_gradients(as_it_lies); // of a unit cube
   for (int k = 0; k < 4; ++k) {

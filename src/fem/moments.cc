@@ -120,7 +120,7 @@ Moments octant_moments(const grid::Solid& solid, const grid::CellId cell, const 
 
 Moments without_negative_squares(const Moments& m) {
   if (Eigen::LLT<Products>(products(m)).info() == Eigen::Success)
-    return m; // all but slivers and folds
+    return m; // all but slivers
   Moments spread = full_cube_moments();
   for (double& moment : spread)
     moment *= m[0];
@@ -133,11 +133,6 @@ Moments without_negative_squares(const Moments& m) {
   for (int n = 0; n < 27; ++n)
     result[n] = (1 - part) * m[n] + part * spread[n];
   return result;
-}
-
-bool are_in_cube(const Moments& m) {
-  const double beyond = 0.25 * m[0];
-  return std::ranges::all_of(m, [&](const double moment) { return moment >= -beyond && moment <= m[0] + beyond; });
 }
 
 Moments material_moments(const grid::Solid& solid, const grid::Copy& copy) {

@@ -18,13 +18,9 @@ Moments full_cube_moments();
 /// Moments of the octants of the given vertices (bits) of a cell.
 Moments octant_moments(const grid::Solid& solid, grid::CellId cell, unsigned vertices);
 /// The moments nearest to these, on the straight way to those of the same volume spread over the whole cube, under
-/// which no trilinear field has a negative square. What lies under a skin that is bent within a cell is a difference of
-/// volumes (grid/material.h): it may be no distribution of material at all, and an element of it would gain energy.
+/// which no trilinear field has a negative square: of slivers round-off makes such, and an element of them would gain
+/// energy.
 Moments without_negative_squares(const Moments& m);
-/// Whether they may be moments of material in the cube: each of them between none and all of the volume, or a quarter of
-/// it beyond. Where parts of other sign (grid/material.h) all but cancel, they are not: by the volume that is left,
-/// their means lie far outside of the cube.
-bool are_in_cube(const Moments& m);
 /// Moments of all material of a copy. Material of less than 1e-12 of a cube counts as that much, spread over the whole
 /// cube: for what a blade cuts off the skin alone may have hardly any.
 Moments material_moments(const grid::Solid& solid, const grid::Copy& copy);

@@ -1,6 +1,7 @@
 #include "grid/material.h"
 
 #include "grid/cube.h"
+#include "grid/shape.h"
 
 #include <Eigen/Geometry>
 
@@ -256,6 +257,33 @@ std::array<double, 8> shape_integrals(const Tetrahedron& t) {
   for (int a = 0; a < 8; ++a)
     integrals[a] = size * mean_product(factor[0][a & 1], factor[1][a >> 1 & 1], factor[2][a >> 2 & 1]);
   return integrals;
+}
+
+void add_shape_products(const Tetrahedron& t, Eigen::Matrix<double, 8, 8>& products) {
+  struct Orbit { // of a point with these barycentric coordinates, in every order
+    double a, b, c, d, weight;
+  };
+  // Exact for degree 6: P. Keast 1986, Moderate-degree tetrahedral quadrature formulas, Comput. Methods Appl. Mech.
+  // Eng. 55, 339-348, table 1.
+  static constexpr std::array<Orbit, 4> orbits{
+    {{0.3561913862225449, 0.2146028712591517, 0.2146028712591517, 0.2146028712591517, 0.03992275025816787},
+     {0.8779781243961660, 0.0406739585346113, 0.0406739585346113, 0.0406739585346113, 0.01007721105532066},
+     {0.0329863295731731, 0.3223378901422757, 0.3223378901422757, 0.3223378901422757, 0.05535718154365439},
+     {0.6030056647916491, 0.2696723314583159, 0.0636610018750175, 0.0636610018750175, 0.04821428571428571}}};
+  const double size = volume(t);
+  for (const auto& [a, b, c, d, weight] : orbits)
+    for (int i = 0; i < 4; ++i) // where a is
+      for (int j = 0; j < 4; ++j) { // and b
+        if (j == i || (b == c && j != (i == 0 ? 1 : 0)))
+          continue;
+        Vec3 p = Vec3::Zero();
+        for (int k = 0; k < 4; ++k)
+          p += (k == i ? a : k == j ? b : c) * t[k];
+        Eigen::Matrix<double, 8, 1> N;
+        for (int v = 0; v < 8; ++v)
+          N[v] = shape(v, p);
+        products.selfadjointView<Eigen::Lower>().rankUpdate(N, weight * size);
+      }
 }
 
 double fill(const Solid& solid, const Copy& copy) {

@@ -45,6 +45,8 @@ void for_each_tetrahedron(const Solid& solid, const Copy& copy, const Function& 
 double volume(const Tetrahedron& t);
 /// Integrals of N_0 .. N_7 over a tetrahedron in the unit cube [1].
 std::array<double, 8> shape_integrals(const Tetrahedron& t);
+/// Adds integrals of N_a N_b, a, b = 0 .. 7, over a tetrahedron in the unit cube [1]; below the diagonal alone.
+void add_shape_products(const Tetrahedron& t, Eigen::Matrix<double, 8, 8>& products);
 /// The material's part of a copy's cube; 1 where it holds all nodes [1].
 double fill(const Solid& solid, const Copy& copy);
 

@@ -159,10 +159,8 @@ class Placer {
     };
     const Vec3 from = site.locked.empty() ? between_cuts(site, p, part) : *before;
     const Vec3 q = hold_below_skin(from, p, part(from));
-    const CellId next = solid_.grid.neighbour(view.cell, face);
     const auto seeing = see(
       site, q, [&] { return cuts_are_in_plane(solid_, view, face, q); },
-      [&] { return is_sheet(view) && (!next.valid() || is_sheet(look_at(solid_, next))); },
       [&](const Vec3& at) { return parts_have_areas(solid_, view, side, at); },
       [&](const std::vector<Plane>& in_planes) { return seeing_border(solid_, view, side, q, in_planes); });
     solid_.cuts.set_inner_point(f, arc, seeing);
@@ -170,11 +168,10 @@ class Placer {
   }
 
   /// A vertex at q, or near it where the material around it is seen (sight.h): within the plane of all cuts, or of those
-  /// that it may not leave; else, but where all cuts around lie in one plane, along their bend or sheet, or off that;
-  /// of one sheet as little as is good enough. What cuts in one plane leave is the same wherever in it the vertex lies.
-  template <class IsFlat, class IsSheet, class IsGood, class Seeing>
-  Vec3 see(const Site& site, const Vec3& q, const IsFlat& is_flat, const IsSheet& is_sheet, const IsGood& is_good,
-           const Seeing& seeing) {
+  /// that it may not leave; else, but where all cuts around lie in one plane, along their bend or sheet, or off that as
+  /// little as is good enough. What cuts in one plane leave is the same wherever in it the vertex lies.
+  template <class IsFlat, class IsGood, class Seeing>
+  Vec3 see(const Site& site, const Vec3& q, const IsFlat& is_flat, const IsGood& is_good, const Seeing& seeing) {
     Planes all = site.locked;
     for (const Plane& plane : site.open)
       all.push_back(plane);
@@ -195,23 +192,9 @@ class Placer {
       }
     }
     const auto p = seeing({});
-    const Vec3 found = !p ? q : is_sheet() ? nearest(q, *p, is_good) : *p;
+    const Vec3 found = p ? nearest(q, *p, is_good) : q;
     is_held_ |= found != q;
     return found;
-  }
-
-  /// Are all cuts of the cell of one label, and hardly bent?
-  bool is_sheet(const View& view) const {
-    constexpr double least = 0.5; // cosine of the angle between two
-    std::optional<CutPlane> first;
-    bool result = true;
-    for_each_bit(view.now.blades, [&](const int segment) {
-      const CutPlane cut = cut_plane(solid_, view, segment);
-      if (!first)
-        first = cut;
-      result = result && cut.label == first->label && std::abs(cut.plane.normal.dot(first->plane.normal)) > least;
-    });
-    return result;
   }
 
   void place_triangle(const View& view, const int triangle) {
@@ -247,11 +230,11 @@ class Placer {
                q = hold_below_skin(from, p, part(from));
     constexpr double least = 1e-12; // of a cube
     const auto seeing = [&](const std::vector<Plane>& in_planes) { return seeing_skin(solid_, view, q, in_planes); };
-    const auto is_good = [&](const Vec3& at) { return least_material(solid_, view, at) > least; };
+    const auto is_good = [&](const Vec3& at) { return has_material(solid_, view, at, least); };
     solid_.cuts.set_inner_point(c, border_is_in_plane(solid_, view, q)
                                      ? point_that_sees_border(solid_, view, q).value_or(q)
                                      : see(site, q, [&] { return cuts_are_in_plane(solid_, view, q); },
-                                           [&] { return is_sheet(view); }, is_good, seeing));
+                                           is_good, seeing));
     count_held();
   }
 

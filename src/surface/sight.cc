@@ -2,6 +2,7 @@
 
 #include "grid/material.h"
 
+#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
@@ -77,6 +78,30 @@ std::optional<Vec3> towards(const View& view, const std::vector<Plane>& half_spa
   return *middle + part * (p - *middle);
 }
 
+bool have_material(const grid::Solid& solid, const grid::CellId c, const grid::CellCuts& cuts, const double least) {
+  constexpr double least_square = -1e-12; // of a cube
+  using Products = Eigen::Matrix<double, 8, 8>;
+  return std::ranges::all_of(grid::parts_of(cuts), [&](const grid::Part& part) {
+    const auto pieces = grid::pieces_of(solid, c, part.items());
+    std::array<double, 8> at_corner{};
+    bool is_folded = false;
+    for (const auto& [t, vertex] : pieces) {
+      const auto integrals = grid::shape_integrals(t);
+      for (int v = 0; v < 8; ++v)
+        at_corner[v] += integrals[v];
+      is_folded = is_folded || grid::volume(t) < 0;
+    }
+    if (*std::ranges::min_element(at_corner) <= least)
+      return false;
+    if (!is_folded)
+      return true;
+    Products products = -least_square * Products::Identity();
+    for (const auto& [t, vertex] : pieces)
+      grid::add_shape_products(t, products);
+    return Eigen::LLT<Products>(products).info() == Eigen::Success;
+  });
+}
+
 } // namespace
 
 double height(const Vec3& p, const Plane& half_space) { return half_space.normal.dot(p - half_space.point); }
@@ -145,24 +170,11 @@ std::optional<Vec3> seeing_skin(const grid::Solid& solid, const View& view, cons
   return towards(view, below_skin(solid, view), in_planes, p);
 }
 
-double least_material(grid::Solid& solid, const View& view, const Vec3& p) {
+bool has_material(grid::Solid& solid, const View& view, const Vec3& p, const double least) {
   solid.cuts.set_inner_point(view.cell, p);
-  double least = 1;
-  const auto look_at_parts = [&](const grid::CellCuts& cuts) {
-    for (const grid::Part& part : grid::parts_of(cuts)) {
-      std::array<double, 8> sums{};
-      for (const auto& [t, vertex] : grid::pieces_of(solid, view.cell, part.items())) {
-        const auto integrals = grid::shape_integrals(t);
-        for (int v = 0; v < 8; ++v)
-          sums[v] += integrals[v];
-      }
-      least = std::min(least, *std::ranges::min_element(sums));
-    }
-  };
-  look_at_parts(grid::cuts_of(solid, view.cell));
-  if (solid.cuts.front(view.cell) != nullptr)
-    look_at_parts(grid::cuts_of_copies(solid, view.cell));
-  return least;
+  return have_material(solid, view.cell, grid::cuts_of(solid, view.cell), least) &&
+         (solid.cuts.front(view.cell) == nullptr ||
+          have_material(solid, view.cell, grid::cuts_of_copies(solid, view.cell), least));
 }
 
 bool all_is_seen(const grid::Solid& solid, const View& view) {

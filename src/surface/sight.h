@@ -31,9 +31,9 @@ bool parts_have_areas(const grid::Solid& solid, const View& view, int side, cons
 /// From where the cell sees all of its skin, within up to two planes through p: p, or as far as that.
 std::optional<Vec3> seeing_skin(const grid::Solid& solid, const View& view, const Vec3& p,
                                 const std::vector<Plane>& in_planes);
-/// The least that a part of the cell, or what a front parts, has at a corner with the cell's vertex at p, where this
-/// leaves it [h^3].
-double least_material(grid::Solid& solid, const View& view, const Vec3& p);
+/// Has each part of the cell, and each that a front parts, more than `least` at each corner [h^3], and no trilinear field
+/// a negative square in it, with the cell's vertex at p, where this leaves it?
+bool has_material(grid::Solid& solid, const View& view, const Vec3& p, double least);
 /// Do the cell's vertex and those in its faces see all that they should?
 bool all_is_seen(const grid::Solid& solid, const View& view);
 

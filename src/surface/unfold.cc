@@ -10,15 +10,15 @@ namespace {
 namespace skeleton = grid::skeleton;
 using grid::CellId;
 
-/// Has a part of the cell less than nothing, since some vertex does not see all around it? What cuts in one plane leave is
-/// the same wherever in it their vertices lie, but not what a front parts.
+/// Has a part of the cell less than nothing, since some vertex does not see all around it? What cuts in one plane leave
+/// is the same wherever in it their vertices lie, but not what a front parts.
 bool is_folded(grid::Solid& solid, const View& view) {
-  constexpr double round_off = 1e-13; // of a cube
+  constexpr double least = -1e-13; // but for round-off, of a cube
   if (!view.now.is_cut_at_skin() || solid.cuts.inner_point(view.cell) == nullptr || all_is_seen(solid, view))
     return false;
   const Vec3 p = *solid.cuts.inner_point(view.cell);
   return (solid.cuts.front(view.cell) != nullptr || !cuts_are_in_plane(solid, view, p)) &&
-         least_material(solid, view, p) < -round_off;
+         !has_material(solid, view, p, least);
 }
 
 /// Whether the vertex in a face has moved.

@@ -1,7 +1,7 @@
 #pragma once
 
-/// Vertices that see less than all around them (sight.h) may have been good enough until another cut, or a front, came into
-/// their cell. Where a part of it has less than nothing now, they are placed anew, from where they see all.
+/// Vertices that see less than all around them (sight.h) may have been good enough until another cut, or a front, came
+/// into their cell. Where a part of it has less than nothing now, they are placed anew, from where they see all.
 
 #include "grid/solid.h"
 

@@ -94,6 +94,7 @@ TEST_P(CurvedCuts, LieOnTheirSurfaces) {
   for (const Tally* tally : {&spheres, &blades}) {
     EXPECT_GE(tally->least.of_copies, -round_off);
     EXPECT_GE(tally->least.at_corners, -round_off);
+    EXPECT_GE(tally->least.of_squares, least_square);
   }
 }
 INSTANTIATE_TEST_SUITE_P(Short, CurvedCuts, testing::Values(3));

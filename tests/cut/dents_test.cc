@@ -48,6 +48,7 @@ TEST(Dents, AreOneWithWhatIsAroundThem) {
   EXPECT_GT(least.n_copies, 10000u);
   EXPECT_GT(least.of_copies, -round_off);
   EXPECT_GT(least.at_corners, -round_off);
+  EXPECT_GE(least.of_squares, least_square);
 }
 
 } // namespace

@@ -299,6 +299,7 @@ TEST_P(Strokes, LeaveThePiecesOfTheBoolean) {
   std::cout << counted.least << '\n';
   EXPECT_GT(counted.least.of_copies, -round_off);
   EXPECT_GT(counted.least.at_corners, -round_off);
+  EXPECT_GE(counted.least.of_squares, least_square);
 }
 
 /// Slow, by steps of the size of a cube, and fast: the same pieces. Where several blades cross, each segment is cut by
