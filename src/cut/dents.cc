@@ -1,5 +1,6 @@
 #include "cut/dents.h"
 
+#include "cut/sides.h"
 #include "grid/material.h"
 
 #include <Eigen/Geometry>
@@ -15,7 +16,6 @@ namespace kerf::cut {
 namespace {
 
 using grid::Items;
-using grid::Joined;
 using grid::MaterialPiece;
 
 constexpr double round_off = 1e-12; // of a cube, and of its sides
@@ -67,7 +67,7 @@ bool is_beside(const PartByPieces& part, const Opening& opening) {
 
 } // namespace
 
-std::vector<Dent> dents(const grid::Solid& solid, const grid::CellId c, const std::vector<Joined>& known) {
+std::vector<Dent> dents(const grid::Solid& solid, const grid::CellId c) {
   std::vector<Dent> result;
   const grid::CellCuts cuts = grid::without_joined(grid::cuts_of(solid, c));
   if (!cuts.is_cut_at_skin())
@@ -75,22 +75,16 @@ std::vector<Dent> dents(const grid::Solid& solid, const grid::CellId c, const st
   const grid::Parts parts = grid::parts_of(cuts);
   if (parts.n < 2 || std::ranges::all_of(parts, [](const grid::Part& part) { return part.nodes != 0; }))
     return result;
+  if (!all_by_sides(solid, c).empty())
+    return result;
   std::vector<PartByPieces> all;
   for (const grid::Part& part : parts) {
     all.push_back({part, grid::pieces_of(solid, c, part.items(), grid::VerticesOfCuts::amid_cuts)});
     for (const MaterialPiece& piece : all.back().pieces)
       all.back().volume += grid::volume(piece.tetrahedron);
   }
-  const auto is_filled = [&](const Joined& group) {
-    double sum = 0;
-    for (const PartByPieces& part : all)
-      sum += (part.items() & group.items) != 0 ? part.volume : 0;
-    return sum >= -round_off;
-  };
   for (const PartByPieces& dent : all) {
-    if (dent.part.nodes != 0 || dent.volume >= -round_off || std::ranges::any_of(known, [&](const Joined& group) {
-          return (group.items & dent.items()) != 0 && is_filled(group);
-        }))
+    if (dent.part.nodes != 0 || dent.volume >= -round_off)
       continue;
     const auto opening = opening_of(dent);
     if (!opening)

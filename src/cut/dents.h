@@ -18,8 +18,9 @@ struct Dent {
 };
 
 /// Of a cell in which blades have cut: each part without a node whose volume is negative, and the one whose border goes
-/// around its own on the same side of the cut; as the cuts alone tell, wherever their vertices are. Passed over are
-/// those that `known` joins with enough to be positive.
-std::vector<Dent> dents(const grid::Solid& solid, grid::CellId c, const std::vector<grid::Joined>& known);
+/// around its own on the same side of the cut; as the cuts alone tell, wherever their vertices are. None where cuts of
+/// several blades tell the sides of all parts (sides.h): what lies on the same sides is one by that, and a part between
+/// them may seem to have a negative volume, and is no dent.
+std::vector<Dent> dents(const grid::Solid& solid, grid::CellId c);
 
 } // namespace kerf::cut

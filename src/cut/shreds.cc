@@ -255,7 +255,7 @@ bool is_on_same_sides(const grid::Solid& solid, const Shred& shred) {
                                         ((group.items & ~known) != 0 ||
                                          is_held_across_faces(solid, shred, cell, group.intervals));
                                }) ||
-           std::ranges::any_of(dents(solid, c, groups), [known = items](const Dent& dent) {
+           std::ranges::any_of(dents(solid, c), [known = items](const Dent& dent) {
              return (dent.skin & known) != 0 && (dent.around & ~known) != 0;
            });
   });

@@ -233,7 +233,7 @@ std::vector<Joined> by_sides(const Solid& solid, const CellId c) {
 
 std::vector<Joined> on_same_sides(const Solid& solid, const CellId c) {
   std::vector<Joined> groups = by_sides(solid, c);
-  for (const Dent& dent : dents(solid, c, groups))
+  for (const Dent& dent : dents(solid, c))
     groups.push_back(dent.joined());
   return groups;
 }
@@ -247,7 +247,7 @@ std::vector<Joined> without_cuts(const Solid& solid, const CellId c, const Segme
       if ((side.items & group.items) != 0)
         group.intervals |= side.intervals;
   }
-  for (const Dent& dent : dents(solid, c, settled))
+  for (const Dent& dent : dents(solid, c))
     groups.push_back(dent.joined());
   return groups;
 }

@@ -37,7 +37,7 @@ TEST(Dents, AreOneWithWhatIsAroundThem) {
       support::cut_through(body, support::cuts_of_plane(body, plane));
       least.look_at(body);
       for (const auto c : ids<grid::CellId>(body.grid.n_cells()))
-        for (const Dent& dent : dents(body, c, {})) { // as segments alone part the cell
+        for (const Dent& dent : dents(body, c)) { // as segments alone part the cell
           ++n;
           EXPECT_TRUE(is_on_one_side(body, c, dent.joined().items, plane))
             << name << ", " << seed << ", cell " << c.value;
