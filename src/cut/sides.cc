@@ -1,6 +1,7 @@
 #include "cut/sides.h"
 
 #include "cut/dents.h"
+#include "cut/hollows.h"
 
 #include <algorithm>
 #include <bit>
@@ -203,17 +204,26 @@ std::vector<Joined> all_by_sides(const Solid& solid, const CellId c) {
   const auto& skeleton = cuts.skeleton();
   const auto around = [&](const Items items) { return skeleton.reachable(items, 0); }; // over segments, cut or not
   std::vector<std::pair<Sides, Items>> lie; // of the groups: on these sides, and among these items
-  const auto group_at = [&](const Sides& at, const Items items) -> Joined& {
+  const auto group_at = [&](const Sides& at, const Items items, const auto& is_one_with) -> Joined& {
     for (std::size_t i = 0; i < groups.size(); ++i)
-      if (lie[i].first == at && (lie[i].second & items) != 0)
+      if (lie[i].first == at && (lie[i].second & items) != 0 && is_one_with(groups[i].items))
         return groups[i];
     lie.emplace_back(at, around(items));
     return groups.emplace_back();
   };
-  for (const grid::Part& part : parts)
-    group_at((*sides)[std::countr_zero(part.items())], part.items()).items |= part.items();
+  std::optional<Hollows> hollows; // of a cell in which they are asked for
+  for (const grid::Part& part : parts) {
+    const auto is_one_with = [&](const Items items) {
+      if (!cuts.has_skin())
+        return true;
+      if (!hollows)
+        hollows.emplace(solid, c, skeleton.items);
+      return !hollows->lie_between(items, part.items());
+    };
+    group_at((*sides)[std::countr_zero(part.items())], part.items(), is_one_with).items |= part.items();
+  }
   meetings.for_each_interval(*sides, [&](const Intervals interval, const Sides& at, const Items ends) {
-    group_at(at, ends).intervals |= interval;
+    group_at(at, ends, [](Items) { return true; }).intervals |= interval;
   });
   return groups;
 }

@@ -7,7 +7,8 @@
 /// Who has met a segment is known by its cut, and by later ones of others (grid/cuts.h). To the normals of one label,
 /// turned to one side, each meeting is a step of +1 or -1 from one end of the segment to the other; steps along ways
 /// add up to how an item lies to the label. Where that depends on the way, for any label, as where a cut ends in the
-/// cell or comes back beside itself, nothing is said of the cell.
+/// cell or comes back beside itself, nothing is said of the cell. Parts between which the skin has a hollow are not one
+/// (hollows.h).
 ///
 /// Splinters of such a wedge lie in cells next to each other too, where it passes through the face between them with
 /// none of the face's nodes in it. Its material in the face is seen on the face's segments: an *interval* between two

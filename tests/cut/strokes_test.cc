@@ -210,6 +210,34 @@ TEST(ThreeBlades, LeaveNoBridgeByATipThatWasLeftWhole) {
   EXPECT_EQ(patient.volumes().size(), 6u);
 }
 
+/// Two walls that meet at a hollow edge.
+geometry::TriangleMesh angle_mesh() {
+  const std::array<std::array<double, 2>, 6> profile{{{0, 0}, {1, 0}, {1, 0.5}, {0.5, 0.5}, {0.5, 1}, {0, 1}}};
+  geometry::TriangleMesh mesh;
+  for (const double y : {0.0, 1.0})
+    for (const auto& [x, z] : profile)
+      mesh.vertices.emplace_back(x, y, z);
+  for (const std::array<std::uint32_t, 3>& t : {std::array{3u, 4u, 5u}, {3u, 5u, 0u}, {3u, 0u, 1u}, {3u, 1u, 2u}}) {
+    mesh.triangles.push_back({t[0], t[1], t[2]});
+    mesh.triangles.push_back({t[0] + 6, t[2] + 6, t[1] + 6});
+  }
+  for (std::uint32_t i = 0; i < 6; ++i) {
+    const std::uint32_t next = (i + 1) % 6;
+    mesh.triangles.push_back({i, i + 6, next});
+    mesh.triangles.push_back({next, i + 6, next + 6});
+  }
+  return mesh;
+}
+
+/// Where the wedge between two blades leaves a tip on each side of a hollow edge, these are not one.
+TEST(ThreeBlades, LeaveNoBridgeOverAHollow) {
+  Counted counted;
+  for (const unsigned seed : {32, 34, 43}) // 32 leaves such tips
+    stroke(angle_mesh(), "angle", Tool::blades, seed, counted);
+  EXPECT_GT(counted.n_strokes, 1);
+  EXPECT_EQ(counted.n_fewer, 0);
+}
+
 /// Two blades come through a cube in one step; one passes just below an edge, whose tips stay on the body. Where the
 /// other one has crossed the same segments, it parts them.
 TEST(SeveralBlades, PartWhatTipsOfAnotherStayOn) {

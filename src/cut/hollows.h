@@ -1,0 +1,31 @@
+#pragma once
+
+/// Hollows of the skin between parts of a cell. What lies on the same sides of all cuts (sides.h) is convex, but for
+/// the skin: where that has a hollow, as at an edge between two walls that meet like those of an L, two tips on both
+/// sides of it may lie on the same sides of all cuts, and hang together by nothing.
+
+#include "grid/material.h"
+#include "grid/solid.h"
+
+#include <vector>
+
+namespace kerf::cut {
+
+class Hollows {
+ public:
+  /// Of a cell that holds these items.
+  Hollows(const grid::Solid& solid, grid::CellId c, grid::Items items);
+
+  /// Does a hollow lie between all of some items and all of others? One of less than a tenth of a cube is none: the
+  /// skin of a round body has such.
+  bool lie_between(grid::Items some, grid::Items others) const;
+
+ private:
+  bool is_inside(const Vec3& p) const;
+
+  std::array<Vec3, grid::skeleton::n_items> at_; // of the items, in coordinates of the cell [1]
+  std::vector<grid::Tetrahedron> material_;      // signed
+  Vec3 inward_;                                  // the middle of its nodes
+};
+
+} // namespace kerf::cut
