@@ -1,6 +1,7 @@
 #include "surface/unfold.h"
 
 #include "base/sort_unique.h"
+#include "surface/border.h"
 #include "surface/sight.h"
 
 namespace kerf::surface {
@@ -17,7 +18,7 @@ bool is_folded(grid::Solid& solid, const View& view) {
   if (!view.now.is_cut_at_skin() || solid.cuts.inner_point(view.cell) == nullptr || all_is_seen(solid, view))
     return false;
   const Vec3 p = *solid.cuts.inner_point(view.cell);
-  return (solid.cuts.front(view.cell) != nullptr || !cuts_are_in_plane(solid, view, p)) &&
+  return (solid.cuts.front(view.cell) != nullptr || !border_is_in_plane(solid, view, p)) &&
          !has_material(solid, view, p, least);
 }
 
@@ -28,7 +29,7 @@ bool unfold_in_face(grid::Solid& solid, const View& view, const int side) {
   if (before == nullptr || (!solid.cuts.front(view.cell) && cuts_are_in_plane(solid, view, side / 2, *before)))
     return false;
   const auto p = seeing_border(solid, view, side, *before, {});
-  if (!p || *p == *before)
+  if (!p || (*p - *before).norm() < in_plane * solid.grid.h()) // or two cells might move it by round-off for ever
     return false;
   solid.cuts.set_inner_point(f, side % 2, *p);
   return true;
