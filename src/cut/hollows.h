@@ -7,6 +7,7 @@
 #include "grid/material.h"
 #include "grid/solid.h"
 
+#include <array>
 #include <vector>
 
 namespace kerf::cut {

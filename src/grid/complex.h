@@ -100,7 +100,8 @@ struct CellComplex {
 /// Of what is cut. Copies are ordered by cell, then as their parts are (parts.h); corners by node.
 CellComplex build_complex(const Solid& solid);
 
-/// What a cut has done to a body. Placement, surface and physics follow it by this, and look for nothing themselves.
+/// What a cut has done to a body. Placement, surface and physics follow it by this, and look for nothing themselves;
+/// but that placement adds cells beside these whose vertices it had to move (surface/unfold.h).
 struct CutChange {
   std::vector<EdgeId> edges;         ///< that are cut now
   std::vector<SkinSegment> segments; ///< of the skin, that are cut now

@@ -70,9 +70,7 @@ void follow_cut(Body& body, grid::CutChange change, Timings& timings) {
     return;
   {
     const ScopedTimer timer(timings, "topology");
-    const auto placed = surface::place(body.solid, change, body.placement);
-    body.placed.n_placed += placed.n_placed;
-    body.placed.n_clamped += placed.n_clamped;
+    body.placed += surface::place(body.solid, change, body.placement);
     surface::update_surface(body.solid, change, body.surface, body.surface_index);
     grid::update_pieces(body.solid, change, body.pieces);
     grid::update_crumbs(body.solid, change, body.physics->particles_are_corners() ? nullptr : &body.physics->rest());

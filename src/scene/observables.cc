@@ -362,6 +362,8 @@ const std::vector<Observable>& body_observables() {
      }},
     {"clamped vertices", "1", "placements that were held at the side of their face or cell",
      [](const Body& b) { return count(b.placed.n_clamped); }},
+    {"folded cells", "1", "cells in which a cut left some part with less than nothing",
+     [](const Body& b) { return count(b.placed.n_folded); }},
   };
   return all;
 }

@@ -69,7 +69,7 @@ class Placer {
         count_held();
       }
     }
-    unfold(solid_, cells);
+    counts_.n_folded = unfold(solid_, cells);
     solid_.cuts.settle();
     return counts_;
   }
@@ -238,15 +238,6 @@ class Placer {
     count_held();
   }
 
-  /// On the way from p to what sees all around it, in fifths of it, the first point that is good enough.
-  template <class IsGood>
-  static Vec3 nearest(const Vec3& p, const Vec3& seeing, const IsGood& is_good) {
-    constexpr int n = 5;
-    for (int k = 0; k < n; ++k)
-      if (const Vec3 q = p + double(k) / n * (seeing - p); is_good(q))
-        return q;
-    return seeing;
-  }
   Vec3 mean_node(const View& view) const {
     Vec3 sum = Vec3::Zero();
     for_each_bit(view.now.material, [&](const int v) { sum += grid::item_point(solid_, view.cell, v); });

@@ -15,7 +15,7 @@
 ///
 /// Departures: the thesis has one vertex a face and component, which cannot lie on the skin and on a cut below it; and
 /// it projects plainly onto the new plane, which would bend an earlier cut that it does not meet at a right angle, and
-/// move volume from one of its sides to the other; here what was flat stays flat. A cell with a front takes the
+/// move volume from one of its sides to the other; here what was flat stays flat, but for unfolding. A cell with a front takes the
 /// quadric too, not the mean of its face vertices, which may lie beside the plane that is cut; fronts of one label in
 /// different steps are (b) or (c) all the same. Cuts of several labels are no bent one: they are met in their line or
 /// point, or one of them alone. A vertex never leaves its face or cell, so that every octant (grid/material.h) has six
@@ -32,20 +32,28 @@ struct Placement {
   double sharp_angle = 45;
 };
 
-/// How many vertices were placed, and how many of them the sides of their face or cell, or the skin, held back from
-/// where their planes ask for them.
+/// How many vertices were placed, but for those that were unfolded (unfold.h); how many of them the sides of their face
+/// or cell, or the skin, held back from where their planes ask for them; and in how many cells a part has less than
+/// nothing, which unfolding did not mend.
 struct PlacementCounts {
-  std::size_t n_placed = 0, n_clamped = 0;
+  std::size_t n_placed = 0, n_clamped = 0, n_folded = 0;
 
-  void archive(Archive& a) { a(n_placed, n_clamped); }
+  PlacementCounts& operator+=(const PlacementCounts& others) {
+    n_placed += others.n_placed;
+    n_clamped += others.n_clamped;
+    n_folded += others.n_folded;
+    return *this;
+  }
+  void archive(Archive& a) { a(n_placed, n_clamped, n_folded); }
 };
 
 /// Places the vertices in all faces and cells that are newly cut, or whose skin is newly parted beside a cut; then all
 /// cuts are settled.
 PlacementCounts place(grid::Solid& solid, const Placement& placement);
 /// The same where it is known what has been cut since. Cells beside it whose vertices it had to move as well, since a
-/// part would have had less than no material else, join the change.
+/// part would have had less than no material else, join the change, and their copies its reshaped ones.
 PlacementCounts place(grid::Solid& solid, grid::CutChange& change, const Placement& placement);
+/// The same for who builds all else anew, and needs no change.
 inline PlacementCounts place(grid::Solid& solid, grid::CutChange&& change, const Placement& placement) {
   return place(solid, change, placement);
 }

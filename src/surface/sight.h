@@ -31,9 +31,18 @@ bool parts_have_areas(const grid::Solid& solid, const View& view, int side, cons
 /// From where the cell sees all of its skin, within up to two planes through p: p, or as far as that.
 std::optional<Vec3> seeing_skin(const grid::Solid& solid, const View& view, const Vec3& p,
                                 const std::vector<Plane>& in_planes);
-/// Has each part of the cell, and each that a front parts, more than `least` at each corner [h^3], and no trilinear field
-/// a negative square in it, with the cell's vertex at p, where this leaves it?
+/// Moves the cell's vertex to p. Has each part of the cell, and each that a front parts, more than `least` [h^3] at each
+/// corner then, and no trilinear field a negative square in it?
 bool has_material(grid::Solid& solid, const View& view, const Vec3& p, double least);
+/// On the way from p to what sees all around it, in fifths of it, the first point that is good enough.
+template <class IsGood>
+Vec3 nearest(const Vec3& p, const Vec3& seeing, const IsGood& is_good) {
+  constexpr int n = 5;
+  for (int k = 0; k < n; ++k)
+    if (const Vec3 q = p + double(k) / n * (seeing - p); is_good(q))
+      return q;
+  return seeing;
+}
 /// Do the cell's vertex and those in its faces see all that they should?
 bool all_is_seen(const grid::Solid& solid, const View& view);
 

@@ -331,7 +331,7 @@ struct Falling {
             const Vec3& drawn = Vec3::Zero()) {
     Cutter cutter = patient.cutter(blade.label);
     for (int k = 0; k <= n_steps || cutter.n_waiting() > 0 || n_rest-- > 0; ++k) {
-      const auto change =
+      auto change =
         cutter.step(patient.body, std::span(&blade, 1), double(k) / n_steps, double(k + 1) / n_steps, patient.x);
       patient.follow(change);
       grid::inherit(change, speed);

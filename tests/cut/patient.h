@@ -42,7 +42,8 @@ struct Patient {
 
   void deform(const Map& map) { std::transform(x.begin(), x.end(), x.begin(), map); }
 
-  void follow(grid::CutChange change) {
+  void follow(grid::CutChange&& change) { follow(change); }
+  void follow(grid::CutChange& change) {
     surface::place(body, change, {});
     grid::inherit(change, x);
   }

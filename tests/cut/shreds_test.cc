@@ -52,7 +52,7 @@ TEST(Shreds, WhatWasLeftIsTakenUpAsItWasMet) {
     Cutter cutter = patient.cutter(2);
     SweepCuts found;
     (met == left ? found.later : found.cuts).push_back({met, 0.7, Vec3::UnitX(), 2});
-    const grid::CutChange change = cutter.cut(patient.body, found);
+    grid::CutChange change = cutter.cut(patient.body, found);
     ASSERT_TRUE(cuts.is_cut(left));
     EXPECT_EQ(cuts.find(left)->label, 1);
     EXPECT_EQ(cuts.find(left)->t, 0.3);

@@ -50,7 +50,7 @@ TEST(Splinters, StayHeldWhenSomethingElseIsCut) {
       do
         at = 0.5 * (box.lower + box.upper) + half.cwiseProduct(support::random_vector(random));
       while (std::min(std::abs((at - through).dot(first)), std::abs((at - through).dot(second))) < 2 * h);
-      const grid::CutChange change =
+      grid::CutChange change =
         cutter.at_once(patient.body, {"nick", Disc{at, random_direction(random), 0.6 * h}, label}, patient.x);
       n_nicks += !change.edges.empty();
       patient.follow(change);

@@ -74,7 +74,7 @@ std::optional<PiecesAndFine> sawn(const geometry::TriangleMesh& mesh, const unsi
     const double t0 = double(k) / n_steps, t1 = double(k + 1) / n_steps;
     stand(t1);
     fine.cut(patient.body, paths(blade, t0, t1), cutter.stands_at(), patient.x);
-    const grid::CutChange change = cutter.step(patient.body, std::span(&blade, 1), t0, t1, patient.x);
+    grid::CutChange change = cutter.step(patient.body, std::span(&blade, 1), t0, t1, patient.x);
     patient.follow(change);
     fine.follow(patient.body, change.cells);
   }

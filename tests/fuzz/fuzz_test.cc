@@ -81,8 +81,8 @@ void print(const Tally& tally, const double seconds) {
   std::cout << tally.n_cases << " cases, " << tally.n_sweeps << " sweeps (" << tally.n_idle_sweeps << " cut nothing), "
             << tally.n_releases << " releases, " << tally.n_cut_edges << " cut edges (" << tally.n_below_skin
             << " of the skin), " << tally.n_of_skin << " cut segments of the skin (" << tally.n_left_whole
-            << " cuts left whole), " << tally.n_placed << " placed vertices (" << tally.n_clamped << " clamped), "
-            << tally.n_double_crossings << " double crossings, " << tally.n_masses << " corner masses, "
+            << " cuts left whole), " << tally.placed.n_placed << " placed vertices (" << tally.placed.n_clamped
+            << " clamped), " << tally.n_double_crossings << " double crossings, " << tally.n_masses << " corner masses, "
             << tally.n_thread_pairs << " cases on 1 and 2 threads; at most " << tally.n_most_pieces << " pieces and "
             << tally.n_most_waiting << " waiting cuts\nworst change of volume " << tally.worst_volume
             << ", of volumes by tetrahedra and triangles " << tally.worst_disagreement
@@ -163,10 +163,10 @@ TEST(Fuzz, SkinCellsKeepTheirVolume) {
     Tally tally;
     for (std::uint32_t seed = 500; seed < 503; ++seed)
       EXPECT_EQ(run(whole_case(seed), one, tally).failure, std::nullopt) << "case " << seed;
-    std::cout << "h = " << h << " R: " << tally.n_sweeps << " sweeps, " << tally.n_placed
+    std::cout << "h = " << h << " R: " << tally.n_sweeps << " sweeps, " << tally.placed.n_placed
               << " placed vertices; the volume of the skin changes by at most " << tally.worst_volume
               << " of the body, that of one of its cells by " << tally.worst_cell << " h^3\n";
-    EXPECT_GT(tally.n_placed, 1000u);
+    EXPECT_GT(tally.placed.n_placed, 1000u);
     EXPECT_LT(tally.worst_volume, 1e-12);
     EXPECT_LT(tally.worst_cell, 1e-12);
   }

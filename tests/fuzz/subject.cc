@@ -93,8 +93,9 @@ void follow_cut(Subject& subject, const grid::Solid& before, grid::CutChange& ch
   require_inherited(corner_masses(before, keeping), corner_masses(solid, keeping), parents, together, tally);
 
   ++tally.n_releases;
-  tally.n_placed += placed.n_placed;
-  tally.n_clamped += placed.n_clamped;
+  tally.placed += placed;
+  if (placed.n_folded > 0)
+    throw Violation("in some cells a part has less than nothing");
   tally.n_most_pieces = std::max<std::size_t>(tally.n_most_pieces, grid::n_pieces(solid.complex));
 }
 

@@ -28,8 +28,9 @@ struct Specimen {
 
 /// What the cases met, summed.
 struct Tally {
-  std::size_t n_cases = 0, n_sweeps = 0, n_idle_sweeps = 0, n_cut_edges = 0, n_releases = 0, n_placed = 0;
-  std::size_t n_clamped = 0, n_double_crossings = 0, n_masses = 0, n_most_pieces = 0, n_most_waiting = 0;
+  std::size_t n_cases = 0, n_sweeps = 0, n_idle_sweeps = 0, n_cut_edges = 0, n_releases = 0;
+  surface::PlacementCounts placed;
+  std::size_t n_double_crossings = 0, n_masses = 0, n_most_pieces = 0, n_most_waiting = 0;
   std::size_t n_thread_pairs = 0, n_below_skin = 0, n_of_skin = 0, n_left_whole = 0;
   double worst_volume = 0;       ///< change of the rest volume, relative to the body [1]
   double worst_disagreement = 0; ///< of a piece's volumes by tetrahedra and by triangles, relative to the body [1]
