@@ -47,19 +47,27 @@ Hollows::Hollows(const grid::Solid& solid, const grid::CellId c, const Items ite
 }
 
 bool Hollows::lie_between(const Items some, const Items others) const {
+  bool result = true;
+  for_each_item(others, [&](const int item) { result = result && lie_between(some, at_[item]); });
+  return result;
+}
+
+bool Hollows::lie_between(const Items some, const Vec3& p) const {
   constexpr double shallow = 0.1; // of a cube
-  const auto is_in_hollow = [&](const Vec3& p) {
-    return !is_inside(p) && !is_inside(p + shallow * (inward_ - p).normalized());
+  const auto is_in_hollow = [&](const Vec3& q) {
+    return !is_inside(q) && !is_inside(q + shallow * (inward_ - q).normalized());
   };
   bool result = true;
-  for_each_item(some, [&](const int a) {
-    for_each_item(others, [&](const int b) {
-      result = result && std::ranges::any_of(std::array{0.25, 0.5, 0.75}, [&](const double part) {
-                 return is_in_hollow(at_[a] + part * (at_[b] - at_[a]));
-               });
-    });
+  for_each_item(some, [&](const int item) {
+    result = result && std::ranges::any_of(std::array{0.25, 0.5, 0.75}, [&](const double part) {
+               return is_in_hollow(at_[item] + part * (p - at_[item]));
+             });
   });
   return result;
+}
+
+Vec3 Hollows::point(const std::array<std::uint8_t, 2>& items, const double t) const {
+  return (1 - t) * at_[items[0]] + t * at_[items[1]];
 }
 
 bool Hollows::is_inside(const Vec3& p) const {

@@ -20,6 +20,10 @@ class Hollows {
   /// Does a hollow lie between all of some items and all of others? One of less than a tenth of a cube is none: the
   /// skin of a round body has such.
   bool lie_between(grid::Items some, grid::Items others) const;
+  /// Between all of some items and a point, in coordinates of the cell?
+  bool lie_between(grid::Items some, const Vec3& p) const;
+  /// Between two items, by what part of the way from the first to the second [1].
+  Vec3 point(const std::array<std::uint8_t, 2>& items, double t) const;
 
  private:
   bool is_inside(const Vec3& p) const;

@@ -89,8 +89,8 @@ class CellCrossings {
     return result;
   }
 
-  /// Calls f(interval, its sides, the segment's ends) for all intervals that a cell can tell apart: up to two of a
-  /// line, one of a half.
+  /// Calls f(interval, its sides, the segment's ends, where its middle lies between these [1]) for all intervals that a
+  /// cell can tell apart: up to two of a line, one of a half.
   template <class Function>
   void for_each_interval(const std::array<Sides, skeleton::n_items>& sides, const Function& f) const {
     for (int segment = 0; segment < skeleton::first_spoke; ++segment) {
@@ -99,12 +99,12 @@ class CellCrossings {
       const auto n = static_cast<int>(crossings.size());
       if (n < 2 || n > std::popcount(all) + 1)
         continue;
-      const auto& [a, b] = of_.segment[segment].ends;
-      Sides at = sides[a];
+      const auto& ends = of_.segment[segment].ends;
+      Sides at = sides[ends[0]];
       for (int i = 0; i + 1 < n; ++i) {
         at[crossings[i].label] = static_cast<std::int8_t>(at[crossings[i].label] + crossings[i].step);
         if (crossings[i + 1].t - crossings[i].t > grid::min_edge_parameter)
-          f(Intervals(1) << (std::countr_zero(all) + i), at, Items(1) << a | Items(1) << b);
+          f(Intervals(1) << (std::countr_zero(all) + i), at, ends, 0.5 * (crossings[i].t + crossings[i + 1].t));
       }
     }
   }
@@ -202,29 +202,48 @@ std::vector<Joined> all_by_sides(const Solid& solid, const CellId c) {
   if (!sides)
     return groups;
   const auto& skeleton = cuts.skeleton();
-  const auto around = [&](const Items items) { return skeleton.reachable(items, 0); }; // over segments, cut or not
-  std::vector<std::pair<Sides, Items>> lie; // of the groups: on these sides, and among these items
-  const auto group_at = [&](const Sides& at, const Items items, const auto& is_one_with) -> Joined& {
-    for (std::size_t i = 0; i < groups.size(); ++i)
-      if (lie[i].first == at && (lie[i].second & items) != 0 && is_one_with(groups[i].items))
-        return groups[i];
-    lie.emplace_back(at, around(items));
-    return groups.emplace_back();
+  struct Lie {
+    Sides sides;
+    Items among;
   };
+  std::vector<Lie> lie; // of the groups
   std::optional<Hollows> hollows; // of a cell in which they are asked for
-  for (const grid::Part& part : parts) {
-    const auto is_one_with = [&](const Items items) {
+  // What lies so, among items, joins all groups that it is one with, or else begins one.
+  const auto join = [&](const Joined& what, const Sides& at, const Items items, const auto& is_one_with) {
+    std::optional<std::size_t> own;
+    for (std::size_t i = 0; i < groups.size(); ++i) {
+      if (lie[i].sides != at || (lie[i].among & items) == 0 || !is_one_with(groups[i]))
+        continue;
+      if (!own) {
+        own = i;
+        groups[i] |= what;
+      } else {
+        groups[*own] |= groups[i];
+        groups[i] = {};
+        lie[i].among = 0;
+      }
+    }
+    if (!own) {
+      lie.push_back({at, skeleton.reachable(items, 0)}); // over segments, cut or not
+      groups.push_back(what);
+    }
+  };
+  for (const grid::Part& part : parts)
+    join({part.items(), 0}, (*sides)[std::countr_zero(part.items())], part.items(), [&](const Joined& group) {
       if (!cuts.has_skin())
         return true;
       if (!hollows)
         hollows.emplace(solid, c, skeleton.items);
-      return !hollows->lie_between(items, part.items());
-    };
-    group_at((*sides)[std::countr_zero(part.items())], part.items(), is_one_with).items |= part.items();
-  }
-  meetings.for_each_interval(*sides, [&](const Intervals interval, const Sides& at, const Items ends) {
-    group_at(at, ends, [](Items) { return true; }).intervals |= interval;
+      return !hollows->lie_between(group.items, part.items());
+    });
+  meetings.for_each_interval(*sides, [&](const Intervals interval, const Sides& at, const auto& ends, const double t) {
+    const Items items = Items(1) << ends[0] | Items(1) << ends[1];
+    const auto n = std::ranges::count_if(lie, [&](const Lie& of) { return of.sides == at && (of.among & items) != 0; });
+    join({0, interval}, at, items, [&](const Joined& group) {
+      return n < 2 || !hollows || !hollows->lie_between(group.items, hollows->point(ends, t));
+    });
   });
+  std::erase_if(groups, [](const Joined& group) { return group.items == 0 && group.intervals == 0; });
   return groups;
 }
 

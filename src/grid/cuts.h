@@ -74,6 +74,11 @@ struct Joined {
   Items items = 0;
   Intervals intervals = 0; ///< that belong to it
 
+  Joined& operator|=(const Joined& other) {
+    items |= other.items;
+    intervals |= other.intervals;
+    return *this;
+  }
   bool operator==(const Joined&) const = default;
   void archive(Archive& a) { a(items, intervals); }
 };
