@@ -49,10 +49,11 @@ Raster come_in(const Front& front, const Fronts fronts, const double h, const Ra
 OfVertices weighted(const Solid& solid, const Front& front, const Raster& part) {
   const double h = solid.grid.h();
   const InPlane in_plane(front.point, front.normal, h);
-  const Vec3 origin = solid.grid.origin(front.cell);
+  const Vec3 middle = (in_plane.origin - solid.grid.origin(front.cell)) / h, along_u = h * in_plane.u,
+             along_v = h * in_plane.v;
   OfVertices sums{};
   part.for_each([&](const double x, const double y) {
-    const Vec3 xi = (in_plane.point({x, y}) - origin) / h;
+    const Vec3 xi = middle + x * along_u + y * along_v;
     for (int v = 0; v < grid::cube::n_vertices; ++v)
       sums[v] += grid::shape(v, xi);
   });

@@ -25,9 +25,11 @@ constexpr double little_room = 1e-3; // of a cube
 /// The order of a convex polygon's points around it.
 std::vector<std::size_t> order_around(const Polygon& points, const Vec3& normal) {
   const Vec3 u = normal.unitOrthogonal(), v = normal.cross(u), middle = mean(points);
-  std::vector<double> angle;
-  for (const Vec3& p : points)
-    angle.push_back(std::atan2(v.dot(p - middle), u.dot(p - middle)));
+  std::vector<double> angle; // in quarters of a turn, nearly: in the same order
+  for (const Vec3& p : points) {
+    const double x = u.dot(p - middle), y = v.dot(p - middle), size = std::abs(x) + std::abs(y);
+    angle.push_back(size > 0 ? std::copysign(1 - x / size, y) : 0);
+  }
   std::vector<std::size_t> order(points.size());
   std::iota(order.begin(), order.end(), 0);
   std::ranges::sort(order, {}, [&](const std::size_t i) { return angle[i]; });

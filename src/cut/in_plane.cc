@@ -76,11 +76,12 @@ void put_end(const Raster& section, const Raster& come, const Raster& with_lag, 
   std::vector<double> along;
   for (const Flat& p : all)
     along.push_back(on->dot(p));
-  std::ranges::sort(along);
-  const auto n = static_cast<std::size_t>(come_in.count());
-  const double end = n == 0              ? along.front()
-                     : n == along.size() ? along.back()
-                                         : 0.5 * (along[n - 1] + along[n]);
+  const auto n = static_cast<std::ptrdiff_t>(come_in.count());
+  if (n < std::ssize(along))
+    std::ranges::nth_element(along, along.begin() + n);
+  const double most_of_come = n > 0 ? *std::max_element(along.begin(), along.begin() + n) : along[0],
+               least_ahead = n < std::ssize(along) ? along[static_cast<std::size_t>(n)] : most_of_come,
+               end = n > 0 ? 0.5 * (most_of_come + least_ahead) : least_ahead;
   front.onward = (h * ((*on)[0] * in_plane.u + (*on)[1] * in_plane.v)).normalized();
   front.end = front.onward.dot(front.point) + h * end;
 }

@@ -27,11 +27,12 @@ constexpr double of_tip = 1e-3, little = 1;              // of a cube
 constexpr std::size_t most_nodes = 16, most_cells = 128; // of a shred
 
 using ItemsOfCells = std::map<CellId, Items>;
+using ItemsOfFewCells = std::vector<std::pair<CellId, Items>>; // searched from the end
 
 /// Nodes and points of the skin that hang together, and with nothing else.
 struct Shred {
-  ItemsOfCells items;
-  std::set<grid::NodeId> nodes;
+  ItemsOfFewCells items; // ascending
+  std::vector<grid::NodeId> nodes;
 };
 
 /// A blade's cut of a segment from the shred to something else.
@@ -66,29 +67,35 @@ struct TakenBack {
   }
 };
 
-/// The cells that know an item of a cell, and which item of theirs it is.
+/// Calls f(other, its items) for cells that know some of the items of a cell; nodes are told to those across faces, which
+/// reach the others around them.
 template <class Function>
-void for_each_sharing(const grid::Grid& grid, const CellId c, const int item, const Function& f) {
-  if (item >= skeleton::first_middle)
-    return;
-  if (item >= skeleton::first_on_arc) {
-    const int face = (item - skeleton::first_on_arc) / 2, arc = (item - skeleton::first_on_arc) % 2;
-    if (const CellId other = grid.neighbour(c, face); other.valid())
-      f(other, skeleton::on_arc(face ^ 1, arc));
-    return;
+void for_each_sharing(const grid::Grid& grid, const CellId c, const Items items, const Function& f) {
+  for (int face = 0; face < cube::n_faces; ++face) {
+    const Items nodes = items & cube::face_mask(face);
+    Items across = face % 2 == 1 ? nodes >> (1 << face / 2) : nodes << (1 << face / 2);
+    for (const int arc : {0, 1})
+      if ((items >> skeleton::on_arc(face, arc) & 1) != 0)
+        across |= Items(1) << skeleton::on_arc(face ^ 1, arc);
+    if (across != 0)
+      if (const CellId other = grid.neighbour(c, face); other.valid())
+        f(other, across);
   }
-  if (item >= skeleton::first_on_line) {
-    const EdgeId edge = grid.edges(c)[item - skeleton::first_on_line];
+  constexpr Items lines = (Items(1) << cube::n_lines) - 1;
+  for (Items left = items >> skeleton::first_on_line & lines; left != 0; left &= left - 1) {
+    const EdgeId edge = grid.edges(c)[std::countr_zero(left)];
     for (const CellId other : grid.cells(edge))
       if (other.valid() && other != c)
-        f(other, skeleton::on_line(grid.line(other, edge)));
-    return;
+        f(other, Items(1) << skeleton::on_line(grid.line(other, edge)));
   }
-  for (int axis = 0; axis < 3; ++axis) // those cells reach the others around the node
-    f(grid.neighbour(c, 2 * axis + (item >> axis & 1)), item ^ 1 << axis);
 }
 
-void add(ItemsOfCells& all, const ItemsOfCells& more) {
+Items& of_cell(ItemsOfFewCells& all, const CellId c) {
+  const auto known = std::find_if(all.rbegin(), all.rend(), [&](const auto& items) { return items.first == c; });
+  return known != all.rend() ? known->second : all.emplace_back(c, 0).second;
+}
+
+void add(ItemsOfCells& all, const ItemsOfFewCells& more) {
   for (const auto& [cell, items] : more)
     all[cell] |= items;
 }
@@ -101,28 +108,31 @@ bool holds(const ItemsOfCells& all, const CellId cell, const Items items) {
 std::optional<Shred> shred_at(const grid::Solid& solid, const CellId cell, const int item, ItemsOfCells& large,
                               const CutsOfCell& cuts_of) {
   Shred shred;
-  std::vector<std::pair<CellId, int>> open = {{cell, item}};
+  shred.items.reserve(16);
+  shred.nodes.reserve(most_nodes + cube::n_vertices);
+  ItemsOfFewCells open = {{cell, Items(1) << item}};
   while (!open.empty()) {
-    const auto [c, i] = open.back();
+    const auto [c, items] = open.back();
     open.pop_back();
-    Items& known = shred.items[c];
-    if (known >> i & 1)
+    Items& known = of_cell(shred.items, c);
+    if ((items & ~known) == 0)
       continue;
     const grid::CellCuts cuts = cuts_of(c);
-    const Items found = cuts.skeleton().reachable(Items(1) << i, cuts.blades);
+    const Items found = cuts.skeleton().reachable(items, cuts.blades);
     known |= found;
     const auto nodes = solid.grid.nodes(c);
     for (int v = 0; v < cube::n_vertices; ++v)
-      if (found >> v & 1)
-        shred.nodes.insert(nodes[v]);
-    if (shred.nodes.size() > most_nodes || shred.items.size() > most_cells || holds(large, c, found)) {
+      if ((found >> v & 1) != 0 && std::ranges::find(shred.nodes, nodes[v]) == shred.nodes.end())
+        shred.nodes.push_back(nodes[v]);
+    const bool is_whole_cube = cuts.material == 0xff && cuts.cut == 0;
+    if (is_whole_cube || shred.nodes.size() > most_nodes || shred.items.size() > most_cells || holds(large, c, found)) {
       add(large, shred.items);
       return std::nullopt;
     }
-    for (Items left = found; left != 0; left &= left - 1)
-      for_each_sharing(solid.grid, c, std::countr_zero(left),
-                       [&](const CellId other, const int its) { open.emplace_back(other, its); });
+    for_each_sharing(solid.grid, c, found,
+                     [&](const CellId other, const Items its) { open.emplace_back(other, its); });
   }
+  std::ranges::sort(shred.items);
   return shred;
 }
 
@@ -233,7 +243,7 @@ bool is_held_across_faces(const grid::Solid& solid, const Shred& shred, const Ce
     const CellId next = solid.grid.neighbour(c, face);
     if (!next.valid())
       continue;
-    const auto known = shred.items.find(next);
+    const auto known = std::ranges::find(shred.items, next, &ItemsOfFewCells::value_type::first);
     for (const grid::Joined& group : by_sides(solid, next)) {
       const grid::Part its{0, 0, group.intervals};
       if ((known == shred.items.end() || (group.items & ~known->second) != 0) &&
