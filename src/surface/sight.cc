@@ -170,11 +170,14 @@ std::optional<Vec3> seeing_skin(const grid::Solid& solid, const View& view, cons
   return towards(view, below_skin(solid, view), in_planes, p);
 }
 
-bool has_material(grid::Solid& solid, const View& view, const Vec3& p, const double least) {
-  solid.cuts.set_inner_point(view.cell, p);
+bool has_material(const grid::Solid& solid, const View& view, const double least) {
   return have_material(solid, view.cell, grid::cuts_of(solid, view.cell), least) &&
          (solid.cuts.front(view.cell) == nullptr ||
           have_material(solid, view.cell, grid::cuts_of_copies(solid, view.cell), least));
+}
+bool has_material(grid::Solid& solid, const View& view, const Vec3& p, const double least) {
+  solid.cuts.set_inner_point(view.cell, p);
+  return has_material(solid, view, least);
 }
 
 bool all_is_seen(const grid::Solid& solid, const View& view) {

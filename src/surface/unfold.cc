@@ -1,6 +1,7 @@
 #include "surface/unfold.h"
 
 #include "base/sort_unique.h"
+#include "grid/material.h"
 #include "surface/border.h"
 #include "surface/sight.h"
 
@@ -18,12 +19,23 @@ constexpr double least = -1e-13; // of a cube: but for round-off
 
 /// Has a part of the cell less than nothing, since some vertex does not see all around it? What cuts in one plane leave
 /// is the same wherever in it their vertices lie, but not what a front parts.
-bool is_folded(grid::Solid& solid, const View& view) {
-  if (!view.now.is_cut_at_skin() || solid.cuts.inner_point(view.cell) == nullptr || all_is_seen(solid, view))
+bool is_folded(const grid::Solid& solid, const View& view) {
+  const bool has_front = solid.cuts.front(view.cell) != nullptr;
+  if (view.now.is_cut_at_skin()) {
+    const Vec3* const p = solid.cuts.inner_point(view.cell);
+    if (!p || all_is_seen(solid, view) || (!has_front && border_is_in_plane(solid, view, *p)))
+      return false;
+  } else if (!has_front || !grid::cuts_of_copies(solid, view.cell).is_cut_at_skin())
     return false;
-  const Vec3 p = *solid.cuts.inner_point(view.cell);
-  return (solid.cuts.front(view.cell) != nullptr || !border_is_in_plane(solid, view, p)) &&
-         !has_material(solid, view, p, least);
+  return !has_material(solid, view, least);
+}
+
+/// The cell's vertex; where a front alone parts the cell, none is placed, and it lies amid what the front's plane cuts.
+Vec3 vertex_of(const grid::Solid& solid, const CellId c) {
+  if (const Vec3* const p = solid.cuts.inner_point(c))
+    return *p;
+  constexpr grid::Items all = ~grid::Items(0);
+  return solid.grid.origin(c) + solid.grid.h() * grid::pieces_of(solid, c, all).front().tetrahedron[3];
 }
 
 enum class Where { in_plane, anywhere };
@@ -43,6 +55,8 @@ std::optional<Room> room(const grid::Solid& solid, const View& view, const Where
   Planes planes;
   for_each_bit(view.now.blades & segments,
                [&](const int segment) { planes.push_back(cut_plane(solid, view, segment).plane); });
+  if (const grid::Front* const front = solid.cuts.front(view.cell); front && planes.empty())
+    planes.push_back({front->point, front->normal});
   if (planes.empty() || !common_plane(planes, planes[0].point, in_plane * solid.grid.h()))
     return {};
   const Vec3 along = directions.cwiseProduct(planes[0].normal);
@@ -67,7 +81,7 @@ bool unfold_in_face(grid::Solid& solid, const View& view, const int side, const 
 }
 
 void unfold_cell(grid::Solid& solid, const View& view, const Where where) {
-  const auto within = room(solid, view, where, ~grid::Segments(0), Vec3::Ones(), *solid.cuts.inner_point(view.cell));
+  const auto within = room(solid, view, where, ~grid::Segments(0), Vec3::Ones(), vertex_of(solid, view.cell));
   if (!within)
     return;
   if (const auto p = seeing_skin(solid, view, within->p, within->in_planes))

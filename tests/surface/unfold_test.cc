@@ -165,6 +165,27 @@ TEST_P(Unfold, JoinsTheChangeThatAllElseFollows) {
   }
 }
 
+/// Of bodies in disorder, where fronts part cells in which nothing is cut yet.
+TEST(UnfoldAtAFront, LeavesNoPartWithLessThanNothing) {
+  for (const unsigned seed : {877u, 1328u, 1423u}) {
+    support::Random random(seed);
+    Body body = support::embedded(support::liver_mesh(), 0.02, support::random_offset(random));
+    body.complex = grid::build_complex(body);
+    cut::Cutting cutting(body, cut::Fronts::of_elements);
+    Points x = grid::rest_positions(body);
+    for (Vec3& p : x)
+      for (double& coordinate : p)
+        coordinate += 1.2 * body.grid.h() * support::uniform(random, -1, 1);
+    const Vec3 middle = x[random() % x.size()];
+    const cut::Disc disc{middle, support::random_direction(random), support::uniform(random, 0.02, 0.08)};
+    cutting.follow(cutting.cutter.at_once(cutting.body, {"", disc, 1}, x));
+    cut::LeastMaterial least;
+    least.look_at(cutting.body);
+    EXPECT_GE(least.at_corners, -cut::round_off) << seed;
+    EXPECT_GE(least.of_squares, cut::least_square) << seed;
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Of, Unfold,
                          testing::Values(cut::Shape(cut::Sphere{{0.05, 0.1, 0.046}, 0.08}),
                                          cut::Shape(plane)),
