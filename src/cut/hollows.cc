@@ -66,8 +66,10 @@ bool Hollows::lie_between(const Items some, const Vec3& p) const {
   return result;
 }
 
-Vec3 Hollows::point(const std::array<std::uint8_t, 2>& items, const double t) const {
-  return (1 - t) * at_[items[0]] + t * at_[items[1]];
+Vec3 Hollows::point(const grid::Skeleton& skeleton, const int segment, const double t) const {
+  const auto& [a, b] = skeleton.segment[segment].ends;
+  const Vec3 way = at_[b] - at_[a];
+  return at_[a] + t * (segment < grid::cube::n_lines ? Vec3(way / way.norm()) : way);
 }
 
 bool Hollows::is_inside(const Vec3& p) const {

@@ -22,8 +22,8 @@ class Hollows {
   bool lie_between(grid::Items some, grid::Items others) const;
   /// Between all of some items and a point, in coordinates of the cell?
   bool lie_between(grid::Items some, const Vec3& p) const;
-  /// Between two items, by what part of the way from the first to the second [1].
-  Vec3 point(const std::array<std::uint8_t, 2>& items, double t) const;
+  /// On a segment, so far from its first end; on a line in edges of the grid [1].
+  Vec3 point(const grid::Skeleton& skeleton, int segment, double t) const;
 
  private:
   bool is_inside(const Vec3& p) const;

@@ -28,7 +28,7 @@ void leave_shreds(grid::Solid& solid, std::vector<grid::EdgeId>& edges, std::vec
 /// The cuts of a cell, as they are or as they would be.
 using CutsOfCell = std::function<grid::CellCuts(grid::CellId)>;
 
-/// Does an item of a cell hang together with so little that it could be a shred?
+/// Does an item of a cell hang together with so little that it could be a shred? A cube that nothing cuts is more.
 bool is_small(const grid::Solid& solid, grid::CellId cell, int item, const CutsOfCell& cuts_of);
 
 } // namespace kerf::cut

@@ -1,5 +1,6 @@
 #include "cut/sides.h"
 
+#include "base/sort_unique.h"
 #include "cut/dents.h"
 #include "cut/hollows.h"
 
@@ -8,6 +9,8 @@
 #include <map>
 #include <optional>
 #include <ranges>
+#include <span>
+#include <utility>
 
 namespace kerf::cut {
 
@@ -89,8 +92,8 @@ class CellCrossings {
     return result;
   }
 
-  /// Calls f(interval, its sides, the segment's ends, where its middle lies between these [1]) for all intervals that a
-  /// cell can tell apart: up to two of a line, one of a half.
+  /// Calls f(interval, its sides, the segment, where its middle lies along that from its first end [1]) for all intervals
+  /// that a cell can tell apart: up to two of a line, one of a half.
   template <class Function>
   void for_each_interval(const std::array<Sides, skeleton::n_items>& sides, const Function& f) const {
     for (int segment = 0; segment < skeleton::first_spoke; ++segment) {
@@ -99,19 +102,19 @@ class CellCrossings {
       const auto n = static_cast<int>(crossings.size());
       if (n < 2 || n > std::popcount(all) + 1)
         continue;
-      const auto& ends = of_.segment[segment].ends;
-      Sides at = sides[ends[0]];
+      Sides at = sides[of_.segment[segment].ends[0]];
       for (int i = 0; i + 1 < n; ++i) {
         at[crossings[i].label] = static_cast<std::int8_t>(at[crossings[i].label] + crossings[i].step);
         if (crossings[i + 1].t - crossings[i].t > grid::min_edge_parameter)
-          f(Intervals(1) << (std::countr_zero(all) + i), at, ends, 0.5 * (crossings[i].t + crossings[i + 1].t));
+          f(Intervals(1) << (std::countr_zero(all) + i), at, segment,
+            0.5 * (crossings[i].t + crossings[i + 1].t));
       }
     }
   }
 
  private:
   struct Crossing {
-    double t;  ///< from the segment's first end [1]
+    double t;  ///< from the segment's first end; of a line in edges of the grid [1]
     int label; ///< by its number here
     int step;  ///< to the sides beyond it
   };
@@ -178,6 +181,66 @@ Intervals near_each_other(const Solid& solid, const CellId c, const Joined& grou
   return kept;
 }
 
+/// How a group lies.
+struct Lie {
+  Sides sides;
+  Items among; // these, over segments, cut or not
+
+  bool is(const Sides& at, const Items items) const { return sides == at && (among & items) != 0; }
+};
+
+/// Some groups, ascending, go into the first of them; the others have nothing then.
+void join_first(std::vector<Joined>& groups, const std::span<const std::size_t> some) {
+  for (std::size_t k = 1; k < some.size(); ++k)
+    groups[some.front()] |= std::exchange(groups[some[k]], {});
+}
+
+/// Intervals join the group that lies as they do; where a hollow lies between several, all those that they see, and these
+/// are one then. What sees none belongs to nothing here.
+void add_intervals(std::vector<Joined>& groups, std::vector<Lie>& lie, const grid::Skeleton& skeleton,
+                   const CellCrossings& crossings, const std::array<Sides, skeleton::n_items>& sides,
+                   const std::optional<Hollows>& hollows) {
+  const std::size_t n_of_parts = groups.size();
+  std::vector<std::vector<std::size_t>> seen;
+  crossings.for_each_interval(sides, [&](const Intervals interval, const Sides& at, const int segment, const double t) {
+    const auto& [a, b] = skeleton.segment[segment].ends;
+    const Items ends = Items(1) << a | Items(1) << b;
+    std::vector<std::size_t> beside;
+    for (std::size_t i = 0; i < n_of_parts; ++i)
+      if (groups[i].items != 0 && lie[i].is(at, ends))
+        beside.push_back(i);
+    if (beside.size() > 1 && hollows) {
+      const Vec3 p = hollows->point(skeleton, segment, t);
+      std::erase_if(beside, [&](const std::size_t i) { return hollows->lie_between(groups[i].items, p); });
+    }
+    if (beside.empty()) {
+      std::size_t i = n_of_parts;
+      while (i < groups.size() && !lie[i].is(at, ends))
+        ++i;
+      if (i == groups.size()) {
+        lie.push_back({at, skeleton.reachable(ends, 0)});
+        groups.emplace_back();
+      }
+      beside.push_back(i);
+    }
+    groups[beside.front()].intervals |= interval;
+    if (beside.size() > 1)
+      seen.push_back(std::move(beside));
+  });
+  while (!seen.empty()) {
+    const std::vector<std::size_t> some = std::move(seen.back());
+    seen.pop_back();
+    join_first(groups, some);
+    for (std::vector<std::size_t>& others : seen) {
+      for (std::size_t& i : others)
+        if (std::ranges::binary_search(some, i))
+          i = some.front();
+      sort_unique(others);
+    }
+  }
+  std::erase_if(groups, [](const Joined& group) { return group.items == 0 && group.intervals == 0; });
+}
+
 } // namespace
 
 grid::CopyId copy_of(const Solid& solid, const CellId c, const Items items) {
@@ -202,48 +265,28 @@ std::vector<Joined> all_by_sides(const Solid& solid, const CellId c) {
   if (!sides)
     return groups;
   const auto& skeleton = cuts.skeleton();
-  struct Lie {
-    Sides sides;
-    Items among;
-  };
   std::vector<Lie> lie; // of the groups
   std::optional<Hollows> hollows; // of a cell in which they are asked for
-  // What lies so, among items, joins all groups that it is one with, or else begins one.
-  const auto join = [&](const Joined& what, const Sides& at, const Items items, const auto& is_one_with) {
-    std::optional<std::size_t> own;
+  for (const grid::Part& part : parts) { // joins all that it is one with
+    const Sides& at = (*sides)[std::countr_zero(part.items())];
+    std::vector<std::size_t> one_with;
     for (std::size_t i = 0; i < groups.size(); ++i) {
-      if (lie[i].sides != at || (lie[i].among & items) == 0 || !is_one_with(groups[i]))
+      if (!lie[i].is(at, part.items()))
         continue;
-      if (!own) {
-        own = i;
-        groups[i] |= what;
-      } else {
-        groups[*own] |= groups[i];
-        groups[i] = {};
-        lie[i].among = 0;
-      }
-    }
-    if (!own) {
-      lie.push_back({at, skeleton.reachable(items, 0)}); // over segments, cut or not
-      groups.push_back(what);
-    }
-  };
-  for (const grid::Part& part : parts)
-    join({part.items(), 0}, (*sides)[std::countr_zero(part.items())], part.items(), [&](const Joined& group) {
-      if (!cuts.has_skin())
-        return true;
-      if (!hollows)
+      if (cuts.has_skin() && !hollows)
         hollows.emplace(solid, c, skeleton.items);
-      return !hollows->lie_between(group.items, part.items());
-    });
-  meetings.for_each_interval(*sides, [&](const Intervals interval, const Sides& at, const auto& ends, const double t) {
-    const Items items = Items(1) << ends[0] | Items(1) << ends[1];
-    const auto n = std::ranges::count_if(lie, [&](const Lie& of) { return of.sides == at && (of.among & items) != 0; });
-    join({0, interval}, at, items, [&](const Joined& group) {
-      return n < 2 || !hollows || !hollows->lie_between(group.items, hollows->point(ends, t));
-    });
-  });
-  std::erase_if(groups, [](const Joined& group) { return group.items == 0 && group.intervals == 0; });
+      if (!hollows || !hollows->lie_between(groups[i].items, part.items()))
+        one_with.push_back(i);
+    }
+    if (one_with.empty()) {
+      lie.push_back({at, skeleton.reachable(part.items(), 0)});
+      groups.push_back({part.items(), 0});
+      continue;
+    }
+    groups[one_with.front()].items |= part.items();
+    join_first(groups, one_with);
+  }
+  add_intervals(groups, lie, skeleton, meetings, *sides, hollows);
   return groups;
 }
 

@@ -8,7 +8,6 @@
 
 #include <deal.II/base/quadrature_lib.h>
 
-#include <algorithm>
 #include <span>
 #include <vector>
 

@@ -129,7 +129,7 @@ class LocalSkeleton {
     if ((blades_ >> segment & 1) == 0)
       return 0.5 * (items_[a] + items_[b]);
     if (segment < skeleton::first_half)
-      return on_line(segment, local(divisions_.on_line(segment)));
+      return on_segment(a, b, on_line(segment, local(divisions_.on_line(segment))));
     const SkinCut* const of_skin = solid_.cuts.find(skin_segment(solid_.grid, cell_, segment));
     const double t = of_skin ? of_skin->t : divisions_.in_skin(segment, items_[a], items_[b]);
     return items_[a] + t * (items_[b] - items_[a]);
@@ -168,6 +168,12 @@ class LocalSkeleton {
   static Vec3 in_face(const int face, Vec3 p) {
     p[cube::face_axis(face)] = face & 1;
     return p;
+  }
+  /// A front's plane may meet a line beyond the skin: it is where the body is deformed that it passes between both ends.
+  Vec3 on_segment(const int a, const int b, const Vec3& p) const {
+    const Vec3 way = items_[b] - items_[a];
+    const double t = way.dot(p - items_[a]) / way.squaredNorm();
+    return t > 0 && t < 1 ? p : items_[a] + std::clamp(t, min_edge_parameter, 1 - min_edge_parameter) * way;
   }
 
   Vec3 item(const int i) const {
@@ -242,6 +248,13 @@ std::vector<MaterialPiece> pieces_of(const Solid& solid, const CellId c, const I
     }
   }
   return pieces;
+}
+
+Vec3 vertex_of_cuts(const Solid& solid, const CellId c) {
+  return solid.grid.origin(c) + solid.grid.h() * LocalSkeleton(solid, c, VerticesOfCuts::placed).centre();
+}
+Vec3 vertex_of_cuts(const Solid& solid, const CellId c, const int side) {
+  return solid.grid.origin(c) + solid.grid.h() * LocalSkeleton(solid, c, VerticesOfCuts::placed).in_side(side);
 }
 
 double volume(const Tetrahedron& t) { return (t[1] - t[0]).dot((t[2] - t[0]).cross(t[3] - t[0])) / 6; }

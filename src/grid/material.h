@@ -35,6 +35,9 @@ enum class VerticesOfCuts { placed, amid_cuts };
 /// one with the part around it (cut/dents.h).
 std::vector<MaterialPiece> pieces_of(const Solid& solid, CellId c, Items items,
                                      VerticesOfCuts vertices = VerticesOfCuts::placed);
+/// Its vertex in the cell, and in a side, where they are placed; else amid the cuts and what a front's plane meets [m].
+Vec3 vertex_of_cuts(const Solid& solid, CellId c);
+Vec3 vertex_of_cuts(const Solid& solid, CellId c, int side);
 
 /// Calls f(tetrahedron, vertex) for all material of a copy.
 template <class Function>

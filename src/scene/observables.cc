@@ -362,7 +362,7 @@ const std::vector<Observable>& body_observables() {
      }},
     {"clamped vertices", "1", "placements that were held at the side of their face or cell",
      [](const Body& b) { return count(b.placed.n_clamped); }},
-    {"folded cells", "1", "cells in which a cut left some part with less than nothing",
+    {"folded cells", "1", "cells in which a cut left some part with less than nothing, counted at each cut in them",
      [](const Body& b) { return count(b.placed.n_folded); }},
   };
   return all;

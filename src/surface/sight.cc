@@ -171,7 +171,7 @@ std::optional<Vec3> seeing_skin(const grid::Solid& solid, const View& view, cons
 }
 
 bool has_material(const grid::Solid& solid, const View& view, const double least) {
-  return have_material(solid, view.cell, grid::cuts_of(solid, view.cell), least) &&
+  return (!view.now.is_cut_at_skin() || have_material(solid, view.cell, grid::cuts_of(solid, view.cell), least)) &&
          (solid.cuts.front(view.cell) == nullptr ||
           have_material(solid, view.cell, grid::cuts_of_copies(solid, view.cell), least));
 }

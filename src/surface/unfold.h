@@ -12,7 +12,8 @@
 namespace kerf::surface {
 
 /// Does that in cells, ascending, whose vertices are placed. Adds those beside them in whose faces a vertex has moved.
-/// Returns how many cells have less than nothing in a part all the same, since nothing sees all around.
+/// Where a front parts a cell, vertices are placed where there were none yet. Returns how many cells have less than
+/// nothing in a part all the same, since nothing sees all around.
 std::size_t unfold(grid::Solid& solid, std::vector<grid::CellId>& cells);
 
 } // namespace kerf::surface

@@ -43,7 +43,7 @@ CutPlane cut_plane(const grid::Solid& solid, const View& view, int segment);
 constexpr double in_plane = 1e-9; ///< how near to a plane is in it, but for round-off [h]
 /// Do all cuts of the cell lie in one plane, with p?
 bool cuts_are_in_plane(const grid::Solid& solid, const View& view, const Vec3& p);
-/// Those of the two cells at a face of it?
+/// Do those of the cell, and those of the one across a face of it, each lie in one with p?
 bool cuts_are_in_plane(const grid::Solid& solid, const View& view, int face, const Vec3& p);
 
 /// The segments that bound a side.

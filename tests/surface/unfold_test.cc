@@ -1,6 +1,7 @@
 #include "surface/unfold.h"
 
 #include "base/sort_unique.h"
+#include "grid/parts.h"
 #include "surface/sight.h"
 #include "tests/cut/cutting.h"
 #include "tests/cut/least_material.h"
@@ -165,8 +166,9 @@ TEST_P(Unfold, JoinsTheChangeThatAllElseFollows) {
   }
 }
 
-/// Of bodies in disorder, where fronts part cells in which nothing is cut yet.
+/// Of bodies in disorder, where fronts part cells in which nothing is cut yet, and meet lines beyond the skin.
 TEST(UnfoldAtAFront, LeavesNoPartWithLessThanNothing) {
+  std::ptrdiff_t n_placed = 0;
   for (const unsigned seed : {877u, 1328u, 1423u}) {
     support::Random random(seed);
     Body body = support::embedded(support::liver_mesh(), 0.02, support::random_offset(random));
@@ -183,7 +185,11 @@ TEST(UnfoldAtAFront, LeavesNoPartWithLessThanNothing) {
     least.look_at(cutting.body);
     EXPECT_GE(least.at_corners, -cut::round_off) << seed;
     EXPECT_GE(least.of_squares, cut::least_square) << seed;
+    n_placed += std::ranges::count_if(cutting.body.complex.copies, [&](const grid::Copy& copy) {
+      return grid::cuts_of(cutting.body, copy.cell).blades == 0 && cutting.body.cuts.inner_point(copy.cell) != nullptr;
+    });
   }
+  EXPECT_GT(n_placed, 0);
 }
 
 INSTANTIATE_TEST_SUITE_P(Of, Unfold,
