@@ -15,13 +15,13 @@
 ///
 /// Departures: the thesis has one vertex a face and component, which cannot lie on the skin and on a cut below it; and
 /// it projects plainly onto the new plane, which would bend an earlier cut that it does not meet at a right angle, and
-/// move volume from one of its sides to the other; here what was flat stays flat, but for unfolding. A cell with a front takes the
-/// quadric too, not the mean of its face vertices, which may lie beside the plane that is cut; fronts of one label in
-/// different steps are (b) or (c) all the same. Cuts of several labels are no bent one: they are met in their line or
-/// point, or one of them alone. A vertex never leaves its face or cell, so that every octant (grid/material.h) has six
-/// positive tetrahedra: where all planes would meet outside, the weakest is given up, then the next; where the
-/// strongest one leads outside, the vertex lies in it, or at the side. Limit: more than three planes in a cell are met
-/// in the least-squares sense, and then a later cut may move what lies between earlier ones.
+/// move volume from one of its sides to the other; here what was flat stays flat, but for unfolding (unfold.h). A cell with
+/// a front takes the quadric too, not the mean of its face vertices, which may lie beside the plane that is cut; fronts
+/// of one label in different steps are (b) or (c) all the same. Cuts of several labels are no bent one: they are met in
+/// their line or point, or one of them alone. A vertex never leaves its face or cell, so that every octant
+/// (grid/material.h) has six positive tetrahedra: where all planes would meet outside, the weakest is given up, then the
+/// next; where the strongest one leads outside, the vertex lies in it, or at the side. Limit: more than three planes in a
+/// cell are met in the least-squares sense, and then a later cut may move what lies between earlier ones.
 
 #include "grid/solid.h"
 
