@@ -251,7 +251,7 @@ Vec3 segment_point(const Solid& solid, const CellId c, const Skeleton& skeleton,
   const Vec3 p = item_point(solid, c, a), q = item_point(solid, c, b);
   const SkinCut* const cut =
     segment < skeleton::first_half ? nullptr : solid.cuts.find(skin_segment(solid.grid, c, segment));
-  return p + (cut ? cut->t : 0.5) * (q - p);
+  return cut ? Vec3(p + cut->t * (q - p) + cut->aside) : Vec3(0.5 * (p + q));
 }
 
 } // namespace kerf::grid

@@ -55,8 +55,10 @@ struct SkinCut {
   double t = 0.5;              ///< from the segment's first end (Skeleton::Segment) to its second, as in EdgeCut [1]
   Vec3 normal = Vec3::UnitX(); ///< as in EdgeCut
   CutLabel label = 1;
+  Vec3 aside = Vec3::Zero(); ///< of a spoke that another cut meets too: from there to where the two cross beside it, in
+                             ///< the skin and in this one's plane, where their vertex is (surface/crossing.h) [m]
 
-  void archive(Archive& a) { a(segment, t, normal, label); }
+  void archive(Archive& a) { a(segment, t, normal, label, aside); }
 };
 
 /// Who meets a segment that another one has cut, or that waits, or was left whole: it parts nothing there, but tells on
@@ -145,6 +147,8 @@ class Cuts {
   std::span<const SkinCut> skin_cuts() const { return skin_cuts_; }
   /// Cuts a segment of the skin that is not cut yet; t is clamped.
   void add(SkinCut cut);
+  /// Of a spoke that is cut.
+  void set_aside(const SkinSegment& segment, const Vec3& aside) { skin_cuts_.at(index(segment)).aside = aside; }
   /// Takes back blades' cuts that are not settled yet (ascending). They were met, as of later cuts, and can be cut
   /// again.
   void leave_whole(std::span<const EdgeId> edges);

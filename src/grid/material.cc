@@ -132,7 +132,8 @@ class LocalSkeleton {
       return on_segment(a, b, on_line(segment, local(divisions_.on_line(segment))));
     const SkinCut* const of_skin = solid_.cuts.find(skin_segment(solid_.grid, cell_, segment));
     const double t = of_skin ? of_skin->t : divisions_.in_skin(segment, items_[a], items_[b]);
-    return items_[a] + t * (items_[b] - items_[a]);
+    const Vec3 on_segment = items_[a] + t * (items_[b] - items_[a]);
+    return of_skin ? Vec3(on_segment + of_skin->aside / solid_.grid.h()) : on_segment;
   }
 
   Vec3 in_side(const int side) const {

@@ -44,7 +44,7 @@ Vec3 on_rim(const Solid& solid, const View& view, const grid::Segments two, cons
   const Vec3 p = plane_of(solid, view, two).point, q = plane_of(solid, view, two & (two - 1)).point;
   const Plane plane = plane_of(solid, view, third);
   const double a = plane.normal.dot(p - plane.point), b = plane.normal.dot(q - plane.point);
-  constexpr double inside = 1e-3; // of the rim's length
+  constexpr double inside = 5e-7; // of the rim's length
   return p + (a == b ? 0.5 : std::clamp(a / (a - b), inside, 1 - inside)) * (q - p);
 }
 
@@ -53,8 +53,6 @@ Vec3 on_rim(const Solid& solid, const View& view, const grid::Segments two, cons
 std::optional<Vec3> point_in_triangle(const Solid& solid, const View& view, const int triangle) {
   const Skeleton::Side& side = view.now.skeleton().side[skeleton::first_triangle + triangle];
   const grid::Segments of = border(side), now = view.now.blades & of, old = view.old_blades & of;
-  if (now == old)
-    return {};
   const grid::Segments first = old != 0 ? old & -old : now & -now,
                        pair = of_one_label(solid, view, std::popcount(old) == 2 ? old : now);
   if (pair != 0)

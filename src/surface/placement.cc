@@ -5,6 +5,7 @@
 #include "grid/touched.h"
 #include "surface/below_skin.h"
 #include "surface/border.h"
+#include "surface/crossing.h"
 #include "surface/in_triangle.h"
 #include "surface/sight.h"
 #include "surface/site.h"
@@ -60,8 +61,9 @@ class Placer {
         if ((face & 1) == 1 || !solid_.grid.cells(faces[face])[0].valid()) // else done from the cell below
           place_in_face(view, face, faces[face]);
       if (view.now.is_cut_at_skin()) {
+        const grid::Sides anew = move_to_crossings(solid_, view);
         for_each_bit(view.now.skeleton().sides >> skeleton::first_triangle,
-                     [&](const int triangle) { place_triangle(view, triangle); });
+                     [&](const int triangle) { place_triangle(view, triangle, (anew >> triangle & 1) != 0); });
         place_inner(view);
       } else if ((view.now.cut & ~view.old) != 0) {
         solid_.cuts.set_point(c, place_in(make_site(view, 0xff, 0xfff, Directions()), no_axis,
@@ -197,7 +199,10 @@ class Placer {
     return found;
   }
 
-  void place_triangle(const View& view, const int triangle) {
+  void place_triangle(const View& view, const int triangle, const bool is_anew) {
+    const grid::Segments of = border(view.now.skeleton().side[skeleton::first_triangle + triangle]);
+    if ((view.now.blades & ~view.old_blades & of) == 0 && !is_anew)
+      return;
     if (const auto p = point_in_triangle(solid_, view, triangle)) {
       solid_.cuts.set_inner_point(view.cell, triangle, *p);
       ++counts_.n_placed;

@@ -76,7 +76,7 @@ inline void expect_reshaped(const Body& body, const histories::Step& step, const
     for (const EdgeCut& cut : step.cuts)
       if (std::ranges::find(edges, cut.edge) != edges.end())
         cells.insert(c);
-    for (const auto& [segment, t, normal, label] : step.of_skin)
+    for (const auto& [segment, t, normal, label, aside] : step.of_skin)
       if (segment.face.valid() ? std::ranges::find(faces, segment.face) != faces.end() : segment.cell == c)
         cells.insert(c);
   }
