@@ -7,7 +7,7 @@
 /// velocity e and 1 above, so it is continuous, and never drives. Sticking is then creeping, slower than e.
 /// Source: Wriggers, Computational Contact Mechanics (2006), ch. 5 (penalty), 5.2.3 (regularised friction law).
 /// Limits: a resting body sinks by its weight over k times its area. Friction stiffens explicit steps by
-/// 2 mu N / (m e), which a step beyond answers by quivering below e, no more.
+/// 2 mu N / (m e), which a longer step dt answers by quivering at up to mu N dt / m, no more.
 
 #include "base/parameters.h"
 #include "dynamics/load.h"
@@ -70,6 +70,7 @@ class FloorFriction : public Load {
   void add_force(const Moment& moment, Points& forces) const override;
   /// The change of N with x couples friction to the normal, unsymmetrically: only in the exact one.
   void add_tangent(Tangent kind, const Moment& moment, double velocity_factor, LoadTangent& tangent) const override;
+  bool is_bounded_in_velocity() const override { return true; }
 
  private:
   const Floor& floor_;

@@ -86,6 +86,9 @@ class Load {
   /// Adds -df/dx - velocity_factor df/dv [N/m], velocity_factor in 1/s: what an integrator with dv = velocity_factor dx
   /// sees. Tangent::positive leaves out what would make it unsymmetric or indefinite.
   virtual void add_tangent(Tangent kind, const Moment& moment, double velocity_factor, LoadTangent& tangent) const = 0;
+  /// Is its force bounded, however fast a body moves? Then explicit steps that are too long for its slope at rest make
+  /// the body quiver, and no more.
+  virtual bool is_bounded_in_velocity() const { return false; }
 };
 
 } // namespace kerf::dynamics

@@ -114,8 +114,12 @@ double largest_square_frequency(ElasticModel& model, const Loads& loads, const S
 
 double largest_load_damping(const ForceModel& model, const Loads& loads, const State& state) {
   const Moment moment{state.time, state.x, state.v};
-  const LoadTangent with = load_tangent(loads, Tangent::positive, moment, 1),
-                    without = load_tangent(loads, Tangent::positive, moment, 0);
+  LoadTangent with, without;
+  for (const auto& load : loads.acting)
+    if (!load->is_bounded_in_velocity()) {
+      load->add_tangent(Tangent::positive, moment, 1, with);
+      load->add_tangent(Tangent::positive, moment, 0, without);
+    }
   if (with.empty())
     return 0;
   const Constraints constraints(loads, state.x.size());
@@ -168,21 +172,36 @@ void StepLimit::require(const State& state, const Loads& loads, const double dt,
   double& n_since = ++numbers[steps_since_];
   if (dt <= longest_checked_)
     return;
-  if (const auto known = numbers.find(known_);
-      known != numbers.end() && dt <= part * known->second && n_since < steps_between) {
+  const auto known = numbers.find(known_);
+  const bool is_first = known == numbers.end();
+  const bool is_found = n_since_found_ >= 0 && ++n_since_found_ < steps_between;
+  if (!is_found && !is_first && dt <= part * known->second && n_since < steps_between) {
     last_ = known->second;
     return;
   }
-  last_ = at(state, loads);
-  if (dt > last_)
-    throw ParameterError(Complaint{.path = "Time step [s]",
-                                   .value = in_short(dt), // of one that ends with others, whose round-off it has
-                                   .rule = scheme_.name + " is stable here up to " + to_text(last_) + " s",
-                                   .remedy = "Use a smaller time step or an implicit integrator, or set Beyond the "
-                                             "stable step = go on"});
-  longest_checked_ = dt;
+  if (!is_found) {
+    last_ = at(state, loads);
+    n_since_found_ = 0;
+  }
+  require_stable(dt, is_first);
   numbers[known_] = last_;
-  n_since = 0;
+  n_since = n_since_found_;
+}
+
+void StepLimit::require_stable(const double dt, const bool is_first) {
+  if (dt <= last_) {
+    longest_checked_ = dt;
+    return;
+  }
+  const std::string rule = scheme_.name + " is stable here up to " + to_text(last_) + " s";
+  if (!is_first)
+    throw NumericalError("the time step is " + in_short(dt) + " s, and " + rule +
+                         ": contact, a load or a cut has made something stiff");
+  throw ParameterError(Complaint{.path = "Time step [s]",
+                                 .value = in_short(dt), // of one that ends with others, whose round-off it has
+                                 .rule = rule,
+                                 .remedy = "Use a smaller time step or an implicit integrator, or set Beyond the "
+                                           "stable step = go on"});
 }
 
 } // namespace kerf::dynamics

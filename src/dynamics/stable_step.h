@@ -30,7 +30,7 @@ using Amplification = Eigen::Matrix2d (*)(const Mode& mode, double dt);
 
 /// Largest w^2 [1/s^2] at the state, held components left out, to 0.1 %.
 double largest_square_frequency(ElasticModel& model, const Loads& loads, const State& state);
-/// Largest d [1/s] of the loads' own damping.
+/// Largest d [1/s] of the loads' own damping, but for what is bounded.
 double largest_load_damping(const ForceModel& model, const Loads& loads, const State& state);
 
 /// Longest step [s] for which the spectral radius of a mode and of all slower ones is at most 1 + allowance; infinite
@@ -65,7 +65,10 @@ struct ExplicitScheme {
 /// Watches an integrator's steps: computes its stable step at the first one, and whenever a longer one is asked for.
 /// After a cut, for which integrators are made again, it does so at once where steps are longer than .75 of what the
 /// state remembers as the stable one, else no more than once in 200 steps: that costs as much as some 15 steps. Cuts
-/// shorten the stable step by a fifth at most as a rule; if it is more, that shows by what steps gain (sound_steps.h).
+/// shorten the stable step by a fifth at most as a rule, and contact by more; if steps grow unstable before that is found,
+/// it shows by what they gain (sound_steps.h).
+///
+/// A step that is too long from the start is a mistake in the scene; one that has become too long may be divided.
 class StepLimit {
  public:
   StepLimit(ElasticModel& model, const ExplicitScheme& scheme, const ExplicitOptions& options)
@@ -75,21 +78,24 @@ class StepLimit {
       known_("stable step of " + scheme.name + " [s]"),
       steps_since_("steps since the stable step of " + scheme.name + " was found [1]") {}
 
-  /// Throws ParameterError with the stable step if dt is beyond it and beyond is refused. `numbers`: State::numbers, of
-  /// this state or of what comes of it.
+  /// Where beyond is refused, and dt is: throws ParameterError with the stable step at the first step of a state, and
+  /// NumericalError later. `numbers`: State::numbers, of this state or of what comes of it.
   void require(const State& state, const Loads& loads, double dt, std::map<std::string, double>& numbers);
   /// The stable step when it was computed last [s]; 0: never.
   double last() const { return last_; }
-  void archive(Archive& a) { a(longest_checked_, last_); }
+  void archive(Archive& a) { a(longest_checked_, last_, n_since_found_); }
   /// At a state [s].
   double at(const State& state, const Loads& loads) const;
 
  private:
+  void require_stable(double dt, bool is_first);
+
   ElasticModel& model_;
   ExplicitScheme scheme_;
   ExplicitOptions options_;
   std::string known_, steps_since_;       // names in State::numbers
   double longest_checked_ = 0, last_ = 0; // [s]
+  int n_since_found_ = -1;                // steps that were asked about since it found its own one; -1: never
 };
 
 } // namespace kerf::dynamics

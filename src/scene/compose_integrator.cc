@@ -27,7 +27,7 @@ constexpr dynamics::SoundOptions dissipative{.kick = 0.01, .wanted_gain = 2e-3};
 constexpr dynamics::SoundOptions conservative{
   .most_substeps = 16, .most_gain = 0.05, .most_sum = 0.1, .kick = 0, .wanted_gain = 1e-2, .each_piece = true};
 constexpr dynamics::SoundOptions as_they_are{.most_substeps = 1};
-constexpr dynamics::SoundOptions explicit_ones{.most_substeps = 1, .most_gain = 0.75};
+constexpr dynamics::SoundOptions explicit_ones{.most_gain = 0.75}, explicit_as_they_are{.most_substeps = 1, .most_gain = 0.75};
 
 /// Watches the energy of an integrator's steps, and divides those that gain some.
 physics::StepperMaker sound(const physics::StepperMaker& make, const dynamics::SoundOptions& options) {
@@ -70,7 +70,8 @@ Integrator explicit_integrator(const Section& body, const std::string& section) 
   const auto make = [=](ElasticModel& model, const PiecesOfParticles&) -> Stepper {
     return std::make_unique<Explicit>(model, options);
   };
-  return {sound(make, explicit_ones), fem::Inertia::extended};
+  const bool is_divided = options.beyond == dynamics::BeyondStable::refuse;
+  return {sound(make, is_divided ? explicit_ones : explicit_as_they_are), fem::Inertia::extended};
 }
 
 Integrator quasi_static(const Section& body) {

@@ -43,6 +43,26 @@ TEST(SoundSteps, DivideAStepThatGainsEnergy) {
   EXPECT_NEAR(state.time, 0.2, 1e-15);
 }
 
+/// A cut, for which integrators are made again, or contact makes a body stiffer than its steps bear.
+TEST(SoundSteps, DivideAStepThatHasBecomeTooLong) {
+  Chain soft({1, 1, 1}, {.anchor = 100}), stiff({1, 1, 1}, {.anchor = 900});
+  const auto sound = [](Chain& model) {
+    return SoundSteps(model, Pieces(), std::make_unique<VelocityVerlet>(model, ExplicitOptions{}), {});
+  };
+  constexpr double dt = 0.16; // stable up to .2, then up to .067
+  State state = soft.state();
+  state.x[1] += Vec3(0.1, 0, 0);
+  EXPECT_EQ(sound(soft).step(state, {}, dt).n_substeps, 0);
+  State anew = soft.state();
+  EXPECT_THROW(sound(stiff).step(anew, {}, dt), ParameterError) << "from the start";
+  SoundSteps stepper = sound(stiff);
+  const double before = energy(stiff, state);
+  for (int i = 0; i < 500; ++i) {
+    ASSERT_EQ(stepper.step(state, {}, dt).n_substeps, 4);
+    ASSERT_LT(std::abs(energy(stiff, state) / before - 1), 0.5) << i; // 1 / (1 - .6^2) at most
+  }
+}
+
 /// Masses 0 and 1, and 2 and 3, joined by springs.
 class TwoPairs : public Chain, public PieceEnergies {
  public:
