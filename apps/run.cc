@@ -57,7 +57,7 @@ void print_body(const scene::Body& body, const scene::Watch& watch) {
                 body.n_lost_shells);
   if (body.n_thin_walls + body.n_thin_gaps + body.n_triple_crossings > 0)
     std::printf(
-      "  thinner than a cell: %zu grid edges pass through walls that are lost, %zu through gaps that are "
+      "  between nodes: %zu grid edges pass through walls or crests that are lost, %zu through gaps or grooves that are "
       "filled, %zu cross the skin more than once\n",
       body.n_thin_walls, body.n_thin_gaps, body.n_triple_crossings);
 }
@@ -111,10 +111,11 @@ void print_cutting(const scene::World& world) {
   if (n_crumbs > 0)
     std::printf("  %zu crumbs, pieces that the grid cannot deform: they moved as rigid bodies\n", n_crumbs);
   if (n_passed > 0)
-    std::printf("  %zu cells passed without a cut: what ends inside a cell is not resolved\n", n_passed);
+    std::printf("  %zu cells passed without a cut: the blade met none of their edges\n", n_passed);
 }
 
-void print_summary(const scene::World& world, const Timings& seconds, const SceneArguments& arguments) {
+void print_summary(const scene::World& world, const Timings& seconds, const int n_steps,
+                   const SceneArguments& arguments) {
   for (std::size_t b = 0; b < world.bodies.size(); ++b)
     print_body(world.bodies[b], world.watches[b]);
   print_cutting(world);
@@ -127,8 +128,8 @@ void print_summary(const scene::World& world, const Timings& seconds, const Scen
     all += value;
     recording += stage == "images" || stage == "output" ? value : 0;
   }
-  std::printf("\n%.1f steps/s without images and files, %.1f with\n", world.n_steps / (all - recording),
-              world.n_steps / all);
+  std::printf("\n%.1f steps/s without images and files, %.1f with\n", n_steps / (all - recording),
+              n_steps / all);
   std::printf("results in %s\n", arguments.output.c_str());
 }
 
@@ -162,7 +163,7 @@ int run(const Arguments& arguments) {
   scene::Recorder recorder(parsed.output, world, source(), parsed.earlier);
   scene::Progress progress(world.n_steps, world.n_steps * world.time_step, scene::progress_style(stdout), stdout);
   const Timings seconds = scene::run(world, recorder, progress);
-  print_summary(world, seconds, parsed);
+  print_summary(world, seconds, progress.n_taken(), parsed);
   return 0;
 }
 

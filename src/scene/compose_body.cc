@@ -222,10 +222,14 @@ std::string describe_volume(const Body& body) {
   const double more = body.first_volume / body.mesh_volume - 1;
   if (std::abs(more) < much)
     return "";
-  return line("warning: body ", body.name, ": the grid has ", std::round(1000 * std::abs(more)) / 10, " % ",
-              more < 0 ? "less" : "more", " volume than the mesh: ", body.n_thin_walls,
-              " of its edges pass through walls that are thinner than a cube and are lost, ", body.n_thin_gaps,
-              " through gaps that are filled. Smaller cubes keep them");
+  const std::string by_how_much = line("warning: body ", body.name, ": the grid has ",
+                                       std::round(1000 * std::abs(more)) / 10, " % ", more < 0 ? "less" : "more",
+                                       " volume than the mesh");
+  if (body.n_thin_walls + body.n_thin_gaps == 0)
+    return by_how_much + ", which bends too much for its cubes. Smaller ones follow it";
+  return line(by_how_much, ": ", body.n_thin_walls,
+              " of its edges pass through walls or crests between nodes, which are lost, ", body.n_thin_gaps,
+              " through gaps or grooves, which are filled. Smaller cubes keep them");
 }
 
 } // namespace

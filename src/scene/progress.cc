@@ -40,7 +40,12 @@ void Progress::name_step(const double seconds) {
 
 double Progress::steps_per_second() const {
   const double seconds = std::chrono::duration<double>(Clock::now() - start_).count();
-  return seconds > 0 ? step_ / seconds : 0;
+  return seconds > 0 ? n_taken() / seconds : 0;
+}
+
+void Progress::begin(const int step) {
+  const std::lock_guard lock(mutex_);
+  step_ = first_ = step;
 }
 
 void Progress::say(const std::string& line) {

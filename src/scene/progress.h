@@ -23,6 +23,8 @@ class Progress {
   Progress(int n_steps, double end_time, ProgressStyle style, std::FILE* stream,
            std::chrono::milliseconds patience = std::chrono::seconds(10));
 
+  /// Steps up to this one were taken before; none where it is not called.
+  void begin(int step);
   /// A line of its own.
   void say(const std::string& line);
   /// After step `step` at time `time` [s].
@@ -30,7 +32,8 @@ class Progress {
   /// Ends the bar's line; no step is named any more.
   void finish();
 
-  /// Steps per second since construction.
+  int n_taken() const { return step_ - first_; }
+  /// Of those taken, since construction.
   double steps_per_second() const;
 
  private:
@@ -40,7 +43,7 @@ class Progress {
   void name_long_steps(const std::stop_token& stop);
   void name_step(double seconds);
 
-  int n_steps_, step_ = 0;
+  int n_steps_, step_ = 0, first_ = 0;
   double end_time_;
   ProgressStyle style_;
   std::FILE* stream_;

@@ -12,6 +12,7 @@
 #include <bit>
 #include <cstdio>
 #include <list>
+#include <sstream>
 #include <system_error>
 #include <utility>
 
@@ -162,6 +163,29 @@ bool is_complete(const std::filesystem::path& folder) {
   return has_begun(folder / run_name) && output::Reader(folder / run_name).outcome() == output::Outcome::completed;
 }
 
+namespace {
+
+/// The first line in which two texts differ, as each has it.
+std::string first_difference(const std::string& there, const std::string& here) {
+  const std::string nothing = "nothing";
+  const auto next = [&](std::istringstream& text) {
+    std::string line;
+    if (!std::getline(text, line))
+      return nothing;
+    const auto first = std::min(line.find_first_not_of(' '), line.size());
+    return "'" + line.substr(first) + "'";
+  };
+  std::istringstream of_there(there), of_here(here);
+  std::string a, b;
+  do {
+    a = next(of_there);
+    b = next(of_here);
+  } while (a == b && a != nothing);
+  return a + " there, " + b + " here";
+}
+
+} // namespace
+
 void require_same(const std::filesystem::path& folder, const Source& source) {
   const std::filesystem::path file = folder / run_name;
   const output::Reader reader(file);
@@ -169,8 +193,9 @@ void require_same(const std::filesystem::path& folder, const Source& source) {
   if (!same_scene || reader.inputs() != source.inputs)
     throw ParameterError(Complaint{
       .file = file.string(),
-      .rule =
-        std::string("cannot be resumed: it is a run of ") + (same_scene ? "other meshes or pictures" : "another scene"),
+      .rule = "cannot be resumed: it is a run of " +
+              (same_scene ? "other meshes or pictures"
+                          : "another scene (" + first_difference(reader.scene(), source.scene) + ")"),
       .remedy = "Give the scene, its --set and its files as they were, or start again with --force"});
 }
 

@@ -141,6 +141,7 @@ Timings run(World& world, Recorder& recorder, Progress& progress) {
       progress.say(line);
     if ((step = start.step) < 0)
       recorder.record(world, step = 0, seconds);
+    progress.begin(step);
     while (step < world.n_steps) {
       end_if_asked(world, recorder, step);
       advance(world, ++step, seconds);
