@@ -14,6 +14,13 @@ namespace {
 namespace skeleton = grid::skeleton;
 using grid::Skeleton;
 
+grid::Sides triangles_at(const Skeleton& of, const int spoke) {
+  grid::Sides triangles = 0;
+  for (const int side : of.segment[spoke].sides)
+    triangles |= grid::Sides(1) << (side - skeleton::first_triangle);
+  return triangles;
+}
+
 class Crossings {
  public:
   Crossings(grid::Solid& solid, const View& view) : solid_(solid), view_(view), of_(view.now.skeleton()) {}
@@ -23,12 +30,11 @@ class Crossings {
     grid::Sides beside = 0;
     for_each_bit(view_.now.blades & skeleton::spokes, [&](const int spoke) {
       const grid::SkinSegment at = grid::skin_segment(solid_.grid, view_.cell, spoke);
-      if (!solid_.cuts.find(at)->aside.isZero())
+      if (!solid_.cuts.find(at)->aside.isZero(0))
         return;
       if (const auto crossing = crossing_of(spoke, at)) {
         solid_.cuts.set_aside(at, (1 - short_of_it) * (*crossing - cut_plane(solid_, view_, spoke).plane.point));
-        for (const int side : of_.segment[spoke].sides)
-          beside |= grid::Sides(1) << (side - skeleton::first_triangle);
+        beside |= triangles_at(of_, spoke);
       }
     });
     return beside;
@@ -89,6 +95,29 @@ class Crossings {
 };
 
 } // namespace
+
+bool has_crossings(const grid::Solid& solid, const grid::CellId cell) {
+  if (!solid.cuts.has_later_cuts())
+    return false;
+  const Skeleton& of = grid::cuts_of(solid, cell).skeleton();
+  for (grid::Segments left = of.segments & skeleton::spokes; left != 0; left &= left - 1)
+    if (const grid::SkinCut* const cut =
+          solid.cuts.find(grid::skin_segment(solid.grid, cell, std::countr_zero(left)));
+        cut && !cut->aside.isZero(0))
+      return true;
+  return false;
+}
+
+grid::Sides take_back_crossings(grid::Solid& solid, const View& view) {
+  grid::Sides beside = 0;
+  for_each_bit(view.now.blades & skeleton::spokes, [&](const int spoke) {
+    const grid::SkinSegment at = grid::skin_segment(solid.grid, view.cell, spoke);
+    if (!solid.cuts.find(at)->aside.isZero(0))
+      beside |= triangles_at(view.now.skeleton(), spoke);
+    solid.cuts.set_aside(at, Vec3::Zero());
+  });
+  return beside;
+}
 
 grid::Sides move_to_crossings(grid::Solid& solid, const View& view) {
   return solid.cuts.has_later_cuts() ? Crossings(solid, view).run() : 0;

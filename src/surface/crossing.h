@@ -16,5 +16,8 @@ namespace kerf::surface {
 /// Moves the vertices of spokes to the crossings of the two cuts that meet them. Returns the triangles (bits, counted
 /// from skeleton::first_triangle) beside what has moved, whose own vertices are to be placed anew.
 grid::Sides move_to_crossings(grid::Solid& solid, const View& view);
+bool has_crossings(const grid::Solid& solid, grid::CellId cell);
+/// All of the cell go back onto their spokes; returns the same.
+grid::Sides take_back_crossings(grid::Solid& solid, const View& view);
 
 } // namespace kerf::surface

@@ -61,16 +61,17 @@ class Placer {
         if ((face & 1) == 1 || !solid_.grid.cells(faces[face])[0].valid()) // else done from the cell below
           place_in_face(view, face, faces[face]);
       if (view.now.is_cut_at_skin()) {
-        const grid::Sides anew = move_to_crossings(solid_, view);
-        for_each_bit(view.now.skeleton().sides >> skeleton::first_triangle,
-                     [&](const int triangle) { place_triangle(view, triangle, (anew >> triangle & 1) != 0); });
-        place_inner(view);
+        place_in_skin(view, move_to_crossings(solid_, view));
+        if (view.now.blades != view.old_blades)
+          place_inner(view);
       } else if ((view.now.cut & ~view.old) != 0) {
         solid_.cuts.set_point(c, place_in(make_site(view, 0xff, 0xfff, Directions()), no_axis,
                                           grid::cell_point(solid_, c), 0.5 * (view.lower + view.upper)));
         count_held();
       }
     }
+    for (const CellId c : cells)
+      take_back_crossings(c);
     counts_.n_folded = unfold(solid_, cells);
     solid_.cuts.settle();
     return counts_;
@@ -199,6 +200,21 @@ class Placer {
     return found;
   }
 
+  /// Where something new cuts a triangle, or it is to be placed anew.
+  void place_in_skin(const View& view, const grid::Sides anew) {
+    for_each_bit(view.now.skeleton().sides >> skeleton::first_triangle,
+                 [&](const int triangle) { place_triangle(view, triangle, (anew >> triangle & 1) != 0); });
+  }
+
+  /// Where a part would have less than nothing else: planes that bend may not cross where those of their cuts do.
+  void take_back_crossings(const CellId c) {
+    if (!has_crossings(solid_, c) || has_material(solid_, look_at(solid_, c), nothing))
+      return;
+    const View view = look_at(solid_, c);
+    place_in_skin(view, surface::take_back_crossings(solid_, view));
+    place_inner(view);
+  }
+
   void place_triangle(const View& view, const int triangle, const bool is_anew) {
     const grid::Segments of = border(view.now.skeleton().side[skeleton::first_triangle + triangle]);
     if ((view.now.blades & ~view.old_blades & of) == 0 && !is_anew)
@@ -212,8 +228,6 @@ class Placer {
   /// In a cell with skin.
   void place_inner(const View& view) {
     const CellId c = view.cell;
-    if (view.now.blades == view.old_blades)
-      return;
     const auto n_parts = [&](const grid::Segments cut) {
       return grid::whole_parts_of({view.now.material, view.now.cut, cut}).n;
     };

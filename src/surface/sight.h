@@ -31,6 +31,7 @@ bool parts_have_areas(const grid::Solid& solid, const View& view, int side, cons
 /// From where the cell sees all of its skin, within up to two planes through p: p, or as far as that.
 std::optional<Vec3> seeing_skin(const grid::Solid& solid, const View& view, const Vec3& p,
                                 const std::vector<Plane>& in_planes);
+constexpr double nothing = -1e-13; ///< but for round-off [h^3]
 /// Has each part of the cell, and each that a front parts, more than `least` [h^3] at each corner, and no trilinear
 /// field a negative square in it?
 bool has_material(const grid::Solid& solid, const View& view, double least);

@@ -15,8 +15,6 @@ namespace {
 namespace skeleton = grid::skeleton;
 using grid::CellId;
 
-constexpr double nothing = -1e-13; // of a cube: but for round-off
-
 /// Has a part of the cell less than nothing, since some vertex does not see all around it? What cuts in one plane leave
 /// is the same wherever in it their vertices lie, but not what a front parts.
 bool is_folded(const grid::Solid& solid, const View& view) {

@@ -76,7 +76,7 @@ TEST(CrossingRims, OfPlanesAlongTheGridLieInThem) {
     volume = std::max(volume, largest_difference(volumes, exact) / cube);
     EXPECT_TRUE(patient.is_as_built()) << i;
     n_moved += static_cast<std::size_t>(std::ranges::count_if(
-      patient.body.cuts.skin_cuts(), [](const grid::SkinCut& cut) { return !cut.aside.isZero(); }));
+      patient.body.cuts.skin_cuts(), [](const grid::SkinCut& cut) { return !cut.aside.isZero(0); }));
   }
   std::cout << n << " boxes: vertices at most " << off << " h off their plane, pieces " << volume
             << " h^3 off, the least triangle " << area << " h^2; " << n_moved << " vertices of spokes moved\n";
