@@ -17,6 +17,14 @@ namespace kerf {
 /// What to make room for where n values are some more than there were: cuts add few at a time, and the next finds room.
 constexpr std::size_t with_slack(const std::size_t n) { return n + n / 16; }
 
+/// Resizes with such room, where std::vector takes twice the memory.
+template <class Vector>
+void grow(Vector& values, const std::size_t n, const typename Vector::value_type& value = {}) {
+  if (n > values.capacity())
+    values.reserve(with_slack(n));
+  values.resize(n, value);
+}
+
 /// For vectors that are written before they are read.
 struct AnyValues {};
 

@@ -1,5 +1,7 @@
 #include "fem/batches.h"
 
+#include "base/loan.h"
+
 #include <algorithm>
 #include <bit>
 #include <numeric>
@@ -97,14 +99,19 @@ Batching::Batching(const CopiesInOrder& copies) {
 ChangeOfBatches Batching::update(const CopiesInOrder& copies, const std::span<const std::uint8_t> is_same,
                                  const std::span<const std::uint8_t> is_met, const CornersOfSame corners) {
   const Before before{std::exchange(batches_, {}), std::exchange(chunks_, {})};
-  batches_.reserve(before.batches.size() + copies.order.size() / n_lanes + 2 * copies.chunk_ends.size());
+  const auto is_kept_chunk = [&](const std::size_t k) { return k < is_met.size() && is_met[k] == 0; };
+  std::size_t most = 0;
+  for (std::size_t k = 0; k < copies.chunk_ends.size(); ++k)
+    most += is_kept_chunk(k) ? before.chunks[k].n
+                             : (copies.chunk_ends[k] - (k > 0 ? copies.chunk_ends[k - 1] : 0)) / n_lanes + 2;
+  batches_.reserve(most);
   std::vector<std::uint8_t> is_taken(n_places_, 0);
   ChangeOfBatches change;
   std::uint32_t begin = 0;
   for (std::size_t k = 0; k < copies.chunk_ends.size(); begin = copies.chunk_ends[k++]) {
     const Chunk was = k < before.chunks.size() ? before.chunks[k] : Chunk{};
     const auto row = static_cast<std::uint32_t>(copies.n_corners + k);
-    const bool is_kept = k < is_met.size() && is_met[k] == 0;
+    const bool is_kept = is_kept_chunk(k);
     if (is_kept)
       keep_chunk(before, was, row);
     else
@@ -264,9 +271,9 @@ BatchedElements<T> batched(const Batching& batching, const double h, const mater
 template <class T>
 void follow(const Batching& batching, const std::span<const std::uint32_t> renewed, const PartialElements& partial,
             BatchedElements<T>& elements) {
-  elements.partial.resize(batching.n_places());
-  elements.shared.hourglass->resize(batching.n_places());
-  elements.shared.rotations->resize(batching.batches().size());
+  grow(elements.partial, batching.n_places());
+  grow(*elements.shared.hourglass, batching.n_places());
+  grow(*elements.shared.rotations, batching.batches().size());
   parallel_for(
     renewed.size(),
     [&](const std::size_t i) {

@@ -1,5 +1,6 @@
 #include "fem/element_table.h"
 
+#include "base/loan.h"
 #include "base/parallel.h"
 
 #include <algorithm>
@@ -17,7 +18,7 @@ ElementTable::ElementTable(const grid::Solid& solid, const ElementTableOptions& 
 }
 
 void ElementTable::update(const grid::Solid& solid, const std::span<const grid::CopyId> changed) {
-  element_of_.resize(solid.complex.n_copies(), 0);
+  grow(element_of_, solid.complex.n_copies());
   std::vector<grid::CopyId> partial;
   for (const auto c : changed) {
     std::uint32_t& element = element_of_[c.value];

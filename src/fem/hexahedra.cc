@@ -156,8 +156,8 @@ Batching batching_of(const grid::Grid& grid, const CellsInChunks& chunks) {
 
 ChangeOfBatches Hexahedra::batch(const grid::Solid& solid, const std::span<const grid::CopyId> changed,
                                  const CornersOfSame corners) {
-  places_.resize(n_elements());
-  kinds_.resize(n_elements());
+  grow(places_, n_elements());
+  grow(kinds_, n_elements());
   std::vector<std::uint8_t> is_same(n_elements(), 1);
   for (const grid::CopyId c : changed) {
     is_same[c.value] = 0;
@@ -213,7 +213,7 @@ PartialElements Hexahedra::weighed_partial_elements() const {
 }
 
 void Hexahedra::sum_mass(const std::span<const std::uint32_t> corners) {
-  mass_.resize(incidence_.n_corners());
+  grow(mass_, incidence_.n_corners());
   for (const auto corner : corners) {
     mass_[corner] = 0;
     for (const auto user : incidence_.users(corner))

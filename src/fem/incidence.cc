@@ -1,5 +1,7 @@
 #include "fem/incidence.h"
 
+#include "base/loan.h"
+
 #include <algorithm>
 
 namespace kerf::fem {
@@ -31,8 +33,8 @@ Incidence::Incidence(const grid::Solid& solid) : users_(solid.complex.n_corners(
 std::vector<std::uint32_t> Incidence::update(const grid::Solid& solid, const std::span<const grid::CopyId> changed) {
   const auto& complex = solid.complex;
   std::vector<std::uint32_t> touched;
-  users_.resize(complex.n_corners());
-  corners_.resize(8 * complex.n_copies(), unused);
+  grow(users_, complex.n_corners());
+  grow(corners_, 8 * std::size_t(complex.n_copies()), unused);
   for (const grid::CopyId c : changed)
     for (int a = 0; a < 8; ++a) {
       const std::uint32_t user = 8 * c.value + a, before = corners_[user], corner = complex.copies[c].corners[a].value,
@@ -58,7 +60,7 @@ void Incidence::add(const std::uint32_t corner, const std::uint32_t user) {
   if (range.size == range.capacity) { // moves to the end; what it leaves is not used again
     const Range before = range;
     range = {static_cast<std::uint32_t>(slots_.size()), before.size, std::max(8u, 2 * before.capacity)};
-    slots_.resize(slots_.size() + range.capacity);
+    grow(slots_, slots_.size() + range.capacity);
     std::copy_n(slots_.begin() + before.first, before.size, slots_.begin() + range.first);
   }
   const auto begin = slots_.begin() + range.first, end = begin + range.size;

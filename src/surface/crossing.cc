@@ -26,14 +26,13 @@ class Crossings {
   Crossings(grid::Solid& solid, const View& view) : solid_(solid), view_(view), of_(view.now.skeleton()) {}
 
   grid::Sides run() {
-    constexpr double short_of_it = 5e-7; // of the way, so that no two vertices of a rim are in the same place
     grid::Sides beside = 0;
     for_each_bit(view_.now.blades & skeleton::spokes, [&](const int spoke) {
       const grid::SkinSegment at = grid::skin_segment(solid_.grid, view_.cell, spoke);
       if (!solid_.cuts.find(at)->aside.isZero(0))
         return;
       if (const auto crossing = crossing_of(spoke, at)) {
-        solid_.cuts.set_aside(at, (1 - short_of_it) * (*crossing - cut_plane(solid_, view_, spoke).plane.point));
+        solid_.cuts.set_aside(at, (1 - short_of_crossing) * (*crossing - cut_plane(solid_, view_, spoke).plane.point));
         beside |= triangles_at(of_, spoke);
       }
     });

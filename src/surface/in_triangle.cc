@@ -1,5 +1,7 @@
 #include "surface/in_triangle.h"
 
+#include "surface/crossing.h"
+
 #include <algorithm>
 #include <bit>
 
@@ -39,12 +41,22 @@ std::optional<Vec3> end_of_cut(const Solid& solid, const View& view, const Skele
   return {};
 }
 
+/// Has one of them moved along the rim to where it ends (crossing.h)?
+bool ends_at_crossing(const Solid& solid, const View& view, const grid::Segments cuts) {
+  bool result = false;
+  for_each_bit(cuts, [&](const int segment) {
+    const grid::SkinCut* const cut = solid.cuts.find(grid::skin_segment(solid.grid, view.cell, segment));
+    result = result || (cut && !cut->aside.isZero(0));
+  });
+  return result;
+}
+
 /// On the rim between two cuts, nearest to the plane of a third one.
 Vec3 on_rim(const Solid& solid, const View& view, const grid::Segments two, const grid::Segments third) {
   const Vec3 p = plane_of(solid, view, two).point, q = plane_of(solid, view, two & (two - 1)).point;
   const Plane plane = plane_of(solid, view, third);
   const double a = plane.normal.dot(p - plane.point), b = plane.normal.dot(q - plane.point);
-  constexpr double inside = 5e-7; // of the rim's length
+  const double inside = ends_at_crossing(solid, view, two) ? short_of_crossing : 1e-5; // of the rim's length
   return p + (a == b ? 0.5 : std::clamp(a / (a - b), inside, 1 - inside)) * (q - p);
 }
 
