@@ -52,7 +52,7 @@ TEST_P(Landing, BlockComesToRestOnItsWeight) {
 }
 
 /// On a tilted floor, measured along the slope after 1 s.
-State slide(const Integrator& integrator, const double angle, const double mu) {
+State slide(const Integrator& integrator, const double angle, const double mu, const double dt = 1e-4) {
   Chain model = block();
   const Vec3 normal(-std::sin(angle), 0, std::cos(angle)), g(0, 0, -9.81);
   Loads loads{.gravity = g, .supports = {}};
@@ -64,8 +64,8 @@ State slide(const Integrator& integrator, const double angle, const double mu) {
                  masses[i] * 9.81 * std::cos(angle) / (2e5 * all_points().areas[i]) * normal;
   Chain row(masses, {}); // no springs: the row along y would be drawn to x
   const auto stepper = integrator.make(row);
-  for (int i = 0; i < 10000; ++i)
-    stepper->step(state, loads, 1e-4);
+  for (int i = 0; i < std::lround(1 / dt); ++i)
+    stepper->step(state, loads, dt);
   return state;
 }
 
@@ -86,6 +86,26 @@ TEST_P(Landing, BlockSlidesAboveTheAngleOfFriction) {
   const double acceleration = 9.81 * (std::sin(angle) - mu * std::cos(angle));
   for (const Vec3& v : state.v)
     EXPECT_NEAR(along_slope(v, angle) / (acceleration * state.time), 1, 1e-2);
+}
+
+/// Explicit steps twenty times as long as those that friction's slope at rest asks for, 2 e / (2 mu g): friction is
+/// bounded, and does not count. What sticks quivers by what friction gives in a step, and creeps more slowly than that.
+TEST(Landing, LongExplicitStepsStickAndSlideToo) {
+  constexpr double mu = 0.5, dt = 4e-3, quiver = mu * 9.81 * dt;
+  for (const Integrator& integrator : {Integrator{"symplectic Euler", 1,
+                                                  [](ElasticModel& m) { return made<SymplecticEuler>(m, ExplicitOptions{}); }},
+                                       Integrator{"velocity Verlet", 2, [](ElasticModel& m) {
+                                                    return made<VelocityVerlet>(m, ExplicitOptions{});
+                                                  }}}) {
+    const double sticks = std::atan(mu) - 3 * degree, slides = std::atan(mu) + 3 * degree;
+    const State still = slide(integrator, sticks, mu, dt), sliding = slide(integrator, slides, mu, dt);
+    for (std::size_t i = 0; i < masses.size(); ++i) {
+      EXPECT_LT(std::abs(along_slope(still.v[i], sticks)), 2 * quiver) << integrator.name;
+      EXPECT_LT(std::abs(along_slope(still.x[i], sticks)), quiver * still.time) << integrator.name;
+      EXPECT_NEAR(along_slope(sliding.v[i], slides) / (9.81 * (std::sin(slides) - mu * std::cos(slides))), 1, 5e-2)
+        << integrator.name;
+    }
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Integrators, Landing,
