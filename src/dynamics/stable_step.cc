@@ -134,6 +134,28 @@ double largest_load_damping(const ForceModel& model, const Loads& loads, const S
   });
 }
 
+double load_square_bound(const ForceModel& model, const Loads& loads, const State& state) {
+  if (loads.acting.empty())
+    return 0;
+  const LoadTangent tangent = load_tangent(loads, Tangent::positive, {state.time, state.x, state.v}, 0);
+  if (tangent.empty())
+    return 0;
+  const auto mass = model.lumped_mass();
+  Loan<Mat3> blocks(mass.size(), Mat3::Zero());
+  std::vector<std::pair<std::uint32_t, double>> weights; // of a point, which add up to 1
+  tangent.for_each_point([&](const std::uint32_t corner, const double weight) { weights.emplace_back(corner, weight); },
+                         [&](const Mat3& block) {
+                           for (const auto& [corner, weight] : weights)
+                             blocks[corner] += std::abs(weight) * block;
+                           weights.clear();
+                         });
+  tangent.add_bound_of_pairs(blocks);
+  double most = 0;
+  for (std::size_t i = 0; i < mass.size(); ++i)
+    most = std::max(most, per_mass(blocks[i].trace(), mass[i]));
+  return most;
+}
+
 double stable_step(const Amplification amplification, const Mode& fastest, const double stiffness_damping,
                    const double allowance) {
   const double rate = std::sqrt(fastest.square) + fastest.mass_damping + fastest.other_damping;
@@ -166,30 +188,36 @@ double StepLimit::at(const State& state, const Loads& loads) const {
 
 void StepLimit::require(const State& state, const Loads& loads, const double dt,
                         std::map<std::string, double>& numbers) {
-  constexpr double steps_between = 200, part = 0.75;
+  constexpr double steps_between = 200, part = 0.75, stiffer = 1.1;
   if (options_.beyond == BeyondStable::go_on)
     return;
-  double& n_since = ++numbers[steps_since_];
-  if (dt <= longest_checked_)
+  double &n_since = ++numbers[steps_since_], &load_known = numbers[load_];
+  const double load = load_square_bound(model_, loads, state);
+  const bool is_stiffer = load > stiffer * std::max(load_known, load_found_);
+  if (dt <= longest_checked_ && !is_stiffer)
     return;
   const auto known = numbers.find(known_);
   const bool is_first = known == numbers.end();
-  const bool is_found = n_since_found_ >= 0 && ++n_since_found_ < steps_between;
-  if (!is_found && !is_first && dt <= part * known->second && n_since < steps_between) {
+  const bool is_found = n_since_found_ >= 0 && ++n_since_found_ < steps_between && !is_stiffer;
+  if (!is_found && !is_first && dt <= part * known->second && n_since < steps_between && !is_stiffer) {
     last_ = known->second;
     return;
   }
   if (!is_found) {
+    longest_checked_ = 0;
     last_ = at(state, loads);
+    load_found_ = load;
     n_since_found_ = 0;
   }
   require_stable(dt, is_first);
   numbers[known_] = last_;
+  load_known = load_found_;
   n_since = n_since_found_;
 }
 
 void StepLimit::require_stable(const double dt, const bool is_first) {
-  if (dt <= last_) {
+  constexpr double near = 0.9; // of the stable step: beyond, what moves may already swing by five times its energy
+  if (dt <= (is_first ? 1 : near) * last_) {
     longest_checked_ = dt;
     return;
   }

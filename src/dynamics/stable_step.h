@@ -33,6 +33,10 @@ double largest_square_frequency(ElasticModel& model, const Loads& loads, const S
 /// Largest d [1/s] of the loads' own damping, but for what is bounded.
 double largest_load_damping(const ForceModel& model, const Loads& loads, const State& state);
 
+/// At least the largest w^2 that the loads' stiffness gives to the masses by itself, where these hang on nothing else
+/// [1/s^2]; cheap.
+double load_square_bound(const ForceModel& model, const Loads& loads, const State& state);
+
 /// Longest step [s] for which the spectral radius of a mode and of all slower ones is at most 1 + allowance; infinite
 /// for a mode without frequency and damping.
 double stable_step(Amplification amplification, const Mode& fastest, double stiffness_damping, double allowance);
@@ -62,11 +66,11 @@ struct ExplicitScheme {
   double allowance;
 };
 
-/// Watches an integrator's steps: computes its stable step at the first one, and whenever a longer one is asked for.
-/// After a cut, for which integrators are made again, it does so at once where steps are longer than .75 of what the
-/// state remembers as the stable one, else no more than once in 200 steps: that costs as much as some 15 steps. Cuts
-/// shorten the stable step by a fifth at most as a rule, and contact by more; if steps grow unstable before that is found,
-/// it shows by what they gain (sound_steps.h).
+/// Watches an integrator's steps: computes its stable step at the first one, whenever a longer one is asked for, and when
+/// loads become stiffer, as a body lands. After a cut, for which integrators are made again, it does so at once where
+/// steps are longer than .75 of what the state remembers as the stable one, else no more than once in 200 steps: that
+/// costs as much as some 15 steps. Cuts shorten the stable step by a fifth at most as a rule; if it is more, that shows by
+/// what steps gain (sound_steps.h).
 ///
 /// A step that is too long from the start is a mistake in the scene; one that has become too long may be divided.
 class StepLimit {
@@ -76,14 +80,15 @@ class StepLimit {
       scheme_(scheme),
       options_(options),
       known_("stable step of " + scheme.name + " [s]"),
-      steps_since_("steps since the stable step of " + scheme.name + " was found [1]") {}
+      steps_since_("steps since the stable step of " + scheme.name + " was found [1]"),
+      load_("square frequency of loads with the stable step of " + scheme.name + " [1/s^2]") {}
 
   /// Where beyond is refused, and dt is: throws ParameterError with the stable step at the first step of a state, and
   /// NumericalError later. `numbers`: State::numbers, of this state or of what comes of it.
   void require(const State& state, const Loads& loads, double dt, std::map<std::string, double>& numbers);
   /// The stable step when it was computed last [s]; 0: never.
   double last() const { return last_; }
-  void archive(Archive& a) { a(longest_checked_, last_, n_since_found_); }
+  void archive(Archive& a) { a(longest_checked_, last_, load_found_, n_since_found_); }
   /// At a state [s].
   double at(const State& state, const Loads& loads) const;
 
@@ -93,8 +98,9 @@ class StepLimit {
   ElasticModel& model_;
   ExplicitScheme scheme_;
   ExplicitOptions options_;
-  std::string known_, steps_since_;       // names in State::numbers
-  double longest_checked_ = 0, last_ = 0; // [s]
+  std::string known_, steps_since_, load_; // names in State::numbers
+  double longest_checked_ = 0, last_ = 0;  // [s]
+  double load_found_ = 0;                  // load_square_bound() with last_, where it was found [1/s^2]
   int n_since_found_ = -1;                // steps that were asked about since it found its own one; -1: never
 };
 

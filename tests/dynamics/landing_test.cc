@@ -1,8 +1,10 @@
 /// Bodies on a floor: they land, rest, stick and slide; with explicit and implicit integrators.
 
+#include "base/error.h"
 #include "dynamics/floor.h"
 #include "dynamics/forces.h"
 #include "dynamics/quantities.h"
+#include "dynamics/stable_step.h"
 #include "tests/dynamics/chain.h"
 #include "tests/dynamics/integrators.h"
 
@@ -106,6 +108,34 @@ TEST(Landing, LongExplicitStepsStickAndSlideToo) {
         << integrator.name;
     }
   }
+}
+
+/// A floor nine times as stiff as what holds a mass: the stable step is found anew when it touches down, and once more
+/// some time after it has left.
+TEST(Landing, MakesExplicitStepsTooLong) {
+  Chain model({1}, {.anchor = 100});
+  Loads loads;
+  loads.acting.push_back(std::make_unique<Floor>(ContactPoints{corners_themselves(1), {0.01}},
+                                                 FloorParameters{.point = Vec3(0, 0, -0.1), .stiffness = 9e4}));
+  constexpr double dt = 0.1, in_air = 2 / 10., on_floor = 2 / 31.6227766;
+  StepLimit limit(model, VelocityVerlet::scheme(), {});
+  State above = model.state(), below = above;
+  limit.require(above, loads, dt, above.numbers);
+  EXPECT_NEAR(limit.last(), in_air, 1e-3 * in_air);
+  below.numbers = above.numbers;
+  below.x[0][2] = -0.11;
+  EXPECT_THROW(limit.require(below, loads, dt, below.numbers), NumericalError);
+  EXPECT_NEAR(limit.last(), on_floor, 1e-3 * on_floor);
+  EXPECT_NO_THROW(limit.require(below, loads, dt / 2, below.numbers));
+  int n = 0;
+  for (bool is_long = true; is_long; ++n)
+    try {
+      limit.require(above, loads, dt, above.numbers);
+      is_long = false;
+    } catch (const NumericalError&) {
+    }
+  EXPECT_NEAR(n, 200, 2);
+  EXPECT_NEAR(limit.last(), in_air, 1e-3 * in_air);
 }
 
 INSTANTIATE_TEST_SUITE_P(Integrators, Landing,
