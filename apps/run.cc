@@ -128,8 +128,7 @@ void print_summary(const scene::World& world, const Timings& seconds, const int 
     all += value;
     recording += stage == "images" || stage == "output" ? value : 0;
   }
-  std::printf("\n%.1f steps/s without images and files, %.1f with\n", n_steps / (all - recording),
-              n_steps / all);
+  std::printf("\n%.1f steps/s without images and files, %.1f with\n", n_steps / (all - recording), n_steps / all);
   std::printf("results in %s\n", arguments.output.c_str());
 }
 

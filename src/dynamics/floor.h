@@ -7,8 +7,8 @@
 /// velocity e and 1 above, so it is continuous, and never drives. Sticking is then creeping, slower than e.
 /// Source: Wriggers, Computational Contact Mechanics (2006), ch. 5 (penalty), 5.2.3 (regularised friction law).
 /// Limits: a resting body sinks by its weight over k times its area. Friction stiffens explicit steps by
-/// 2 mu N / (m e), which a longer step dt answers by quivering at up to mu N dt / m, and
-/// creeping at less than that, no more.
+/// 2 mu N / (m e), which a longer step dt answers by quivering at up to mu N dt / m and creeping at less than that, no
+/// more.
 
 #include "base/parameters.h"
 #include "dynamics/load.h"

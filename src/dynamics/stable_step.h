@@ -101,7 +101,7 @@ class StepLimit {
   std::string known_, steps_since_, load_; // names in State::numbers
   double longest_checked_ = 0, last_ = 0;  // [s]
   double load_found_ = 0;                  // load_square_bound() with last_, where it was found [1/s^2]
-  int n_since_found_ = -1;                // steps that were asked about since it found its own one; -1: never
+  int n_since_found_ = -1;                 // steps that were asked about since it found its own one; -1: never
 };
 
 } // namespace kerf::dynamics

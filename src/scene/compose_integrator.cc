@@ -27,7 +27,9 @@ constexpr dynamics::SoundOptions dissipative{.kick = 0.01, .wanted_gain = 2e-3};
 constexpr dynamics::SoundOptions conservative{
   .most_substeps = 16, .most_gain = 0.05, .most_sum = 0.1, .kick = 0, .wanted_gain = 1e-2, .each_piece = true};
 constexpr dynamics::SoundOptions as_they_are{.most_substeps = 1};
-constexpr dynamics::SoundOptions explicit_ones{.most_gain = 0.75}, explicit_as_they_are{.most_substeps = 1, .most_gain = 0.75};
+/// Near its stable step an explicit integrator takes and gives back more than a quarter.
+constexpr dynamics::SoundOptions explicit_ones{.most_gain = 0.75},
+  explicit_as_they_are{.most_substeps = 1, .most_gain = 0.75};
 
 /// Watches the energy of an integrator's steps, and divides those that gain some.
 physics::StepperMaker sound(const physics::StepperMaker& make, const dynamics::SoundOptions& options) {

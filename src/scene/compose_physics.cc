@@ -103,7 +103,8 @@ lattice::MatchingOptions matching_options(const Section& section, const LatticeP
         line("shape matching with a half width of ", w, " cells reaches a Young's modulus of ",
              lattice::youngs_modulus(1 / (dt * dt), material.density, h, w), " Pa at this time step; the material has ",
              material.youngs_modulus, " Pa"),
-        line("Write 'set Half width [cells] = ", least, "' in 'subsection Lattice', a time step of ", longest, " s at most, or Alpha [1]"));
+        line("Write 'set Half width [cells] = ", least, "' in 'subsection Lattice', a time step of ", longest,
+             " s at most, or Alpha [1]"));
   }
   return {material.density, w, k};
 }

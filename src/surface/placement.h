@@ -11,8 +11,8 @@
 /// at once and give the quadric's minimum; that vertex never moves again (the thesis lets the skin jump: §2.8). Where
 /// blades cut at the skin, a cell is a polyhedron (grid/skeleton.h), and cuts have vertices of their own in its sides
 /// and in the cell, placed in the same way below the skin; in a triangle of the skin halfway between two cuts of its
-/// sides. So a rim runs on the skin, from cut to cut of its segments, or to where cuts cross (crossing.h), and the skin keeps
-/// its shape.
+/// sides. So a rim runs on the skin, from cut to cut of its segments, or to where cuts cross (crossing.h), and the skin
+/// keeps its shape.
 ///
 /// Departures: the thesis has one vertex a face and component, which cannot lie on the skin and on a cut below it; and
 /// it projects plainly onto the new plane, which would bend an earlier cut that it does not meet at a right angle, and

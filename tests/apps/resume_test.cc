@@ -250,7 +250,8 @@ TEST_F(Resume, ASecondRunLeavesTheFirstWhole) {
   EXPECT_EQ(again.exit_code, 0);
   EXPECT_NE(again.out.find("nothing is left to resume"), std::string::npos) << again.out;
   const Result other = kerf({"run", "scene.prm", "--output", "out", "--resume", "--set", "Time/End time [s]=0.2"});
-  expect_error(other, 1, {"run.h5", "cannot be resumed", "another scene", "'set End time [s] = 0.3' there, 'set End time [s] = 0.2"});
+  expect_error(other, 1, {"run.h5", "cannot be resumed", "another scene",
+                          "'set End time [s] = 0.3' there, 'set End time [s] = 0.2"});
 }
 
 TEST_F(Resume, RefusesAnotherScene) {

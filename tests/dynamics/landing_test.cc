@@ -94,11 +94,10 @@ TEST_P(Landing, BlockSlidesAboveTheAngleOfFriction) {
 /// bounded, and does not count. What sticks quivers by what friction gives in a step, and creeps more slowly than that.
 TEST(Landing, LongExplicitStepsStickAndSlideToo) {
   constexpr double mu = 0.5, dt = 4e-3, quiver = mu * 9.81 * dt;
-  for (const Integrator& integrator : {Integrator{"symplectic Euler", 1,
-                                                  [](ElasticModel& m) { return made<SymplecticEuler>(m, ExplicitOptions{}); }},
-                                       Integrator{"velocity Verlet", 2, [](ElasticModel& m) {
-                                                    return made<VelocityVerlet>(m, ExplicitOptions{});
-                                                  }}}) {
+  const std::vector<Integrator> watched = {
+    {"symplectic Euler", 1, [](ElasticModel& m) { return made<SymplecticEuler>(m, ExplicitOptions{}); }},
+    {"velocity Verlet", 2, [](ElasticModel& m) { return made<VelocityVerlet>(m, ExplicitOptions{}); }}};
+  for (const Integrator& integrator : watched) {
     const double sticks = std::atan(mu) - 3 * degree, slides = std::atan(mu) + 3 * degree;
     const State still = slide(integrator, sticks, mu, dt), sliding = slide(integrator, slides, mu, dt);
     for (std::size_t i = 0; i < masses.size(); ++i) {
