@@ -295,6 +295,8 @@ Body compose_body(const Section& section, const GravityParameters* gravity, cons
     world.composition.push_back(said);
   for (const std::string& said : describe_skin_supports(section, body))
     world.composition.push_back(said);
+  for (const std::string& warning : warn_of_friction(section, floors, body, world.time_step))
+    world.composition.push_back(warning);
   for (const std::string& warning : check_crack_fronts(section, body))
     world.composition.push_back(warning);
   for (const std::string& warning : warn_of_fronts(body, world))

@@ -6,6 +6,7 @@
 #include "dynamics/newton_parameters.h"
 #include "dynamics/rigid_modes.h"
 #include "dynamics/skin_support.h"
+#include "dynamics/sound_steps.h"
 #include "dynamics/surface_load.h"
 #include "geometry/box_tree.h"
 #include "grid/material.h"
@@ -21,6 +22,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <ranges>
 #include <set>
 
 namespace kerf::scene {
@@ -359,6 +361,30 @@ void compose_loads(const Section& section, const std::vector<const Section*>& fl
     compose_floor(*floor, body);
   for (const Section* probe : section.all("Probe"))
     body.probes.push_back({probe->name(), probe->read<ProbeParameters>().point});
+}
+
+std::vector<std::string> warn_of_friction(const Section& section, const std::vector<const Section*>& floors,
+                                          const Body& body, const double time_step) {
+  const auto parameters = section.read<BodyParameters>();
+  std::vector<std::string> lines;
+  if (!is_explicit(parameters.integrator) && parameters.backend != "lattice")
+    return lines;
+  const Points rest = grid::rest_positions(body.solid);
+  for (const Section* const floor : floors) {
+    const auto of = floor->read<dynamics::FloorParameters>();
+    const Vec3 up = of.normal.normalized();
+    const auto [lowest, highest] =
+      std::ranges::minmax(rest | std::views::transform([&](const Vec3& p) { return up.dot(p); }));
+    const double pressed = of.friction * std::max(0.0, -up.dot(body.loads.gravity)) * (highest - lowest) /
+                           body.solid.grid.h(), // by what a corner below carries, over its mass [m/s^2]
+                 longest = of.creep / pressed;
+    if (time_step > longest)
+      lines.push_back(line("warning: body ", body.name, ": steps of ", time_step, " s are too long for the friction of ",
+                           "floor ", floor->name(), ": what rests there quivers, creeps faster than the 'Creep velocity "
+                           "[m/s]', and 'dissipated energy' counts the quivering. Steps of some ",
+                           dynamics::in_short(longest), " s or an implicit integrator resolve it"));
+  }
+  return lines;
 }
 
 std::vector<std::string> describe_skin_supports(const Section& section, const Body& body) {

@@ -18,6 +18,11 @@ void require_sound_loads(const Section& section, double end_time, const Body& bo
 /// A line for each support that holds the skin: its area at rest, from where to where, in how many pieces.
 std::vector<std::string> describe_skin_supports(const Section& section, const Body& body);
 
+/// A line for each floor whose friction steps of an explicit integrator, or of shape matching, are too long for: what
+/// rests on it quivers then (dynamics/floor.h). As under a body that stands there with all its height.
+std::vector<std::string> warn_of_friction(const Section& section, const std::vector<const Section*>& floors,
+                                          const Body& body, double time_step);
+
 /// For statics, with everything there that holds the body at the start: throws ParameterError that names the rigid
 /// motions that nothing resists, unless the section allows them.
 void require_static_answer(const Section& section, const Body& body);

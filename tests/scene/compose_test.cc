@@ -87,6 +87,21 @@ TEST(Compose, TakesTheIntegratorThatIsNamed) {
   EXPECT_TRUE(is("midpoint Runge-Kutta", kind(static_cast<dynamics::MidpointRungeKutta*>(nullptr))));
 }
 
+/// Five cubes high: what the lowest corners carry brakes them by mu g 5 at most; .001 m/s of that takes 41 microseconds.
+TEST(Compose, WarnsOfFrictionThatExplicitStepsDoNotResolve) {
+  const auto warns = [](const std::string& integrator, const std::string& step, const std::string& friction) {
+    const std::string floor = "subsection Floor ground\n  set Point [m] = 0, 0, -1\nend\n";
+    const World world = world_of(cube_scene() + "subsection Gravity\nend\n" + floor,
+                                 {"Body cube/Integrator=" + integrator, "Time/Time step [s]=" + step,
+                                  "Time/End time [s]=" + step, "Floor ground/Friction [1]=" + friction});
+    return says(world, "warning: body cube: steps of " + step + " s are too long for the friction of floor ground");
+  };
+  EXPECT_TRUE(warns("velocity Verlet", "5e-05", "0.5"));
+  EXPECT_FALSE(warns("velocity Verlet", "3e-05", "0.5"));
+  EXPECT_FALSE(warns("velocity Verlet", "5e-05", "0"));
+  EXPECT_FALSE(warns("Newmark", "0.01", "0.5"));
+}
+
 TEST(Compose, IntegratesOverOctantsOrFullCubes) {
   const double cube_mass = 1000 * 0.2 * 0.2 * 0.2;
   EXPECT_NEAR(value(world_of(cube_scene()).bodies.at(0), "mass"), cube_mass, 1e-12 * cube_mass);
