@@ -35,6 +35,7 @@ class SameLoad : public Load {
                    LoadTangent& tangent) const override {
     load_.add_tangent(kind, moment, velocity_factor, tangent);
   }
+  bool is_bounded_in_velocity() const override { return load_.is_bounded_in_velocity(); }
 
  private:
   const Load& load_;

@@ -32,6 +32,7 @@ class NarrowedLoad : public dynamics::Load {
     load_.add_tangent(kind, {moment.time, *x, *v}, velocity_factor, by_corner);
     tangent.add(by_corner, numbers_.numbers());
   }
+  bool is_bounded_in_velocity() const override { return load_.is_bounded_in_velocity(); }
 
  private:
   Loan<Vec3> widened(const Points& of_numbers, const Points& others) const {
