@@ -13,9 +13,9 @@
 
 namespace kerf::surface {
 
-/// What is left of the way there: in the same place, vertices of a rim would make triangles without area; so they stay
-/// in their order [1].
-constexpr double short_of_crossing = 5e-7;
+/// What is left of the way there, which is shorter than h: in the same place, vertices of a rim would make triangles
+/// without area; so they stay in their order. As much as leaves them within 1e-6 h of both planes [1].
+constexpr double short_of_crossing = 9e-7;
 
 /// Moves the vertices of spokes to the crossings of the two cuts that meet them. Returns the triangles (bits, counted
 /// from skeleton::first_triangle) beside what has moved, whose own vertices are to be placed anew.

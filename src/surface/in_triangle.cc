@@ -56,7 +56,7 @@ Vec3 on_rim(const Solid& solid, const View& view, const grid::Segments two, cons
   const Vec3 p = plane_of(solid, view, two).point, q = plane_of(solid, view, two & (two - 1)).point;
   const Plane plane = plane_of(solid, view, third);
   const double a = plane.normal.dot(p - plane.point), b = plane.normal.dot(q - plane.point);
-  const double inside = ends_at_crossing(solid, view, two) ? short_of_crossing : 1e-5; // of the rim's length
+  const double inside = ends_at_crossing(solid, view, two) ? short_of_crossing : 1e-3; // of the rim's length
   return p + (a == b ? 0.5 : std::clamp(a / (a - b), inside, 1 - inside)) * (q - p);
 }
 

@@ -95,7 +95,7 @@ void look(const Patient& patient, const std::vector<support::Plane>& planes, Bes
     const auto& [a, b, c] = surface.triangles[t];
     const double area = (surface.rest[b] - surface.rest[a]).cross(surface.rest[c] - surface.rest[a]).norm() / 2;
     ++result.n_triangles;
-    result.n_without_area += area < 1e-15 * h * h; // vertices at crossings are 5e-7 h apart (surface/crossing.h)
+    result.n_without_area += area < 1e-12 * h * h;
     if (surface.labels[t] != grid::skin_label)
       for (const auto v : surface.triangles[t])
         is_of_cut[v] = true;
